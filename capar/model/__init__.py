@@ -1,0 +1,1 @@
+"""The words that every stage shares: captures, facts and PARs, with nothing below them."""

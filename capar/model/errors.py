@@ -1,0 +1,63 @@
+"""Mistakes that a user can make, each saying what, where, and what would have been right."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from pathlib import Path
+
+
+class CaparError(Exception):
+    """A user's mistake; a command that meets one prints it and exits with 2."""
+
+
+class UnknownNameError(CaparError):
+    """A name that nothing here bears.
+
+    Attributes:
+        kind: What was named (``sensor``, ``object``, ``body`` ...).
+        name: The name as it was given.
+        known: The names that exist, sorted.
+        where: File and line, or an empty string.
+    """
+
+    def __init__(self, kind: str, name: str, known: Iterable[str], *, where: str = "") -> None:
+        self.kind = kind
+        self.name = name
+        self.known = sorted(known)
+        self.where = where
+        close = get_close_matches(name, self.known, n=1)
+        hint = f" Did you mean {close[0]!r}?" if close else ""
+        place = f"{where}: " if where else ""
+        names = ", ".join(self.known) or "none"
+        super().__init__(f"{place}no {kind} {name!r}; there are: {names}.{hint}")
+
+
+class FileError(CaparError):
+    """A file that cannot be used.
+
+    Attributes:
+        path: The file.
+        problem: What is wrong with it, and where in it.
+        remedy: What would have been right.
+    """
+
+    def __init__(self, path: Path | str, problem: str, remedy: str = "") -> None:
+        self.path = Path(path)
+        self.problem = problem
+        self.remedy = remedy
+        super().__init__(f"{path}: {problem}" + (f" {remedy}" if remedy else ""))
+
+
+class CaptureError(CaparError):
+    """Motion data that no body could have produced, or that contradicts itself."""
+
+
+class RuleError(CaparError):
+    """A rule file that clingo refuses, or rules without exactly one answer."""
+
+
+class FactError(CaparError):
+    """A fact whose arguments are not of its kind."""
+
+
+class ParError(CaparError):
+    """An action representation that contradicts itself."""

@@ -1,0 +1,98 @@
+"""Rigid motion in a right-handed world whose z axis points up: metres, and quaternions w x y z."""
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.spatial.transform import RigidTransform, Rotation, Slerp
+
+from capar.model.errors import CaptureError
+
+UNIT_TOLERANCE = 0.01
+"""How far a quaternion's norm may lie from one before it is an error [1]."""
+
+
+def rotations(quaternions: Float[np.ndarray, "frames 4"]) -> Rotation:
+    """The rotations that unit quaternions (w x y z) stand for."""
+    return Rotation.from_quat(quaternions, scalar_first=True)
+
+
+def quaternions(rotation: Rotation) -> Float[np.ndarray, "*frames 4"]:
+    """Unit quaternions (w x y z) of rotations."""
+    return rotation.as_quat(scalar_first=True)
+
+
+def transforms(
+    positions: Float[np.ndarray, "frames 3"], orientations: Float[np.ndarray, "frames 4"]
+) -> RigidTransform:
+    """Poses as transforms that compose with ``*`` and act on points: ``T_world_body.apply(p)``."""
+    return RigidTransform.from_components(positions, rotations(orientations))
+
+
+def continuous(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames 4"]:
+    """The same orientations with signs chosen so that neighbours are near; NaN frames stay."""
+    out = np.array(orientations, dtype=float)
+    known = np.flatnonzero(~np.isnan(out).any(axis=1))
+    if known.size < 2:
+        return out
+    dots = np.einsum("ij,ij->i", out[known[1:]], out[known[:-1]])
+    signs = np.cumprod(np.where(dots < 0.0, -1.0, 1.0))
+    out[known[1:]] *= signs[:, None]
+    return out
+
+
+def unit(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames 4"]:
+    """The orientations scaled to norm one; NaN frames stay.
+
+    Raises:
+        CaptureError: A norm is further from one than ``UNIT_TOLERANCE``.
+    """
+    norms = np.linalg.norm(orientations, axis=1)
+    bad = np.flatnonzero(np.abs(norms - 1.0) > UNIT_TOLERANCE)
+    if bad.size:
+        raise CaptureError(
+            f"quaternion of norm {norms[bad[0]]:.4g} at frame {bad[0]} ({bad.size} in all); "
+            "orientations are unit quaternions in the order w x y z"
+        )
+    return np.asarray(orientations / norms[:, None])
+
+
+def angle_between(
+    first: Float[np.ndarray, "frames 4"], second: Float[np.ndarray, "frames 4"]
+) -> Float[np.ndarray, "frames"]:
+    """The angle of the rotation that takes one orientation to the other [rad], in [0, pi]."""
+    dots = np.abs(np.einsum("...j,...j->...", first, second))
+    return 2.0 * np.arccos(np.clip(dots, 0.0, 1.0))
+
+
+def fit_rigid(
+    local: Float[np.ndarray, "markers 3"], world: Float[np.ndarray, "markers 3"]
+) -> tuple[RigidTransform, float]:
+    """The transform that takes marker places in the body to the world, by least squares.
+
+    Returns:
+        ``T_world_body`` and the root mean square of what is left [m].
+    """
+    centre_local, centre_world = local.mean(axis=0), world.mean(axis=0)
+    rotation, _ = Rotation.align_vectors(world - centre_world, local - centre_local)
+    transform = RigidTransform.from_components(
+        centre_world - rotation.apply(centre_local), rotation
+    )
+    rest = transform.apply(local) - world
+    return transform, float(np.sqrt((rest**2).sum(axis=1).mean()))
+
+
+def gaps(missing: Bool[np.ndarray, "frames"]) -> list[tuple[int, int]]:
+    """Runs of true values as closed intervals of frames [first, last]."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], missing.astype(np.int8), [0]))))
+    return [(int(first), int(last) - 1) for first, last in edges.reshape(-1, 2)]
+
+
+def slerp(
+    times: Float[np.ndarray, "known"],
+    orientations: Float[np.ndarray, "known 4"],
+    wanted: Float[np.ndarray, "frames"],
+) -> Float[np.ndarray, "frames 4"]:
+    """Orientations at other times [s], along great arcs; times outside are held at the ends."""
+    if times.size == 1:
+        return np.repeat(orientations, wanted.size, axis=0)
+    inside = np.clip(wanted, times[0], times[-1])
+    return quaternions(Slerp(times, rotations(orientations))(inside))

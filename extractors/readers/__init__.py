@@ -1,0 +1,1 @@
+"""Every file format that motion is read from, one module each."""
