@@ -1,1 +1,1 @@
-"""."""
+"""From facts to PARs: rules in logic, and the engine that asks the solver."""

@@ -1,5 +1,75 @@
-"""The commands, one module each: they parse, call and print."""
+"""The commands, one module each: they parse, call and print; each is imported when it is named."""
+
+import os
+import sys
+from importlib import import_module
+from pkgutil import iter_modules
+
+import click
+import typer
+from typer.core import TyperGroup
+
+from capar import __version__
+from capar.model.errors import CaparError
+
+
+class Commands(TyperGroup):
+    """Every module of this package as the command of its name, loaded on demand."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of the commands, sorted."""
+        modules = [each.name for each in iter_modules(__path__) if not each.name.startswith("_")]
+        return sorted(name.removesuffix("_command").replace("_", "-") for name in modules)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """The command of that name, if there is one."""
+        if name not in self.list_commands(ctx):
+            return None
+        stem = name.replace("-", "_")
+        try:
+            module = import_module(f"{__name__}.{stem}")
+        except ModuleNotFoundError as error:
+            if error.name != f"{__name__}.{stem}":
+                raise
+            module = import_module(f"{__name__}.{stem}_command")
+        command = typer.main.get_command(module.app)
+        command.name = name
+        return command
+
+
+app = typer.Typer(
+    cls=Commands,
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"capar {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: bool = typer.Option(
+        False, "--version", callback=_version, is_eager=True, help="Print the version and stop."
+    ),
+) -> None:
+    """Say what somebody did in a motion capture, as knowledge to query, explain and replay."""
 
 
 def main() -> None:
-    """Run the command line."""
+    """Run a command; a user's mistake goes to standard error and exits with 2."""
+    try:
+        app()
+    except CaparError as error:
+        typer.echo(f"capar: {error}", err=True)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        typer.echo("capar: interrupted; nothing was left half-written", err=True)
+        sys.exit(130)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(0)

@@ -199,3 +199,21 @@ MEASURED: tuple[type[Fact], ...] = (
     Intended,
 )
 """Every kind of fact that extractors state, in the order in which they are written."""
+
+
+def read_fact(text: str) -> Fact:
+    """The measured fact that an atom states, such as ``touching(right_hand,mug,118,335)``.
+
+    Raises:
+        FactError: No atom, or of no predicate that extractors state.
+    """
+    try:
+        symbol = clingo.parse_term(text, logger=lambda code, message: None)
+    except (RuntimeError, TypeError, AttributeError):
+        raise FactError(f"expected an atom such as tag(mug,mobile), found {text!r}") from None
+    if symbol.type is clingo.SymbolType.Function:
+        for kind in MEASURED:
+            if kind.predicate == symbol.name:
+                return kind.from_symbol(symbol)
+    known = ", ".join(each.predicate for each in MEASURED)
+    raise FactError(f"{text!r} is no measured fact; their predicates are {known}")

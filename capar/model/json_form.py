@@ -1,0 +1,176 @@
+"""The JSON form of observations and PARs, and the schemas that describe it."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass, replace
+from enum import Enum
+from importlib import resources
+from math import isfinite
+from typing import Any, TypeAlias, TypeVar
+
+from capar.model.errors import CaparError, ParError
+from capar.model.facts import Fact, read_fact
+from capar.model.observation import Observation
+from capar.model.par import ComplexPar, Ipar, Upar
+
+Value: TypeAlias = Observation | ComplexPar | Upar | Ipar
+"""What has a JSON form."""
+
+KINDS: dict[str, type[Value]] = {
+    "observation": Observation,
+    "complex_par": ComplexPar,
+    "upar": Upar,
+    "ipar": Ipar,
+}
+"""Each kind by the name of its schema."""
+
+DRAFT = "https://json-schema.org/draft/2020-12/schema"
+FACT_PATTERN = r"^[a-z][A-Za-z0-9_]*(\(.+\))?$"
+_T = TypeVar("_T", Observation, ComplexPar, Upar, Ipar)
+
+
+def to_json(value: Value) -> str:
+    """The value as JSON: keys in the order of the fields, facts as atoms, a final newline.
+
+    Raises:
+        ParError: A number is not finite; JSON has no such numbers.
+    """
+    return json.dumps(document(value), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def document(value: Value) -> dict[str, Any]:
+    """The value as dictionaries, lists, strings and numbers.
+
+    Raises:
+        ParError: A number is not finite.
+    """
+    out: dict[str, Any] = _plain(value, type(value).__name__)
+    return out
+
+
+def from_json(text: str, *, where: str = "") -> Observation:
+    """The observation that a JSON text states.
+
+    Args:
+        text: What ``to_json`` wrote.
+        where: The text's file, for error messages.
+
+    Raises:
+        ParError: No JSON, or not of the schema; it says at which place and what was expected.
+    """
+    return value_from_json(text, Observation, where=where)
+
+
+def value_from_json(text: str, kind: type[_T], *, where: str = "") -> _T:
+    """The observation or PAR of a given kind that a JSON text states.
+
+    Raises:
+        ParError: No JSON, or not of the schema; it says at which place and what was expected.
+    """
+    from pydantic import TypeAdapter, ValidationError
+
+    content = _parsed(text, where)
+    facts = _facts(content, where) if kind is Observation else ()
+    try:
+        value: _T = TypeAdapter(kind).validate_json(
+            json.dumps(content), strict=True, extra="forbid"
+        )
+    except ValidationError as error:
+        raise ParError(_complaint(error.errors(), where)) from None
+    except CaparError as error:
+        raise ParError(f"{_place(where)}{error}") from None
+    return replace(value, facts=facts) if isinstance(value, Observation) else value
+
+
+def schema(name: str) -> dict[str, Any]:
+    """The JSON schema (draft 2020-12) of the kind of that name, made from the values' types."""
+    from pydantic import TypeAdapter
+
+    out = TypeAdapter(KINDS[name]).json_schema(mode="serialization")
+    for each in (out, *out.get("$defs", {}).values()):
+        if each.get("type") == "object":
+            each["additionalProperties"] = False
+    if "Fact" in out.get("$defs", {}):
+        out["$defs"]["Fact"] = {
+            "title": "Fact",
+            "description": "A ground fact, as an atom: touching(right_hand,mug,118,335)",
+            "type": "string",
+            "pattern": FACT_PATTERN,
+        }
+    return {"$schema": DRAFT, **out}
+
+
+def schema_text(name: str) -> str:
+    """That schema as it is published, beside this module."""
+    return json.dumps(schema(name), indent=2, ensure_ascii=False) + "\n"
+
+
+def published_schema(name: str) -> str:
+    """The text of the published schema file of the kind of that name."""
+    folder = resources.files("capar.model").joinpath("schema")
+    return folder.joinpath(f"{name}.schema.json").read_text(encoding="utf-8")
+
+
+def _plain(value: Any, place: str) -> Any:
+    if isinstance(value, Fact):
+        return str(value)
+    if is_dataclass(value):
+        names = [each.name for each in fields(value)]
+        return {each: _plain(getattr(value, each), f"{place}.{each}") for each in names}
+    if isinstance(value, Mapping):
+        return {key: _plain(value[key], f"{place}.{key}") for key in sorted(value)}
+    if isinstance(value, tuple):
+        return [_plain(each, f"{place}.{index}") for index, each in enumerate(value)]
+    if isinstance(value, float):
+        if not isfinite(value):
+            raise ParError(f"{place}: {value} is no finite number; JSON cannot hold it")
+        return float(value)
+    return value.value if isinstance(value, Enum) else value
+
+
+def _parsed(text: str, where: str) -> dict[str, Any]:
+    try:
+        content = json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise ParError(f"{_place(where)}this is no JSON: {error}") from None
+    if not isinstance(content, dict):
+        raise ParError(f"{_place(where)}expected an object in braces, found {_shown(content)}")
+    return content
+
+
+def _facts(content: dict[str, Any], where: str) -> tuple[Fact, ...]:
+    """Take the facts out of the content and read them."""
+    texts = content.get("facts", [])
+    if not isinstance(texts, list):
+        raise ParError(f"{_place(where)}facts: expected a list of atoms, found {_shown(texts)}")
+    if "facts" in content:
+        content["facts"] = []
+    out = []
+    for index, text in enumerate(texts):
+        try:
+            out.append(read_fact(text))
+        except CaparError as error:
+            raise ParError(f"{_place(where)}facts.{index}: {error}") from None
+    return tuple(out)
+
+
+def _complaint(errors: list[Any], where: str) -> str:
+    """The first mistake with its place, and how many more there are."""
+    first = errors[0]
+    place = ".".join(str(each) for each in first["loc"]) or "document"
+    more = f" ({len(errors) - 1} more such)" if len(errors) > 1 else ""
+    if first["type"] == "missing":
+        return f"{_place(where)}{place}: expected a value, found none{more}"
+    if first["type"] == "unexpected_keyword_argument":
+        return f"{_place(where)}{place}: no such field{more}"
+    message = first["msg"].removeprefix("Input should be ")
+    return f"{_place(where)}{place}: expected {message}, found {_shown(first['input'])}{more}"
+
+
+def _place(where: str) -> str:
+    return f"{where}: " if where else ""
+
+
+def _shown(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,1 @@
+"""Views of what was observed: text, scripts and pictures, for people."""

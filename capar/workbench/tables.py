@@ -1,0 +1,140 @@
+"""Segments and steps as tables: for a terminal, and as plain rows."""
+
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING
+
+from capar.model.observation import Observation, Segment
+from capar.model.par import ComplexPar, FeatureSet, Step
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+SEGMENT_COLUMNS = ("link", "start [s]", "end [s]", "name", "objects", "features", "purpose")
+STEP_COLUMNS = ("link", "step", "objects", "purpose", "begin", "share", "duration [s]")
+FEATURE_NOTE = "features: relations at start > at end, changes of location, force"
+LEVELS = {
+    "count": "number of objects",
+    "rel_start": "relations at the start",
+    "rel_end": "relations at the end",
+    "change_loc": "change of location",
+    "end_effector": "end-effector",
+    "force": "force",
+}
+"""What people call the levels of the feature table (thesis 4.5)."""
+
+
+def segment_rows(observation: Observation) -> tuple[tuple[str, ...], ...]:
+    """A heading and a row for each segment, links in order."""
+    return (SEGMENT_COLUMNS, *(_segment_row(each) for each in observation.segments))
+
+
+def step_rows(par: ComplexPar) -> tuple[tuple[str, ...], ...]:
+    """A heading and a row for each step, links in order, the common step last."""
+    steps = [step for link in par.links for step in link.steps]
+    steps += [par.common] if par.common else []
+    return (STEP_COLUMNS, *(_step_row(each, par.duration_s) for each in steps))
+
+
+def segments_table(observation: Observation) -> "Table":
+    """Segments for a terminal, a section for each link."""
+    table = _table(SEGMENT_COLUMNS, right={1, 2}, title=observation.capture)
+    table.caption = FEATURE_NOTE
+    for link in observation.links:
+        for segment in link.segments:
+            style = None if segment.known else "yellow"
+            table.add_row(*map(_escaped, _segment_row(segment)), style=style)
+        table.add_section()
+    return table
+
+
+def steps_table(par: ComplexPar) -> "Table":
+    """Steps of a complex PAR for a terminal, with their shares of its duration."""
+    title = f"{par.name or 'unnamed'}({', '.join(par.objects)}), {par.duration_s:.2f} s"
+    table = _table(STEP_COLUMNS, right={4, 5, 6}, title=title)
+    for link in par.links:
+        for step in link.steps:
+            table.add_row(*map(_escaped, _step_row(step, par.duration_s)))
+        table.add_section()
+    if par.common:
+        table.add_row(*map(_escaped, _step_row(par.common, par.duration_s)))
+    return table
+
+
+def aligned(
+    rows: Sequence[Sequence[str]], *, right: Collection[int] = frozenset()
+) -> tuple[str, ...]:
+    """Rows as lines of text with their columns under each other.
+
+    Args:
+        rows: Cells of equally many columns.
+        right: Columns whose cells stand at the right.
+    """
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return tuple(
+        "  ".join(
+            cell.rjust(width) if index in right else cell.ljust(width)
+            for index, (cell, width) in enumerate(zip(row, widths, strict=True))
+            if width
+        ).rstrip()
+        for row in rows
+    )
+
+
+def unknown_note(segment: Segment) -> str:
+    """Where an unknown segment parted from what is known, and which names fitted that far."""
+    level = LEVELS.get(segment.level, segment.level.replace("_", " "))
+    note = f"new in {level}" if level else "nothing is known yet"
+    return note + (f"; near {', '.join(segment.candidates)}" if segment.candidates else "")
+
+
+def _segment_row(segment: Segment) -> tuple[str, ...]:
+    name = segment.name
+    if not segment.known:
+        name = f"{name} ({unknown_note(segment)})"
+    elif segment.candidates:
+        name = f"{name} (or {', '.join(segment.candidates)})"
+    return (
+        segment.ee,
+        f"{segment.start_s:.3f}",
+        f"{segment.end_s:.3f}",
+        name,
+        ", ".join(segment.objects) or "-",
+        features(segment.features),
+        segment.purpose or "-",
+    )
+
+
+def features(value: FeatureSet) -> str:
+    """A feature set in short: ``100 > 101, 10, 00, hand``."""
+    strings = (value.rel_start, value.rel_end, value.change_loc, value.force)
+    start, end, change, force = (each or "-" for each in strings)
+    return f"{start} > {end}, {change}, {force}, {value.end_effector}"
+
+
+def _step_row(step: Step, duration_s: float) -> tuple[str, ...]:
+    return (
+        step.ee,
+        step.action,
+        ", ".join(step.objects) or "-",
+        step.purpose or "-",
+        f"{step.begin:.4f}",
+        f"{step.share:.4f}",
+        f"{step.share * duration_s:.3f}",
+    )
+
+
+def _table(columns: Sequence[str], *, right: Collection[int], title: str) -> "Table":
+    from rich.markup import escape
+    from rich.table import Table
+
+    table = Table(title=escape(title), title_justify="left", caption_justify="left")
+    for index, column in enumerate(columns):
+        number = index in right
+        table.add_column(escape(column), justify="right" if number else "left", no_wrap=number)
+    return table
+
+
+def _escaped(cell: str) -> str:
+    from rich.markup import escape
+
+    return escape(cell)

@@ -1,0 +1,123 @@
+"""The solver: rule files and facts in, the atoms that are shown out, and nothing left unsaid."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from importlib import resources
+from pathlib import Path
+
+import clingo
+
+from capar.model.errors import RuleError
+from capar.model.facts import Fact, program
+
+Term = int | str | tuple["Term", ...]
+"""A value of the rules: a number, a name or text, or a compound as (functor, arguments...)."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The one answer of a program: its shown atoms."""
+
+    atoms: tuple[tuple[str, tuple[Term, ...]], ...]
+    """Predicate and arguments, sorted."""
+
+    @cached_property
+    def _by_name(self) -> dict[str, list[tuple[Term, ...]]]:
+        table: dict[str, list[tuple[Term, ...]]] = {}
+        for name, arguments in self.atoms:
+            table.setdefault(name, []).append(arguments)
+        return table
+
+    def of(self, predicate: str) -> Sequence[tuple[Term, ...]]:
+        """Arguments of every shown atom of a predicate, sorted."""
+        return self._by_name.get(predicate, [])
+
+
+def rule_file(name: str) -> Path:
+    """The path of a rule file that ships with this package."""
+    return Path(str(resources.files("capar_rules") / name))
+
+
+def solve(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
+    """The one answer of the rule files over the facts.
+
+    Raises:
+        RuleError: The solver has a remark of any kind, or there is no answer, or more than one.
+    """
+    text = facts if isinstance(facts, str) else program(tuple(facts))
+    return _answer(_grounded(files, text))
+
+
+def fingerprint(files: Iterable[Path]) -> str:
+    """SHA-256 over the rule files and all that they include, in the order of their names."""
+    seen: dict[str, bytes] = {}
+    waiting = [Path(each).resolve() for each in files]
+    while waiting:
+        path = waiting.pop()
+        if str(path) in seen:
+            continue
+        content = path.read_bytes()
+        seen[str(path)] = content
+        waiting += [path.parent / name for name in _includes(content.decode())]
+    digest = sha256()
+    for path_name in sorted(seen, key=lambda each: (Path(each).name, seen[each])):
+        digest.update(Path(path_name).name.encode() + b"\0" + seen[path_name] + b"\0")
+    return digest.hexdigest()
+
+
+def _includes(text: str) -> list[str]:
+    lines = (line.strip() for line in text.splitlines())
+    return [line.split('"')[1] for line in lines if line.startswith("#include ")]
+
+
+def _grounded(files: Iterable[Path], text: str) -> clingo.Control:
+    messages: list[str] = []
+
+    def note(code: clingo.MessageCode, message: str) -> None:
+        # Every rule file includes what it reads, so that a file is named twice is no fault.
+        if code is not clingo.MessageCode.FileIncluded:
+            messages.append(message.strip())
+
+    control = clingo.Control(["--models=2"], logger=note, message_limit=100)
+    try:
+        for path in files:
+            control.load(str(path))
+        control.add("base", [], text)
+        control.ground([("base", [])])
+    except RuntimeError as error:
+        raise RuleError("\n".join(messages) or str(error)) from None
+    if messages:
+        raise RuleError("\n".join(messages))
+    return control
+
+
+def _answer(control: clingo.Control) -> Answer:
+    answers: list[Answer] = []
+    control.solve(on_model=lambda model: answers.append(_shown(model)))
+    if not answers:
+        raise RuleError("the rules contradict each other over these facts: they have no answer")
+    if len(answers) > 1:
+        first, second = (set(each.atoms) for each in answers)
+        name, arguments = sorted(first ^ second, key=str)[0]
+        raise RuleError(
+            "the rules have more than one answer over these facts; they differ first in "
+            f"{name}{arguments}: rules may not choose"
+        )
+    return answers[0]
+
+
+def _shown(model: clingo.Model) -> Answer:
+    symbols = sorted(model.symbols(shown=True))
+    return Answer(tuple((each.name, tuple(map(_term, each.arguments))) for each in symbols))
+
+
+def _term(symbol: clingo.Symbol) -> Term:
+    if symbol.type is clingo.SymbolType.Number:
+        return symbol.number
+    if symbol.type is clingo.SymbolType.String:
+        return symbol.string
+    if symbol.arguments:
+        return (symbol.name, *map(_term, symbol.arguments))
+    return symbol.name

@@ -1,0 +1,44 @@
+"""The rule profiles: which main file asks, and at which frames a link has its ticks."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from capar.model.errors import UnknownNameError
+from capar_rules.engine import fingerprint, rule_file
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A rule base to reason with."""
+
+    name: str
+    crossings_only: bool
+    """Whether events can stand at zero crossings alone (thesis 4.3.2)."""
+
+    added: tuple[Path, ...] = ()
+    """Rule files of the user's, beside those that ship."""
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """Every file to load: the main one includes the rest of what ships."""
+        return (rule_file(f"{self.name}.lp"), *self.added)
+
+    @property
+    def fingerprint(self) -> str:
+        """SHA-256 of the rule base."""
+        return fingerprint(self.files)
+
+
+DEFAULT = "extended"
+_CROSSINGS_ONLY = {"extended": False, "thesis": True}
+
+
+def profile(name: str = DEFAULT, *, added: tuple[Path, ...] = ()) -> Profile:
+    """The profile of that name, with rule files added to it.
+
+    Raises:
+        UnknownNameError: There is none.
+    """
+    if name not in _CROSSINGS_ONLY:
+        raise UnknownNameError("profile", name, _CROSSINGS_ONLY)
+    return Profile(name, _CROSSINGS_ONLY[name], added)

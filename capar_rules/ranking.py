@@ -1,0 +1,212 @@
+"""Ticks: the frames of a link at which anything may change, numbered so that rules join neighbours.
+
+Joining intervals by comparing frames inside the rules is quadratic or worse; numbered outside, a
+rule meets a border only with its neighbour, and grounding stays linear in the number of events.
+"""
+
+from bisect import bisect_left, bisect_right
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from capar.model.facts import Fact, Frames, Link, Moving, RateMhz, Touching, ZeroCrossing
+
+MARGIN_S = 1.0
+"""How far beyond a possession the contacts of its object are numbered [s]: merging sees less."""
+
+CONFIRMING_S = 0.1
+"""How near a zero crossing confirms a border [s]."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Tick(Fact):
+    """A frame of a link at which something may change."""
+
+    predicate = "tick"
+    ee: str
+    tick: int
+    frame: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class LastTick(Fact):
+    """The number of a link's last tick."""
+
+    predicate = "last_tick"
+    ee: str
+    tick: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Within(Fact):
+    """The ticks of a link that lie inside a contact."""
+
+    predicate = "within"
+    ee: str
+    body: str
+    other: str
+    since: int
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class MovesBetween(Fact):
+    """An object moves between a tick of a link and the next one."""
+
+    predicate = "moves_between"
+    ee: str
+    object: str
+    tick: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class MovesDuring(Fact):
+    """An object moves at some time in a contact with an end-effector."""
+
+    predicate = "moves_during"
+    ee: str
+    object: str
+    since: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class CrossingNear(Fact):
+    """The zero crossing nearest to a tick, where one is near."""
+
+    predicate = "crossing_near"
+    ee: str
+    tick: int
+    frame: int
+
+
+def rank(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:
+    """The facts that number the borders of every link.
+
+    Args:
+        facts: What the extractors measured.
+        crossings_only: Whether ticks are the zero crossings, as in the thesis, or else the first
+            and last frames of every contact and motion that concerns the link.
+    """
+    scene = _Scene(facts)
+    ranked = (fact for link in scene.links for fact in _rank_link(scene, link.ee, crossings_only))
+    return tuple(sorted(ranked, key=lambda each: (type(each).predicate, each)))
+
+
+class _Scene:
+    """The measurements by what they are about, in order of time."""
+
+    def __init__(self, facts: Iterable[Fact]) -> None:
+        self.links: list[Link] = []
+        self.frames = Frames(0, 0)
+        self.rate = 0.0
+        self.touching: dict[str, list[Touching]] = defaultdict(list)
+        self.moving: dict[str, list[Moving]] = defaultdict(list)
+        self.crossings: dict[str, list[int]] = defaultdict(list)
+        for fact in facts:
+            if isinstance(fact, Touching):
+                self.touching[fact.body].append(fact)
+            elif isinstance(fact, Moving):
+                self.moving[fact.object].append(fact)
+            elif isinstance(fact, ZeroCrossing):
+                self.crossings[fact.ee].append(fact.frame)
+            elif isinstance(fact, Link):
+                self.links.append(fact)
+            elif isinstance(fact, Frames):
+                self.frames = fact
+            elif isinstance(fact, RateMhz):
+                self.rate = fact.rate / 1000.0
+        for touches in self.touching.values():
+            touches.sort(key=lambda each: each.first)
+        for moves in self.moving.values():
+            moves.sort(key=lambda each: each.first)
+        for crossings in self.crossings.values():
+            crossings.sort()
+
+
+def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
+    own = scene.touching[ee]
+    reach = _reach(own, round(MARGIN_S * scene.rate))
+    others = [
+        each
+        for name in reach
+        for each in scene.touching[name]
+        if each.other != ee and _overlap(reach[name], each.first, each.last)
+    ]
+    moves = {
+        name: [each for each in scene.moving[name] if _overlap(reach[name], each.first, each.last)]
+        for name in reach
+    }
+    moves |= {each.other: scene.moving[each.other] for each in others if each.other not in moves}
+    crossings = scene.crossings[ee]
+    if crossings_only:
+        marks = set(crossings)
+    else:
+        marks = {frame for each in (*own, *others) for frame in (each.first, each.last)}
+        marks |= {frame for name in reach for each in moves[name] for frame in _ends(each)}
+    first, last = scene.frames.first, scene.frames.last
+    ticks = sorted({first, last} | {frame for frame in marks if first < frame < last})
+    yield from (Tick(ee, index, frame) for index, frame in enumerate(ticks))
+    yield LastTick(ee, len(ticks) - 1)
+    yield from _within(ee, ticks, own, others)
+    yield from _moves(ee, ticks, moves)
+    yield from (
+        MovesDuring(ee, each.other, each.first)
+        for each in own
+        if _overlap(
+            [(each.first, each.last) for each in scene.moving[each.other]], each.first, each.last
+        )
+    )
+    yield from _confirmed(ee, ticks, crossings, CONFIRMING_S * scene.rate)
+
+
+def _reach(own: Iterable[Touching], margin: int) -> dict[str, list[tuple[int, int]]]:
+    """For each object that the end-effector touches, when: disjoint intervals, a little wider."""
+    reach: dict[str, list[tuple[int, int]]] = {}
+    for each in own:
+        spans = reach.setdefault(each.other, [])
+        first, last = each.first - margin, each.last + margin
+        if spans and first <= spans[-1][1]:
+            spans[-1] = (spans[-1][0], max(last, spans[-1][1]))
+        else:
+            spans.append((first, last))
+    return dict(sorted(reach.items()))
+
+
+def _overlap(spans: Sequence[tuple[int, int]], first: int, last: int) -> bool:
+    """Whether disjoint, sorted spans share a frame with an interval."""
+    index = bisect_right(spans, (last, 1 << 62)) - 1
+    return index >= 0 and spans[index][1] >= first
+
+
+def _ends(moving: Moving) -> tuple[int, int]:
+    return moving.first, moving.last
+
+
+def _within(
+    ee: str, ticks: list[int], own: Iterable[Touching], others: Iterable[Touching]
+) -> Iterable[Fact]:
+    for each in (*own, *others):
+        first, last = bisect_left(ticks, each.first), bisect_right(ticks, each.last) - 1
+        if first <= last:
+            yield Within(ee, each.body, each.other, each.first, first, last)
+
+
+def _moves(ee: str, ticks: list[int], moves: dict[str, list[Moving]]) -> Iterable[Fact]:
+    found = {
+        (name, gap)
+        for name, group in moves.items()
+        for each in group
+        for gap in range(bisect_right(ticks, each.first) - 1, bisect_left(ticks, each.last))
+        if 0 <= gap < len(ticks) - 1
+    }
+    return (MovesBetween(ee, name, gap) for name, gap in sorted(found))
+
+
+def _confirmed(ee: str, ticks: list[int], crossings: list[int], reach: float) -> Iterable[Fact]:
+    for index, frame in enumerate(ticks):
+        place = bisect_left(crossings, frame)
+        near = crossings[max(place - 1, 0) : place + 1]
+        best = min(near, key=lambda each: (abs(each - frame), each), default=None)
+        if best is not None and abs(best - frame) <= reach:
+            yield CrossingNear(ee, index, best)

@@ -1,0 +1,51 @@
+"""Stretches of frames as closed intervals [first, last], closed up and weeded by duration."""
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from capar.model import geometry
+
+Interval = tuple[int, int]
+"""First and last frame, both inside."""
+
+
+def intervals(
+    holds: Bool[np.ndarray, "frames"],
+    times: Float[np.ndarray, "frames"],
+    *,
+    dropout_s: float,
+    minimum_s: float,
+    known: Bool[np.ndarray, "frames"] | None = None,
+) -> list[Interval]:
+    """Where something holds, with short interruptions closed, then short stretches dropped.
+
+    Args:
+        holds: Whether it holds at each frame.
+        times: Clock [s].
+        dropout_s: An interruption shorter than this is closed [s].
+        minimum_s: A stretch shorter than this is dropped [s]; a stretch of one frame lasts one
+            step of time.
+        known: Frames at which it can be known at all; unknown ones, if long, stay interruptions.
+    """
+    step = float(np.median(np.diff(times)))
+    seen = holds if known is None else holds & known
+    closed: list[Interval] = []
+    for first, last in geometry.gaps(seen):
+        if closed and times[first] - times[closed[-1][1]] - step < dropout_s - 1e-9:
+            closed[-1] = (closed[-1][0], last)
+        else:
+            closed.append((first, last))
+    return [each for each in closed if duration(each, times, step) >= minimum_s - 1e-9]
+
+
+def duration(interval: Interval, times: Float[np.ndarray, "frames"], step: float) -> float:
+    """How long the frames of an interval last [s], each for one step of time [s]."""
+    return float(times[interval[1]] - times[interval[0]]) + step
+
+
+def mask(found: list[Interval], frames: int) -> Bool[np.ndarray, "frames"]:
+    """Whether each frame lies in one of the intervals."""
+    out = np.zeros(frames, dtype=bool)
+    for first, last in found:
+        out[first : last + 1] = True
+    return out

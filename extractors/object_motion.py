@@ -1,0 +1,155 @@
+"""When an object is away from each place where it rests (thesis 4.4.1)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.ndimage import uniform_filter1d
+
+from capar.model import geometry
+from capar.model.capture import Stream
+from extractors.intervals import Interval, intervals, mask
+from extractors.noise import Noise
+from extractors.poses import Poses, median_pose
+from extractors.signals import gains
+from extractors.thresholds import Thresholds
+
+
+@dataclass(frozen=True, eq=False)
+class Stay:
+    """A place where an object rests, and the frames through which it is there."""
+
+    interval: Interval
+    position: Float[np.ndarray, "3"]
+    """World position [m]."""
+
+    orientation: Float[np.ndarray, "4"]
+    """Unit quaternion w x y z."""
+
+
+@dataclass(frozen=True, slots=True)
+class Floor:
+    """Displacement from a place below which an object is still there."""
+
+    position_m: float
+    rotation_rad: float
+
+
+def motion_floor(
+    noise: Noise, rate_hz: float, *, own_m: float | None, thresholds: Thresholds
+) -> Floor:
+    """The floor of an object's motion: its own if it has one, else above the noise.
+
+    Args:
+        noise: Noise of the object's unfiltered stream.
+        rate_hz: Frames a second [Hz].
+        own_m: The floor that the capture states for this object [m], which holds as it is.
+        thresholds: Least floors, and deviations of noise that they must exceed.
+    """
+    left = thresholds.motion_sigmas * gains(rate_hz, thresholds)[0]
+    place = max(thresholds.motion_floor_m, left * noise.position_m)
+    turn = max(thresholds.motion_floor_rad, left * noise.orientation_rad)
+    if own_m is None:
+        return Floor(place, turn)
+    # What gives way under a hand also turns: the angle grows as the length does.
+    return Floor(own_m, max(turn, thresholds.motion_floor_rad * own_m / thresholds.motion_floor_m))
+
+
+def stays(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Stay, ...]:
+    """Places where the object rests, in time, with all frames at which it is not beyond the floor.
+
+    A stay grows from a stretch in which the object is slow for the least duration of rest; its
+    place is the middle of the poses there; it holds all contiguous frames within the floor of
+    that place, so the last millimetres of a landing belong to it.
+    """
+    stream = where.smooth
+    times = stream.times
+    rate_hz = 1.0 / float(np.median(np.diff(times)))
+    slow = _slow(stream, where.noise, rate_hz, thresholds)
+    found: list[Stay] = []
+    for first, last in intervals(slow, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
+        if found and last <= found[-1].interval[1]:
+            continue
+        found.append(_stay(stream, (first, last), floor))
+    return tuple(found)
+
+
+def moving(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Interval, ...]:
+    """Closed intervals of frames in which the object is at none of the places where it rests.
+
+    Frames in which it was lost count as motion only if it lies elsewhere afterwards.
+    """
+    stream = where.smooth
+    rests = stays(where, floor, thresholds)
+    away = ~mask([each.interval for each in rests], len(stream.times)) & ~stream.lost
+    for first, last in geometry.gaps(stream.lost):
+        if first > 0 and last < len(stream.times) - 1 and _moved(stream, first, last, floor):
+            away[first : last + 1] = True
+    return tuple(
+        intervals(away, stream.times, dropout_s=0.0, minimum_s=thresholds.moving_minimum_s)
+    )
+
+
+def _slow(
+    stream: Stream, noise: Noise, rate_hz: float, thresholds: Thresholds
+) -> Bool[np.ndarray, "frames"]:
+    """Whether the way's slope over the window of rest is no more than noise makes it."""
+    half = max(1, round(0.5 * thresholds.rest_window_s * rate_hz))
+    steps = 2 * half + 1
+    speed = np.full(len(stream.times), np.inf)
+    for first, last in geometry.gaps(~stream.lost):
+        part = slice(first, last + 1)
+        speed[part] = _slope(stream.positions[part], half) * rate_hz
+    # Least squares over n samples: the slope's deviation is sigma sqrt(12 / n^3) a step.
+    noise_mps = noise.position_m * rate_hz * np.sqrt(3.0 * 12.0 / steps**3)
+    return speed < max(thresholds.rest_speed_mps, thresholds.rest_sigmas * noise_mps)
+
+
+def _slope(positions: Float[np.ndarray, "frames 3"], half: int) -> Float[np.ndarray, "frames"]:
+    """Length of the slope of a straight line fitted to the frames around each [m a frame]."""
+    count = len(positions)
+    half = min(half, (count - 1) // 2)
+    if half < 1:
+        return np.zeros(count)
+    index = np.arange(count, dtype=float)[:, None]
+    size = 2 * half + 1
+    centred = positions - positions.mean(axis=0)
+    mean = uniform_filter1d(centred, size, axis=0, mode="nearest")
+    moment = uniform_filter1d(centred * index, size, axis=0, mode="nearest")
+    slope = (moment - mean * index) * 3.0 / (half * (half + 1))
+    length = np.linalg.norm(slope, axis=1)
+    length[:half] = length[half]
+    length[count - half :] = length[count - half - 1]
+    return np.asarray(length)
+
+
+def _stay(stream: Stream, seed: Interval, floor: Floor) -> Stay:
+    place, turn = median_pose(stream, mask([seed], len(stream.times)))
+    distance = np.linalg.norm(stream.positions - place, axis=1)
+    angle = geometry.angle_between(stream.orientations, turn[None])
+    with np.errstate(invalid="ignore"):
+        there = (distance <= floor.position_m) & (angle <= floor.rotation_rad)
+    middle = _middle(there, seed)
+    outside = np.flatnonzero(~there)
+    before, after = outside[outside < middle], outside[outside > middle]
+    first = int(before[-1]) + 1 if before.size else 0
+    last = int(after[0]) - 1 if after.size else len(there) - 1
+    return Stay((first, last), place, turn)
+
+
+def _middle(there: Bool[np.ndarray, "frames"], seed: Interval) -> int:
+    """A frame of the seed at which the object is at its place, the nearest to its middle."""
+    first, last = seed
+    inside = np.flatnonzero(there[first : last + 1])
+    centre = (last - first) // 2
+    return first + int(inside[np.argmin(np.abs(inside - centre))] if inside.size else centre)
+
+
+def _moved(stream: Stream, first: int, last: int, floor: Floor) -> bool:
+    """Whether an object lies elsewhere after a loss than before."""
+    ends = [first - 1, last + 1]
+    way = float(np.linalg.norm(np.diff(stream.positions[ends], axis=0)))
+    turns = stream.orientations[ends]
+    return way > floor.position_m or bool(
+        geometry.angle_between(turns[:1], turns[1:])[0] > floor.rotation_rad
+    )

@@ -1,0 +1,304 @@
+"""The capture bundle: a capture.toml that says what is what in the files it names."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.model.capture import (
+    Agent,
+    Capture,
+    Notice,
+    PivotContact,
+    Purpose,
+    Sensor,
+    Source,
+    Stream,
+    TagObject,
+)
+from capar.model.errors import FileError, UnknownNameError
+from capar.model.geometry import gaps
+from extractors.readers.clock import GAP_S
+from extractors.readers.declared import Declared, declared
+from extractors.readers.opening import source_of
+from extractors.readers.registry import read_recording
+from extractors.readers.shapes import HANDS
+from extractors.readers.toml_table import Table, expanded, read_table
+from extractors.readers.trc import UNITS
+from extractors.readers.world import UP, WorldRecording, to_world
+
+FILE = "capture.toml"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a capture is described, and which take of it is meant."""
+
+    file: Path
+    take: str = ""
+
+
+def find_place(place: str | Path) -> Place:
+    """The capture.toml of a folder, a file, or a motion file beside it, and a ``:take``.
+
+    Raises:
+        FileError: There is none.
+    """
+    text = str(place)
+    path, take = Path(text), ""
+    if not path.exists() and ":" in text:
+        stem, _, take = text.rpartition(":")
+        path = Path(stem)
+    if path.is_dir():
+        path = path / FILE
+    elif path.is_file() and path.suffix != ".toml":
+        path = path.parent / FILE
+    if not path.is_file():
+        raise FileError(
+            text,
+            f"no capture here: there is no file {path}.",
+            f"Write one with: capar new-capture FILES... -o {path}",
+        )
+    return Place(path, take)
+
+
+def read_capture(place: str | Path) -> Capture:
+    """The capture that a bundle describes.
+
+    Args:
+        place: A folder with a capture.toml, or that file, or a motion file beside it; then
+            ``:take`` where the bundle has several.
+
+    Raises:
+        CaparError: A file, body or value is not as the capture.toml says; it names the line.
+    """
+    table, take = open_bundle(place)
+    files = read_files(table)
+    group = _declared(table, files)
+    notices = [*(each for file in files.values() for each in file.notices), *group.notices]
+    sources = [source_of(table.file, "capture.toml"), *(f.source for f in files.values())]
+    sources[0] = replace(sources[0], path=table.file.name)
+    capture = Capture(
+        name=_name(table, take),
+        sensors=group.sensors,
+        objects=group.objects,
+        agent=_agent(table),
+        contact_tolerance_m=_tolerance(table),
+        pivot_contacts=_pivots(table, group),
+        purposes=_purposes(table),
+        force_transfer=table.flag("force_transfer"),
+        sources=(*sources, *_once(group.sources)),
+        notices=(*notices, *_gap_notices(group.sensors, group.objects)),
+    )
+    table.close()
+    return capture
+
+
+def _once(sources: tuple[Source, ...]) -> list[Source]:
+    return list(dict.fromkeys(sources))
+
+
+def takes(place: str | Path) -> list[str]:
+    """The names of a bundle's takes; empty where it has one only."""
+    return list(_takes(read_table(find_place(place).file)))
+
+
+def frame_times(place: str | Path, *, file: str = "") -> Float[np.ndarray, "frames"]:
+    """When each frame of a source file was taken, in seconds of the capture's clock [s].
+
+    With it the frame numbers of labels become times, whatever rate the capture has.
+    """
+    table, _ = open_bundle(place)
+    files = read_files(table)
+    if file and file not in files:
+        raise UnknownNameError("file", file, files, where=table.where("files"))
+    recording = files[file or next(iter(files))]
+    return clock_of(recording) - _declared(table, files).start_s
+
+
+def clock_of(recording: WorldRecording) -> Float[np.ndarray, "frames"]:
+    """The clock of a file's frames [s]."""
+    if recording.markers:
+        return recording.marker_times
+    return next(iter(recording.bodies.values())).times
+
+
+def open_bundle(place: str | Path) -> tuple[Table, str]:
+    """The table of a capture.toml with the take's names filled in, and the take.
+
+    Raises:
+        FileError: The bundle has several takes and none was named, or it is no TOML.
+        UnknownNameError: It has no such take.
+    """
+    where = find_place(place)
+    table = read_table(where.file)
+    known = _takes(table)
+    if not known:
+        if where.take:
+            raise UnknownNameError("take", where.take, [], where=str(where.file))
+        table.raw("takes")
+        return table, ""
+    if where.take not in known:
+        if where.take:
+            raise UnknownNameError("take", where.take, known, where=table.where("takes"))
+        raise table.error(
+            "takes", "has several takes.", f"Name one of them: {place}:{next(iter(known))}"
+        )
+    table = read_table(where.file, known[where.take])
+    table.raw("takes")
+    return table, where.take
+
+
+def _takes(table: Table) -> dict[str, dict[str, str]]:
+    """Each take's name and what ``{...}`` stands for in it."""
+    out: dict[str, dict[str, str]] = {}
+    for each in table.raw("takes", []):
+        values = {"take": each} if isinstance(each, str) else dict(each)
+        if "take" not in values or not all(isinstance(v, str) for v in values.values()):
+            raise table.error("takes", f"{each!r} is no take.", 'Like "take0" or { take = "..." }.')
+        out[values["take"]] = values
+    return out
+
+
+def _name(table: Table, take: str) -> str:
+    name = table.text("name", table.file.parent.name)
+    return f"{name}_{take}" if take and take not in name else name
+
+
+def read_files(table: Table) -> dict[str, WorldRecording]:
+    """Every file under ``[files]``, in the world.
+
+    Raises:
+        CaparError: One cannot be read, or its unit or axes are stated nowhere.
+    """
+    group = table.table("files")
+    if group is None or not group.given():
+        raise table.error("", "names no files.", 'Under [files]: motion = "recording.c3d".')
+    return {name: _read_file(table, group, name) for name in group.given()}
+
+
+def _read_file(table: Table, group: Table, name: str) -> WorldRecording:
+    own = group.table(name) if isinstance(group.raw(name), dict) else None
+    at, key = (own, "path") if own else (group, name)
+    text = at.text(key)
+    general = {"path", "unit", "up", "handedness", "parents"}
+    options = {key: own.raw(key) for key in own.given() if key not in general} if own else {}
+    recording = read_recording(expanded(at, key, text), options=options)
+    recording = replace(recording, source=replace(recording.source, path=text))
+    if own and "parents" in own:
+        recording = replace(recording, parents=_parents(own, recording.names))
+    word = own.choice("unit", UNITS, "") if own and "unit" in own else ""
+    unit = word or ("" if recording.unit_m else table.choice("unit", UNITS, _ask(table, "unit")))
+    up = own.choice("up", UP) if own and "up" in own else recording.up
+    up = up or table.choice("up", UP, _ask(table, "up"))
+    hand = own.choice("handedness", HANDS) if own and "handedness" in own else ""
+    hand = hand or table.choice("handedness", HANDS, "right")
+    _note_defaults(table)
+    return to_world(
+        recording,
+        unit_m=UNITS[unit] if unit else float(recording.unit_m or 1.0),
+        up=up,
+        left_handed=HANDS[hand],
+    )
+
+
+def _note_defaults(table: Table) -> None:
+    """A general unit or axis is no unknown key, even if every file states its own."""
+    for key in ("unit", "up", "handedness"):
+        table.raw(key)
+
+
+def _ask(table: Table, key: str) -> str | None:
+    if key in table:
+        return None
+    remedy = {"unit": f'unit = "mm" (or {", ".join(UNITS)})', "up": 'up = "z" (or "y")'}[key]
+    raise table.error("files", f"no file states its {key}.", f"State it at the top: {remedy}.")
+
+
+def _parents(table: Table, known: list[str]) -> dict[str, str]:
+    parents = table.table("parents")
+    if parents is None:
+        return {}
+    for joint in parents.given():
+        for name in (joint, parents.text(joint)):
+            if name not in known:
+                raise UnknownNameError("body", name, known, where=parents.where(joint))
+    return {joint: parents.text(joint) for joint in parents.given()}
+
+
+def _declared(table: Table, files: Mapping[str, WorldRecording]) -> Declared:
+    """Every sensor and object on one clock."""
+    rate = table.number("rate_hz") if "rate_hz" in table else None
+    ends = [table.number(key) if key in table else None for key in ("from_s", "to_s")]
+    return declared(table, files, rate_hz=rate, span_s=(ends[0], ends[1]))
+
+
+def _agent(table: Table) -> Agent:
+    agent = table.table("agent")
+    if agent is None:
+        return Agent()
+    measures = agent.table("measures")
+    values = {key: measures.number(key) for key in measures.given()} if measures else {}
+    out = Agent(agent.text("name", "agent"), agent.text("kind", "person"), values)
+    agent.close()
+    return out
+
+
+def _tolerance(table: Table) -> float | None:
+    contact = table.table("contact")
+    if contact is None:
+        return None
+    value = contact.number("tolerance_m")
+    contact.close()
+    if not 0.0 <= value < 1.0:
+        raise contact.error("tolerance_m", f"a tolerance of {value:g} m; it lies in [0, 1).")
+    return value
+
+
+def _pivots(table: Table, group: Declared) -> tuple[PivotContact, ...]:
+    out = []
+    known = [*(each.name for each in group.sensors), *(each.name for each in group.objects)]
+    for each in table.tables("pivot_contact"):
+        for key in ("first", "second"):
+            if each.text(key) not in known:
+                raise UnknownNameError("body", each.text(key), known, where=each.where(key))
+        pair = PivotContact(each.text("first"), each.text("second"), each.number("distance_m"))
+        each.close()
+        out.append(pair)
+    return tuple(out)
+
+
+def _purposes(table: Table) -> tuple[Purpose, ...]:
+    out = []
+    for each in table.tables("purpose"):
+        keys = ("action", "object", "goal")
+        out.append(Purpose(each.text("purpose"), *(each.text(key, "") for key in keys)))
+        each.close()
+    return tuple(out)
+
+
+def _gap_notices(sensors: tuple[Sensor, ...], objects: tuple[TagObject, ...]) -> list[Notice]:
+    """Every stretch in which a body is lost for longer than is interpolated."""
+    streams = {each.name: each.stream for each in sensors}
+    streams |= {each.name: each.stream for each in objects}
+    return [
+        _gap_notice(name, stream, gap)
+        for name, stream in streams.items()
+        for gap in _long_gaps(stream)
+    ]
+
+
+def _long_gaps(stream: Stream) -> list[tuple[int, int]]:
+    times, last = stream.times, len(stream.times) - 1
+    return [
+        (first, end)
+        for first, end in gaps(stream.lost)
+        if times[min(end + 1, last)] - times[max(first - 1, 0)] > GAP_S
+    ]
+
+
+def _gap_notice(name: str, stream: Stream, gap: tuple[int, int]) -> Notice:
+    start, end = stream.times[gap[0]], stream.times[gap[1]]
+    return Notice("long-gap", f"{name} is lost from {start:.2f} s to {end:.2f} s")

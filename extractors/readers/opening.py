@@ -1,0 +1,121 @@
+"""Files as bytes and text, through gzip and xz, with a limit on what they may expand to."""
+
+import gzip
+import hashlib
+import io
+import lzma
+import zipfile
+import zlib
+from pathlib import Path
+from typing import BinaryIO, cast
+
+from capar.model.capture import Source
+from capar.model.errors import FileError
+
+EXPANDED_LIMIT = 1 << 30
+"""Bytes that a compressed file may expand to [B]."""
+
+HEAD = 4096
+"""Bytes that tell a format [B]."""
+
+_DAMAGE = (EOFError, OSError, lzma.LZMAError, zlib.error, ValueError)
+
+
+def check_file(path: Path) -> None:
+    """Prove that a path is a file with something in it.
+
+    Raises:
+        FileError: It is not there, is a folder, or is empty.
+    """
+    try:
+        if not path.exists():
+            raise FileError(path, "no such file.", _neighbours(path))
+        if not path.is_file():
+            raise FileError(path, "is no file but a folder or a device.", "Name a file in it.")
+        if path.stat().st_size == 0:
+            raise FileError(path, "is empty.", "Copy or export it again.")
+    except (OSError, ValueError) as error:
+        raise FileError(str(path), f"cannot be opened: {error}.") from error
+
+
+def _neighbours(path: Path) -> str:
+    if not path.parent.is_dir():
+        return f"There is no folder {path.parent} either."
+    names = sorted(each.name for each in path.parent.iterdir())
+    return f"The folder holds: {', '.join(names[:12]) or 'nothing'}{', ...' * (len(names) > 12)}."
+
+
+def head_of(path: Path) -> bytes:
+    """The first bytes of a file, expanded if it is compressed."""
+    check_file(path)
+    return _read(path, HEAD, whole=False)
+
+
+def read_bytes(path: Path) -> bytes:
+    """A file's content, expanded if it is compressed.
+
+    Raises:
+        FileError: It is missing, empty, cut short, or expands beyond ``EXPANDED_LIMIT``.
+    """
+    check_file(path)
+    data = _read(path, EXPANDED_LIMIT + 1, whole=True)
+    if len(data) > EXPANDED_LIMIT:
+        raise FileError(path, f"expands to more than {EXPANDED_LIMIT >> 20} MiB.", "Split it.")
+    return data
+
+
+def read_text(path: Path) -> str:
+    """A text file's content; bytes that are no UTF-8 are read as Latin-1."""
+    data = read_bytes(path)
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def source_of(path: Path, form: str) -> Source:
+    """The file's provenance: its path, format and SHA-256 as it lies on disk."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(1 << 20):
+            digest.update(block)
+    return Source(path=str(path), format=form, sha256=digest.hexdigest())
+
+
+def check_zip(path: Path, limit: int = EXPANDED_LIMIT) -> list[str]:
+    """The names in a zip archive, after a look at what it would expand to.
+
+    Raises:
+        FileError: It is damaged, or its members together expand beyond the limit.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            members = archive.infolist()
+    except (zipfile.BadZipFile, *_DAMAGE) as error:
+        raise FileError(path, f"is a damaged zip archive: {error}.", "Copy it again.") from error
+    expanded = sum(each.file_size for each in members)
+    if expanded > limit:
+        raise FileError(
+            path,
+            f"would expand to {expanded / (1 << 20):.0f} MiB; the limit is {limit >> 20} MiB.",
+            "A motion or mesh file of that size is refused before it is expanded.",
+        )
+    return [each.filename for each in members]
+
+
+def _read(path: Path, limit: int, *, whole: bool) -> bytes:
+    try:
+        with path.open("rb") as raw, _expanding(raw) as file:
+            return file.read(limit)
+    except _DAMAGE as error:
+        hint = "Copy it again." if whole else "It seems compressed, and damaged."
+        raise FileError(path, f"cannot be read to its end: {error}.", hint) from error
+
+
+def _expanding(raw: io.BufferedReader) -> BinaryIO:
+    magic = raw.peek(6)[:6]
+    if magic.startswith(b"\x1f\x8b"):
+        return cast(BinaryIO, gzip.GzipFile(fileobj=raw))
+    if magic.startswith(b"\xfd7zXZ\x00"):
+        return cast(BinaryIO, lzma.LZMAFile(raw))
+    return cast(BinaryIO, raw)

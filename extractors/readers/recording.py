@@ -1,0 +1,109 @@
+"""What one motion file holds, before anyone says what in it is what."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.model.capture import Notice, Source, Stream
+from capar.model.errors import CaptureError
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Bodies and markers of one file, in the file's own unit and axes, each on its own clock."""
+
+    source: Source
+    bodies: Mapping[str, Stream] = field(default_factory=dict)
+    """Poses by the file's own names; positions in the file's unit."""
+
+    markers: Mapping[str, Float[np.ndarray, "frames 3"]] = field(default_factory=dict)
+    """Points by the file's own names, in the file's unit; NaN where they were not seen."""
+
+    marker_times: Float[np.ndarray, "frames"] = field(default_factory=lambda: np.empty(0))
+    """The clock of all markers [s]."""
+
+    unit_m: float | None = None
+    """Metres per unit, if the file states it."""
+
+    up: str | None = None
+    """The axis that points up (``y``, ``-z``), if the file states it."""
+
+    parents: Mapping[str, str] = field(default_factory=dict)
+    """Each joint's parent, where the file holds a skeleton."""
+
+    notices: tuple[Notice, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Prove the markers against their clock and make the mappings read-only."""
+        frames = len(self.marker_times)
+        for name, points in self.markers.items():
+            if points.shape != (frames, 3):
+                raise CaptureError(f"marker {name!r} has {points.shape}, its clock {frames} frames")
+            if np.isinf(points).any():
+                raise CaptureError(f"marker {name!r} is at infinity; missing points are NaN")
+        if self.markers:
+            check_clock(self.marker_times)
+        if not self.markers and not self.bodies:
+            raise CaptureError("neither a body nor a marker in it")
+        object.__setattr__(self, "bodies", MappingProxyType(dict(self.bodies)))
+        object.__setattr__(self, "markers", MappingProxyType(dict(self.markers)))
+        object.__setattr__(self, "parents", MappingProxyType(dict(self.parents)))
+
+    @property
+    def format(self) -> str:
+        """The name of the file's format."""
+        return self.source.format
+
+    @property
+    def times(self) -> Float[np.ndarray, "frames"]:
+        """The clock of the file's frames [s]: the markers', else that of the first body."""
+        if self.markers:
+            return self.marker_times
+        return next(iter(self.bodies.values())).times
+
+    @property
+    def names(self) -> list[str]:
+        """Every body and marker, sorted."""
+        return sorted({*self.bodies, *self.markers})
+
+
+def check_clock(times: Float[np.ndarray, "frames"]) -> None:
+    """Prove that time stamps are numbers that increase.
+
+    Raises:
+        CaptureError: They are not; the message names the frame.
+    """
+    frames = len(times)
+    identity = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))
+    Stream(times=times, positions=np.zeros((frames, 3)), orientations=identity)
+
+
+def track(
+    name: str,
+    times: Float[np.ndarray, "frames"],
+    positions: Float[np.ndarray, "frames 3"],
+    orientations: Float[np.ndarray, "frames 4"],
+) -> Stream:
+    """A body's poses, proven; errors name the body.
+
+    Raises:
+        CaptureError: Time goes back, a quaternion is not unit, or shapes disagree.
+    """
+    try:
+        return Stream(times=times, positions=positions, orientations=orientations)
+    except CaptureError as error:
+        raise CaptureError(f"body {name!r}: {error}") from error
+
+
+def uniform_clock(frames: int, rate_hz: float) -> Float[np.ndarray, "frames"]:
+    """Time stamps of frames at a steady rate, from zero [s].
+
+    Raises:
+        CaptureError: The rate is not positive.
+    """
+    if not (np.isfinite(rate_hz) and rate_hz > 0.0):
+        raise CaptureError(f"a rate of {rate_hz:g} frames a second; it must be positive")
+    return np.arange(frames) / rate_hz

@@ -1,0 +1,72 @@
+"""Every number that extraction decides by, with its unit, its meaning and where it comes from."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Thresholds:
+    """What separates motion from rest, contact from nearness and a gap from a loss."""
+
+    cutoff_hz: float = 8.0
+    """Where the zero-phase low-pass halves the power [Hz]: voluntary motion of limbs lies below
+    6 to 8 Hz (Winter, Biomechanics and Motor Control of Human Movement, 2.2)."""
+
+    cutoff_rate_share: float = 0.45
+    """Largest cutoff as a share of the rate [1]: a filter needs some band below half the rate."""
+
+    gap_s: float = 0.1
+    """A shorter loss of tracking is interpolated, a longer one carries no events [s] (spec 3)."""
+
+    dropout_s: float = 0.1
+    """A shorter interruption of a contact is closed [s] (spec 4)."""
+
+    contact_minimum_s: float = 0.05
+    """A shorter contact is dropped [s] (spec 4)."""
+
+    tolerance_sigmas: float = 3.0
+    """Bodies touch within so many deviations of the sensors' noise, unless a capture says [1]."""
+
+    tolerance_least_m: float = 0.005
+    """The least such tolerance [m]: skin gives way and meshes are approximate by that much."""
+
+    tolerance_most_m: float = 0.010
+    """The largest such tolerance [m]: beyond a centimetre, nearness is no contact."""
+
+    smoothing_noise_m: float = 0.0005
+    """A stream noisier than this at rest [m] is low-passed before its contacts are sought."""
+
+    crossing_sigmas: float = 6.0
+    """Prominence of an extremum of speed, in deviations of the speed's noise [1]."""
+
+    crossing_speed_mps: float = 0.03
+    """Least prominence of an extremum of speed [m/s]: postural sway of a hand stays below."""
+
+    crossing_speed_share: float = 0.03
+    """Least prominence as a share of the stream's largest speed [1]."""
+
+    rest_sigmas: float = 4.0
+    """A body rests while its speed is below so many deviations of the speed's noise [1]."""
+
+    rest_speed_mps: float = 0.03
+    """A body rests in any case while it is slower than this [m/s]."""
+
+    rest_window_s: float = 0.2
+    """An object's speed is the slope of its way over this time [s]."""
+
+    rest_minimum_s: float = 0.15
+    """A shorter standstill is no rest [s] (spec 5.4)."""
+
+    motion_floor_m: float = 0.010
+    """An object nearer than this to a place where it rests is still there [m]."""
+
+    motion_floor_rad: float = 0.0873
+    """The same for its orientation [rad]: five degrees."""
+
+    motion_sigmas: float = 5.0
+    """The floor of motion in deviations of the filtered pose's noise, where that is more [1]."""
+
+    moving_minimum_s: float = 0.05
+    """A shorter absence from a place is no motion [s]: nobody moves a thing there and back."""
+
+    axis_share: float = 0.1
+    """An axis moves if its way is at least this share of the largest axis's way [1]."""

@@ -1,0 +1,97 @@
+"""What a query answers, whatever store it was asked of."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from pyoxigraph import (
+    BlankNode,
+    Literal,
+    NamedNode,
+    QueryBoolean,
+    QueryResultsFormat,
+    QuerySolutions,
+    QueryTriples,
+    RdfFormat,
+    Triple,
+    parse,
+    parse_query_results,
+    serialize,
+)
+
+from ontology import PREFIXES
+from ontology.vocabularies import XSD
+
+Found: TypeAlias = NamedNode | BlankNode | Literal | Triple | None
+Plain: TypeAlias = str | int | float | bool | None
+
+_PLAIN = {
+    XSD + "integer": int,
+    XSD + "double": float,
+    XSD + "decimal": float,
+    XSD + "float": float,
+    XSD + "boolean": lambda text: text == "true",
+}
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Rows over variables; or, for a query that constructs, statements; or yes or no."""
+
+    variables: tuple[str, ...] = ()
+    rows: tuple[tuple[Found, ...], ...] = ()
+    triples: tuple[Triple, ...] | None = None
+    boolean: bool | None = None
+
+    def plain(self) -> Iterator[dict[str, Plain]]:
+        """Each row by variable, its terms as Python's own values."""
+        for row in self.rows:
+            yield {name: plain(each) for name, each in zip(self.variables, row, strict=True)}
+
+
+def plain(term: Found) -> Plain:
+    """A term as a value: a number, a truth, a text, or an IRI in its short form."""
+    if term is None:
+        return None
+    if isinstance(term, Literal):
+        return _PLAIN.get(term.datatype.value, str)(term.value)
+    return short(term.value) if isinstance(term, NamedNode) else str(term)
+
+
+def short(iri: str) -> str:
+    """An IRI with its prefix, where it has a known one."""
+    for prefix, base in PREFIXES.items():
+        if iri.startswith(base):
+            return f"{prefix}:{iri.removeprefix(base)}"
+    return iri
+
+
+def collect(result: QuerySolutions | QueryBoolean | QueryTriples) -> Answer:
+    """Everything that a query of the embedded store answers."""
+    if isinstance(result, QueryBoolean):
+        return Answer(boolean=bool(result))
+    if isinstance(result, QueryTriples):
+        return Answer(triples=tuple(dict.fromkeys(result)))
+    variables = tuple(each.value for each in result.variables)
+    return Answer(variables, tuple(tuple(row) for row in result))
+
+
+def encode(result: QuerySolutions | QueryBoolean | QueryTriples) -> tuple[str, bytes]:
+    """An answer as bytes with their media type."""
+    if isinstance(result, QueryTriples):
+        data = serialize(result, format=RdfFormat.N_TRIPLES)
+        return RdfFormat.N_TRIPLES.media_type, data or b""
+    data = result.serialize(format=QueryResultsFormat.JSON)
+    return QueryResultsFormat.JSON.media_type, data or b""
+
+
+def decode(media_type: str, data: bytes) -> Answer:
+    """The answer that such bytes state."""
+    if "json" in media_type:
+        result = parse_query_results(data, format=QueryResultsFormat.JSON)
+        return collect(result)
+    return Answer(
+        triples=tuple(
+            dict.fromkeys(each.triple for each in parse(data, format=RdfFormat.N_TRIPLES))
+        )
+    )

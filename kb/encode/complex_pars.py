@@ -1,0 +1,120 @@
+"""Complex actions as such, and as they were done, as statements (thesis 4.6.2)."""
+
+from pyoxigraph import NamedNode
+
+from capar.model.errors import ParError
+from capar.model.observation import Observation
+from capar.model.par import UNKNOWN, ComplexPar, LinkSteps, Step
+from kb import names
+from kb.encode.scene import GENERATED
+from kb.encode.segments import action, segment_node
+from kb.statements import LABEL, Said, Statements
+from ontology import CAPAR
+from ontology.vocabularies import ALLEN, TIME
+
+COMMON = "all"
+"""The end-effector of the step that ends every link."""
+
+
+def is_known(value: ComplexPar) -> bool:
+    """Whether every step has a name, so that the action can be known again."""
+    steps = [step for link in value.links for step in link.steps]
+    return bool(steps) and all(each.action != UNKNOWN for each in steps)
+
+
+def complex_node(value: ComplexPar) -> NamedNode:
+    """What a complex action is called: after what makes two observations one action."""
+    return names.shared("complex", names.hashed(value.signature))
+
+
+def complex_par(out: Statements, observation: Observation, name: str) -> NamedNode:
+    """The complex action and its steps; one with unknown steps is the observation's own."""
+    value = observation.complex_par
+    known = is_known(value)
+    node = complex_node(value) if known else names.part(out.about, "complex")
+    say = out.share if known else out.say
+    numbers = {each: index for index, each in enumerate(value.objects)}
+    steps = []
+    for link in _with_common(value):
+        for index, step in enumerate(link.steps):
+            said: Said = {
+                CAPAR.ee: link.ee,
+                CAPAR.index: index,
+                CAPAR.action: action(out, step.action),
+                CAPAR.name: step.action,
+                CAPAR.objectNumbers: " ".join(str(numbers[each]) for each in step.objects),
+            }
+            steps.append(say(names.part(node, "step", link.ee, index), (CAPAR.ComplexStep,), said))
+    say(node, (CAPAR.ComplexPar,), {CAPAR.arity: len(value.objects), CAPAR.complexStep: steps})
+    _enact(out, value, node, name)
+    return node
+
+
+def _with_common(value: ComplexPar) -> tuple[LinkSteps, ...]:
+    """The links, and the step that ends them all as a link of its own."""
+    common = (LinkSteps(COMMON, (value.common,)),) if value.common else ()
+    return (*value.links, *common)
+
+
+def _enact(out: Statements, value: ComplexPar, node: NamedNode, name: str) -> None:
+    links = _with_common(value)
+    known = {(link.ee, index) for link in links for index, _ in enumerate(link.steps)}
+    for relation in value.relations:
+        for each in (relation.first, relation.second):
+            if each not in known:
+                raise ParError(f"relation of a step {each} that the complex action has not")
+    for link in links:
+        for index, step in enumerate(link.steps):
+            after = (link.ee, index + 1)
+            said: dict[NamedNode, list[NamedNode]] = {
+                CAPAR.nextStep: [_step(out, *after)] if after in known else []
+            }
+            for relation in value.relations:
+                if relation.first == (link.ee, index):
+                    allen = NamedNode(TIME + ALLEN[relation.relation])
+                    said.setdefault(allen, []).append(_step(out, *relation.second))
+            _say_step(out, node, link, index, step, relations=said)
+    out.say(
+        out.about,
+        (),
+        {
+            CAPAR.enacts: node,
+            CAPAR.name: name,
+            CAPAR.objects: " ".join(value.objects),
+            CAPAR.duration: float(value.duration_s),
+        },
+    )
+
+
+def _step(out: Statements, ee: str, index: int) -> NamedNode:
+    return names.part(out.about, "step", ee, index)
+
+
+def _say_step(
+    out: Statements, node: NamedNode, link: LinkSteps, index: int, step: Step, *, relations: Said
+) -> None:
+    said: Said = {
+        LABEL: f"{link.ee} {index}: {step.action}",
+        CAPAR.realises: names.part(node, "step", link.ee, index),
+        CAPAR.ee: link.ee,
+        CAPAR.index: index,
+        CAPAR.action: action(out, step.action),
+        CAPAR.name: step.action,
+        CAPAR.objects: " ".join(step.objects),
+        CAPAR.share: float(step.share),
+        CAPAR.begin: float(step.begin),
+        CAPAR.purpose: step.purpose,
+        CAPAR.posture: step.posture,
+        CAPAR.standsFor: _segments(out, link, step),
+        GENERATED: out.about,
+        **relations,
+    }
+    node_of_step = out.say(_step(out, link.ee, index), (CAPAR.Step,), said)
+    out.say(out.about, (), {CAPAR.step: node_of_step})
+
+
+def _segments(out: Statements, link: LinkSteps, step: Step) -> list[NamedNode]:
+    """The segments that a step stands for; a common step's are each link's last."""
+    if link.ee != COMMON:
+        return [segment_node(out.about, link.ee, each) for each in step.segments]
+    return []

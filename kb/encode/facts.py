@@ -1,0 +1,64 @@
+"""Facts as statements: each has its predicate as its class, and its arguments by name."""
+
+from dataclasses import fields
+
+from pyoxigraph import NamedNode
+
+from capar.model.facts import Fact
+from kb import names
+from kb.encode.scene import DERIVED
+from kb.statements import Statements, Value
+from ontology import CAPAR
+
+CLASSES = {
+    "frames": CAPAR.FramesFact,
+    "rate_mhz": CAPAR.RateFact,
+    "link": CAPAR.LinkFact,
+    "tag": CAPAR.TagFact,
+    "zero_crossing": CAPAR.ZeroCrossing,
+    "touching": CAPAR.Touching,
+    "gap": CAPAR.Gap,
+    "moving": CAPAR.Moving,
+    "looking_at": CAPAR.LookingAt,
+    "force_transfer": CAPAR.ForceTransfer,
+    "intended": CAPAR.Intended,
+}
+"""The class of each predicate that extractors state; others are plainly facts."""
+
+PROPERTIES = {
+    "first": CAPAR.firstFrame,
+    "last": CAPAR.lastFrame,
+    "frame": CAPAR.frame,
+    "ee": CAPAR.ee,
+    "kind": CAPAR.effectorType,
+    "side": CAPAR.side,
+    "body": CAPAR.body,
+    "other": CAPAR.other,
+    "object": CAPAR.objectName,
+    "sensor": CAPAR.sensor,
+    "type": CAPAR.tagName,
+    "rate": CAPAR.rateMhz,
+    "micrometres": CAPAR.micrometres,
+    "rank": CAPAR.rank,
+    "action": CAPAR.actionName,
+    "goal": CAPAR.goalName,
+    "purpose": CAPAR.purpose,
+}
+"""The property of each argument."""
+
+
+def facts(out: Statements, stated: tuple[Fact, ...], capture: NamedNode) -> list[NamedNode]:
+    """Every fact, derived from its capture."""
+    return [_fact(out, each, capture) for each in stated]
+
+
+def _fact(out: Statements, fact: Fact, capture: NamedNode) -> NamedNode:
+    arguments = {each.name: getattr(fact, each.name) for each in fields(fact)}
+    said: dict[NamedNode, Value] = {
+        PROPERTIES[name]: value for name, value in arguments.items() if name in PROPERTIES
+    }
+    kind = CLASSES.get(fact.predicate)
+    said[CAPAR.message] = None if kind else str(fact)
+    said[DERIVED] = capture
+    node = names.part(out.about, "fact", fact.predicate, *arguments.values())
+    return out.say(node, (kind or CAPAR.Fact,), said)

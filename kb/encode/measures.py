@@ -1,0 +1,73 @@
+"""Constraint locations and styles as statements (thesis 4.4.2)."""
+
+from pyoxigraph import NamedNode
+
+from capar.model.observation import Observation
+from capar.model.par import ConstraintLocation, Style
+from kb import literals, names
+from kb.encode.scene import GENERATED, kind, kind_of
+from kb.encode.segments import action
+from kb.statements import Said, Statements
+from ontology import CAPAR
+
+
+def locations(
+    out: Statements, observation: Observation, objects: dict[str, NamedNode]
+) -> list[NamedNode]:
+    """Every constraint location, with the kinds of objects that it is kept with."""
+    kinds = {each.name: kind_of(each) for each in observation.objects}
+    return [
+        _location(out, index, each, objects, kinds)
+        for index, each in enumerate(observation.locations)
+    ]
+
+
+def _location(
+    out: Statements,
+    index: int,
+    value: ConstraintLocation,
+    objects: dict[str, NamedNode],
+    kinds: dict[str, str],
+) -> NamedNode:
+    def kind_named(name: str) -> NamedNode | None:
+        return kind(out, kinds.get(name, name)) if name else None
+
+    said: Said = {
+        CAPAR.index: index,
+        CAPAR.action: action(out, value.action),
+        CAPAR.actionName: value.action,
+        CAPAR.purpose: value.purpose,
+        CAPAR.side: value.side,
+        CAPAR.frame: value.frame,
+        CAPAR.dominant: objects.get(value.dominant),
+        CAPAR.dominantKind: kind_named(value.dominant) if value.ee_nlt else None,
+        CAPAR.goal: objects.get(value.goal),
+        CAPAR.goalKind: kind_named(value.goal),
+        CAPAR.seen: objects.get(value.seen),
+        CAPAR.seenKind: kind_named(value.seen),
+        CAPAR.eeNlt: literals.nlt(value.ee_nlt) if value.ee_nlt else None,
+        CAPAR.goalNlt: literals.nlt(value.goal_nlt) if value.goal_nlt else None,
+        CAPAR.vNlt: literals.nlt(value.v_nlt) if value.v_nlt else None,
+        GENERATED: out.about,
+    }
+    return out.say(names.part(out.about, "location", index), (CAPAR.ConstraintLocation,), said)
+
+
+def styles(out: Statements, observation: Observation, agent: NamedNode) -> list[NamedNode]:
+    """Every style of the performer that was seen."""
+    return [_style(out, index, each, agent) for index, each in enumerate(observation.styles)]
+
+
+def _style(out: Statements, index: int, value: Style, agent: NamedNode) -> NamedNode:
+    said: Said = {
+        CAPAR.index: index,
+        CAPAR.agent: agent,
+        CAPAR.action: action(out, value.action),
+        CAPAR.actionName: value.action,
+        CAPAR.purpose: value.purpose,
+        CAPAR.ee: value.ee,
+        CAPAR.velStyle: literals.vector(value.velocity),
+        CAPAR.pathStyle: literals.path(value.path) if value.path else None,
+        GENERATED: out.about,
+    }
+    return out.say(names.part(out.about, "style", index), (CAPAR.AgentStyle,), said)

@@ -1,0 +1,71 @@
+"""A whole observation as statements: what it found, and where that comes from."""
+
+from pyoxigraph import NamedNode
+
+from capar.model.observation import Observation
+from kb import names
+from kb.encode import complex_pars, facts, measures, pars, scene, segments
+from kb.statements import LABEL, Said, Statements
+from ontology import CAPAR
+
+
+def encode(observation: Observation, *, name: str | None = None) -> Statements:
+    """Everything that an observation says.
+
+    Args:
+        observation: What was understood of a capture.
+        name: What its complex action is called; by default what the observation calls it.
+
+    Raises:
+        LiteralError: A number that is not finite.
+        ParError: Steps that are related but not there.
+    """
+    out = Statements(names.observation(observation.capture))
+    capture = scene.capture(out, observation)
+    performer = scene.performer(out, observation)
+    agent = names.shared("agent", observation.agent.name)
+    links = scene.links(out, observation)
+    objects = scene.objects(out, observation)
+    called = name or observation.complex_par.name or observation.capture
+    complex_pars.complex_par(out, observation, called)
+    rules = out.share(
+        names.shared("rules", observation.rules),
+        (CAPAR.RuleBase,),
+        {LABEL: f"rules {observation.rules[:12]}", CAPAR.sha256: observation.rules},
+    )
+    for each in observation.upars:
+        pars.upar(out, each)
+    said: Said = {
+        LABEL: observation.capture,
+        CAPAR.capture: capture,
+        scene.USED: [capture, rules],
+        scene.ASSOCIATED: agent,
+        scene.OF_INTEREST: list(objects.values()),
+        CAPAR.ruleBase: rules,
+        CAPAR.profile: observation.profile,
+        CAPAR.version: observation.version,
+        CAPAR.identity: scene.identity(observation),
+        CAPAR.performer: performer,
+        CAPAR.agent: agent,
+        CAPAR.object: list(objects.values()),
+        CAPAR.link: list(links.values()),
+        CAPAR.segment: segments.segments(out, observation, links, objects),
+        CAPAR.fact: facts.facts(out, observation.facts, capture),
+        CAPAR.location: measures.locations(out, observation, objects),
+        CAPAR.style: measures.styles(out, observation, agent),
+        CAPAR.notice: _notices(out, observation),
+    }
+    pars.ipars(out, observation, agent, objects)
+    out.say(out.about, (CAPAR.Observation,), said)
+    return out
+
+
+def _notices(out: Statements, observation: Observation) -> list[NamedNode]:
+    return [
+        out.say(
+            names.part(out.about, "notice", index),
+            (CAPAR.Notice,),
+            {CAPAR.noticeCode: each.code, CAPAR.message: each.message},
+        )
+        for index, each in enumerate(observation.notices)
+    ]

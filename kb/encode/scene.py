@@ -1,0 +1,132 @@
+"""The capture, its performer, its objects and its links, as statements."""
+
+import hashlib
+
+from pyoxigraph import Literal, NamedNode
+
+from capar.model.observation import Observation, ObservedObject
+from kb import literals, names
+from kb.statements import LABEL, Said, Statements
+from ontology import CAPAR
+from ontology.vocabularies import PREFIXES, PROV
+
+TAGS = {"self": CAPAR.Self, "fixed": CAPAR.Fixed, "mobile": CAPAR.Mobile}
+
+USED = NamedNode(PROV + "used")
+DERIVED = NamedNode(PROV + "wasDerivedFrom")
+GENERATED = NamedNode(PROV + "wasGeneratedBy")
+ASSOCIATED = NamedNode(PROV + "wasAssociatedWith")
+OF_INTEREST = NamedNode(PREFIXES["sosa"] + "hasFeatureOfInterest")
+
+
+def identity(observation: Observation) -> str:
+    """A digest by which the same capture is known again, whatever rules read it."""
+    sources = sorted(each.sha256 for each in observation.sources)
+    scene = (observation.agent.name, observation.frames, observation.rate_hz, sources)
+    return hashlib.sha256(repr(scene).encode()).hexdigest()
+
+
+def kind_of(seen: ObservedObject) -> str:
+    """The noun under which an object's knowledge is kept: its kind, else its own name."""
+    return seen.kind or seen.name
+
+
+def kind(out: Statements, name: str) -> NamedNode:
+    """A kind of object; one that nobody placed in the hierarchy is an object and no more."""
+    node = names.shared("kind", name)
+    if names.graph_of(node) == names.GRAPHS["ontology"]:
+        return node
+    above = names.shared("kind", "object")
+    thing = names.shared("kind", "thing")
+    said: Said = {
+        LABEL: Literal(name.replace("_", " "), language="en"),
+        CAPAR.name: name,
+        CAPAR.isA: [node, above, thing],
+    }
+    return out.share(node, (CAPAR.ObjectKind,), said)
+
+
+def capture(out: Statements, observation: Observation) -> NamedNode:
+    """The capture with the files that it was read from."""
+    files = [
+        out.say(
+            names.part(out.about, "source", index),
+            (CAPAR.SourceFile,),
+            {
+                CAPAR.filePath: each.path,
+                CAPAR.fileFormat: each.format,
+                CAPAR.sha256: each.sha256,
+            },
+        )
+        for index, each in enumerate(observation.sources)
+    ]
+    said: Said = {
+        LABEL: observation.capture,
+        CAPAR.name: observation.capture,
+        CAPAR.frames: observation.frames,
+        CAPAR.rate: float(observation.rate_hz),
+        CAPAR.duration: float(observation.duration_s),
+        DERIVED: files,
+    }
+    return out.say(names.part(out.about, "capture"), (CAPAR.Capture,), said)
+
+
+def performer(out: Statements, observation: Observation) -> NamedNode:
+    """The agent in this capture, with its kind and its measures there."""
+    agent = observation.agent
+    who = out.share(
+        names.shared("agent", agent.name),
+        (CAPAR.Agent,),
+        {LABEL: agent.name, CAPAR.name: agent.name},
+    )
+    node = names.part(out.about, "performer")
+    measures = [
+        out.say(
+            names.part(node, "measure", name),
+            (CAPAR.Measure,),
+            {CAPAR.name: name, CAPAR.value: float(agent.measures[name])},
+        )
+        for name in sorted(agent.measures)
+    ]
+    said: Said = {CAPAR.agent: who, CAPAR.kind: kind(out, agent.kind), CAPAR.measure: measures}
+    return out.say(node, (CAPAR.Performer,), said)
+
+
+def objects(out: Statements, observation: Observation) -> dict[str, NamedNode]:
+    """Every tag object by name."""
+    return {each.name: _object(out, each) for each in observation.objects}
+
+
+def _object(out: Statements, seen: ObservedObject) -> NamedNode:
+    node = names.part(out.about, "object", seen.name)
+    site = out.say(
+        names.part(node, "site"),
+        (CAPAR.Site,),
+        {
+            CAPAR.position: literals.vector(seen.position_m),
+            CAPAR.orientation: literals.vector(seen.orientation),
+        },
+    )
+    said: Said = {
+        LABEL: seen.name,
+        CAPAR.name: seen.name,
+        CAPAR.kind: kind(out, kind_of(seen)),
+        CAPAR.tag: TAGS[seen.tag],
+        CAPAR.size: literals.vector(seen.size_m),
+        CAPAR.shape: seen.shape,
+        CAPAR.assumedFrom: seen.assumed,
+        CAPAR.coordinateSystem: site,
+    }
+    return out.say(node, (CAPAR.TagObject,), said)
+
+
+def links(out: Statements, observation: Observation) -> dict[str, NamedNode]:
+    """Every acting link by its end-effector."""
+    return {
+        each.ee: out.say(
+            names.part(out.about, "link", each.ee),
+            (CAPAR.Link,),
+            {CAPAR.ee: each.ee, CAPAR.effectorType: each.kind, CAPAR.side: each.side},
+        )
+        for each in observation.links
+    }

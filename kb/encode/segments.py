@@ -1,0 +1,118 @@
+"""Segments and why they begin and end, as statements."""
+
+from pyoxigraph import NamedNode
+
+from capar.model.observation import Border, Observation, ObservedLink, Segment
+from capar.model.par import UNKNOWN, FeatureSet
+from kb import names
+from kb.encode.scene import GENERATED
+from kb.statements import LABEL, Said, Statements
+from ontology import CAPAR
+from ontology.vocabularies import TIME
+
+MEETS = NamedNode(TIME + "intervalMeets")
+
+
+def action(out: Statements, name: str) -> NamedNode | None:
+    """What an action is called; the unknown has no name."""
+    if name in {"", UNKNOWN}:
+        return None
+    said: Said = {LABEL: name, CAPAR.name: name}
+    return out.share(names.shared("action", name), (CAPAR.Action,), said)
+
+
+def actions(out: Statements, known: tuple[str, ...]) -> list[NamedNode]:
+    """Several of them."""
+    return [node for each in known if (node := action(out, each)) is not None]
+
+
+def features(out: Statements, value: FeatureSet) -> NamedNode:
+    """A set of features, called after its bits."""
+    bits = (value.rel_start, value.rel_end, value.change_loc, value.end_effector, value.force)
+    said: Said = {
+        CAPAR.relStart: value.rel_start,
+        CAPAR.relEnd: value.rel_end,
+        CAPAR.changeLoc: value.change_loc,
+        CAPAR.effectorType: value.end_effector,
+        CAPAR.forceApplied: value.force,
+        CAPAR.objectCount: value.count,
+    }
+    return out.share(names.shared("features", *(bits)), (CAPAR.FeatureSet,), said)
+
+
+def segment_node(about: NamedNode, ee: str, index: int) -> NamedNode:
+    """What a segment is called."""
+    return names.part(about, "segment", ee, index)
+
+
+def segments(
+    out: Statements,
+    observation: Observation,
+    links: dict[str, NamedNode],
+    objects: dict[str, NamedNode],
+) -> list[NamedNode]:
+    """Every segment, links in order."""
+    return [
+        _segment(out, link, each, links[link.ee], objects)
+        for link in observation.links
+        for each in link.segments
+    ]
+
+
+def _segment(
+    out: Statements,
+    link: ObservedLink,
+    seen: Segment,
+    link_node: NamedNode,
+    objects: dict[str, NamedNode],
+) -> NamedNode:
+    node = segment_node(out.about, seen.ee, seen.index)
+    after = seen.index + 1
+    follows = segment_node(out.about, seen.ee, after) if after < len(link.segments) else None
+    said: Said = {
+        LABEL: f"{seen.ee} {seen.index}: {seen.name}",
+        CAPAR.ofLink: link_node,
+        CAPAR.ee: seen.ee,
+        CAPAR.index: seen.index,
+        CAPAR.firstFrame: seen.first,
+        CAPAR.lastFrame: seen.last,
+        CAPAR.start: float(seen.start_s),
+        CAPAR.end: float(seen.end_s),
+        CAPAR.duration: float(seen.end_s - seen.start_s),
+        CAPAR.action: action(out, seen.name),
+        CAPAR.specialises: actions(out, seen.general),
+        CAPAR.candidate: actions(out, seen.candidates),
+        CAPAR.failedAt: seen.level,
+        CAPAR.possesses: seen.possessed,
+        CAPAR.objects: " ".join(seen.objects),
+        CAPAR.object: [objects[each] for each in seen.objects if each in objects],
+        CAPAR.dominant: objects.get(seen.objects[0]) if seen.objects else None,
+        CAPAR.subordinate: [objects[each] for each in seen.objects[1:] if each in objects],
+        CAPAR.features: features(out, seen.features),
+        CAPAR.beginsWith: _borders(out, node, "begin", seen.begins),
+        CAPAR.endsWith: _borders(out, node, "end", seen.ends),
+        CAPAR.purpose: seen.purpose,
+        CAPAR.next: follows,
+        MEETS: follows,
+        GENERATED: out.about,
+    }
+    kinds = (CAPAR.Segment,) if seen.known else (CAPAR.Segment, CAPAR.UnknownSegment)
+    return out.say(node, kinds, said)
+
+
+def _borders(
+    out: Statements, of: NamedNode, where: str, borders: tuple[Border, ...]
+) -> list[NamedNode]:
+    return [
+        out.say(
+            names.part(of, where, index),
+            (CAPAR.Border,),
+            {
+                CAPAR.index: index,
+                CAPAR.borderKind: each.kind,
+                CAPAR.body: each.body,
+                CAPAR.other: each.other,
+            },
+        )
+        for index, each in enumerate(borders)
+    ]

@@ -1,0 +1,57 @@
+"""What goes wrong with a store or a question, said so that its user can mend it."""
+
+from capar.model.errors import CaparError
+
+
+class StoreError(CaparError):
+    """A store that cannot be opened, read or written."""
+
+
+class LockedError(StoreError):
+    """A store that another process writes.
+
+    Attributes:
+        holder: Which process, where and since when.
+    """
+
+    def __init__(self, place: str, holder: str) -> None:
+        self.holder = holder
+        super().__init__(
+            f"{place}: {holder} writes it; try again when it is done, let this command wait "
+            "(--wait SECONDS), or serve the store to many writers (oxigraph serve)"
+        )
+
+
+class QueryError(CaparError):
+    """A question that is no SPARQL, or that does what a question may not."""
+
+
+class TimeLimitError(QueryError):
+    """A question that took longer than it may.
+
+    Attributes:
+        seconds: The limit.
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+        super().__init__(
+            f"the query was stopped after {seconds:g} s; narrow it (bind a subject, add LIMIT) "
+            "or allow more time (--time-limit SECONDS)"
+        )
+
+
+class ExistsError(CaparError):
+    """An observation whose name another capture already bears."""
+
+
+class ShapeError(CaparError):
+    """Statements that break the model.
+
+    Attributes:
+        findings: What is wrong, a line each.
+    """
+
+    def __init__(self, name: str, findings: tuple[str, ...]) -> None:
+        self.findings = findings
+        super().__init__(f"{name} breaks the model:\n  " + "\n  ".join(findings))

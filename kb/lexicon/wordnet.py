@@ -1,0 +1,190 @@
+"""The verbs of WordNet 3.1: synsets by sense key, lemma, offset or interlingual index."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import cache
+
+from capar.model.errors import UnknownNameError
+from kb.lexicon.tables import compressed_lines, table
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Sense:
+    """A verb in one of its meanings."""
+
+    lemma: str
+    """As WordNet writes it, words joined by underscores: ``pick_up``."""
+
+    key: str
+    """``hit%2:35:00::``: what stays the same from one WordNet to the next."""
+
+    number: int
+    """Its rank among the lemma's senses, from one, by frequency."""
+
+
+@dataclass(frozen=True, slots=True)
+class Synset:
+    """A meaning, with every verb that has it."""
+
+    offset: str
+    """Eight digits, its place in WordNet 3.1's data file."""
+
+    ili: str
+    """``i28723``: its interlingual index, or empty where none is known."""
+
+    lexfile: int
+    """The number of its lexicographer file: 35 contact, 38 motion ..."""
+
+    senses: tuple[Sense, ...]
+    hypernyms: tuple[str, ...]
+    """Offsets of the synsets that it is a kind of."""
+
+    frames: tuple[str, ...]
+    """Numbers of the generic sentences, each with ``:word`` where it fits one word only."""
+
+    gloss: str
+    """Definition, then examples in quotation marks."""
+
+    @property
+    def definition(self) -> str:
+        """The gloss without its examples."""
+        return self.gloss.partition('; "')[0].rstrip("; ")
+
+    @property
+    def lemmas(self) -> tuple[str, ...]:
+        """Its verbs, as people write them."""
+        return tuple(sense.lemma.replace("_", " ") for sense in self.senses)
+
+
+class WordNet:
+    """Every verb synset; a row becomes a value when it is asked for."""
+
+    def __init__(self, lines: Iterable[str]) -> None:
+        self._rows: dict[str, str] = {}
+        self._by_key: dict[str, str] = {}
+        self._by_ili: dict[str, str] = {}
+        self._by_lemma: dict[str, list[tuple[int, str]]] = {}
+        self._below: dict[str, list[str]] = {}
+        for line in lines:
+            self._index(line)
+        self._synset = cache(self._parse)
+
+    def _index(self, line: str) -> None:
+        offset, ili, _, words, above, _ = line.split("\t", 5)
+        self._rows[offset] = line
+        if ili:
+            self._by_ili[ili] = offset
+        for word in words.split(" "):
+            lemma, key, number = word.split(",")
+            lemma = lemma.lower()
+            self._by_key[f"{lemma}%{key}"] = offset
+            self._by_lemma.setdefault(lemma, []).append((int(number), offset))
+        for hypernym in above.split():
+            self._below.setdefault(hypernym, []).append(offset)
+
+    def _parse(self, offset: str) -> Synset:
+        _, ili, lexfile, words, above, frames, gloss = self._rows[offset].split("\t")
+        fields = (word.split(",") for word in words.split(" "))
+        senses = tuple(
+            Sense(lemma, f"{lemma.lower()}%{key}", int(number)) for lemma, key, number in fields
+        )
+        return Synset(
+            offset, ili, int(lexfile), senses, tuple(above.split()), tuple(frames.split()), gloss
+        )
+
+    def __len__(self) -> int:
+        """The number of synsets."""
+        return len(self._rows)
+
+    def __iter__(self) -> Iterator[Synset]:
+        """Every synset, by offset."""
+        return map(self._synset, sorted(self._rows))
+
+    @property
+    def lemmas(self) -> tuple[str, ...]:
+        """Every verb, sorted, words joined by underscores."""
+        return tuple(sorted(self._by_lemma))
+
+    def __contains__(self, key: str) -> bool:
+        """Whether a sense key is known."""
+        return normal_key(key) in self._by_key
+
+    def of_key(self, key: str) -> Synset:
+        """The synset of a sense key, complete or without its two last colons.
+
+        Raises:
+            UnknownNameError: WordNet 3.1 has no such verb sense; the verb's own keys are listed.
+        """
+        full = normal_key(key)
+        if full not in self._by_key:
+            lemma = full.partition("%")[0]
+            known = [sense.key for sense, _ in self.of_lemma(lemma)]
+            raise UnknownNameError("WordNet 3.1 verb sense", key, known)
+        return self._synset(self._by_key[full])
+
+    def of_ili(self, ili: str) -> Synset:
+        """The synset of an interlingual index.
+
+        Raises:
+            UnknownNameError: No verb synset of WordNet 3.1 has it.
+        """
+        if ili not in self._by_ili:
+            raise UnknownNameError("interlingual index of a verb", ili, ())
+        return self._synset(self._by_ili[ili])
+
+    def of_offset(self, offset: str) -> Synset:
+        """The synset at an offset of WordNet 3.1.
+
+        Raises:
+            UnknownNameError: No verb synset stands there.
+        """
+        if offset not in self._rows:
+            raise UnknownNameError("offset of a WordNet 3.1 verb", offset, ())
+        return self._synset(offset)
+
+    def of_lemma(self, lemma: str) -> tuple[tuple[Sense, Synset], ...]:
+        """The senses of a verb in their order, none if WordNet lacks it."""
+        word = lemma.strip().lower().replace(" ", "_")
+        found = (self._synset(offset) for _, offset in sorted(self._by_lemma.get(word, ())))
+        return tuple(
+            (sense, synset)
+            for synset in found
+            for sense in synset.senses
+            if sense.lemma.lower() == word
+        )
+
+    def kinds_of(self, synset: Synset) -> tuple[Synset, ...]:
+        """Every synset below this one in the hierarchy, nearest first."""
+        return self._walk(synset, lambda each: self._below.get(each.offset, ()))
+
+    def what_it_is(self, synset: Synset) -> tuple[Synset, ...]:
+        """Every synset above this one in the hierarchy, nearest first."""
+        return self._walk(synset, lambda each: each.hypernyms)
+
+    def _walk(self, start: Synset, step: Callable[[Synset], Iterable[str]]) -> tuple[Synset, ...]:
+        seen, found, queue = {start.offset}, list[Synset](), [start]
+        while queue:
+            level = sorted({offset for each in queue for offset in step(each)} - seen)
+            seen.update(level)
+            queue = [self._synset(offset) for offset in level]
+            found += queue
+        return tuple(found)
+
+
+def normal_key(key: str) -> str:
+    """A sense key in WordNet's own form, from that of VerbNet (``?hit%2:35:00``)."""
+    bare = key.removeprefix("?").lower()
+    return bare if bare.endswith("::") else f"{bare}::"
+
+
+@cache
+def wordnet() -> WordNet:
+    """The shipped verbs, read once."""
+    return WordNet(compressed_lines("wordnet-3.1-verbs"))
+
+
+@cache
+def frame_sentence(frame: str) -> str:
+    """The generic sentence of a frame's number: ``Somebody ----s something``."""
+    number = frame.partition(":")[0]
+    return next(row["frame"] for row in table("wordnet-frames") if row["number"] == number)

@@ -1,0 +1,80 @@
+"""What things are called in the store: IRIs that follow from what they name, and nothing else."""
+
+import hashlib
+from urllib.parse import quote, unquote
+
+from pyoxigraph import NamedNode
+
+from ontology import BASE, DATA
+from ontology import files as ontology_files
+
+OBSERVATION = DATA + "observation/"
+
+GRAPHS = {
+    "ontology": NamedNode(DATA + "graph/ontology"),
+    "agents": NamedNode(DATA + "graph/agents"),
+    "objects": NamedNode(DATA + "graph/objects"),
+    "actions": NamedNode(DATA + "graph/actions"),
+    "lexicon": NamedNode(DATA + "graph/lexicon"),
+    "imported": NamedNode(DATA + "graph/imported"),
+}
+"""The named graphs that are no observation's, by what they hold."""
+
+_OF_FOLDER = {
+    "agent": "agents",
+    "kind": "objects",
+    "action": "actions",
+    "upar": "actions",
+    "condition": "actions",
+    "features": "actions",
+    "row": "actions",
+    "complex": "actions",
+    "rules": "actions",
+    "graph": "ontology",
+}
+
+
+def observation(name: str) -> NamedNode:
+    """The observation of a capture of that name; its graph bears the same IRI."""
+    return NamedNode(OBSERVATION + quote(name, safe=""))
+
+
+def observation_name(node: NamedNode) -> str:
+    """The name of the capture that an observation is of."""
+    return unquote(node.value.removeprefix(OBSERVATION))
+
+
+def part(of: NamedNode, *words: str | int) -> NamedNode:
+    """Something that belongs to an observation or another whole, by what tells it apart."""
+    fragment = ".".join(quote(str(each), safe="") for each in words)
+    return NamedNode(f"{of.value}{'.' if '#' in of.value else '#'}{fragment}")
+
+
+def shared(folder: str, *words: str | int) -> NamedNode:
+    """Something that several observations may speak of, by what tells it apart."""
+    return NamedNode(DATA + folder + "/" + ".".join(quote(str(each), safe="") for each in words))
+
+
+def last_word(node: NamedNode) -> str:
+    """What a shared thing of one word is called."""
+    return unquote(node.value.rsplit("/", 1)[1])
+
+
+def hashed(content: object) -> str:
+    """A short name that follows from the content's printed form."""
+    return hashlib.sha256(repr(content).encode()).hexdigest()[:24]
+
+
+def graph_of(subject: NamedNode) -> NamedNode:
+    """The graph in which statements about a thing stand."""
+    iri = subject.value
+    if iri.startswith(OBSERVATION):
+        return NamedNode(iri.partition("#")[0])
+    if iri.startswith(DATA):
+        folder, _, name = iri.removeprefix(DATA).partition("/")
+        if folder == "kind" and unquote(name) in ontology_files.kinds():
+            return GRAPHS["ontology"]
+        return GRAPHS[_OF_FOLDER.get(folder, "imported")]
+    if iri.startswith(BASE) or iri == BASE.removesuffix("#"):
+        return GRAPHS["ontology"]
+    return GRAPHS["imported"]

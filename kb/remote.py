@@ -1,0 +1,108 @@
+"""A store kept by a SPARQL 1.1 server, reached by its address."""
+
+import urllib.error
+import urllib.parse
+import urllib.request
+from collections.abc import Iterable
+from typing import Any
+
+from pyoxigraph import NamedNode, Quad
+
+from kb import answers, bounded
+from kb.answers import Answer
+from kb.errors import QueryError, StoreError
+from kb.store import insertion
+
+ACCEPT = "application/sparql-results+json, application/n-triples"
+PATIENCE_S = 60.0
+"""How long a server may be silent in answering a query or a change of ours [s]."""
+
+
+class RemoteStore:
+    """A store at ``ADDRESS/query`` and ``ADDRESS/update``; the server holds the locks.
+
+    A change is one request, which such servers do whole or not at all.
+    """
+
+    def __init__(self, address: str) -> None:
+        """Greet the server.
+
+        Raises:
+            StoreError: Nobody answers there.
+        """
+        self.place = address.rstrip("/")
+        self.ask("ASK {}")
+
+    def insert(self, quads: Iterable[Quad]) -> None:
+        """Add statements in one request."""
+        self.change(insertion(quads))
+
+    def change(self, update: str) -> None:
+        """Do an update in one request."""
+        _post(f"{self.place}/update", update, "application/sparql-update")
+
+    def ask(self, query: str) -> Answer:
+        """What a query of ours answers, over the union of all graphs."""
+        return answers.decode(*post_query(self.place, query))
+
+    def ask_within(self, query: str, *, seconds: float) -> Answer:
+        """What anybody's query answers; we stop listening in time, the server by its own limit."""
+        return bounded.ask(query, seconds=seconds, address=self.place)
+
+    def graph(self, name: NamedNode) -> list[Quad]:
+        """Every statement of a graph."""
+        found = self.ask(f"CONSTRUCT {{ ?s ?p ?o }} WHERE {{ GRAPH {name} {{ ?s ?p ?o }} }}")
+        return [Quad(*each, name) for each in found.triples or ()]
+
+    def quads(self) -> Iterable[Quad]:
+        """Every statement of every named graph."""
+        found = self.ask("SELECT DISTINCT ?g WHERE { GRAPH ?g { ?s ?p ?o } }")
+        for (name,) in found.rows:
+            if isinstance(name, NamedNode):
+                yield from self.graph(name)
+
+    def dataset(self) -> Any:
+        """The same as rdflib's dataset, over the server's own endpoints."""
+        from rdflib import Dataset
+        from rdflib.plugins.stores.sparqlstore import SPARQLStore
+
+        return Dataset(store=SPARQLStore(_query_address(self.place)), default_union=True)
+
+    def refresh(self) -> None:
+        """A server always shows what was written."""
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+
+def _query_address(address: str) -> str:
+    return f"{address}/query?union-default-graph=true"
+
+
+def post_query(address: str, query: str) -> tuple[str, bytes]:
+    """A server's answer to a query: its media type and its bytes.
+
+    Raises:
+        QueryError: The server says that it is no query.
+        StoreError: The server does not answer.
+    """
+    return _post(_query_address(address), query, "application/sparql-query")
+
+
+def _post(url: str, text: str, kind: str) -> tuple[str, bytes]:
+    headers = {"Content-Type": f"{kind}; charset=utf-8", "Accept": ACCEPT}
+    request = urllib.request.Request(url, text.encode(), headers, method="POST")  # noqa: S310
+    try:
+        with urllib.request.urlopen(request, timeout=PATIENCE_S) as reply:  # noqa: S310
+            return reply.headers.get("Content-Type", ""), reply.read()
+    except urllib.error.HTTPError as error:
+        said = error.read().decode(errors="replace").strip()
+        if error.code == 400:
+            raise QueryError(said) from None
+        raise StoreError(f"{url} refuses: {error.code} {error.reason} {said}".strip()) from None
+    except (urllib.error.URLError, OSError) as error:
+        reason = getattr(error, "reason", error)
+        raise StoreError(
+            f"{url}: nobody answers ({reason}); start a server there, for example "
+            "`oxigraph serve --location FOLDER --bind 127.0.0.1:7878`"
+        ) from None

@@ -1,0 +1,93 @@
+"""The ontology's files: terms, kinds of objects, alignments and shapes."""
+
+import hashlib
+from functools import cache
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+
+from pyoxigraph import NamedNode, RdfFormat, Triple, parse
+
+from ontology.namespace import BASE, DATA
+from ontology.vocabularies import RDF
+
+KIND = DATA + "kind/"
+"""Where the kinds of objects are named."""
+
+
+def _turtle(folder: Traversable) -> list[Traversable]:
+    return sorted(
+        (each for each in folder.iterdir() if each.name.endswith(".ttl")), key=lambda at: at.name
+    )
+
+
+def term_files() -> list[Traversable]:
+    """The Turtle files of terms, kinds and alignments, by name."""
+    return _turtle(files("ontology"))
+
+
+def shape_files() -> list[Traversable]:
+    """The Turtle files of SHACL shapes, by name."""
+    return _turtle(files("ontology") / "shapes")
+
+
+def read(file: Traversable) -> list[Triple]:
+    """The statements of a Turtle file."""
+    quads = parse(file.read_bytes(), format=RdfFormat.TURTLE)
+    return [each.triple for each in quads]
+
+
+@cache
+def ontology() -> tuple[Triple, ...]:
+    """Every statement of the ontology, its kinds with the closure of their hierarchy."""
+    stated = {each for file in term_files() for each in read(file)}
+    pairs = [
+        (str(each.subject), str(each.object))
+        for each in stated
+        if each.predicate.value == BASE + "broaderKind"
+    ]
+    kinds = {
+        each.subject
+        for each in stated
+        if each.predicate.value == RDF + "type" and each.object == NamedNode(BASE + "ObjectKind")
+    }
+    is_a = NamedNode(BASE + "isA")
+    above = closure(pairs)
+    for kind in kinds:
+        for general in {str(kind), *above.get(str(kind), ())}:
+            stated.add(Triple(kind, is_a, NamedNode(general.strip("<>"))))
+    return tuple(sorted(stated, key=str))
+
+
+def closure(pairs: list[tuple[str, str]]) -> dict[str, set[str]]:
+    """What is above each name, directly or not; a name in a circle is above itself."""
+    direct: dict[str, set[str]] = {}
+    for lower, upper in pairs:
+        direct.setdefault(lower, set()).add(upper)
+    above: dict[str, set[str]] = {}
+    for name, uppers in direct.items():
+        reached: set[str] = set()
+        waiting = list(uppers)
+        while waiting:
+            each = waiting.pop()
+            if each not in reached:
+                reached.add(each)
+                waiting += direct.get(each, ())
+        above[name] = reached
+    return above
+
+
+@cache
+def kinds() -> frozenset[str]:
+    """Names of the kinds of objects that the ontology itself knows."""
+    return frozenset(
+        each.subject.value.removeprefix(KIND)
+        for each in ontology()
+        if isinstance(each.subject, NamedNode) and each.subject.value.startswith(KIND)
+    )
+
+
+@cache
+def digest() -> str:
+    """SHA-256 of the ontology's statements: tells one version of it from another."""
+    text = "\n".join(map(str, ontology()))
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,15 @@
+"""Captures of known truth: minimum-jerk people who drink, touch, slide, lift and hit."""
+
+from motions.drink import drink_from_mug as drink_from_mug
+from motions.performers import CHILD as CHILD
+from motions.performers import PERFORMERS as PERFORMERS
+from motions.performers import TALL_MAN as TALL_MAN
+from motions.performers import WOMAN as WOMAN
+from motions.performers import Performer as Performer
+from motions.pick_up import pick_up_with_both_hands as pick_up_with_both_hands
+from motions.touch import slide_object as slide_object
+from motions.touch import touch_cycle as touch_cycle
+from motions.touch import touch_from_rest as touch_from_rest
+from motions.trials import Trial as Trial
+from motions.trials import TrueContact as TrueContact
+from motions.trials import Truth as Truth
