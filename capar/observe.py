@@ -7,6 +7,7 @@ import numpy as np
 
 from capar import __version__
 from capar.model.capture import Capture, Notice, TagObject
+from capar.model.facts import Fact
 from capar.model.observation import Observation, ObservedObject, Segment
 from capar.model.par import ConstraintLocation, Motion, Style
 from capar_rules.composing import compose
@@ -86,7 +87,7 @@ def observe_measured(
 
 def facts_program(
     capture: Capture, *, rules: Profile | str = DEFAULT, thresholds: Thresholds | None = None
-) -> tuple[Measurements, tuple[object, ...]]:
+) -> tuple[Measurements, tuple[Fact, ...]]:
     """What was measured, and the numbered borders that the rules of a profile read beside it."""
     base = profile(rules) if isinstance(rules, str) else rules
     measurements = extract(capture, thresholds=thresholds)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import clingo
 
+from capar.model.capture import NAME
 from capar.model.errors import RuleError
 from capar.model.facts import Fact, program
 
@@ -48,6 +49,16 @@ def solve(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     """
     text = facts if isinstance(facts, str) else program(tuple(facts))
     return _answer(_grounded(files, text))
+
+
+def text_of(term: Term) -> str:
+    """A value as it stands in a program; text that is no name is quoted."""
+    if isinstance(term, tuple):
+        functor, *arguments = term
+        return f"{functor}({','.join(map(text_of, arguments))})"
+    if isinstance(term, int) or NAME.fullmatch(term):
+        return str(term)
+    return str(clingo.String(term))
 
 
 def fingerprint(files: Iterable[Path]) -> str:

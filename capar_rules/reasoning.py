@@ -11,7 +11,7 @@ from capar_rules.engine import Answer, Term, solve
 from capar_rules.profiles import Profile
 from capar_rules.ranking import Tick, rank
 
-LEVELS = ("", "EEObjRelStart", "EEObjRelEnd", "ObjChangeLoc", "EE and Force")
+LEVELS = ("", "rel_start", "rel_end", "change_loc", "force")
 """Features by their level in the decision tree, from 1 (thesis Fig 4.14)."""
 
 Key = tuple[str, int]
@@ -123,7 +123,7 @@ class _Reading:
             end_s=frames[1] / self.rate,
             name=names[0] if names else UNKNOWN,
             general=tuple(name for _, name in general),
-            candidates=tuple(names) if names else nearest,
+            candidates=tuple(names[1:]) if names else nearest,
             level=LEVELS[level] if not names else "",
             objects=objects,
             possessed=bool(objects) and objects[0] in held,

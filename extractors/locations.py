@@ -17,7 +17,7 @@ from capar.model.capture import Capture, Sensor, TagObject
 from capar.model.par import Nlt
 from extractors.attention import NOTHING, Attention
 from extractors.poses import Poses
-from extractors.proximity import body, nearest
+from extractors.proximity import nearest, still
 from extractors.surfaces import surface
 
 NO_EXTENT_M = 1e-6
@@ -140,9 +140,9 @@ def _points(
     if comes.shape is None or target.shape is None:
         origin = comes_pose.settled.positions[frame]
         return np.zeros(3), _local(target_pose, origin, frame)
-    one = body(surface(comes.shape), comes_pose.settled, rests=False)
-    two = body(surface(target.shape), target_pose.settled, rests=False)
-    _, on_comes, on_target = nearest(one, two, frame)
+    one = still(surface(comes.shape), comes_pose.settled, frame)
+    two = still(surface(target.shape), target_pose.settled, frame)
+    _, on_comes, on_target = nearest(one, two, 0)
     return on_comes, on_target
 
 

@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float, Int
 from capar.model.capture import Stream
 from extractors.poses import rotation_matrices
 from extractors.surfaces import Surface
+from extractors.sweep import sweep
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +37,13 @@ def body(surface: Surface, stream: Stream, *, rests: bool) -> Body:
     return Body(surface, stream.positions, turns, centres, rests)
 
 
+def still(surface: Surface, stream: Stream, frame: int) -> Body:
+    """A surface at one frame of a stream, which is frame 0 of the body."""
+    place = stream.positions[frame][None]
+    turn = rotation_matrices(stream.orientations[frame][None])
+    return Body(surface, place, turn, place + turn @ surface.centre, rests=True)
+
+
 def near(first: Body, second: Body, *, distance_m: float) -> Bool[np.ndarray, "frames"]:
     """At which frames two bodies are within a distance [m]: their surfaces, or one in the other.
 
@@ -50,10 +58,12 @@ def near(first: Body, second: Body, *, distance_m: float) -> Bool[np.ndarray, "f
     found = _candidates(simple, other, distance_m, frames)
     if found.size:
         turns, places = _relative(simple, other, found)
-        hits = _meets(simple.surface, other.surface, distance_m, turns, places)
-        rest = np.flatnonzero(~hits)
-        hits[rest] = _nested(simple.surface, other.surface, turns[rest], places[rest])
-        out[found] = hits
+        inside = _nested(simple.surface, other.surface, turns, places)
+        rest = np.flatnonzero(~inside)
+        inside[rest] = sweep(
+            simple.surface, other.surface, turns[rest], places[rest], distance_m=distance_m
+        )
+        out[found] = inside
     if frames == 1:
         out[:] = out[0]
     return out
@@ -68,8 +78,8 @@ def nearest(
     cut, in either frame.
     """
     turns, places = _relative(first, second, np.array([frame]))
-    if _collides(first.surface.tree, second.surface.tree, turns, places)[0]:
-        point = _cut(first.surface, second.surface, turns[0], places[0])
+    point = _cut(first.surface, second.surface, turns[0], places[0])
+    if point is not None:
         return 0.0, point, turns[0].T @ (point - places[0])
     result = fcl.DistanceResult()
     request = fcl.DistanceRequest(enable_nearest_points=True)
@@ -111,40 +121,13 @@ def _candidates(
     return found
 
 
-def _meets(
-    simple: Surface,
-    other: Surface,
-    distance_m: float,
-    turns: Float[np.ndarray, "some 3 3"],
-    places: Float[np.ndarray, "some 3"],
-) -> Bool[np.ndarray, "some"]:
-    """Whether the other's surface meets the shell of the simple one, or the simple one itself."""
-    return _collides(simple.shell_tree(distance_m), other.tree, turns, places)
-
-
-def _collides(
-    one: fcl.BVHModel,
-    two: fcl.BVHModel,
-    turns: Float[np.ndarray, "some 3 3"],
-    places: Float[np.ndarray, "some 3"],
-) -> Bool[np.ndarray, "some"]:
-    """Whether triangles meet, the second ones at each of some poses in the first's frame."""
-    fixed, moved = fcl.CollisionObject(one), fcl.CollisionObject(two)
-    request, collide = fcl.CollisionRequest(), fcl.collide
-    out = np.zeros(len(places), dtype=bool)
-    for index, (turn, place) in enumerate(zip(turns, places, strict=True)):
-        moved.setTransform(fcl.Transform(turn, place))
-        out[index] = collide(fixed, moved, request, fcl.CollisionResult()) > 0
-    return out
-
-
 def _nested(
     first: Surface,
     second: Surface,
     turns: Float[np.ndarray, "some 3 3"],
     places: Float[np.ndarray, "some 3"],
 ) -> Bool[np.ndarray, "some"]:
-    """Whether one body lies inside the other, given that no surface meets the other's shell."""
+    """Whether one body lies inside the other, by one corner: enough where surfaces do not cut."""
     corner = np.asarray(second.shape.vertices[0])
     inside = first.contains(turns @ corner + places)
     back = np.swapaxes(turns, 1, 2)
@@ -155,11 +138,12 @@ def _nested(
 
 def _cut(
     first: Surface, second: Surface, turn: Float[np.ndarray, "3 3"], place: Float[np.ndarray, "3"]
-) -> Float[np.ndarray, "3"]:
-    """Middle of the places where two surfaces cut each other [m], in the first's frame."""
+) -> Float[np.ndarray, "3"] | None:
+    """Middle of the places where two surfaces cut each other [m], in the first's frame, if any."""
     request = fcl.CollisionRequest(num_max_contacts=1000, enable_contact=True)
     result = fcl.CollisionResult()
     one = fcl.CollisionObject(first.tree)
     two = fcl.CollisionObject(second.tree, fcl.Transform(turn, place))
-    fcl.collide(one, two, request, result)
+    if not fcl.collide(one, two, request, result):
+        return None
     return np.mean([each.pos for each in result.contacts], axis=0)

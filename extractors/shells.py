@@ -21,16 +21,18 @@ EXACTNESS_M = 0.00004
 
 
 def shell(
-    mesh: trimesh.Trimesh, distance_m: float, *, closed: bool
+    mesh: trimesh.Trimesh, distance_m: float, *, closed: bool, exactness_m: float = EXACTNESS_M
 ) -> Float[np.ndarray, "triangles 3 3"]:
     """Triangles that bound all points within a distance [m] of a surface, as a loose set.
 
-    Each lies within ``EXACTNESS_M`` of that distance or nearer; together they cover the bound.
+    None lies further out than that distance and the exactness; together they leave no way in
+    that is not within the exactness of that distance.
 
     Args:
         mesh: The surface.
         distance_m: The distance [m].
         closed: Whether it bounds a solid, so that nothing is needed on its inner side.
+        exactness_m: How far the shell may lie from its true distance [m].
     """
     vertices = np.asarray(mesh.vertices, float)
     faces = np.asarray(mesh.faces)
@@ -42,8 +44,8 @@ def shell(
     return np.concatenate(
         [
             *(vertices[faces] + side * distance_m * normals[:, None] for side in sides),
-            _strips(vertices, faces, normals, distance_m, closed=closed),
-            _caps(vertices, faces, outer, distance_m),
+            _strips(vertices, faces, normals, distance_m, exactness_m, closed=closed),
+            _caps(vertices, faces, outer, distance_m, exactness_m),
         ]
     )
 
@@ -63,6 +65,7 @@ def _strips(
     faces: Int[np.ndarray, "faces 3"],
     normals: Float[np.ndarray, "faces 3"],
     distance_m: float,
+    exactness_m: float,
     *,
     closed: bool,
 ) -> Float[np.ndarray, "triangles 3 3"]:
@@ -76,7 +79,7 @@ def _strips(
     inward = _unit(inward)
     one = np.argsort(owner, kind="stable")[np.r_[0, np.cumsum(counts)[:-1]]] // 3
     x, y = normals[one], np.cross(normals[one], along)
-    count = _flats(distance_m)
+    count = _flats(distance_m, exactness_m)
     width = 2.0 * np.pi / count
     angles = width * np.arange(count)
     cosine, sine = np.cos(angles + 0.5 * width)[:, None], np.sin(angles + 0.5 * width)[:, None]
@@ -89,7 +92,7 @@ def _strips(
         outward = np.zeros((len(edges), count), dtype=bool)
         outer = np.einsum("isj,ij->is", middles[owner], np.repeat(normals, 3, axis=0)) >= -margin
         np.logical_or.at(outward, owner, outer)
-        free &= outward & _bent(owner, normals, len(edges), distance_m)[:, None]
+        free &= outward & _bent(owner, normals, len(edges), distance_m, exactness_m)[:, None]
     edge, flat = np.nonzero(free)
     radius = distance_m * 2.0 / (1.0 + np.cos(0.5 * width))
     left, right = (
@@ -107,18 +110,19 @@ def _bent(
     normals: Float[np.ndarray, "faces 3"],
     edges: int,
     distance_m: float,
+    exactness_m: float,
 ) -> Bool[np.ndarray, "edges"]:
     """Edges whose faces, moved out, leave a slit wider than the exactness."""
     total = np.zeros((edges, 3))
     np.add.at(total, owner, np.repeat(normals, 3, axis=0))
     # Two unit normals at an angle sum to twice the cosine of its half.
     slit = 2.0 * np.sqrt(np.maximum(1.0 - 0.25 * (total**2).sum(axis=1), 0.0)) * distance_m
-    return slit > 0.5 * EXACTNESS_M
+    return slit > 0.5 * exactness_m
 
 
-def _flats(distance_m: float) -> int:
+def _flats(distance_m: float, exactness_m: float) -> int:
     """Into how many flats a circle is cut to stay within the exactness."""
-    share = min(2.0 * EXACTNESS_M / distance_m, 1.0)
+    share = min(2.0 * exactness_m / distance_m, 1.0)
     return max(8, int(np.ceil(np.pi / np.arccos(1.0 - share))))
 
 
@@ -138,10 +142,11 @@ def _caps(
     faces: Int[np.ndarray, "faces 3"],
     outer: Float[np.ndarray, "faces 3"] | None,
     distance_m: float,
+    exactness_m: float,
 ) -> Float[np.ndarray, "triangles 3 3"]:
     """Parts of a ball about each corner, where no adjacent edge is nearer than the corner."""
     level = next(
-        (n for n in range(1, 6) if (1.0 - _ball(n)[3]) / 2.0 * distance_m <= EXACTNESS_M), 5
+        (n for n in range(1, 6) if (1.0 - _ball(n)[3]) / 2.0 * distance_m <= exactness_m), 5
     )
     corners, middles, spread, depth = _ball(level)
     margin = np.sin(spread) + 1e-9

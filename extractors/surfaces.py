@@ -11,7 +11,7 @@ import trimesh
 from jaxtyping import Bool, Float, Int
 
 from capar.model.capture import Shape
-from extractors.shells import shell
+from extractors.shells import EXACTNESS_M, shell
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,16 +55,17 @@ class Surface:
         return len(self.shape.faces)
 
     @cached_property
-    def _shells(self) -> dict[float, fcl.BVHModel]:
+    def _shells(self) -> dict[tuple[float, float], fcl.BVHModel]:
         return {}
 
-    def shell_tree(self, distance_m: float) -> fcl.BVHModel:
-        """The shell at that distance [m] for the proximity library."""
-        if distance_m not in self._shells:
-            corners = shell(self.mesh, distance_m, closed=self.closed).reshape(-1, 3)
-            faces = np.arange(len(corners)).reshape(-1, 3)
-            self._shells[distance_m] = tree(corners, faces)
-        return self._shells[distance_m]
+    def shell_tree(self, distance_m: float, *, exactness_m: float = EXACTNESS_M) -> fcl.BVHModel:
+        """The shell at that distance [m], for the proximity library; made when first asked for."""
+        key = distance_m, exactness_m
+        if key not in self._shells:
+            parts = shell(self.mesh, distance_m, closed=self.closed, exactness_m=exactness_m)
+            faces = np.arange(3 * len(parts)).reshape(-1, 3)
+            self._shells[key] = tree(parts.reshape(-1, 3), faces)
+        return self._shells[key]
 
     def contains(self, points: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, "points"]:
         """Whether points [m, body's frame] lie in the solid; never, if it bounds none."""

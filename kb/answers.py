@@ -1,6 +1,6 @@
 """What a query answers, whatever store it was asked of."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -25,7 +25,7 @@ from ontology.vocabularies import XSD
 Found: TypeAlias = NamedNode | BlankNode | Literal | Triple | None
 Plain: TypeAlias = str | int | float | bool | None
 
-_PLAIN = {
+_PLAIN: dict[str, Callable[[str], Plain]] = {
     XSD + "integer": int,
     XSD + "double": float,
     XSD + "decimal": float,

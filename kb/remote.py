@@ -11,7 +11,7 @@ from pyoxigraph import NamedNode, Quad
 from kb import answers, bounded
 from kb.answers import Answer
 from kb.errors import QueryError, StoreError
-from kb.store import insertion
+from kb.statements import insertion
 
 ACCEPT = "application/sparql-results+json, application/n-triples"
 PATIENCE_S = 60.0
@@ -52,7 +52,9 @@ class RemoteStore:
     def graph(self, name: NamedNode) -> list[Quad]:
         """Every statement of a graph."""
         found = self.ask(f"CONSTRUCT {{ ?s ?p ?o }} WHERE {{ GRAPH {name} {{ ?s ?p ?o }} }}")
-        return [Quad(*each, name) for each in found.triples or ()]
+        return [
+            Quad(each.subject, each.predicate, each.object, name) for each in found.triples or ()
+        ]
 
     def quads(self) -> Iterable[Quad]:
         """Every statement of every named graph."""
@@ -63,8 +65,8 @@ class RemoteStore:
 
     def dataset(self) -> Any:
         """The same as rdflib's dataset, over the server's own endpoints."""
-        from rdflib import Dataset
-        from rdflib.plugins.stores.sparqlstore import SPARQLStore
+        from rdflib import Dataset  # noqa: PLC0415 (slow to import)
+        from rdflib.plugins.stores.sparqlstore import SPARQLStore  # noqa: PLC0415 (slow to import)
 
         return Dataset(store=SPARQLStore(_query_address(self.place)), default_union=True)
 
@@ -91,9 +93,9 @@ def post_query(address: str, query: str) -> tuple[str, bytes]:
 
 def _post(url: str, text: str, kind: str) -> tuple[str, bytes]:
     headers = {"Content-Type": f"{kind}; charset=utf-8", "Accept": ACCEPT}
-    request = urllib.request.Request(url, text.encode(), headers, method="POST")  # noqa: S310
+    request = urllib.request.Request(url, text.encode(), headers, method="POST")
     try:
-        with urllib.request.urlopen(request, timeout=PATIENCE_S) as reply:  # noqa: S310
+        with urllib.request.urlopen(request, timeout=PATIENCE_S) as reply:
             return reply.headers.get("Content-Type", ""), reply.read()
     except urllib.error.HTTPError as error:
         said = error.read().decode(errors="replace").strip()

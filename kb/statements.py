@@ -73,3 +73,12 @@ def terms(value: Value | Iterable[NamedNode]) -> list[Term]:
     if isinstance(value, str | bool | int | float):
         return [Literal(value)]
     return list(value)
+
+
+def insertion(quads: Iterable[Quad]) -> str:
+    """Statements as a SPARQL update that adds them."""
+    graphs: dict[str, list[str]] = {}
+    for each in quads:
+        graphs.setdefault(str(each.graph_name), []).append(f"{each.triple} .")
+    blocks = [f"GRAPH {name} {{\n{chr(10).join(lines)}\n}}" for name, lines in graphs.items()]
+    return "INSERT DATA {\n" + "\n".join(blocks) + "\n}"

@@ -75,19 +75,10 @@ def open_store(where: str | Path | None, *, read_only: bool = False, wait_s: flo
         StoreError: There is no store to read, or it cannot be used.
     """
     if where is not None and is_address(str(where)):
-        from kb.remote import RemoteStore
+        from kb.remote import RemoteStore  # noqa: PLC0415 (slow to import)
 
         return RemoteStore(str(where))
-    from kb.embedded import EmbeddedStore
+    from kb.embedded import EmbeddedStore  # noqa: PLC0415 (slow to import)
 
     folder = None if where is None else Path(where)
     return EmbeddedStore(folder, read_only=read_only, wait_s=wait_s)
-
-
-def insertion(quads: Iterable[Quad]) -> str:
-    """Statements as a SPARQL update that adds them."""
-    graphs: dict[str, list[str]] = {}
-    for each in quads:
-        graphs.setdefault(str(each.graph_name), []).append(f"{each.triple} .")
-    blocks = [f"GRAPH {name} {{\n{chr(10).join(lines)}\n}}" for name, lines in graphs.items()]
-    return "INSERT DATA {\n" + "\n".join(blocks) + "\n}"

@@ -166,6 +166,7 @@ class CAPAR(metaclass=Closed):
     collidingFirst: NamedNode
     collidingSecond: NamedNode
     location: NamedNode
+    ofSegment: NamedNode
     goal: NamedNode
     seen: NamedNode
     dominantKind: NamedNode
@@ -254,6 +255,46 @@ class CAPAR(metaclass=Closed):
     SparqlFunction: NamedNode
     element: NamedNode
     elements: NamedNode
+    # lexicon.ttl
+    LevinClass: NamedNode
+    VerbNetClass: NamedNode
+    ClassMember: NamedNode
+    ThematicRole: NamedNode
+    VerbFrame: NamedNode
+    SemanticPredicate: NamedNode
+    LexicalLink: NamedNode
+    CapabilityClaim: NamedNode
+    LexicalRemark: NamedNode
+    linkedAction: NamedNode
+    linkedSense: NamedNode
+    levinClass: NamedNode
+    classMember: NamedNode
+    memberVerb: NamedNode
+    memberSense: NamedNode
+    thematicRole: NamedNode
+    verbFrame: NamedNode
+    semanticPredicate: NamedNode
+    lemma: NamedNode
+    senseKey: NamedNode
+    senseNumber: NamedNode
+    oldSenseNumber: NamedNode
+    synsetOffset: NamedNode
+    lexicographerFile: NamedNode
+    genericSentence: NamedNode
+    classSize: NamedNode
+    claimedBy: NamedNode
+    claimedStatus: NamedNode
+    printedClass: NamedNode
+    claimedVerb: NamedNode
+    reason: NamedNode
+    section: NamedNode
+    quote: NamedNode
+    restriction: NamedNode
+    pattern: NamedNode
+    example: NamedNode
+    syntax: NamedNode
+    predicateName: NamedNode
+    arguments: NamedNode
 
 
 def terms() -> tuple[str, ...]:

@@ -327,7 +327,7 @@ MOUTH = ObservedObject(
     "mouth",
     "self",
     (0.02, 0.05, 0.02),
-    "stand-in",
+    "box 0.02 x 0.05 x 0.02 m",
     "",
     (0.05, 0.0, 1.5),
     (1.0, 0.0, 0.0, 0.0),
@@ -379,6 +379,7 @@ def drink_from_mug(*, agent: str = "agent", profile: str = "thesis") -> Observat
         agent=Agent(agent, "person", {"stature": 1.78, "upper_arm": 0.31}),
         profile=profile,
         notices=(
+            Notice("stand-in-shape", "'mouth' is a stand-in: box 0.02 x 0.05 x 0.02 m"),
             Notice("assumed-support", "table: a box whose top is the mug's lowest point at rest"),
         ),
     )

@@ -9,7 +9,7 @@ from capar.model.errors import FileError
 from capar.model.observation import Observation
 from capar.workbench.lettering import width_in
 from capar.workbench.painter import INK, QUIET, Painter
-from capar.workbench.rows import ASSUMED, STAND_IN, Kind, Speeds, rows, spoken
+from capar.workbench.rows import ASSUMED, STAND_IN, Kind, Speeds, rows, spoken, stand_ins
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -159,9 +159,9 @@ def _notes(observation: Observation, width: float) -> list[str]:
         for each in observation.objects
         if each.assumed
     ]
-    stand_ins = [spoken(each.name) for each in observation.objects if each.shape == "stand-in"]
-    if stand_ins:
-        notes.append(f"{STAND_IN} a stand-in of stated size, not the true shape: ")
-        notes[-1] += ", ".join(stand_ins) + "."
+    shapes = stand_ins(observation)
+    if shapes:
+        parts = ", ".join(f"{spoken(name)} ({shape})" for name, shape in shapes.items())
+        notes.append(f"{STAND_IN} stand-ins of stated size, not true shapes: {parts}.")
     columns = max(int(width / width_in("n", points=NOTE_POINTS)), 40)
     return [line for note in notes for line in wrap(note, columns, subsequent_indent="   ")]

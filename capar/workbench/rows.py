@@ -1,5 +1,6 @@
 """What a picture of an observation shows, row by row, before any of it is drawn."""
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum, auto
@@ -9,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.facts import LookingAt, Moving, Touching, ZeroCrossing
-from capar.model.observation import Observation, ObservedLink
+from capar.model.observation import Observation, ObservedLink, ObservedObject
 from capar.workbench.lettering import Span
 
 Speeds = Mapping[str, tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]]
@@ -80,17 +81,29 @@ def spoken(name: str) -> str:
 
 def marked(observation: Observation, name: str) -> str:
     """An object's name with the marks that the footnote explains."""
-    for each in observation.objects:
-        if each.name == name:
-            mark = ASSUMED if each.assumed else ""
-            return spoken(name) + mark + (STAND_IN if each.shape == "stand-in" else "")
-    return spoken(name)
+    mark = ASSUMED if any(each.assumed for each in _objects(observation, name)) else ""
+    return spoken(name) + mark + (STAND_IN if name in stand_ins(observation) else "")
+
+
+def stand_ins(observation: Observation) -> dict[str, str]:
+    """What stands in for the true shape of a body, by the body's name, as its notice says."""
+    notices = (each.message for each in observation.notices if each.code == "stand-in-shape")
+    found: dict[str, str] = {}
+    for message in notices:
+        quoted = re.match(r"'(\w+)' is a stand-in: (.*)", message)
+        if quoted:
+            found[quoted[1]] = quoted[2]
+    return found
+
+
+def _objects(observation: Observation, name: str) -> list[ObservedObject]:
+    return [each for each in observation.objects if each.name == name]
 
 
 def _link_rows(
     observation: Observation, link: ObservedLink, speeds: Speeds, clock: Callable[[int], float]
 ) -> list[Row]:
-    spans = tuple(Span(each.start_s, each.end_s, each.name) for each in link.segments)
+    spans = tuple(Span(clock(each.first), clock(each.last), each.name) for each in link.segments)
     borders = tuple(sorted({each.start_s for each in spans} | {each.end_s for each in spans}))
     crossings = sorted(
         each.frame

@@ -90,15 +90,12 @@ def _applicability(par: Upar, names: Sequence[str], parameters: str) -> str:
 def _preparation(par: Upar, names: Sequence[str], parameters: str) -> str:
     out = f"def preparatory_spec({parameters}):\n"
     for each in par.preparation:
-        fields = {
-            "agents": par.agent,
-            "objects": _tuple(_term(o, names) for o in each.action.objects),
-        }
+        objects = _tuple(_term(name, names) for name in each.action.objects)
+        fields = {"agents": par.agent, "objects": objects}
         if each.action.purpose:
             fields["purpose"] = repr(each.action.purpose)
-        out += f"{INDENT}if not ({_test(each.condition, names)}):\n"
-        out += f"{INDENT * 2}actions = {{'PRIMITIVE': {_action(each.action.action, fields)}}}\n"
-        out += f"{INDENT * 2}return actions\n"
+        body = f"actions = {{'PRIMITIVE': {_action(each.action.action, fields)}}}\nreturn actions\n"
+        out += f"{INDENT}if not ({_test(each.condition, names)}):\n{_indented(_indented(body))}"
     return out + f"{INDENT}return 1\n"
 
 

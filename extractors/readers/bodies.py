@@ -1,7 +1,8 @@
 """Which body or marker set of which file a sensor or object is, as a pose over time."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
@@ -44,11 +45,31 @@ def find_body(table: Table, files: Files) -> Body:
     markers = table.texts("markers")
     if markers:
         return _from_markers(table, files, markers, offset)
+    if isinstance(table.raw("body"), list):
+        return _carried(table, files, offset)
     name = table.text("body")
     file = _file_of(table, files, "body", name)
     recording = files[file]
     stream = offset_by(recording.bodies[name], offset)
     return Body(stream, skeleton_frame(recording, name, stream, offset))
+
+
+def _carried(table: Table, files: Files, offset: RigidTransform) -> Body:
+    """What is recorded only through what it carries: the poses of several bodies, one at a time."""
+    names = table.texts("body")
+    streams = [files[_file_of(table, files, "body", each)].bodies[each] for each in names]
+    order = np.argsort([each.times[0] for each in streams])
+    for earlier, later in pairwise(order):
+        if streams[later].times[0] <= streams[earlier].times[-1]:
+            first, second = names[earlier], names[later]
+            raise table.error("body", f"{first!r} and {second!r} are recorded at the same time.")
+    parts = [streams[each] for each in order]
+    whole = Stream(
+        np.concatenate([each.times for each in parts]),
+        np.concatenate([each.positions for each in parts]),
+        np.concatenate([each.orientations for each in parts]),
+    )
+    return Body(offset_by(whole, offset), Frame())
 
 
 def offset_by(stream: Stream, offset: RigidTransform) -> Stream:
@@ -99,8 +120,8 @@ def _from_markers(table: Table, files: Files, names: list[str], offset: RigidTra
     positions = np.where(wild[:, None], np.nan, fit.positions)
     stream = offset_by(Stream(recording.marker_times, positions, fit.orientations), offset)
     places = offset.inv().apply(cluster.local)
-    local = dict(zip(names, places, strict=True))
-    frame = Frame(points=local, markers=tuple(names), mirrored=recording.mirrored)
+    points_here = MeanPlaces(recording, stream, dict(zip(names, places, strict=True)))
+    frame = Frame(points=points_here, markers=tuple(names), mirrored=recording.mirrored)
     text = f"{label}: {wild.sum()} frames in which its markers are not rigid are taken as lost"
     return Body(stream, frame, (Notice("markers-not-rigid", text),) if wild.any() else ())
 
@@ -166,8 +187,7 @@ def skeleton_frame(
             for each in below
         ),
     }
-    places = LazyPlaces(recording, stream)
-    return Frame(points=places, bones=bones, mirrored=recording.mirrored)
+    return Frame(points=MeanPlaces(recording, stream), bones=bones, mirrored=recording.mirrored)
 
 
 def _is_below(parents: Mapping[str, str], name: str, root: str) -> bool:
@@ -180,21 +200,40 @@ def _is_below(parents: Mapping[str, str], name: str, root: str) -> bool:
     return False
 
 
-class LazyPlaces(dict[str, Float[np.ndarray, "3"]]):
-    """Mean places of a file's bodies and markers in one body's frame, computed when asked for."""
+class MeanPlaces(Mapping[str, Float[np.ndarray, "3"]]):
+    """Where a file's bodies and markers lie in one body's frame, in the mean, when asked for."""
 
-    def __init__(self, recording: WorldRecording, stream: Stream) -> None:
-        super().__init__(dict.fromkeys([*recording.bodies, *recording.markers], np.zeros(3)))
+    def __init__(
+        self,
+        recording: WorldRecording,
+        stream: Stream,
+        own: Mapping[str, Float[np.ndarray, "3"]] | None = None,
+    ) -> None:
         self._recording = recording
         self._stream = stream
+        self._own = own or {}
+
+    def __iter__(self) -> Iterator[str]:
+        """Every body and marker of the file."""
+        return iter([*self._recording.bodies, *self._recording.markers])
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self._recording.bodies) + len(self._recording.markers)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether the file has it; asked without computing."""
+        return name in self._recording.bodies or name in self._recording.markers
 
     def __getitem__(self, name: str) -> Float[np.ndarray, "3"]:
-        """The mean place of one of them [m]."""
-        own = self._stream
-        if name in self._recording.bodies:
-            points = self._recording.bodies[name].positions
-        else:
-            points = self._recording.markers[name]
+        """The place of one of them [m].
+
+        Raises:
+            CaptureError: It is never seen together with the body.
+        """
+        if name in self._own:
+            return self._own[name]
+        own, points = self._stream, self._points(name)
         if len(points) != len(own.times):
             raise CaptureError(f"{name!r} is on another clock than the body it shapes")
         both = ~own.lost & ~np.isnan(points).any(axis=1)
@@ -202,3 +241,8 @@ class LazyPlaces(dict[str, Float[np.ndarray, "3"]]):
             raise CaptureError(f"{name!r} is never seen together with the body it shapes")
         poses = geometry.transforms(own.positions[both], own.orientations[both])
         return np.asarray(poses.inv().apply(points[both]).mean(axis=0))
+
+    def _points(self, name: str) -> Float[np.ndarray, "frames 3"]:
+        if name in self._recording.bodies:
+            return self._recording.bodies[name].positions
+        return self._recording.markers[name]

@@ -41,12 +41,12 @@ def under_object(
         raise table.error(
             "at_s", f"{rests.name} is not seen near {at_s:g} s, but at {seen_s:.2f} s."
         )
-    corners = rests.stream.pose(frame).apply(rests.shape.vertices)
+    corners = rests.stream.pose(frame).apply(np.array(rests.shape.vertices))
     top = float(corners[:, 2].min())
     turn = Rotation.from_euler("z", table.number("turn_deg", 0.0), degrees=True)
     middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
     x, y = table.vector("position", 2, (float(middle[0]), float(middle[1])))
-    height = top - float(turn.apply(shape.vertices)[:, 2].max())
+    height = top - float(turn.apply(np.array(shape.vertices))[:, 2].max())
     text = f"top at {top:.3f} m, the lowest point of {rests.name} at rest at {seen_s:.2f} s"
     return (np.array([x, y, height]), geometry.quaternions(turn)), text
 

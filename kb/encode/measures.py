@@ -6,7 +6,7 @@ from capar.model.observation import Observation
 from capar.model.par import ConstraintLocation, Style
 from kb import literals, names
 from kb.encode.scene import GENERATED, kind, kind_of
-from kb.encode.segments import action
+from kb.encode.segments import action, segment_node
 from kb.statements import Said, Statements
 from ontology import CAPAR
 
@@ -17,15 +17,28 @@ def locations(
     """Every constraint location, with the kinds of objects that it is kept with."""
     kinds = {each.name: kind_of(each) for each in observation.objects}
     return [
-        _location(out, index, each, objects, kinds)
+        _location(out, index, each, _segment(out, observation, each), objects=objects, kinds=kinds)
         for index, each in enumerate(observation.locations)
     ]
+
+
+def _segment(
+    out: Statements, observation: Observation, value: ConstraintLocation
+) -> NamedNode | None:
+    """The segment at whose end the constraint was made."""
+    for link in observation.links:
+        for each in link.segments:
+            if (link.side, each.last, each.name) == (value.side, value.frame, value.action):
+                return segment_node(out.about, each.ee, each.index)
+    return None
 
 
 def _location(
     out: Statements,
     index: int,
     value: ConstraintLocation,
+    segment: NamedNode | None,
+    *,
     objects: dict[str, NamedNode],
     kinds: dict[str, str],
 ) -> NamedNode:
@@ -34,6 +47,7 @@ def _location(
 
     said: Said = {
         CAPAR.index: index,
+        CAPAR.ofSegment: segment,
         CAPAR.action: action(out, value.action),
         CAPAR.actionName: value.action,
         CAPAR.purpose: value.purpose,

@@ -12,14 +12,22 @@ from motions.trials import Body, Meeting, Sampling, Script, Trial, Truth, record
 STEPS = ("Reach", "MoveObjTo", "MoveObj", "MoveObjTo", "TouchWith", "ResumePosture")
 PUBLISHED_SHARES = (0.445274, 0.171642, 0.0472637, 0.121891, 0.0472637, 0.179104)
 
-STAND_S = 0.35
-LAST_S = 0.08
-SIP_DEPTH = 0.003
-RIM = (-shapes.MUG_RADIUS + 0.002, 0.0, shapes.MUG_HEIGHT)
+REACH_S = 1.2
+LAST_S = 0.065
+LET_GO_MPS2 = 7.0
+SIP_DEPTH = 0.001
+
+STANDING = Rotation.from_rotvec([0.0, 0.0, np.radians(-15.0)])
+"""How the mug stands: its handle to the right, and a little towards the person."""
+
+DRUNK = Rotation.from_rotvec([0.0, 0.0, np.radians(35.0)])
+"""How it is turned at the mouth: its handle to the right, and away from the face."""
+
+RIM = tuple(DRUNK.inv().apply((-shapes.MUG_RADIUS + 0.002, 0.0, shapes.MUG_HEIGHT)))
 """The place of the rim that lies at the mouth, in the mug's frame [m]."""
 
-LEANT = np.radians(-14.0)
-EMPTIED = np.radians(-42.0)
+LEANT = np.radians(-8.0)
+EMPTIED = np.radians(-43.0)
 
 
 def drink_from_mug(
@@ -52,23 +60,26 @@ def drink_from_mug(
                 performer,
                 "right_hand",
                 goal=taken,
-                arrive=(0.06, 0.22, -0.03),
-                start_s=STAND_S,
+                arrive=(0.07, 0.27, -0.03),
+                start_s=grasp - REACH_S * performer.pace**0.5,
                 end_s=grasp,
+                halt_mps2=figure.FIRM_MPS2,
             ),
             figure.withdraw(
                 performer,
                 "right_hand",
                 begin=left,
-                depart=(-0.05, -0.22, 0.05),
+                depart=(-0.07, -0.25, 0.04),
                 start_s=release,
                 end_s=done,
+                launch_mps2=LET_GO_MPS2,
             ),
         )
     )
     hand = Riding(own, mug, grip, grasp, release)
     meetings = (
-        Meeting("right_hand", "mug", hand, _fingertip(performer), (0.0, -1.0, 0.0),
+        Meeting("right_hand", "mug", hand, _fingertip(performer),
+                tuple(STANDING.apply((0.0, -1.0, 0.0))),
                 figure.GRIP_DEPTH, grasp, release),
         Meeting("mug", "table", mug, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.0, None, grasp),
         Meeting("mug", "table", mug, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.0, down, None),
@@ -94,7 +105,7 @@ def _instants(performer: Performer) -> tuple[float, ...]:
     """When the mug is taken, at the mouth, emptied, put down and let go, and the hand home."""
     return tuple(
         float(each)
-        for each in np.cumsum([1.72, 0.66, 0.184, 0.47, 0.184, 0.61]) * performer.pace
+        for each in np.cumsum([1.72, 0.67, 0.182, 0.475, 0.182, 0.6]) * performer.pace
     )
 
 
@@ -116,20 +127,21 @@ def _mug_moves(
 ) -> tuple[Move, ...]:
     grasp, mouth, sipped, down = instants
     lips = head.at(np.array([mouth]))[0].apply(shapes.mouth() - np.array([SIP_DEPTH, 0.0, 0.0]))
-    standing = pose(place)
+    standing = pose(place, STANDING)
     first = _at_lips(lips, LEANT)
     last = _at_lips(lips, EMPTIED)
     return (
         Move(grasp, mouth, standing, first, depart=(0.0, 0.0, 0.18), arrive=(-0.16, 0.0, 0.06),
-             launch_mps2=5.0, halt_mps2=7.0),
+             launch_mps2=12.0, halt_mps2=12.0),
         Sip(mouth, sipped, first, last),
-        Move(sipped, down, last, pose(place + np.array([0.015, -0.02, 0.0])),
-             depart=(0.17, 0.0, -0.02), arrive=(0.0, 0.0, -0.18), launch_mps2=7.0, halt_mps2=7.0),
+        Move(sipped, down, last,
+             pose(place + np.array([0.015, -0.02, 0.0]), STANDING),
+             depart=(0.17, 0.0, -0.02), arrive=(0.0, 0.0, -0.18), launch_mps2=12.0, halt_mps2=12.0),
     )  # fmt: skip
 
 
 def _at_lips(lips: np.ndarray, lean_rad: float) -> RigidTransform:
-    rotation = Rotation.from_rotvec([0.0, lean_rad, 0.0])
+    rotation = Rotation.from_rotvec([0.0, lean_rad, 0.0]) * DRUNK
     return pose(lips - rotation.apply(RIM), rotation)
 
 

@@ -11,7 +11,7 @@ from motions.paths import Move, Moves, Path, Swaying, Vector, aimed, pose
 from motions.performers import Performer
 from motions.trials import Body
 
-GRIP_DEPTH = 0.008
+GRIP_DEPTH = 0.006
 """How far a hand's solid lies inside what it holds, as skin gives way [m]."""
 
 EYE = (shapes.HEAD[0] + 0.002, 0.0, 0.03)
@@ -19,6 +19,12 @@ EYE = (shapes.HEAD[0] + 0.002, 0.0, 0.03)
 
 LOOK_S = 0.45
 """How long the head takes to turn to something [s]."""
+
+GENTLE_MPS2 = 3.0
+"""How hard the hand is stopped by what it touches, and lets go of it [m/s^2]."""
+
+FIRM_MPS2 = 8.0
+"""The same for what it takes to move at once [m/s^2]."""
 
 Look = tuple[float, Vector]
 """When the head begins to turn [s], and the place that it then looks at [m]."""
@@ -54,14 +60,13 @@ def reach(
     arrive: Vector,
     start_s: float,
     end_s: float,
+    halt_mps2: float = GENTLE_MPS2,
 ) -> Move:
     """From hanging to a goal, reached along ``arrive`` [m], in the performer's way."""
     begin = hanging(performer, hand)
     rise = float(goal.translation[2] - begin.translation[2]) + performer.rise_m
     depart = (-0.05, side(hand) * performer.swing_m, 0.85 * rise)
-    return Move(
-        start_s, end_s, begin, goal, depart=depart, arrive=arrive, halt_mps2=performer.halt_mps2
-    )
+    return Move(start_s, end_s, begin, goal, depart=depart, arrive=arrive, halt_mps2=halt_mps2)
 
 
 def withdraw(
@@ -72,6 +77,7 @@ def withdraw(
     depart: Vector,
     start_s: float,
     end_s: float,
+    launch_mps2: float = GENTLE_MPS2,
 ) -> Move:
     """Back to a posture like the first one, leaving along ``depart`` [m]."""
     end = hanging(performer, hand)
@@ -85,7 +91,7 @@ def withdraw(
         end,
         depart=depart,
         arrive=arrive,
-        launch_mps2=performer.halt_mps2,
+        launch_mps2=launch_mps2,
     )
 
 

@@ -122,7 +122,7 @@ class Riding:
     """``T_leader_body`` while it rides."""
 
     start_s: float
-    end_s: float
+    end_s: float = np.inf
 
     def at(self, times: Float[np.ndarray, "frames"]) -> RigidTransform:
         """``T_world_body`` at each time [s]."""

@@ -29,8 +29,6 @@ class Performer:
     """How far to the left things stand [m]."""
 
     sway_m: float
-    halt_mps2: float
-    """How hard the hand is stopped by what it takes [m/s^2]."""
 
     @property
     def size(self) -> float:
@@ -46,15 +44,15 @@ class Performer:
 
 TALL_MAN = Performer(
     name="tall_man", kind="man", stature_m=1.87, mass_kg=88.0, pace=1.0, rise_m=0.10,
-    swing_m=0.06, table_m=1.05, aside_m=0.0, sway_m=0.003, halt_mps2=6.0,
+    swing_m=0.06, table_m=1.05, aside_m=0.0, sway_m=0.003,
 )  # fmt: skip
 WOMAN = Performer(
     name="woman", kind="woman", stature_m=1.63, mass_kg=61.0, pace=1.14, rise_m=0.20,
-    swing_m=0.16, table_m=0.92, aside_m=0.06, sway_m=0.002, halt_mps2=5.0,
+    swing_m=0.16, table_m=0.92, aside_m=0.06, sway_m=0.002,
 )  # fmt: skip
 CHILD = Performer(
     name="child", kind="child", stature_m=1.36, mass_kg=30.5, pace=1.27, rise_m=0.15,
-    swing_m=0.02, table_m=0.76, aside_m=-0.04, sway_m=0.004, halt_mps2=5.0,
+    swing_m=0.02, table_m=0.76, aside_m=-0.04, sway_m=0.004,
 )  # fmt: skip
 
 PERFORMERS = (TALL_MAN, WOMAN, CHILD)

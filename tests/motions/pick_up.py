@@ -34,13 +34,15 @@ def pick_up_with_both_hands(
     """Both hands hold a box on the table, lift and lower it in one go, and let go together."""
     taken, lift, top, down, release, home = _instants(performer)
     standing = pose((0.52, 0.5 * performer.aside_m, performer.table_m))
-    raised = pose(standing.translation + np.array([-0.05, 0.0, 0.18 * performer.stature_m]))
+    raised = pose(standing.translation + np.array([-0.05, 0.0, 0.2 * performer.stature_m]))
     lowered = pose(standing.translation + np.array([0.01, 0.01, 0.0]))
     box = Moves(
         (
-            Move(lift, top, standing, raised, depart=(0.0, 0.0, 0.12), launch_mps2=2.0),
-            Move(top, down, raised, lowered, arrive=(0.0, 0.0, -0.12), halt_mps2=2.0),
-        )
+            Move(lift, top, standing, raised, depart=(0.0, 0.0, 0.12), launch_mps2=2.5,
+                 halt_mps2=2.0),
+            Move(top, down, raised, lowered, arrive=(0.0, 0.0, -0.12), launch_mps2=2.0,
+                 halt_mps2=5.0),
+        )  # fmt: skip
     )
     hands = {
         name: _hand(performer, name, box, (taken, lift, release, home)) for name in HANDS
@@ -64,7 +66,7 @@ def pick_up_with_both_hands(
 def _instants(performer: Performer) -> tuple[float, ...]:
     """When the box is held, lifted, up, down again and let go, and the hands are home."""
     return tuple(
-        float(each) for each in np.cumsum([1.5, 0.4, 0.9, 0.9, 0.3, 1.1]) * performer.pace
+        float(each) for each in np.cumsum([1.5, 0.4, 0.75, 0.75, 0.3, 1.1]) * performer.pace
     )
 
 

@@ -71,16 +71,16 @@ def slide_object(
 ) -> Trial:
     """A palm is set against a box and at once slides it over the table, to the end."""
     pushed = REACH_S * performer.pace
-    end = pushed + 1.0 * performer.pace
+    end = pushed + 0.7 * performer.pace
     standing = _standing(performer)
-    goal = pose(standing.translation + np.array([0.28, 0.03, 0.0]))
-    box = Moves((Move(pushed, end - 0.03, standing, goal, launch_mps2=1.5),))
+    goal = pose(standing.translation + np.array([0.34, 0.03, 0.0]))
+    box = Moves((Move(pushed, end + 0.02, standing, goal, launch_mps2=8.0, halt_mps2=3.0),))
     grip = _palm_against(performer)
     reach = figure.reach(
-        performer, HAND, goal=standing * grip, arrive=(0.2, 0.0, -0.03), start_s=STAND_S,
-        end_s=pushed,
+        performer, HAND, goal=standing * grip, arrive=(0.3, 0.0, -0.03), start_s=STAND_S,
+        end_s=pushed, halt_mps2=figure.FIRM_MPS2,
     )  # fmt: skip
-    hand = Riding(Moves((reach,)), box, grip, pushed, end)
+    hand = Riding(Moves((reach,)), box, grip, pushed)
     palm = (0.0, 0.0, -figure.thickness(performer))
     meeting = Meeting(
         HAND, "box", hand, palm, (-1.0, 0.0, 0.0), figure.GRIP_DEPTH, pushed, None

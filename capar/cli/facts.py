@@ -1,0 +1,54 @@
+"""The command that prints what was measured, as a logic program."""
+
+from typing import Annotated
+
+import typer
+
+app = typer.Typer()
+
+
+@app.command()
+def facts(
+    capture: Annotated[
+        str,
+        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
+    ],
+    profile: Annotated[
+        str, typer.Option(help="For which rules to number the borders.")
+    ] = "extended",
+    ranked: Annotated[
+        bool,
+        typer.Option(help="Number the borders too, so that the rule files can read the program."),
+    ] = True,
+    derive: Annotated[
+        bool,
+        typer.Option(
+            "--derive",
+            help="Add contact(Body, Other, Frame) and moved(Object, Segment) by the rules.",
+        ),
+    ] = False,
+) -> None:
+    """Print the ground facts of CAPTURE as an ASP program, for clingo with the rule files."""
+    from capar.model.facts import program
+    from capar.observe import facts_program
+    from capar_rules.engine import rule_file, solve, text_of
+    from capar_rules.profiles import profile as named_profile
+    from extractors.readers.bundle import read_capture
+
+    base = named_profile(profile)
+    trial = read_capture(capture)
+    measurements, borders = facts_program(trial, rules=base)
+    typer.echo(f"% {trial.name}: what was measured.\n{program(measurements.facts)}", nl=False)
+    if ranked:
+        typer.echo(
+            f"% Borders, numbered for the profile {base.name}.\n{program(borders)}", nl=False
+        )
+        typer.echo(f"% Rules: {base.files[0]}")
+    if derive:
+        answer = solve((*base.files, rule_file("derived.lp")), (*measurements.facts, *borders))
+        lines = "".join(
+            f"{text_of((name, *arguments))}.\n"
+            for name in ("contact", "moved")
+            for arguments in answer.of(name)
+        )
+        typer.echo(f"% Derived.\n{lines}", nl=False)

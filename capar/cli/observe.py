@@ -1,0 +1,176 @@
+"""The command that people run most: a capture in; segments, a complex PAR and a picture out."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from capar.model.capture import Capture
+    from capar.model.observation import Observation
+    from extractors.facts import Measurements
+
+app = typer.Typer()
+
+
+class OnUnknown(StrEnum):
+    """What to do about segments that no rule names."""
+
+    ASK = "ask"
+    KEEP = "keep"
+    FAIL = "fail"
+
+
+@app.command()
+def observe(
+    capture: Annotated[
+        str,
+        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
+    ],
+    profile: Annotated[
+        str, typer.Option(help="The rules to reason with: extended, or thesis to the letter.")
+    ] = "extended",
+    name: Annotated[str, typer.Option(help="What the whole action is called.")] = "",
+    on_unknown: Annotated[
+        OnUnknown | None,
+        typer.Option(
+            help="For a segment that no rule names: ask for a name (the default at a terminal), "
+            "keep it as Unknown (the default elsewhere), or fail."
+        ),
+    ] = None,
+    rules: Annotated[
+        Path | None,
+        typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the observation as JSON.")] = False,
+    script: Annotated[
+        bool, typer.Option("--script", help="Print the complex PAR as the thesis's Python script.")
+    ] = False,
+    pars: Annotated[
+        bool, typer.Option("--pars", help="Print every UPAR and IPAR as well, as text to diff.")
+    ] = False,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw the observation to a .png, .svg or .pdf file.")
+    ] = None,
+) -> None:
+    """Say what was done in CAPTURE: segments of each link, and the complex PAR they make."""
+    import sys
+
+    from capar.observe import observe_measured
+    from capar_rules.profiles import profile as named_profile
+    from capar_rules.teaching import rule_files, rules_folder
+    from extractors.facts import extract
+    from extractors.readers.bundle import read_capture
+
+    base = named_profile(profile, added=rule_files(rules))
+    trial = read_capture(capture)
+    measurements = extract(trial)
+    observation = observe_measured(trial, measurements, rules=base, name=name)
+    terminal = sys.stdin.isatty() and sys.stderr.isatty()
+    choice = on_unknown or (OnUnknown.ASK if terminal and not json else OnUnknown.KEEP)
+    if choice is OnUnknown.ASK and _teach(observation, rules_folder(rules)):
+        base = named_profile(profile, added=rule_files(rules))
+        observation = observe_measured(trial, measurements, rules=base, name=name)
+    if choice is OnUnknown.FAIL:
+        _refuse(observation)
+    if plot:
+        _draw(observation, trial, measurements, plot)
+    _print(observation, json=json, script=script, pars=pars)
+
+
+def _print(observation: "Observation", *, json: bool, script: bool, pars: bool) -> None:
+    if json:
+        from capar.model.json_form import to_json
+
+        typer.echo(to_json(observation), nl=False)
+        return
+    if script:
+        from capar.workbench.script import script as written
+
+        typer.echo(written(observation.complex_par), nl=False)
+        return
+    _tables(observation)
+    if pars:
+        from capar.workbench.text import par_text
+
+        for par in (observation.complex_par, *observation.upars, *observation.ipars):
+            typer.echo()
+            typer.echo(par_text(par), nl=False)
+
+
+def _tables(observation: "Observation") -> None:
+    """Tables for a terminal; plain aligned columns for anything else."""
+    import sys
+
+    from capar.workbench.tables import (
+        aligned,
+        segment_rows,
+        segments_table,
+        step_rows,
+        steps_table,
+        unknown_note,
+    )
+
+    if sys.stdout.isatty():
+        from rich.console import Console
+
+        console = Console()
+        console.print(segments_table(observation))
+        console.print(steps_table(observation.complex_par))
+    else:
+        for rows in (segment_rows(observation), step_rows(observation.complex_par)):
+            typer.echo("\n".join(aligned(rows)) + "\n")
+    for segment in observation.segments:
+        if not segment.known:
+            typer.echo(unknown_note(segment))
+    for notice in observation.notices:
+        typer.echo(f"note [{notice.code}]: {notice.message}", err=True)
+
+
+def _draw(
+    observation: "Observation", capture: "Capture", measurements: "Measurements", path: Path
+) -> None:
+    from capar.workbench.picture import draw
+
+    speeds = {
+        link.ee: (capture.times, measurements.tracks[link.ee].speed_mps)
+        for link in observation.links
+    }
+    draw(observation, speeds, path=path)
+    typer.echo(f"drew {path}", err=True)
+
+
+def _refuse(observation: "Observation") -> None:
+    from capar.model.errors import RuleError
+    from capar.workbench.tables import unknown_note
+
+    unknown = [unknown_note(each) for each in observation.segments if not each.known]
+    if unknown:
+        raise RuleError("no rule names every segment:\n  " + "\n  ".join(unknown))
+
+
+def _teach(observation: "Observation", folder: Path) -> bool:
+    """Ask for a name for each unknown feature set; whether any was given."""
+    from capar.workbench.tables import unknown_note
+    from capar_rules.teaching import ACTION_NAME, teach
+
+    unknown = {each.features: each for each in observation.segments if not each.known}
+    names = []
+    for features, segment in unknown.items():
+        typer.echo(unknown_note(segment), err=True)
+        while True:
+            answer = typer.prompt(
+                "What is it called? (empty keeps it unknown)",
+                default="",
+                show_default=False,
+                err=True,
+            ).strip()
+            if not answer or ACTION_NAME.fullmatch(answer):
+                break
+            typer.echo("A name reads like MoveObjTo: letters and digits, capital first.", err=True)
+        if answer:
+            names.append((answer, features))
+    for path in teach(names, folder=folder):
+        typer.echo(f"wrote {path}", err=True)
+    return bool(names)

@@ -1,0 +1,1 @@
+"""How well segments agree with labels that people gave."""

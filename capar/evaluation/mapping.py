@@ -1,0 +1,178 @@
+"""From the names that rules give to the names that people used in their labels.
+
+A mapping is a TOML file of rules; the first that fits a segment gives its label::
+
+    [links]                      # optional: our link = the label file's
+    right_hand = "right"
+
+    [[rule]]
+    name = "MoveObj"             # the segment's name, or one that it specialises; "*" fits all
+    object = "whisk"             # optional: among the segment's objects
+    dominant = "whisk"           # optional: the segment's dominant object
+    position = "before first"    # optional: of the link's first contact, or "after last"
+    previous = "Reach"           # optional: name of the segment before; "" if it is the first
+    next = "MoveObjTo"           # optional: name of the segment after; "" if it is the last
+    label = "stir"
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.evaluation.metrics import Interval
+from capar.model.errors import FileError, UnknownNameError
+from capar.model.observation import ObservedLink, Segment
+from extractors.readers.toml_table import Table, read_table
+
+ANY = "*"
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """Which segments bear a label; an empty or missing condition fits all."""
+
+    name: str
+    label: str
+    object: str = ""
+    dominant: str = ""
+    position: str = ""
+    previous: str | None = None
+    next: str | None = None
+    where: str = ""
+    """File and line."""
+
+
+@dataclass(frozen=True, slots=True)
+class LabelMapping:
+    """Rules in order, and names of links."""
+
+    path: Path
+    rules: tuple[Rule, ...]
+    links: Mapping[str, str]
+    """Of the label file, by ours, where they differ."""
+
+
+def read_mapping(path: Path) -> LabelMapping:
+    """Read a mapping file.
+
+    Raises:
+        CaparError: A key or a value is not as above; it names the line.
+    """
+    table = read_table(path)
+    links = table.table("links")
+    names = {each: links.text(each) for each in links.given()} if links else {}
+    rules = tuple(_rule(each) for each in table.tables("rule"))
+    table.close()
+    if not rules:
+        raise FileError(path, "has no rule.", 'Write [[rule]], name = "Reach", label = "approach".')
+    return LabelMapping(path, rules, names)
+
+
+def check_names(
+    mapping: LabelMapping, *, names: Iterable[str], objects: Iterable[str], labels: Iterable[str]
+) -> None:
+    """Prove that every name in the rules is one that exists.
+
+    Args:
+        mapping: The rules.
+        names: What segments can be called.
+        objects: What objects are called.
+        labels: The labels that occur in the label files.
+
+    Raises:
+        UnknownNameError: One does not; it lists those that do.
+    """
+    known = {"action": {*names, ANY}, "object": set(objects), "label": set(labels)}
+    for rule in mapping.rules:
+        wanted = [("action", rule.name), ("label", rule.label)]
+        wanted += [("action", each) for each in (rule.previous, rule.next) if each]
+        wanted += [("object", each) for each in (rule.object, rule.dominant) if each]
+        for kind, name in wanted:
+            if name not in known[kind]:
+                raise UnknownNameError(kind, name, known[kind], where=rule.where)
+
+
+def labelled(
+    link: ObservedLink, mapping: LabelMapping, times: Float[np.ndarray, "frames"]
+) -> tuple[Interval, ...]:
+    """The segments of a link under the labels that the rules give them.
+
+    Args:
+        link: The segments.
+        mapping: The rules.
+        times: Time of each frame of the capture [s].
+
+    Raises:
+        UnknownNameError: No rule fits a segment; it lists the names that have rules.
+    """
+    return tuple(
+        Interval(
+            float(times[each.first]),
+            float(times[each.last]),
+            _label(link.segments, index, mapping),
+        )
+        for index, each in enumerate(link.segments)
+    )
+
+
+def _rule(table: Table) -> Rule:
+    position = table.choice("position", POSITIONS) if "position" in table else ""
+    out = Rule(
+        name=table.text("name"),
+        label=table.text("label"),
+        object=table.text("object", ""),
+        dominant=table.text("dominant", ""),
+        position=position,
+        previous=table.text("previous") if "previous" in table else None,
+        next=table.text("next") if "next" in table else None,
+        where=table.where("name"),
+    )
+    table.close()
+    return out
+
+
+def _label(segments: Sequence[Segment], index: int, mapping: LabelMapping) -> str:
+    for rule in mapping.rules:
+        if _fits(rule, segments, index):
+            return rule.label
+    segment = segments[index]
+    place = f"{mapping.path}: {segment.ee} from {segment.start_s:.2f} s"
+    ruled = {each.name for each in mapping.rules}
+    raise UnknownNameError("fitting rule for", segment.name, ruled, where=place)
+
+
+def _fits(rule: Rule, segments: Sequence[Segment], index: int) -> bool:
+    segment = segments[index]
+    return (
+        rule.name in {ANY, segment.name, *segment.general}
+        and (not rule.object or rule.object in segment.objects)
+        and (not rule.dominant or segment.objects[:1] == (rule.dominant,))
+        and (not rule.position or POSITIONS[rule.position](segments, index))
+        and (rule.previous is None or _is(rule.previous, segments[:index][-1:]))
+        and (rule.next is None or _is(rule.next, segments[index + 1 : index + 2]))
+    )
+
+
+def _is(name: str, neighbour: Sequence[Segment]) -> bool:
+    """Whether the neighbour bears the name; an empty name means that there is none."""
+    if not neighbour or not name:
+        return not neighbour and not name
+    return name in {ANY, neighbour[0].name, *neighbour[0].general}
+
+
+def _before_first(segments: Sequence[Segment], index: int) -> bool:
+    return not any("1" in each.features.rel_start for each in segments[: index + 1])
+
+
+def _after_last(segments: Sequence[Segment], index: int) -> bool:
+    return not any("1" in each.features.rel_end for each in segments[index:])
+
+
+POSITIONS: dict[str, Callable[[Sequence[Segment], int], bool]] = {
+    "before first": _before_first,
+    "after last": _after_last,
+}
+"""Places in the sequence: before the first contact begins, and after the last one ends."""

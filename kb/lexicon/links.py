@@ -1,0 +1,152 @@
+"""How primitives link to words, and who says so: the thesis, or the rules that we ship."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache
+
+from kb.lexicon.tables import table
+
+
+class Claimant(StrEnum):
+    """Who makes a link or states a status."""
+
+    THESIS = "thesis"
+    RULES = "rules"
+    """The rule file of the primitive itself."""
+
+    LEXICON = "lexicon"
+    """Our table of verbs as motions of the body."""
+
+
+class ThesisStatus(StrEnum):
+    """What the thesis says of a verb (thesis 6.1, Fig 6.1)."""
+
+    DIRECT = "direct"
+    EXTENSION = "extension"
+    NOT = "not"
+    UNSTATED = "unstated"
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class PrimitiveWords:
+    """What a primitive is called in language, as its rule file states it."""
+
+    name: str
+    verbs: tuple[str, ...] = ()
+    """Lemmas as people write them, the first the usual one: ``pick up``."""
+
+    general: tuple[str, ...] = ()
+    """The primitives that it specialises directly."""
+
+    senses: tuple[str, ...] = ()
+    """WordNet sense keys that its rule file states."""
+
+    levin: tuple[str, ...] = ()
+    """Levin classes that its rule file states."""
+
+    prepositions: tuple[str, ...] = ()
+    """What stands before its second object: ``into``; empty for the usual one."""
+
+    file: str = ""
+    """The rule file, from the rule base's folder: ``primitives/hit.lp``."""
+
+
+@dataclass(frozen=True, slots=True)
+class SenseLink:
+    """A primitive's verb in a WordNet sense."""
+
+    primitive: str
+    verb: str
+    key: str
+    claimed_by: Claimant
+    number_1_6: int = 0
+    """The sense's number in WordNet 1.6, which the thesis cites; zero if it cites none."""
+
+    remark: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ThesisClaim:
+    """One claim of the thesis about what the system can address, with its sentence."""
+
+    levin: str
+    """Our class of the verbs named; empty for a claim about no class."""
+
+    said: str
+    """The number that the thesis itself prints, or empty."""
+
+    verbs: tuple[str, ...]
+    status: ThesisStatus
+    reason: str
+    section: str
+    quote: str
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """Where the thesis's words and the verb classes disagree."""
+
+    levin: str
+    verb: str
+    text: str
+
+
+@cache
+def thesis_senses() -> tuple[SenseLink, ...]:
+    """The thesis's table of senses, by sense key (thesis 6.1)."""
+    return tuple(
+        SenseLink(
+            row["primitive"],
+            row["verb"],
+            row["key"],
+            Claimant.THESIS,
+            int(row["number_1_6"]),
+            row["remark"],
+        )
+        for row in table("thesis_senses")
+    )
+
+
+@cache
+def thesis_claims() -> tuple[ThesisClaim, ...]:
+    """Every claim of the thesis about its capability, in its order (thesis 6.1, 6.3)."""
+    return tuple(
+        ThesisClaim(
+            row["class"],
+            row["said"],
+            tuple(row["verbs"].split("; ")) if row["verbs"] else (),
+            ThesisStatus(row["status"]),
+            row["reason"],
+            row["section"],
+            row["quote"],
+        )
+        for row in table("thesis_claims")
+    )
+
+
+@cache
+def remarks() -> tuple[Remark, ...]:
+    """What stands beside the thesis's claims as a remark."""
+    return tuple(Remark(row["class"], row["verb"], row["remark"]) for row in table("remarks"))
+
+
+def sense_links(words: PrimitiveWords) -> tuple[SenseLink, ...]:
+    """The senses of a primitive that we claim: its rule file's, else its verbs' as motions."""
+    if words.senses:
+        verb = words.verbs[0] if words.verbs else ""
+        return tuple(SenseLink(words.name, verb, key, Claimant.RULES) for key in words.senses)
+    return tuple(
+        SenseLink(words.name, verb, key, Claimant.LEXICON)
+        for verb in words.verbs
+        for key in motion_senses(verb)
+    )
+
+
+def motion_senses(verb: str) -> tuple[str, ...]:
+    """Sense keys in which a verb is a motion of the body, none if our table lacks it."""
+    return tuple(row["key"] for row in table("motion_senses") if row["verb"] == verb)
+
+
+def motion_classes(verb: str) -> tuple[str, ...]:
+    """Levin classes in which a verb is a motion of the body, none if our table lacks it."""
+    return tuple(row["class"] for row in table("motion_classes") if row["verb"] == verb)

@@ -1,0 +1,155 @@
+"""VerbNet's classes as statements, and back."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from pyoxigraph import Literal, NamedNode, Triple
+
+from kb import names
+from kb.lexicon import terms
+from kb.lexicon.levin import levin_classes
+from kb.lexicon.terms import LABEL, TYPE, Triples
+from kb.lexicon.verbnet import Frame, Member, Phrase, Predicate, Role, VerbClass
+from kb.lexicon.wordnet import WordNet
+from ontology import CAPAR
+
+BROADER = NamedNode(terms.SKOS + "broader")
+NOTATION = NamedNode(terms.SKOS + "notation")
+
+
+def verbnet_triples(classes: Iterable[VerbClass], words: WordNet) -> Triples:
+    """Every class with what it states itself; senses where that WordNet has them."""
+    for top in classes:
+        for each in top.family:
+            yield from _class(each, words)
+
+
+def _class(value: VerbClass, words: WordNet) -> Triples:
+    node = terms.verbnet(value.id)
+    yield Triple(node, TYPE, CAPAR.VerbNetClass)
+    yield Triple(node, LABEL, Literal(value.id))
+    yield Triple(node, NOTATION, Literal(value.number))
+    if value.parent:
+        yield Triple(node, BROADER, terms.verbnet(value.parent))
+    if value.levin in levin_classes():
+        yield Triple(node, CAPAR.levinClass, terms.levin(value.levin))
+    for index, member in enumerate(value.members):
+        yield from _member(node, index, member, words)
+    for index, role in enumerate(value.roles):
+        own = names.part(node, "role", index)
+        yield Triple(node, CAPAR.thematicRole, own)
+        yield Triple(own, TYPE, CAPAR.ThematicRole)
+        yield Triple(own, LABEL, Literal(role.name))
+        yield Triple(own, CAPAR.index, terms.number(index))
+        for each in role.restrictions:
+            yield Triple(own, CAPAR.restriction, Literal(each))
+    for index, frame in enumerate(value.frames):
+        yield from _frame(node, index, frame)
+
+
+def _member(of: NamedNode, index: int, member: Member, words: WordNet) -> Triples:
+    own = names.part(of, "member", index)
+    yield Triple(of, CAPAR.classMember, own)
+    yield Triple(own, TYPE, CAPAR.ClassMember)
+    yield Triple(own, CAPAR.lemma, Literal(member.lemma.replace("_", " ")))
+    yield Triple(own, CAPAR.memberVerb, terms.verb(member.lemma))
+    for key in member.keys:
+        yield Triple(own, CAPAR.senseKey, Literal(key))
+        if key in words:
+            yield Triple(own, CAPAR.memberSense, terms.sense(key))
+
+
+def _frame(of: NamedNode, index: int, frame: Frame) -> Triples:
+    own = names.part(of, "frame", index)
+    syntax = "; ".join(f"{each.kind} {each.value}".strip() for each in frame.syntax)
+    yield Triple(of, CAPAR.verbFrame, own)
+    yield Triple(own, TYPE, CAPAR.VerbFrame)
+    yield Triple(own, CAPAR.index, terms.number(index))
+    yield Triple(own, CAPAR.pattern, Literal(frame.pattern))
+    yield Triple(own, CAPAR.example, Literal(frame.example))
+    yield Triple(own, CAPAR.syntax, Literal(syntax))
+    for number, predicate in enumerate(frame.semantics):
+        node = names.part(own, "predicate", number)
+        yield Triple(own, CAPAR.semanticPredicate, node)
+        yield Triple(node, TYPE, CAPAR.SemanticPredicate)
+        yield Triple(node, CAPAR.index, terms.number(number))
+        yield Triple(node, CAPAR.predicateName, Literal(predicate.name))
+        yield Triple(node, CAPAR.holds, Literal(predicate.holds))
+        yield Triple(node, CAPAR.arguments, Literal("|".join(predicate.arguments)))
+
+
+Row = Mapping[str, object]
+
+
+def classes_from(
+    heads: Iterable[Row], members: Iterable[Row], roles: Iterable[Row], frames: Iterable[Row]
+) -> tuple[VerbClass, ...]:
+    """The classes that rows of the store state, each without its subclasses."""
+    found_members = _grouped(members)
+    found_roles = _grouped(roles)
+    found_frames = _grouped(frames)
+    return tuple(
+        VerbClass(
+            str(row["id"]),
+            str(row["parent"] or ""),
+            _members(found_members.get(str(row["id"]), [])),
+            _roles(found_roles.get(str(row["id"]), [])),
+            _frames(found_frames.get(str(row["id"]), [])),
+            (),
+        )
+        for row in heads
+    )
+
+
+def _grouped(rows: Iterable[Row], by: str = "id") -> dict[str, list[Row]]:
+    table: dict[str, list[Row]] = {}
+    for row in rows:
+        table.setdefault(str(row[by]), []).append(row)
+    return table
+
+
+def _members(rows: Sequence[Row]) -> tuple[Member, ...]:
+    keys: dict[str, list[str]] = {}
+    for row in rows:
+        found = keys.setdefault(str(row["lemma"]).replace(" ", "_"), [])
+        if row["key"]:
+            found.append(str(row["key"]))
+    return tuple(Member(lemma, tuple(sorted(each))) for lemma, each in sorted(keys.items()))
+
+
+def _roles(rows: Sequence[Row]) -> tuple[Role, ...]:
+    restrictions: dict[tuple[int, str], list[str]] = {}
+    for row in rows:
+        found = restrictions.setdefault((int(str(row["index"])), str(row["role"])), [])
+        if row["restriction"]:
+            found.append(str(row["restriction"]))
+    return tuple(
+        Role(role, tuple(sorted(each))) for (_, role), each in sorted(restrictions.items())
+    )
+
+
+def _frames(rows: Sequence[Row]) -> tuple[Frame, ...]:
+    return tuple(
+        _frame_of(parts)
+        for _, parts in sorted(_grouped(rows, "frame").items(), key=lambda item: int(item[0]))
+    )
+
+
+def _frame_of(rows: Sequence[Row]) -> Frame:
+    ordered = sorted((row for row in rows if row["name"]), key=lambda row: int(str(row["place"])))
+    first = rows[0]
+    return Frame(
+        str(first["pattern"]),
+        str(first["example"]),
+        tuple(_phrase(each) for each in str(first["syntax"]).split("; ") if each),
+        tuple(
+            Predicate(
+                str(row["name"]), tuple(str(row["arguments"]).split("|")), holds=bool(row["holds"])
+            )
+            for row in ordered
+        ),
+    )
+
+
+def _phrase(text: str) -> Phrase:
+    kind, _, value = text.partition(" ")
+    return Phrase(kind, value)

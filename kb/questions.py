@@ -1,0 +1,129 @@
+"""Named questions: each is a file of SPARQL whose first comments say what it asks and of what."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+from pyoxigraph import Literal
+
+from capar.model.errors import CaparError, UnknownNameError
+from kb import sparql
+
+_PARAMETER = re.compile(
+    r"(?P<name>\w+) \((?P<kind>text|number)"
+    r"(?:, (?:(?P<required>required)|default (?P<default>\w+)))?\): (?P<meaning>[^;]+)"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """Something that a question is asked of."""
+
+    name: str
+    kind: str
+    """``text`` or ``number``."""
+
+    required: bool
+    default: str
+    """What is meant when nothing is given; empty: anything."""
+
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A question with a name."""
+
+    name: str
+    text: str
+    """The question in words."""
+
+    parameters: tuple[Parameter, ...]
+    query: str
+
+    def bind(self, given: Mapping[str, object]) -> str:
+        """The query with its parameters set.
+
+        Raises:
+            UnknownNameError: A parameter that the question has not; the message lists those it has.
+            QuestionError: A required one is missing, or a number is none.
+        """
+        names = [each.name for each in self.parameters]
+        for name in given:
+            if name not in names:
+                raise UnknownNameError(f"parameter of the question {self.name!r}", name, names)
+        query = self.query
+        for each in self.parameters:
+            query = _set(query, each, self._value(each, given))
+        return sparql.complete(query)
+
+    def _value(self, parameter: Parameter, given: Mapping[str, object]) -> Literal | None:
+        value = given.get(parameter.name)
+        text = parameter.default if value is None else str(value)
+        if not text:
+            if parameter.required:
+                raise QuestionError(self, parameter)
+            return None
+        if parameter.kind == "text":
+            return Literal(text)
+        try:
+            return Literal(float(text))
+        except ValueError:
+            raise QuestionError(self, parameter, text) from None
+
+
+class QuestionError(CaparError):
+    """A question that is asked without what it needs, or of something that is no number."""
+
+    def __init__(self, question: Question, parameter: Parameter, text: str = "") -> None:
+        self.question = question.name
+        self.parameter = parameter.name
+        problem = f"is a number, not {text!r}" if text else "must be given"
+        listed = "; ".join(f"{each.name}: {each.meaning}" for each in question.parameters)
+        super().__init__(
+            f"question {question.name!r}: {parameter.name} {problem}. Its parameters: {listed}"
+        )
+
+
+def _set(query: str, parameter: Parameter, value: Literal | None) -> str:
+    line = f"VALUES ?{parameter.name} {{ UNDEF }}"
+    return query.replace(line, f"VALUES ?{parameter.name} {{ {value} }}" if value else "")
+
+
+@cache
+def questions() -> Mapping[str, Question]:
+    """Every question by name, sorted."""
+    folder = files("kb") / "queries"
+    found = sorted(
+        (each for each in folder.iterdir() if each.name.endswith(".rq")), key=lambda at: at.name
+    )
+    read = [_read(each.name.removesuffix(".rq"), each.read_text("utf-8")) for each in found]
+    return {each.name: each for each in read}
+
+
+def question(name: str) -> Question:
+    """The question of that name.
+
+    Raises:
+        UnknownNameError: There is none; the message lists those that exist.
+    """
+    if name not in questions():
+        raise UnknownNameError("question", name, questions())
+    return questions()[name]
+
+
+def _read(name: str, query: str) -> Question:
+    first, second, *_ = query.splitlines()
+    parameters = tuple(
+        Parameter(
+            each["name"],
+            each["kind"],
+            bool(each["required"]),
+            each["default"] or "",
+            each["meaning"].strip(),
+        )
+        for each in _PARAMETER.finditer(second)
+    )
+    return Question(name, first.removeprefix("#").strip(), parameters, query)

@@ -1,0 +1,143 @@
+"""What a user's query may say, and the functions that open compact literals in it."""
+
+import re
+from itertools import pairwise
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from kb.errors import QueryError
+from ontology import BASE, PREFIXES
+
+_TOKEN = re.compile(
+    r"""
+      (?P<space>   \s+ | \#[^\r\n]* )
+    | (?P<string>  \"\"\"(?:\\.|[^\\])*?\"\"\" | '''(?:\\.|[^\\])*?'''
+                 | "(?:\\.|[^"\\\r\n])*" | '(?:\\.|[^'\\\r\n])*' )
+    | (?P<iri>     <[^<>"{}|^`\x00-\x20]*> )
+    | (?P<variable>[?$]\w+ )
+    | (?P<name>    [A-Za-z_][\w.\-]*:(?:[\w\-:%.\\]*[\w\-:%\\])? | :[\w\-:%.\\]* )
+    | (?P<word>    [A-Za-z_]\w* )
+    | (?P<other>   . )
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+_ESCAPE = re.compile(r"\\u([0-9A-Fa-f]{4})|\\U([0-9A-Fa-f]{8})")
+_UPDATES = {"insert", "delete", "load", "clear", "drop", "create", "add", "move", "copy", "with"}
+_FORMS = {"select", "construct", "ask", "describe"}
+
+ELEMENT = (
+    '<http://www.w3.org/2001/XMLSchema#double>(REPLACE(CONCAT(STR({0}), " x"), '
+    'CONCAT("^(?:[^ ]+ ){{", STR({1}), "}}([^ ]+) .*$"), "$1"))'
+)
+ELEMENTS = '(STRLEN(REPLACE(STR({0}), "[^ ]", "")) + 1)'
+FUNCTIONS = {"element": (ELEMENT, 2), "elements": (ELEMENTS, 1)}
+"""Our functions as expressions of plain SPARQL, which every server knows, with their arity."""
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """A piece of a query and what it is."""
+
+    kind: str
+    text: str
+
+
+def tokens(query: str) -> Iterator[Token]:
+    """The pieces of a query, which joined are the query."""
+    for match in _TOKEN.finditer(query):
+        yield Token(match.lastgroup or "other", match.group())
+
+
+def prepare(query: str) -> str:
+    """A user's query with known prefixes declared and our functions spelt out.
+
+    Raises:
+        QueryError: It writes, or calls other services.
+    """
+    _refuse(query)
+    if _ESCAPE.search(query):
+        _refuse(_ESCAPE.sub(lambda at: chr(int(at.group(1) or at.group(2), 16)), query))
+    return complete(query)
+
+
+def complete(query: str) -> str:
+    """A query with known prefixes declared and our functions spelt out.
+
+    Raises:
+        QueryError: A function with another number of arguments than it takes.
+    """
+    pieces = list(tokens(query))
+    return _prologue(pieces) + _expand(pieces)
+
+
+def _refuse(query: str) -> None:
+    words = [each.text.lower() for each in tokens(query) if each.kind == "word"]
+    if "service" in words:
+        raise QueryError("a query may not use SERVICE: it answers from this Actionary alone")
+    for word in words:
+        if word in _FORMS:
+            return
+        if word in _UPDATES:
+            raise QueryError(
+                f"a query may not write ({word.upper()}); SELECT, CONSTRUCT, ASK and DESCRIBE "
+                "ask, and `capar import`, `capar forget` and `capar observe` write"
+            )
+
+
+def _prologue(pieces: list[Token]) -> str:
+    """Declarations of the known prefixes that a query uses and does not declare itself."""
+    meaningful = [each for each in pieces if each.kind != "space"]
+    declared = {
+        after.text.partition(":")[0]
+        for before, after in pairwise(meaningful)
+        if before.kind == "word" and before.text.lower() == "prefix"
+    }
+    used = {each.text.partition(":")[0] for each in meaningful if each.kind == "name"}
+    missing = sorted((used & PREFIXES.keys()) - declared)
+    return "".join(f"PREFIX {each}: <{PREFIXES[each]}> " for each in missing)
+
+
+def _function(piece: Token) -> str | None:
+    for name in FUNCTIONS:
+        if piece.text in {f"capar:{name}", f"<{BASE}{name}>"}:
+            return name
+    return None
+
+
+def _expand(pieces: list[Token]) -> str:
+    out: list[str] = []
+    at = 0
+    while at < len(pieces):
+        name = _function(pieces[at])
+        opening = _skip_space(pieces, at + 1)
+        if name and opening < len(pieces) and pieces[opening].text == "(":
+            arguments, at = _arguments(pieces, opening)
+            template, arity = FUNCTIONS[name]
+            if len(arguments) != arity:
+                raise QueryError(f"capar:{name} takes {arity} arguments, not {len(arguments)}")
+            out.append(template.format(*(_expand(each).strip() for each in arguments)))
+        else:
+            out.append(pieces[at].text)
+            at += 1
+    return "".join(out)
+
+
+def _skip_space(pieces: list[Token], at: int) -> int:
+    while at < len(pieces) and pieces[at].kind == "space":
+        at += 1
+    return at
+
+
+def _arguments(pieces: list[Token], opening: int) -> tuple[list[list[Token]], int]:
+    """The arguments between an opening parenthesis and its closing one, and what is after."""
+    depth, arguments = 0, [[]]  # type: tuple[int, list[list[Token]]]
+    for at in range(opening, len(pieces)):
+        text = pieces[at].text if pieces[at].kind == "other" else ""
+        depth += (text == "(") - (text == ")")
+        if depth == 0:
+            return arguments, at + 1
+        if text == "," and depth == 1:
+            arguments.append([])
+        elif at > opening:
+            arguments[-1].append(pieces[at])
+    raise QueryError("a parenthesis of a capar: function is never closed")

@@ -1,0 +1,38 @@
+"""Changes to a store as SPARQL updates: each is one, so that nothing half-written is seen."""
+
+from pyoxigraph import NamedNode, Quad
+
+from kb.names import GRAPHS
+from kb.statements import insertion
+from ontology import PREFIXES
+
+_PROLOGUE = f"PREFIX capar: <{PREFIXES['capar']}>\n"
+
+_ORPHANS = """DELETE {{ GRAPH ?shared {{ ?thing ?predicate ?value }} }}
+WHERE {{
+  GRAPH {graph} {{ {graph} capar:mentions ?thing }}
+  FILTER NOT EXISTS {{
+    GRAPH ?elsewhere {{ ?other capar:mentions ?thing }}
+    FILTER(?elsewhere != {graph})
+  }}
+  VALUES ?shared {{ {shared} }}
+  FILTER NOT EXISTS {{ GRAPH ?shared {{ ?thing capar:declared true }} }}
+  GRAPH ?shared {{ ?thing ?predicate ?value }}
+}}"""
+
+
+def removal(graph: NamedNode) -> str:
+    """The update that takes an observation back, and what nobody else mentions."""
+    shared = " ".join(str(GRAPHS[each]) for each in ("agents", "objects", "actions"))
+    orphans = _ORPHANS.format(graph=graph, shared=shared)
+    return f"{_PROLOGUE}{orphans} ;\nDROP SILENT GRAPH {graph}"
+
+
+def replacement(graph: NamedNode, quads: list[Quad]) -> str:
+    """The update that puts an observation in the place of one of the same name."""
+    return f"{removal(graph)} ;\n{insertion(quads)}"
+
+
+def graph_replacement(graph: NamedNode, quads: list[Quad]) -> str:
+    """The update that gives a graph these statements and no others."""
+    return f"DROP SILENT GRAPH {graph} ;\n{insertion(quads)}"
