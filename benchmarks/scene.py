@@ -60,7 +60,7 @@ def _ease(share: np.ndarray) -> np.ndarray:
 
 def _between(clock: np.ndarray, keys: list[tuple[float, np.ndarray]]) -> np.ndarray:
     """Minimum-jerk motion through places at times [s] within each round."""
-    out = np.tile(keys[0][1], (len(clock), 1))
+    out = keys[0][1]
     for (begin, one), (end, two) in zip(keys[:-1], keys[1:], strict=True):
         inside = (clock >= begin)[:, None]
         move = one + (two - one) * _ease((clock - begin) / (end - begin))[:, None]
@@ -97,26 +97,14 @@ def capture(
     objects.append(TagObject("rack", TagType.FIXED, fixed((0.5, 0.6, 0.97)), rack))
     for side, sign in (("right", -1.0), ("left", 1.0)):
         rest, grip = np.array([0.0, 0.5 * sign, 0.9]), np.array([-0.124, 0.0, 0.0])
-        one, up = np.array([0.4, 0.2 * sign, 0.771]), np.array([0.5, 0.25 * sign, 1.1])
-        two = np.array([0.7, 0.2 * sign, 0.771])
-        thing = _between(
-            clock, [(2.5, one), (4.0, up), (6.0, up), (7.5, two), (9.0, two), (11.9, one)]
-        )
-        ee = _between(
-            clock,
-            [
-                (0.5, rest),
-                (2.0, one + grip),
-                (2.5, one + grip),
-                (4.0, up + grip),
-                (6.0, up + grip),
-                (7.5, two + grip),
-                (8.0, two + grip),
-                (8.9, two + grip),
-                (9.0, two + grip),
-                (11.9, rest),
-            ],
-        )
+        back = (np.mod(times, 2.0 * PERIOD_S) >= PERIOD_S)[:, None]
+        ends = np.array([[0.4, 0.2 * sign, 0.771], [0.7, 0.2 * sign, 0.771]])
+        one, two = np.where(back, ends[1], ends[0]), np.where(back, ends[0], ends[1])
+        up = np.tile([0.5, 0.25 * sign, 1.1], (frames, 1))
+        thing = _between(clock, [(2.5, one), (4.0, up), (6.0, up), (7.5, two)])
+        keys = [(0.5, rest + 0.0 * one), (2.0, one + grip), (2.5, one + grip), (4.0, up + grip)]
+        keys += [(6.0, up + grip), (7.5, two + grip), (9.0, two + grip), (11.0, rest + 0.0 * one)]
+        ee = _between(clock, keys)
         tilt = 0.3 * _ease((clock - 4.0) / 1.0) - 0.3 * _ease((clock - 5.0) / 1.0)
         sensors.append(
             Sensor(f"{side}_hand", "hand", side, f"{side}_arm", stream(ee, tilt), hand())

@@ -25,6 +25,7 @@ from capar.model.facts import (
 from extractors.attention import Attention, attention
 from extractors.contact import Contact, contact_tolerance, contacts
 from extractors.gaps import long_gaps
+from extractors.handling import handling
 from extractors.object_motion import motion_floor, moving
 from extractors.poses import Poses, poses
 from extractors.signals import speed
@@ -101,6 +102,7 @@ def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measur
             for name, interval in look.looks
         ),
     ]
+    facts += handling(capture, where, facts, limits)
     notices = (*capture.notices, *_notices(capture, tolerance, limits))
     return Measurements(_ordered(facts), notices, tolerance, tracks, looks, where)
 

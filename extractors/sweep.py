@@ -28,6 +28,12 @@ LONGEST, SHORTEST = 8192, 32
 PATIENCE = 4
 """Answers in turn that tell of no other pose before a distance is asked for, ten times dearer."""
 
+DEPTHS = (0.0, 0.5, 1.0)
+"""Shares of the distance at whose shells a point of contact is sought, deepest first [1]."""
+
+DEEPER = 4
+"""One in so many such searches begins at the deepest, the others where the last one ended [1]."""
+
 _UNKNOWN, _APART, _TOUCHES = 0, 1, 2
 
 
@@ -70,7 +76,7 @@ class _Sweep:
         self.moved = fcl.CollisionObject(self.second.tree)
         self.ask = fcl.CollisionRequest(enable_contact=True)
         self.bare = fcl.CollisionObject(self.first.tree)
-        self.idle, self.patience = 0, PATIENCE
+        self.asked, self.depth = 0, 0
         self.stand: dict[float, fcl.CollisionObject] = {0.0: self.bare}
         self.flat = self.turns.reshape(-1, 9)
         if self.first.radius < self.second.radius:
@@ -83,34 +89,27 @@ class _Sweep:
 
     def run(self) -> Bool[np.ndarray, "poses"]:
         """Ask about each pose that no answer tells of."""
-        index, reach, touched = 0, SHORTEST, False
-        count = len(self.known)
-        while index < count:
+        index, touched, idle, patience = 0, False, 0, PATIENCE
+        while index < len(self.known):
             self.moved.setTransform(fcl.Transform(self.turns[index], self.places[index]))
             point, slack = self._touch() if touched else self._room()
             touched = point is not None
             self.known[index] = _TOUCHES if touched else _APART
-            end = min(index + 1 + reach, count)
-            carried = slack > 0.0 and self._carry(index, end, point, slack)
-            if not carried and self._patience():
-                exact, slack = self._distance()
-                carried = slack > 0.0 and self._carry(index, end, exact, slack)
-                self.patience = PATIENCE if carried else 4 * self.patience
-            self.idle = 0 if carried else self.idle + 1
-            rest = np.flatnonzero(self.known[index + 1 : end] == _UNKNOWN)
-            if rest.size:
-                reach = max(SHORTEST, 2 * int(rest[0]))
-                index += 1 + int(rest[0])
-            else:
-                reach, index = min(2 * reach, LONGEST), end
+            told, index = self._carry(index, point, slack)
+            idle = 0 if told else idle + 1
+            if idle >= patience:
+                told, index = self._carry(index - 1, *self._distance())
+                idle, patience = 0, PATIENCE if told else 2 * patience
         return self.known == _TOUCHES
 
     def _touch(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
         """A point of the second within the distance, and how far it may move [m]; deepest first."""
-        for share in (0.0, 0.5, 1.0):
-            point = self._meet(share * self.distance_m, EXACTNESS_M)
+        self.asked += 1
+        for depth in range(0 if self.asked % DEEPER == 0 else self.depth, len(DEPTHS)):
+            point = self._meet(DEPTHS[depth] * self.distance_m, EXACTNESS_M)
             if point is not None:
-                return point, (1.0 - share) * self.distance_m - 2.0 * EXACTNESS_M
+                self.depth = depth
+                return point, (1.0 - DEPTHS[depth]) * self.distance_m - 2.0 * EXACTNESS_M
         return None, 0.0
 
     def _room(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
@@ -134,10 +133,6 @@ class _Sweep:
             return None
         return np.asarray(result.contacts[0].pos)
 
-    def _patience(self) -> bool:
-        """Whether so many answers in turn told of no other pose that a distance is worth while."""
-        return self.idle >= self.patience
-
     def _distance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
         """What ``_touch`` or ``_room`` would say with shells at every distance."""
         result = fcl.DistanceResult()
@@ -149,22 +144,39 @@ class _Sweep:
         return point, self.distance_m - max(apart, 0.0) - EXACTNESS_M
 
     def _carry(
-        self, index: int, end: int, point: Float[np.ndarray, "3"] | None, slack_m: float
-    ) -> bool:
-        """Tell the poses up to an end what the answer at one of them means for them.
+        self, index: int, point: Float[np.ndarray, "3"] | None, slack_m: float
+    ) -> tuple[int, int]:
+        """Tell later poses what the answer at one of them means for them, as far as it reaches.
 
         Returns:
-            Whether that told of any.
+            How many it told of, and the first pose that is still unknown.
         """
-        some = slice(index + 1, end)
-        if point is None:
-            moved = np.linalg.norm(self.centres[some] - self.centres[index], axis=1)
-            moved += self.arm * np.linalg.norm(self.flat[some] - self.flat[index], axis=1)
-            answer = _APART
-        else:
-            own = self.turns[index].T @ (point - self.places[index])
-            moved = np.linalg.norm(self.turns[some] @ own + (self.places[some] - point), axis=1)
-            answer = _TOUCHES
-        told = moved < slack_m
-        self.known[some][told] = answer
-        return bool(told.any())
+        begin, length, told = index + 1, SHORTEST, 0
+        own = None if point is None else self.turns[index].T @ (point - self.places[index])
+        while begin < len(self.known):
+            part = slice(begin, begin + length)
+            unknown = self.known[part] == _UNKNOWN
+            if slack_m > 0.0:
+                hit = self._moved(part, index, own, point) < slack_m
+                self.known[part][hit] = _APART if point is None else _TOUCHES
+                told += int(np.count_nonzero(hit))
+                unknown &= ~hit
+            first = int(unknown.argmax())
+            if unknown[first]:
+                return told, begin + first
+            begin, length = begin + length, min(2 * length, LONGEST)
+        return told, len(self.known)
+
+    def _moved(
+        self,
+        part: slice,
+        index: int,
+        own: Float[np.ndarray, "3"] | None,
+        point: Float[np.ndarray, "3"] | None,
+    ) -> Float[np.ndarray, "part"]:
+        """How far a point of the second, or else any point, has moved since a pose [m]."""
+        if own is None or point is None:
+            away = np.linalg.norm(self.centres[part] - self.centres[index], axis=1)
+            turned = np.linalg.norm(self.flat[part] - self.flat[index], axis=1)
+            return np.asarray(away + self.arm * turned)
+        return np.linalg.norm(self.turns[part] @ own + (self.places[part] - point), axis=1)

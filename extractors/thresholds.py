@@ -70,3 +70,33 @@ class Thresholds:
 
     axis_share: float = 0.1
     """An axis moves if its way is at least this share of the largest axis's way [1]."""
+
+    reversal_m: float = 0.05
+    """Way up and way down that make a reversal of height [m]: the half of a hand's width."""
+
+    swing_m: float = 0.010
+    """Least way between turning points of motion to and fro [m]: the floor of motion."""
+
+    swing_s: float = 0.5
+    """Longest time between them [s]: people stir, shake and wipe at one turn a second or more."""
+
+    swing_turns: int = 4
+    """Fewest turning points of motion to and fro [1]: two whole periods less one half."""
+
+    lean_rad: float = 0.5236
+    """Angle from the vertical beyond which an object leans [rad]: thirty degrees."""
+
+    fall_share: float = 0.3
+    """A body falls freely while its acceleration is within this share of gravity's [1]."""
+
+    fall_minimum_s: float = 0.06
+    """A shorter fall is none [s]: it falls less than two centimetres meanwhile."""
+
+    near_m: float = 0.15
+    """Bodies whose boxes are nearer than this are beside each other [m]: a hand's length."""
+
+    inside_share: float = 0.5
+    """Share of a body that lies in another's hull, from which on it is inside [1]."""
+
+    along_rad: float = 0.5236
+    """Largest angle between motion along a body and its longest axis [rad]: thirty degrees."""

@@ -145,7 +145,11 @@ class Actionary:
         return recognition.recognise(self.store, value)
 
     def find_pars(
-        self, *, action: str | None = None, objects: Iterable[str] = (), performer: str | None = None
+        self,
+        *,
+        action: str | None = None,
+        objects: Iterable[str] = (),
+        performer: str | None = None,
     ) -> tuple[Stored, ...]:
         """Observations of complex actions that fit.
 
@@ -215,7 +219,12 @@ class Actionary:
         return kinds.above(self.store, kind)
 
     def locations(
-        self, kind: str, *, action: str | None = None, purpose: str | None = None, side: str | None = None
+        self,
+        kind: str,
+        *,
+        action: str | None = None,
+        purpose: str | None = None,
+        side: str | None = None,
     ) -> tuple[FoundLocation, ...]:
         """Constraint locations for a kind of object, best first.
 
@@ -249,15 +258,29 @@ class Actionary:
         found = self.styles(agent=agent, action=action, purpose=purpose, ee=ee)
         return found[0].style if found else None
 
-    def add_ability(self, of: str, action: str, *, conditions: Iterable[Condition] = ()) -> None:
-        """State that an agent is able to do an action, or that a kind of object lends itself to it."""
-        abilities.declare(self.store, of, action, tuple(conditions))
+    def add_ability(
+        self, action: str, *, agent: str = "", kind: str = "", conditions: Iterable[Condition] = ()
+    ) -> None:
+        """State that an agent is able to do an action, or that a kind lends itself to it.
+
+        Args:
+            action: Name of the action.
+            agent: Name of the agent; or
+            kind: Name of the kind of agents or objects.
+            conditions: What else must hold.
+
+        Raises:
+            StoreError: Neither of them is named, or both are.
+        """
+        abilities.declare(self.store, action, tuple(conditions), agent=agent, kind=kind)
 
     def abilities(self, of: str) -> tuple[Ability, ...]:
         """What an agent, or a kind of agent or object, was declared or observed to do."""
         return abilities.of(self.store, of)
 
-    def unmet(self, action: str, *, agent: str, objects: Iterable[str] = ()) -> tuple[Condition, ...]:
+    def unmet(
+        self, action: str, *, agent: str, objects: Iterable[str] = ()
+    ) -> tuple[Condition, ...]:
         """Conditions of an action's applicability that nothing known speaks for (thesis 4.6.1.4).
 
         Args:
@@ -301,4 +324,3 @@ class Actionary:
 
 def _in(triple: Triple, graph: NamedNode) -> Quad:
     return Quad(triple.subject, triple.predicate, triple.object, graph)
-

@@ -122,6 +122,8 @@ class CAPAR(metaclass=Closed):
     instanceOf: NamedNode
     specialises: NamedNode
     parameters: NamedNode
+    agentParameter: NamedNode
+    general: NamedNode
     arity: NamedNode
     applicability: NamedNode
     preparation: NamedNode
@@ -154,6 +156,8 @@ class CAPAR(metaclass=Closed):
     enacts: NamedNode
     step: NamedNode
     realises: NamedNode
+    effectors: NamedNode
+    segmentNumbers: NamedNode
     share: NamedNode
     begin: NamedNode
     standsFor: NamedNode

@@ -30,21 +30,22 @@ PREFIXES = MappingProxyType(
 )
 """Namespaces by prefix, known to every query and written in every export."""
 
-ALLEN = MappingProxyType(
-    {
-        "before": "intervalBefore",
-        "after": "intervalAfter",
-        "meets": "intervalMeets",
-        "met_by": "intervalMetBy",
-        "overlaps": "intervalOverlaps",
-        "overlapped_by": "intervalOverlappedBy",
-        "starts": "intervalStarts",
-        "started_by": "intervalStartedBy",
-        "during": "intervalDuring",
-        "contains": "intervalContains",
-        "finishes": "intervalFinishes",
-        "finished_by": "intervalFinishedBy",
-        "equals": "intervalEquals",
-    }
+RELATIONS = (
+    "before",
+    "after",
+    "meets",
+    "metBy",
+    "overlaps",
+    "overlappedBy",
+    "starts",
+    "startedBy",
+    "during",
+    "contains",
+    "finishes",
+    "finishedBy",
+    "equals",
 )
+"""Allen's relations in OWL-Time's words."""
+
+ALLEN = MappingProxyType({each: f"{TIME}interval{each[0].upper()}{each[1:]}" for each in RELATIONS})
 """Allen's relations as OWL-Time's properties."""

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer()
 
-COLUMNS = ("link", "accuracy", "F1", "F1@10", "@25", "@50", "edit", "onset [ms]", "offset [ms]")
+COLUMNS = ("link", "accuracy", "F1", "F1@10", "@25", "@50", "edit", "onset", "offset")
 SHOWN = 12
 """Confusions that are printed for people; JSON has all."""
 
@@ -78,13 +78,15 @@ def _scores(result: dict[str, Any]) -> "Table":
     captures = len(result["captures"])
     table = Table(
         title=f"{captures} capture{'s' * (captures != 1)}",
-        caption="onset, offset: median and 95th percentile of the size of the error",
+        caption="onset, offset: median / 95th percentile of the size of the error [ms]",
         title_justify="left",
         caption_justify="left",
         box=SIMPLE_HEAD,
+        collapse_padding=True,
+        pad_edge=False,
     )
     for index, column in enumerate(COLUMNS):
-        table.add_column(column, justify="right" if index else "left")
+        table.add_column(column, justify="right" if index else "left", no_wrap=True)
     for name, each in [*result["links"].items(), ("all", result["all"])]:
         keys = ("accuracy", "macro_f1", "f1@10", "f1@25", "f1@50", "edit")
         errors = (each["onset_ms"], each["offset_ms"])

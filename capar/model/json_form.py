@@ -1,7 +1,7 @@
 """The JSON form of observations and PARs, and the schemas that describe it."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from importlib import resources
@@ -11,7 +11,7 @@ from typing import Any, TypeAlias, TypeVar
 from capar.model.errors import CaparError, ParError
 from capar.model.facts import Fact, read_fact
 from capar.model.observation import Observation
-from capar.model.par import ComplexPar, Ipar, Upar
+from capar.model.par import ComplexPar, FeatureSet, Ipar, Upar
 
 Value: TypeAlias = Observation | ComplexPar | Upar | Ipar
 """What has a JSON form."""
@@ -78,7 +78,7 @@ def value_from_json(text: str, kind: type[_T], *, where: str = "") -> _T:
     except ValidationError as error:
         raise ParError(_complaint(error.errors(), where)) from None
     except CaparError as error:
-        raise ParError(f"{_place(where)}{error}") from None
+        raise ParError(f"{_place(where)}{_features_place(content)}{error}") from None
     return replace(value, facts=facts) if isinstance(value, Observation) else value
 
 
@@ -165,6 +165,25 @@ def _complaint(errors: list[Any], where: str) -> str:
         return f"{_place(where)}{place}: no such field{more}"
     message = first["msg"].removeprefix("Input should be ")
     return f"{_place(where)}{place}: expected {message}, found {_shown(first['input'])}{more}"
+
+
+def _features_place(value: Any, place: str = "") -> str:
+    """Where in a document the first feature set stands that contradicts itself."""
+    names = {each.name for each in fields(FeatureSet)}
+    if isinstance(value, dict) and names == set(value) and _all_text(value):
+        try:
+            FeatureSet(**value)
+        except CaparError:
+            return f"{place}: "
+    items: Iterable[tuple[Any, Any]] = ()
+    if isinstance(value, dict | list):
+        items = value.items() if isinstance(value, dict) else enumerate(value)
+    found = (_features_place(each, f"{place}.{key}" if place else str(key)) for key, each in items)
+    return next(filter(None, found), "")
+
+
+def _all_text(value: dict[str, Any]) -> bool:
+    return all(isinstance(each, str) for each in value.values())
 
 
 def _place(where: str) -> str:

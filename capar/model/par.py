@@ -89,6 +89,16 @@ class Nlt:
     orientation: tuple[float, float, float, float]
     """Unit quaternion w x y z that takes the constraint's axes to the object's."""
 
+    def mirrored(self) -> "Nlt":
+        """The same place for the other side of the body (thesis 4.4.2.2).
+
+        Mirrored in the plane through the object's origin that parts its left (+y) from its right;
+        the constraint's own axes are those of the other side's end-effector, mirrored alike.
+        """
+        x, y, z = self.position
+        w, i, j, k = self.orientation
+        return Nlt((x, 0.0 - y, z), (w, 0.0 - i, j, 0.0 - k))
+
 
 @dataclass(frozen=True, slots=True)
 class ConstraintLocation:

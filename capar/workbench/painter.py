@@ -41,6 +41,8 @@ HEIGHTS_IN = {
 }
 LABEL_ROW_IN = 0.17
 LINK_GAP_IN = 0.2
+FOOT_IN = 0.06
+"""Room between the last row and the time axis [inches]."""
 POINTS = {Kind.SEGMENTS: 9.0, Kind.NAMES: 8.0}
 ROWS_ABOVE = {Kind.SEGMENTS: 2, Kind.NAMES: 0}
 THINNEST_IN = 0.02
@@ -64,7 +66,7 @@ class Painter:
         self._seen = _names(rows, Kind.NAMES)
         self._placed = {index: self._place(row) for index, row in enumerate(rows)}
         self._tops = self._stack()
-        self.height = self._tops[-1]
+        self.height = self._tops[-1] + FOOT_IN
         self.legend = self._legend()
         self._fastest = max((_peak(each) for each in rows), default=0.0)
 
@@ -131,7 +133,7 @@ class Painter:
             above = max((each.row for each in self._placed[index]), default=0)
             gap = LINK_GAP_IN if row.kind is Kind.SEGMENTS and index else 0.0
             tops.append(tops[-1] + gap + HEIGHTS_IN[row.kind] + LABEL_ROW_IN * max(above, 0))
-        return [*tops[:-1], tops[-1] + 0.08]
+        return tops
 
     def _frame(self, axes: "Axes") -> None:
         for side in ("top", "left", "right"):

@@ -110,7 +110,7 @@ def _link_rows(
         for each in observation.facts
         if isinstance(each, ZeroCrossing) and each.ee == link.ee
     )
-    out = [Row(Kind.SEGMENTS, spoken(link.ee), spans, borders=borders)]
+    out = [Row(Kind.SEGMENTS, marked(observation, link.ee), spans, borders=borders)]
     ticks = tuple(clock(each) for each in crossings)
     if ticks:
         out.append(Row(Kind.TICKS, "zero crossings", ticks=ticks, borders=borders))
@@ -126,11 +126,15 @@ def _link_rows(
 
 def _object_rows(observation: Observation, clock: Callable[[int], float]) -> list[Row]:
     acting = {each.ee for each in observation.links}
-    pairs = [each for each in _touching(observation) if each.body not in acting]
+    between = [each for each in _touching(observation) if each.body not in acting]
+    pairs: dict[frozenset[str], list[Touching]] = {}
+    for each in between:
+        pairs.setdefault(frozenset((each.body, each.other)), []).append(each)
     out = []
-    for pair in _in_order((each.body, each.other) for each in pairs):
-        label = " touches ".join(marked(observation, each) for each in pair)
-        bars = tuple(_span(each, clock) for each in pairs if (each.body, each.other) == pair)
+    for found in pairs.values():
+        names = (found[0].body, found[0].other)
+        label = " touches ".join(marked(observation, each) for each in names)
+        bars = tuple(dict.fromkeys(_span(each, clock) for each in found))
         out.append(Row(Kind.BARS, label, bars))
     moves = sorted(each for each in observation.facts if isinstance(each, Moving))
     for name in _in_order(each.object for each in moves):

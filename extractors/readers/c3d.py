@@ -29,7 +29,7 @@ def read(path: Path, options: Any) -> Recording:
     Raises:
         FileError: Counts and sizes in the file contradict each other, or it is cut short.
     """
-    import ezc3d  # noqa: PLC0415 (slow to import)
+    import ezc3d
 
     check_layout(path, path.read_bytes())
     file = ezc3d.c3d(str(path))

@@ -53,7 +53,9 @@ def _walk(
         if number < 0:
             groups[name] = -number
         else:
-            entries.append(_entry(path, section, name_end + 2, number, name, order, vax=vax))
+            entries.append(
+                _entry(path, section, name_end + 2, group=number, name=name, order=order, vax=vax)
+            )
         if step <= 0:
             break
         at = name_end + step
@@ -67,7 +69,7 @@ def _inside(path: Path, section: bytes, at: int) -> None:
 
 
 def _entry(
-    path: Path, section: bytes, at: int, group: int, name: str, order: str, *, vax: bool
+    path: Path, section: bytes, at: int, *, group: int, name: str, order: str, vax: bool
 ) -> _Entry:
     _inside(path, section, at + 2)
     kind, ranks = struct.unpack_from("bB", section, at)

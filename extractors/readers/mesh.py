@@ -52,7 +52,7 @@ def read_mesh(path: Path) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarr
 def _load(
     path: Path, suffix: str
 ) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "faces 3"]]:
-    import trimesh  # noqa: PLC0415 (slow to import)
+    import trimesh
 
     # from memory, so that nothing the file refers to is opened
     mesh: Any = trimesh.load(

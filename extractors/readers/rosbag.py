@@ -69,8 +69,8 @@ def _stream(name: str, samples: dict[int, tuple[float, ...]], start: int) -> Str
 
 
 def _samples(path: Path) -> Iterator[Sample]:
-    from rosbags.highlevel import AnyReader  # noqa: PLC0415 (slow to import)
-    from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
 
     place = path if path.is_dir() or path.suffix == ".bag" else _folder(path)
     store = get_typestore(Stores.ROS2_HUMBLE)

@@ -130,7 +130,7 @@ def _sizes(table: Table, key: str, values: list[float]) -> list[float]:
 
 
 def _box(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    import trimesh  # noqa: PLC0415
+    import trimesh
 
     if table.raw("box") == "markers":
         return _box_around(table, frame)
@@ -140,7 +140,7 @@ def _box(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
 
 
 def _box_around(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    import trimesh  # noqa: PLC0415
+    import trimesh
 
     names = table.texts("around") or list(frame.markers)
     if len(names) < 2:
@@ -154,7 +154,7 @@ def _box_around(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str
 
 
 def _cylinder(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    import trimesh  # noqa: PLC0415
+    import trimesh
 
     radius, height = _sizes(table, "cylinder", table.vector("cylinder", 2))
     mesh = trimesh.creation.cylinder(radius=radius, height=height, sections=32)
@@ -227,7 +227,7 @@ def _capsule_between(
     first: Float[np.ndarray, "3"], second: Float[np.ndarray, "3"], radius: float
 ) -> Mesh:
     """A sphere at the first point, stretched to the second."""
-    import trimesh  # noqa: PLC0415
+    import trimesh
 
     ball = trimesh.creation.icosphere(subdivisions=2, radius=radius)
     way = second - first

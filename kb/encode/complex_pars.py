@@ -2,7 +2,7 @@
 
 from pyoxigraph import NamedNode
 
-from capar.model.errors import ParError
+from capar.model.errors import ParError, UnknownNameError
 from capar.model.observation import Observation
 from capar.model.par import UNKNOWN, ComplexPar, LinkSteps, Step
 from kb import names
@@ -10,7 +10,7 @@ from kb.encode.scene import GENERATED
 from kb.encode.segments import action, segment_node
 from kb.statements import LABEL, Said, Statements
 from ontology import CAPAR
-from ontology.vocabularies import ALLEN, TIME
+from ontology.vocabularies import ALLEN
 
 COMMON = "all"
 """The end-effector of the step that ends every link."""
@@ -46,7 +46,7 @@ def complex_par(out: Statements, observation: Observation, name: str) -> NamedNo
             }
             steps.append(say(names.part(node, "step", link.ee, index), (CAPAR.ComplexStep,), said))
     say(node, (CAPAR.ComplexPar,), {CAPAR.arity: len(value.objects), CAPAR.complexStep: steps})
-    _enact(out, value, node, name)
+    _enact(out, observation, node, name)
     return node
 
 
@@ -56,8 +56,10 @@ def _with_common(value: ComplexPar) -> tuple[LinkSteps, ...]:
     return (*value.links, *common)
 
 
-def _enact(out: Statements, value: ComplexPar, node: NamedNode, name: str) -> None:
+def _enact(out: Statements, observation: Observation, node: NamedNode, name: str) -> None:
+    value = observation.complex_par
     links = _with_common(value)
+    ees = [each.ee for each in observation.links]
     known = {(link.ee, index) for link in links for index, _ in enumerate(link.steps)}
     for relation in value.relations:
         for each in (relation.first, relation.second):
@@ -71,19 +73,26 @@ def _enact(out: Statements, value: ComplexPar, node: NamedNode, name: str) -> No
             }
             for relation in value.relations:
                 if relation.first == (link.ee, index):
-                    allen = NamedNode(TIME + ALLEN[relation.relation])
+                    allen = _property(relation.relation)
                     said.setdefault(allen, []).append(_step(out, *relation.second))
-            _say_step(out, node, link, index, step, relations=said)
+            _say_step(out, node, link, index, step, relations=said, ees=ees)
     out.say(
         out.about,
         (),
         {
             CAPAR.enacts: node,
             CAPAR.name: name,
+            CAPAR.effectors: " ".join(each.ee for each in value.links),
             CAPAR.objects: " ".join(value.objects),
             CAPAR.duration: float(value.duration_s),
         },
     )
+
+
+def _property(relation: str) -> NamedNode:
+    if relation not in ALLEN:
+        raise UnknownNameError("relation of Allen's", relation, ALLEN)
+    return NamedNode(ALLEN[relation])
 
 
 def _step(out: Statements, ee: str, index: int) -> NamedNode:
@@ -91,7 +100,14 @@ def _step(out: Statements, ee: str, index: int) -> NamedNode:
 
 
 def _say_step(
-    out: Statements, node: NamedNode, link: LinkSteps, index: int, step: Step, *, relations: Said
+    out: Statements,
+    node: NamedNode,
+    link: LinkSteps,
+    index: int,
+    step: Step,
+    *,
+    relations: Said,
+    ees: list[str],
 ) -> None:
     said: Said = {
         LABEL: f"{link.ee} {index}: {step.action}",
@@ -105,7 +121,8 @@ def _say_step(
         CAPAR.begin: float(step.begin),
         CAPAR.purpose: step.purpose,
         CAPAR.posture: step.posture,
-        CAPAR.standsFor: _segments(out, link, step),
+        CAPAR.segmentNumbers: " ".join(map(str, step.segments)),
+        CAPAR.standsFor: _segments(out, link, step, ees),
         GENERATED: out.about,
         **relations,
     }
@@ -113,8 +130,10 @@ def _say_step(
     out.say(out.about, (), {CAPAR.step: node_of_step})
 
 
-def _segments(out: Statements, link: LinkSteps, step: Step) -> list[NamedNode]:
-    """The segments that a step stands for; a common step's are each link's last."""
+def _segments(out: Statements, link: LinkSteps, step: Step, ees: list[str]) -> list[NamedNode]:
+    """The segments that a step stands for; a common step has one of each link."""
     if link.ee != COMMON:
         return [segment_node(out.about, link.ee, each) for each in step.segments]
-    return []
+    if len(ees) != len(step.segments):
+        return []
+    return [segment_node(out.about, ee, each) for ee, each in zip(ees, step.segments, strict=True)]

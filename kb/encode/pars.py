@@ -65,6 +65,8 @@ def upar(out: Statements, value: Upar) -> NamedNode:
         CAPAR.ofAction: action(out, value.name),
         CAPAR.parameters: " ".join(value.objects),
         CAPAR.arity: len(value.objects),
+        CAPAR.agentParameter: value.agent,
+        CAPAR.general: " ".join(value.general),
         CAPAR.specialises: actions(out, value.general),
         CAPAR.applicability: conditions(out, value.applicability),
         CAPAR.preparation: _preparation(out, out.share, node, value.preparation),
@@ -82,11 +84,12 @@ def ipars(
     out: Statements, observation: Observation, agent: NamedNode, objects: dict[str, NamedNode]
 ) -> list[NamedNode]:
     """One instantiated action for each segment, links in order."""
-    known = {(each.name, len(each.objects)): upar_node(each) for each in observation.upars}
-    named = {each.name: upar_node(each) for each in reversed(observation.upars)}
+    known = {
+        (each.name, each.core.constraint.features): upar_node(each) for each in observation.upars
+    }
     out_nodes = []
     for value, segment in zip(observation.ipars, observation.segments, strict=True):
-        of = known.get((value.upar, len(value.objects))) or named.get(value.upar)
+        of = known.get((value.upar, value.core.constraint.features))
         out_nodes.append(_ipar(out, value, segment, of, agent=agent, objects=objects))
     return out_nodes
 

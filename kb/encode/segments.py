@@ -80,6 +80,7 @@ def _segment(
         CAPAR.end: float(seen.end_s),
         CAPAR.duration: float(seen.end_s - seen.start_s),
         CAPAR.action: action(out, seen.name),
+        CAPAR.general: " ".join(seen.general),
         CAPAR.specialises: actions(out, seen.general),
         CAPAR.candidate: actions(out, seen.candidates),
         CAPAR.failedAt: seen.level,

@@ -123,12 +123,17 @@ def read_classes(store: Store, nodes: Sequence[str]) -> tuple[VerbClass, ...]:
     frames = _ask(
         store,
         f"{chosen} ?class {CAPAR.verbFrame} ?f . ?f {CAPAR.index} ?frame ; {CAPAR.pattern} ?pattern"
-        f" ; {CAPAR.example} ?example ; {CAPAR.syntax} ?syntax . "
-        f"OPTIONAL {{ ?f {CAPAR.semanticPredicate} ?p . ?p {CAPAR.predicateName} ?name ; "
-        f"{CAPAR.index} ?place ; {CAPAR.holds} ?holds ; {CAPAR.arguments} ?arguments }}",
-        "?id ?frame ?pattern ?example ?syntax ?name ?place ?holds ?arguments",
+        f" ; {CAPAR.example} ?example ; {CAPAR.syntax} ?syntax",
+        "?id ?frame ?pattern ?example ?syntax",
     )
-    found = classes_from(heads, members, roles, frames)
+    predicates = _ask(
+        store,
+        f"{chosen} ?class {CAPAR.verbFrame} ?f . ?f {CAPAR.index} ?frame ; "
+        f"{CAPAR.semanticPredicate} ?p . ?p {CAPAR.predicateName} ?name ; {CAPAR.index} ?place ; "
+        f"{CAPAR.holds} ?holds ; {CAPAR.arguments} ?arguments",
+        "?id ?frame ?name ?place ?holds ?arguments",
+    )
+    found = classes_from(heads, members, roles, frames, predicates)
     return tuple(sorted(found, key=lambda each: each.id))
 
 

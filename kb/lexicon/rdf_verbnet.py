@@ -81,22 +81,35 @@ Row = Mapping[str, object]
 
 
 def classes_from(
-    heads: Iterable[Row], members: Iterable[Row], roles: Iterable[Row], frames: Iterable[Row]
+    heads: Iterable[Row],
+    members: Iterable[Row],
+    roles: Iterable[Row],
+    frames: Iterable[Row],
+    predicates: Iterable[Row],
 ) -> tuple[VerbClass, ...]:
     """The classes that rows of the store state, each without its subclasses."""
-    found_members = _grouped(members)
-    found_roles = _grouped(roles)
-    found_frames = _grouped(frames)
+    tables = [_grouped(rows) for rows in (members, roles, frames, predicates)]
     return tuple(
-        VerbClass(
-            str(row["id"]),
-            str(row["parent"] or ""),
-            _members(found_members.get(str(row["id"]), [])),
-            _roles(found_roles.get(str(row["id"]), [])),
-            _frames(found_frames.get(str(row["id"]), [])),
-            (),
-        )
-        for row in heads
+        _class_of(row, *(table.get(str(row["id"]), []) for table in tables)) for row in heads
+    )
+
+
+def _class_of(
+    head: Row,
+    members: Sequence[Row],
+    roles: Sequence[Row],
+    frames: Sequence[Row],
+    predicates: Sequence[Row],
+) -> VerbClass:
+    meanings = _grouped(predicates, "frame")
+    ordered = sorted(frames, key=lambda row: int(str(row["frame"])))
+    return VerbClass(
+        str(head["id"]),
+        str(head["parent"] or ""),
+        _members(members),
+        _roles(roles),
+        tuple(_frame_of(row, meanings.get(str(row["frame"]), [])) for row in ordered),
+        (),
     )
 
 
@@ -127,25 +140,19 @@ def _roles(rows: Sequence[Row]) -> tuple[Role, ...]:
     )
 
 
-def _frames(rows: Sequence[Row]) -> tuple[Frame, ...]:
-    return tuple(
-        _frame_of(parts)
-        for _, parts in sorted(_grouped(rows, "frame").items(), key=lambda item: int(item[0]))
-    )
-
-
-def _frame_of(rows: Sequence[Row]) -> Frame:
-    ordered = sorted((row for row in rows if row["name"]), key=lambda row: int(str(row["place"])))
-    first = rows[0]
+def _frame_of(row: Row, predicates: Sequence[Row]) -> Frame:
+    ordered = sorted(predicates, key=lambda each: int(str(each["place"])))
     return Frame(
-        str(first["pattern"]),
-        str(first["example"]),
-        tuple(_phrase(each) for each in str(first["syntax"]).split("; ") if each),
+        str(row["pattern"]),
+        str(row["example"]),
+        tuple(_phrase(each) for each in str(row["syntax"]).split("; ") if each),
         tuple(
             Predicate(
-                str(row["name"]), tuple(str(row["arguments"]).split("|")), holds=bool(row["holds"])
+                str(each["name"]),
+                tuple(str(each["arguments"]).split("|")),
+                holds=bool(each["holds"]),
             )
-            for row in ordered
+            for each in ordered
         ),
     )
 

@@ -1,20 +1,30 @@
 """DrinkFromMug (thesis 5.2.1): reach, bring to the mouth, drink, put down, let go, return."""
 
+from typing import Unpack
+
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.model.capture import TagType
+from capar.model.capture import Purpose, TagType
 from motions import figure, shapes
 from motions.paths import Move, Moves, Path, Riding, Still, aimed, pose
 from motions.performers import Performer
-from motions.trials import Body, Meeting, Sampling, Script, Trial, Truth, record
+from motions.trials import Body, Meeting, Options, Sampling, Script, Trial, Truth, record
 
 STEPS = ("Reach", "MoveObjTo", "MoveObj", "MoveObjTo", "TouchWith", "ResumePosture")
 PUBLISHED_SHARES = (0.445274, 0.171642, 0.0472637, 0.121891, 0.0472637, 0.179104)
 
+PURPOSES = (
+    Purpose("PickUp", action="Reach"),
+    Purpose("Drink", goal="head"),
+    Purpose("PutDown", action="MoveObjTo", goal="table"),
+    Purpose("Release"),
+)
+"""What each step is done for (thesis 4.6.2)."""
+
 REACH_S = 1.2
-LAST_S = 0.065
-LET_GO_MPS2 = 7.0
+LAST_S = 0.062
+LET_GO_MPS2 = 9.0
 SIP_DEPTH = 0.001
 
 STANDING = Rotation.from_rotvec([0.0, 0.0, np.radians(-15.0)])
@@ -27,17 +37,10 @@ RIM = tuple(DRUNK.inv().apply((-shapes.MUG_RADIUS + 0.002, 0.0, shapes.MUG_HEIGH
 """The place of the rim that lies at the mouth, in the mug's frame [m]."""
 
 LEANT = np.radians(-8.0)
-EMPTIED = np.radians(-43.0)
+EMPTIED = np.radians(-50.0)
 
 
-def drink_from_mug(
-    performer: Performer,
-    *,
-    rate_hz: float = 103.3,
-    noise_m: float = 0.0,
-    noise_rad: float = 0.0,
-    seed: int = 0,
-) -> Trial:
+def drink_from_mug(performer: Performer, **options: Unpack[Options]) -> Trial:
     """One who stands at a table drinks from the mug on it; 3.9 s by the tall man."""
     grasp, mouth, sipped, down, release, done = _instants(performer)
     end = done + LAST_S
@@ -97,15 +100,15 @@ def drink_from_mug(
             Body("mug", mug, shapes.mug(), TagType.MOBILE, mass_kg=0.35),
             Body("table", Still(pose(table)), shapes.table(0.8, 1.6), TagType.FIXED, noisy=False),
         ),
+        purposes=PURPOSES,
     )
-    return record(script, Sampling(rate_hz, noise_m, noise_rad, seed))
+    return record(script, Sampling(**options))
 
 
 def _instants(performer: Performer) -> tuple[float, ...]:
     """When the mug is taken, at the mouth, emptied, put down and let go, and the hand home."""
     return tuple(
-        float(each)
-        for each in np.cumsum([1.72, 0.67, 0.182, 0.475, 0.182, 0.6]) * performer.pace
+        float(each) for each in np.cumsum([1.708, 0.68, 0.182, 0.468, 0.182, 0.6]) * performer.pace
     )
 
 

@@ -20,7 +20,7 @@ EYE = (shapes.HEAD[0] + 0.002, 0.0, 0.03)
 LOOK_S = 0.45
 """How long the head takes to turn to something [s]."""
 
-GENTLE_MPS2 = 3.0
+GENTLE_MPS2 = 6.0
 """How hard the hand is stopped by what it touches, and lets go of it [m/s^2]."""
 
 FIRM_MPS2 = 8.0
@@ -121,9 +121,7 @@ def ahead(performer: Performer) -> Vector:
 
 def hand_body(performer: Performer, name: str, path: Path) -> Body:
     """The hand as an acting sensor."""
-    return Body(
-        name, path, shapes.hand(performer.size), link=f"{name.removesuffix('_hand')}_arm"
-    )
+    return Body(name, path, shapes.hand(performer.size), link=f"{name.removesuffix('_hand')}_arm")
 
 
 def head_body(path: Path, *, tag: TagType | None = None) -> Body:

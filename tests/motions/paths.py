@@ -34,7 +34,8 @@ def minimum_jerk(
     t = np.clip(tau, 0.0, 1.0)
     rest = 1.0 - t
     plain = t**3 * (10.0 - 15.0 * t + 6.0 * t**2)
-    return plain + 0.5 * launch * t**2 * rest**3 - 0.5 * halt * t**3 * rest**2
+    ends = 0.5 * launch * t**2 * rest**3 - 0.5 * halt * t**3 * rest**2
+    return np.asarray(plain + ends)
 
 
 @dataclass(frozen=True, eq=False)

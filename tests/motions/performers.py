@@ -43,7 +43,7 @@ class Performer:
 
 
 TALL_MAN = Performer(
-    name="tall_man", kind="man", stature_m=1.87, mass_kg=88.0, pace=1.0, rise_m=0.10,
+    name="tall_man", kind="man", stature_m=1.87, mass_kg=88.0, pace=1.0, rise_m=0.15,
     swing_m=0.06, table_m=1.05, aside_m=0.0, sway_m=0.003,
 )  # fmt: skip
 WOMAN = Performer(

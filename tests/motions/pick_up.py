@@ -1,6 +1,7 @@
 """PickUpWithBothHands (thesis 5.2.4): hold a box on the table, lift, lower, let go together."""
 
 from collections.abc import Mapping
+from typing import Unpack
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -9,7 +10,7 @@ from capar.model.capture import TagType
 from motions import figure, shapes
 from motions.paths import Move, Moves, Path, Riding, Still, aimed, pose
 from motions.performers import Performer
-from motions.trials import Body, Meeting, Sampling, Script, Trial, Truth, record
+from motions.trials import Body, Meeting, Options, Sampling, Script, Trial, Truth, record
 
 BOX = (0.30, 0.36, 0.24)
 HANDS = ("right_hand", "left_hand")
@@ -23,30 +24,23 @@ STEPS: Mapping[str, tuple[str, ...]] = {
 """The published second step is MoveObj, by noise of the box; its author calls TouchWith right."""
 
 
-def pick_up_with_both_hands(
-    performer: Performer,
-    *,
-    rate_hz: float = 103.3,
-    noise_m: float = 0.0,
-    noise_rad: float = 0.0,
-    seed: int = 0,
-) -> Trial:
+def pick_up_with_both_hands(performer: Performer, **options: Unpack[Options]) -> Trial:
     """Both hands hold a box on the table, lift and lower it in one go, and let go together."""
     taken, lift, top, down, release, home = _instants(performer)
     standing = pose((0.52, 0.5 * performer.aside_m, performer.table_m))
-    raised = pose(standing.translation + np.array([-0.05, 0.0, 0.2 * performer.stature_m]))
+    raised = pose(standing.translation + np.array([-0.05, 0.0, 0.22 * performer.stature_m]))
     lowered = pose(standing.translation + np.array([0.01, 0.01, 0.0]))
     box = Moves(
         (
-            Move(lift, top, standing, raised, depart=(0.0, 0.0, 0.12), launch_mps2=2.5,
-                 halt_mps2=2.0),
-            Move(top, down, raised, lowered, arrive=(0.0, 0.0, -0.12), launch_mps2=2.0,
-                 halt_mps2=5.0),
-        )  # fmt: skip
+            Move(
+                lift, top, standing, raised, depart=(0.0, 0.0, 0.12), launch_mps2=2.5, halt_mps2=4.0
+            ),
+            Move(
+                top, down, raised, lowered, arrive=(0.0, 0.0, -0.12), launch_mps2=4.0, halt_mps2=5.0
+            ),
+        )
     )
-    hands = {
-        name: _hand(performer, name, box, (taken, lift, release, home)) for name in HANDS
-    }
+    hands = {name: _hand(performer, name, box, (taken, lift, release, home)) for name in HANDS}
     meetings = (
         *(_held(performer, name, path, taken, release) for name, path in hands.items()),
         Meeting("box", "table", box, (0.0, 0.0, 0.0), UP, 0.0, None, lift),
@@ -60,13 +54,13 @@ def pick_up_with_both_hands(
     )
     bodies = _bodies(performer, hands, box, standing, release)
     script = Script("pick_up_with_both_hands", performer, truth, bodies)
-    return record(script, Sampling(rate_hz, noise_m, noise_rad, seed))
+    return record(script, Sampling(**options))
 
 
 def _instants(performer: Performer) -> tuple[float, ...]:
     """When the box is held, lifted, up, down again and let go, and the hands are home."""
     return tuple(
-        float(each) for each in np.cumsum([1.5, 0.4, 0.75, 0.75, 0.3, 1.1]) * performer.pace
+        float(each) for each in np.cumsum([1.5, 0.4, 0.62, 0.62, 0.3, 1.1]) * performer.pace
     )
 
 
@@ -84,18 +78,16 @@ def _hand(
     grip, out = _grip(performer, name), figure.side(name)
     first, last = (box.at(np.array([each]))[0] * grip for each in (lift, release))
     reach = figure.reach(
-        performer, name, goal=first, arrive=(0.06, -0.18 * out, -0.02), start_s=STAND_S,
+        performer, name, goal=first, arrive=(0.06, -0.28 * out, -0.02), start_s=STAND_S,
         end_s=taken,
     )  # fmt: skip
     back = figure.withdraw(
-        performer, name, begin=last, depart=(-0.04, 0.18 * out, 0.02), start_s=release, end_s=home
+        performer, name, begin=last, depart=(-0.04, 0.26 * out, 0.02), start_s=release, end_s=home
     )
     return Riding(Moves((reach, back)), box, grip, lift, release)
 
 
-def _held(
-    performer: Performer, name: str, hand: Path, taken: float, release: float
-) -> Meeting:
+def _held(performer: Performer, name: str, hand: Path, taken: float, release: float) -> Meeting:
     palm = (0.0, 0.0, -figure.thickness(performer))
     normal = (0.0, figure.side(name), 0.0)
     return Meeting(name, "box", hand, palm, normal, figure.GRIP_DEPTH, taken, release)

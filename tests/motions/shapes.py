@@ -27,14 +27,13 @@ MOUTH = (0.0, 0.0, -0.055)
 def mug() -> Shape:
     """A mug with a cavity and a handle that a finger fits through; its origin under its middle."""
     outer = trimesh.creation.cylinder(
-        radius=MUG_RADIUS, sections=48, segment=[[0, 0, 0], [0, 0, MUG_HEIGHT]]
+        radius=MUG_RADIUS, sections=48, segment=np.array([[0, 0, 0], [0, 0, MUG_HEIGHT]])
     )
-    upright = trimesh.transformations.rotation_matrix(np.pi / 2.0, [0, 1, 0])
     handle = trimesh.creation.torus(0.030, 0.006, major_sections=40, minor_sections=12)
-    handle.apply_transform(upright)
+    handle.apply_transform([[0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
     handle.apply_translation([0.0, -MUG_RADIUS, HANDLE_HEIGHT])
     cavity = trimesh.creation.cylinder(
-        radius=MUG_RADIUS - 0.004, sections=48, segment=[[0, 0, 0.006], [0, 0, 0.2]]
+        radius=MUG_RADIUS - 0.004, sections=48, segment=np.array([[0, 0, 0.006], [0, 0, 0.2]])
     )
     return shape(trimesh.boolean.difference([outer.union(handle), cavity]), "mug with handle")
 
@@ -59,7 +58,7 @@ def table(length: float, width: float) -> Shape:
 def drum() -> Shape:
     """A drum whose origin lies in the middle of its skin."""
     mesh = trimesh.creation.cylinder(
-        radius=0.18, sections=48, segment=[[0, 0, -0.25], [0, 0, 0]]
+        radius=0.18, sections=48, segment=np.array([[0, 0, -0.25], [0, 0, 0]])
     )
     return shape(mesh, "drum of radius 0.18 m")
 

@@ -1,5 +1,7 @@
 """TouchFromRest, TouchCycle and SlideObject (thesis 5.2.2, 5.2.3): a box on a table."""
 
+from typing import Unpack
+
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
@@ -7,7 +9,7 @@ from capar.model.capture import TagType
 from motions import figure, shapes
 from motions.paths import Move, Moves, Path, Riding, Still, aimed, pose
 from motions.performers import Performer
-from motions.trials import Body, Meeting, Sampling, Script, Trial, Truth, record
+from motions.trials import Body, Meeting, Options, Sampling, Script, Trial, Truth, record
 
 BOX = (0.22, 0.16, 0.12)
 STAND_S = 0.3
@@ -15,14 +17,7 @@ REACH_S = 1.5
 HAND = "right_hand"
 
 
-def touch_from_rest(
-    performer: Performer,
-    *,
-    rate_hz: float = 103.3,
-    noise_m: float = 0.0,
-    noise_rad: float = 0.0,
-    seed: int = 0,
-) -> Trial:
+def touch_from_rest(performer: Performer, **options: Unpack[Options]) -> Trial:
     """A flat hand is laid on a box and stays there."""
     touched = REACH_S * performer.pace
     end = touched + 1.1 * performer.pace
@@ -30,24 +25,17 @@ def touch_from_rest(
     meeting = _on_box(performer, hand, touched, None)
     truth = Truth(end, (meeting, _resting(performer)), _steps("Reach", "Touch"), {HAND: (touched,)})
     script = Script("touch_from_rest", performer, truth, _bodies(performer, hand, touched, end))
-    return record(script, Sampling(rate_hz, noise_m, noise_rad, seed))
+    return record(script, Sampling(**options))
 
 
-def touch_cycle(
-    performer: Performer,
-    *,
-    rate_hz: float = 103.3,
-    noise_m: float = 0.0,
-    noise_rad: float = 0.0,
-    seed: int = 0,
-) -> Trial:
+def touch_cycle(performer: Performer, **options: Unpack[Options]) -> Trial:
     """A flat hand is laid on a box for a while and goes back."""
     touched = REACH_S * performer.pace
     leaves = touched + 0.6 * performer.pace
     home = leaves + 1.1 * performer.pace
     laid = _lay(performer, touched)
     back = figure.withdraw(
-        performer, HAND, begin=laid.end, depart=(-0.02, 0.0, 0.2), start_s=leaves, end_s=home
+        performer, HAND, begin=laid.end, depart=(-0.04, 0.0, 0.27), start_s=leaves, end_s=home
     )
     hand = Moves((laid, back))
     meeting = _on_box(performer, hand, touched, leaves)
@@ -58,17 +46,10 @@ def touch_cycle(
         {HAND: (touched, leaves)},
     )
     script = Script("touch_cycle", performer, truth, _bodies(performer, hand, touched, leaves))
-    return record(script, Sampling(rate_hz, noise_m, noise_rad, seed))
+    return record(script, Sampling(**options))
 
 
-def slide_object(
-    performer: Performer,
-    *,
-    rate_hz: float = 103.3,
-    noise_m: float = 0.0,
-    noise_rad: float = 0.0,
-    seed: int = 0,
-) -> Trial:
+def slide_object(performer: Performer, **options: Unpack[Options]) -> Trial:
     """A palm is set against a box and at once slides it over the table, to the end."""
     pushed = REACH_S * performer.pace
     end = pushed + 0.7 * performer.pace
@@ -82,15 +63,13 @@ def slide_object(
     )  # fmt: skip
     hand = Riding(Moves((reach,)), box, grip, pushed)
     palm = (0.0, 0.0, -figure.thickness(performer))
-    meeting = Meeting(
-        HAND, "box", hand, palm, (-1.0, 0.0, 0.0), figure.GRIP_DEPTH, pushed, None
-    )
+    meeting = Meeting(HAND, "box", hand, palm, (-1.0, 0.0, 0.0), figure.GRIP_DEPTH, pushed, None)
     truth = Truth(
         end, (meeting, _resting(performer)), _steps("Reach", "MoveObj"), {HAND: (pushed,)}
     )
     bodies = _bodies(performer, hand, pushed, end, box=box)
     script = Script("slide_object", performer, truth, bodies)
-    return record(script, Sampling(rate_hz, noise_m, noise_rad, seed))
+    return record(script, Sampling(**options))
 
 
 def _standing(performer: Performer) -> RigidTransform:
@@ -103,7 +82,7 @@ def _lay(performer: Performer, touched: float) -> Move:
     place = _standing(performer).translation + np.array([-0.04, 0.0, height])
     goal = pose(place, aimed(x=(1.0, 0.0, 0.0), z=(0.0, 0.0, 1.0)))
     return figure.reach(
-        performer, HAND, goal=goal, arrive=(0.06, 0.0, -0.2), start_s=STAND_S, end_s=touched
+        performer, HAND, goal=goal, arrive=(0.06, 0.0, -0.3), start_s=STAND_S, end_s=touched
     )
 
 

@@ -3,13 +3,14 @@
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypedDict
 
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
-from capar.model.capture import Capture, Role, Sensor, Shape, Stream, TagObject, TagType
+from capar.model.capture import Capture, Purpose, Role, Sensor, Shape, Stream, TagObject, TagType
 from motions.paths import Path, Vector
 from motions.performers import Performer
 
@@ -109,6 +110,15 @@ class Body:
     mass_kg: float | None = None
 
 
+class Options(TypedDict, total=False):
+    """The fields of ``Sampling``, as keywords of every trial."""
+
+    rate_hz: float
+    noise_m: float
+    noise_rad: float
+    seed: int
+
+
 @dataclass(frozen=True, slots=True)
 class Sampling:
     """How a trial is recorded: the tracker's rate and noise."""
@@ -132,6 +142,7 @@ class Script:
     truth: Truth
     bodies: tuple[Body, ...]
     force_transfer: bool = False
+    purposes: tuple[Purpose, ...] = ()
 
 
 def record(script: Script, sampling: Sampling) -> Trial:
@@ -144,6 +155,7 @@ def record(script: Script, sampling: Sampling) -> Trial:
         sensors=tuple(_sensor(each, streams[each.name]) for each in script.bodies if each.link),
         objects=tuple(_tagged(each, streams[each.name]) for each in script.bodies if each.tag),
         agent=script.performer.agent,
+        purposes=script.purposes,
         force_transfer=script.force_transfer,
     )
     return Trial(capture, script.truth)
@@ -165,9 +177,7 @@ def _sensor(body: Body, stream: Stream) -> Sensor:
 
 def _tagged(body: Body, stream: Stream) -> TagObject:
     assert body.tag is not None
-    return TagObject(
-        body.name, body.tag, stream, body.shape, kind=body.name, mass_kg=body.mass_kg
-    )
+    return TagObject(body.name, body.tag, stream, body.shape, kind=body.name, mass_kg=body.mass_kg)
 
 
 def _stream(body: Body, times: Float[np.ndarray, "frames"], sampling: Sampling) -> Stream:

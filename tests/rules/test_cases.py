@@ -48,7 +48,9 @@ def test_every_rule_file_has_a_case(concept: str) -> None:
 
 
 def test_every_expectation_has_its_case() -> None:
-    assert [each for each in HERE.glob("*/*.expected") if not each.with_suffix(".lp").exists()] == []
+    assert [
+        each for each in HERE.glob("*/*.expected") if not each.with_suffix(".lp").exists()
+    ] == []
 
 
 def _answer(case: Path) -> set[str]:

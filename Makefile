@@ -1,0 +1,52 @@
+# Two commands do everything: `make demo` shows the system at work, `make test` proves it.
+# Each makes its own virtual environment; all that is needed before is Python 3.11+ with pip.
+
+PYTHON ?= python3
+VENV := .venv
+TESTED := .make/venv
+CORES ?= 2
+SOURCES := $(shell find capar extractors capar_rules kb ontology -type f -not -name '*.pyc' 2>/dev/null)
+
+.PHONY: demo test check bench develop clean
+
+demo: $(VENV)/ready  ## Observe the shipped capture: six steps of drinking from a mug, and a picture.
+	$(VENV)/bin/capar demo
+
+test: $(TESTED)/ready  ## Build the wheel, install it, and test it from another folder.
+	mkdir -p .make/elsewhere
+	cd .make/elsewhere && ../venv/bin/python -m pytest -c $(CURDIR)/pyproject.toml --rootdir $(CURDIR) \
+		-n $(CORES) --dist worksteal $(CURDIR)/tests $(ARGS)
+
+check: $(VENV)/developing  ## Style, types and the import contract, as the tests check them too.
+	$(VENV)/bin/ruff format --check .
+	$(VENV)/bin/ruff check .
+	$(VENV)/bin/mypy
+	$(VENV)/bin/lint-imports
+
+bench: $(VENV)/developing  ## Ratios side by side; takes minutes.
+	for each in benchmarks/*.py; do $(VENV)/bin/python $$each || exit 1; done
+
+develop: $(VENV)/developing  ## An editable install with everything for development.
+
+$(VENV)/ready: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -e .
+	touch $@
+
+$(VENV)/developing: $(VENV)/ready
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+	touch $@
+
+$(TESTED)/ready: pyproject.toml README.md $(SOURCES)
+	$(PYTHON) -m venv $(TESTED)
+	rm -rf .make/dist
+	$(TESTED)/bin/python -m pip install --quiet --disable-pip-version-check build
+	$(TESTED)/bin/python -m build --wheel --outdir .make/dist . >.make/build.log 2>&1 || (cat .make/build.log; exit 1)
+	$(TESTED)/bin/python -m pip install --quiet --disable-pip-version-check \
+		"$$(ls .make/dist/capar-*.whl)[dev]"
+	$(TESTED)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall \
+		.make/dist/capar-*.whl
+	touch $@
+
+clean:
+	rm -rf .make dist build

@@ -1,0 +1,121 @@
+"""``capar inspect``: what a capture or a motion file holds."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+app = typer.Typer()
+
+
+@app.command()
+def inspect(
+    place: Annotated[
+        str, typer.Argument(help="A folder with a capture.toml (and :take), or a motion file.")
+    ],
+    as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
+) -> None:
+    """Say what a capture holds: streams, rate, gaps, noise at rest, ranges and near pairs."""
+    report = _report(place)
+    if as_json:
+        typer.echo(json.dumps(report, indent=2, sort_keys=True))
+    else:
+        _show(report)
+
+
+def _report(place: str) -> dict[str, Any]:
+    path = Path(place)
+    bundled = path.suffix == ".toml" or not path.exists() or (path / "capture.toml").is_file()
+    if bundled:
+        return _of_capture(place)
+    return _of_file(path)
+
+
+def _of_capture(place: str) -> dict[str, Any]:
+    from extractors.readers.bundle import read_capture
+    from extractors.readers.survey import as_json, near_pairs, survey
+
+    capture = read_capture(place)
+    kinds = {each.name: f"sensor, {each.role.value}" for each in capture.sensors}
+    kinds |= {each.name: f"object, {each.tag.value}" for each in capture.objects}
+    streams = {name: each.stream for name, each in capture.bodies.items()}
+    surveys = [survey(name, kinds[name], each) for name, each in streams.items()]
+    head = {
+        "name": capture.name,
+        "frames": len(capture.times),
+        "rate_hz": capture.rate_hz,
+        "shapes": {
+            name: each.shape.description for name, each in capture.bodies.items() if each.shape
+        },
+        "notices": [{"code": n.code, "message": n.message} for n in capture.notices],
+        "sources": [{"path": s.path, "format": s.format} for s in capture.sources],
+    }
+    return head | as_json(surveys, near_pairs(streams))
+
+
+def _of_file(path: Path) -> dict[str, Any]:
+    import numpy as np
+
+    from capar.model.capture import Stream
+    from extractors.readers.registry import read_recording
+    from extractors.readers.survey import as_json, near_pairs, survey
+
+    recording = read_recording(path)
+    unit = recording.unit_m or 1.0
+    streams = {
+        name: Stream(each.times, each.positions * unit, each.orientations)
+        for name, each in recording.bodies.items()
+    }
+    kinds = dict.fromkeys(streams, "body")
+    upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(recording.marker_times), 1))
+    for name, points in recording.markers.items():
+        streams[name] = Stream(recording.marker_times, points * unit, upright)
+        kinds[name] = "marker"
+    notices = [{"code": n.code, "message": n.message} for n in recording.notices]
+    if recording.unit_m is None:
+        message = "the file states no unit; lengths are shown as if it were metres"
+        notices.append({"code": "no-unit", "message": message})
+    surveys = [survey(name, kinds[name], each) for name, each in streams.items()]
+    head = {
+        "name": path.name,
+        "format": recording.format,
+        "frames": len(recording.times),
+        "notices": notices,
+        "sources": [{"path": recording.source.path, "format": recording.format}],
+    }
+    return head | as_json(surveys, near_pairs(streams))
+
+
+def _show(report: dict[str, Any]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    console.print(f"[bold]{report['name']}[/]: {report['frames']} frames")
+    table = Table("stream", "kind", "s", "Hz", "jitter ms", "lost", "longest gap s",
+                  "rest mm", "rest deg", "range m")  # fmt: skip
+    for each in report["streams"]:
+        table.add_row(
+            each["name"], each["kind"], f"{each['seconds']:.2f}", f"{each['rate_hz']:.1f}",
+            f"{each['jitter_ms']:.1f}", str(each["lost"]), f"{each['longest_gap_s']:.2f}",
+            _figure(each["noise_mm"]), _figure(each["noise_deg"]),
+            " x ".join(f"{v:.2f}" for v in each["range_m"] or ()) or "-",
+        )  # fmt: skip
+    console.print(table)
+    if report["pairs"]:
+        pairs = Table("nearest pairs", "", "least m", "at s", "near for s")
+        for each in report["pairs"]:
+            pairs.add_row(
+                each["first"], each["second"], f"{each['least_m']:.3f}",
+                f"{each['at_s']:.2f}", f"{each['near_s']:.2f}",
+            )  # fmt: skip
+        console.print(pairs)
+    for name, text in report.get("shapes", {}).items():
+        console.print(f"shape of {name}: {text}", highlight=False)
+    for each in report["notices"]:
+        console.print(f"[yellow]{each['code']}[/]: {each['message']}", highlight=False)
+
+
+def _figure(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"

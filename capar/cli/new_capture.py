@@ -1,0 +1,45 @@
+"""``capar new-capture``: a first capture.toml from what motion files hold."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer()
+
+
+@app.command()
+def new_capture(
+    files: Annotated[list[Path], typer.Argument(help="Motion files of one trial.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="The capture.toml to write.")
+    ] = Path("capture.toml"),
+    force: Annotated[bool, typer.Option("--force", help="Overwrite what is there.")] = False,
+) -> None:
+    """Write a commented capture.toml that a person then edits; it is read back at once."""
+    from capar.model.errors import CaparError, FileError
+    from extractors.readers.bundle import read_capture
+    from extractors.readers.draft import TODO, draft
+    from extractors.readers.registry import read_recording
+
+    path = output / "capture.toml" if output.is_dir() else output
+    if path.exists() and not force:
+        raise FileError(path, "is there already.", "Name another with -o, or say --force.")
+    if not path.parent.is_dir():
+        raise FileError(path.parent, "no such folder.", "Make it first.")
+    recordings = [read_recording(each) for each in files]
+    text = draft(recordings, path.parent, files[0].name.split(".")[0])
+    path.write_text(text, encoding="utf-8")
+    typer.echo(f"wrote {path}")
+    for number, line in enumerate(text.splitlines(), 1):
+        if TODO in line:
+            typer.echo(f"{path}:{number}: look at: {line.strip()}")
+    try:
+        capture = read_capture(path)
+    except CaparError as error:
+        typer.echo(f"it cannot be read yet: {error}")
+    else:
+        typer.echo(
+            f"it reads as {len(capture.sensors)} sensors and {len(capture.objects)} objects, "
+            f"{len(capture.times)} frames at {capture.rate_hz:.4g} Hz"
+        )

@@ -1,0 +1,228 @@
+"""Rule files as plain values: parsed and never run, each rule with its place and its literals."""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from clingo import MessageCode, ast
+
+from capar.model.errors import RuleError
+
+_ANONYMOUS = re.compile(r"(?<!\w)_(?!\w)")
+
+Signature = tuple[str, int]
+"""A predicate: its name and its number of arguments."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Place:
+    """Where something stands in a file; lines and columns from one."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        """The place as people and editors read it."""
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """One condition of a rule's body."""
+
+    kind: str
+    """``atom``, ``comparison``, ``aggregate``, ``conditional`` or ``theory``."""
+
+    sign: int
+    """Zero, or one for ``not``, or two for ``not not``."""
+
+    text: str
+    place: Place
+    atoms: tuple["Atom", ...]
+    """The atom itself, or those inside an aggregate or a conditional."""
+
+    elements: tuple[tuple["Literal", ...], ...] = ()
+    """The conditions of each element of an aggregate."""
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """An atom as it is written, with variables."""
+
+    signature: Signature
+    text: str
+    sign: int
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """A rule, or anything else that a rule file can hold."""
+
+    kind: str
+    """``rule``, or the parser's own word in lower case: ``script``, ``external`` ..."""
+
+    place: Place
+    text: str
+    head_kind: str = ""
+    """Of a rule: ``atom``, ``constraint``, ``choice``, ``disjunction`` or ``theory``."""
+
+    heads: tuple[Atom, ...] = ()
+    body: tuple[Literal, ...] = ()
+    external: tuple[Place, ...] = field(default=())
+    """Where it calls a function of the host's language."""
+
+    defines: Signature | str = ""
+    """What ``#defined`` or ``#const`` names."""
+
+
+def parse(files: Iterable[Path]) -> tuple[Statement, ...]:
+    """The statements of rule files and of all that they include, in order.
+
+    Raises:
+        RuleError: A file is no logic program.
+    """
+    names = [str(each) for each in files]
+    return _parsed(lambda note, log: ast.parse_files(names, note, logger=log))
+
+
+def parse_text(text: str) -> tuple[Statement, ...]:
+    """The statements of a logic program.
+
+    Raises:
+        RuleError: The text is no logic program; the message has one line a mistake.
+    """
+    return _parsed(lambda note, log: ast.parse_string(text, note, logger=log))
+
+
+def _parsed(run: Any) -> tuple[Statement, ...]:
+    found: list[ast.AST] = []
+    messages: list[str] = []
+
+    def log(code: MessageCode, message: str) -> None:
+        if code is not MessageCode.FileIncluded:
+            messages.append(message.strip())
+
+    try:
+        run(found.append, log)
+    except RuntimeError as error:
+        raise RuleError("\n".join(messages) or str(error)) from None
+    return tuple(_statement(each) for each in found if each.ast_type is not ast.ASTType.Program)
+
+
+def _statement(node: ast.AST) -> Statement:
+    place, text = _place(node), str(node)
+    external = tuple(_external(node)) if "@" in text else ()
+    if node.ast_type is ast.ASTType.Rule:
+        if _ANONYMOUS.search(text):
+            node = _Named().visit(node)
+        kind, heads = _head(node.head)
+        body = tuple(_literal(each) for each in node.body)
+        return Statement("rule", place, str(node), kind, heads, body, external)
+    word = node.ast_type.name.lower()
+    defines: Signature | str = ""
+    if word == "defined":
+        defines = (node.name, node.arity)
+    elif word == "definition":
+        defines = node.name
+    return Statement(word, place, text, external=external, defines=defines)
+
+
+class _Named(ast.Transformer):
+    """Gives every anonymous variable of a positive body atom a name, so that it can be told."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def visit_Literal(self, node: ast.AST) -> ast.AST:  # noqa: N802 (the parser's own word)
+        """Leave negated atoms as they are: there a named variable would be unsafe."""
+        if node.sign != ast.Sign.NoSign or node.atom.ast_type is ast.ASTType.Comparison:
+            return node
+        return node.update(**self.visit_children(node))
+
+    def visit_Variable(self, node: ast.AST) -> ast.AST:  # noqa: N802
+        """Name an anonymous variable."""
+        if node.name != "_":
+            return node
+        self.count += 1
+        return node.update(name=f"Any{self.count}")
+
+
+_HEADS = {
+    ast.ASTType.Aggregate: "choice",
+    ast.ASTType.HeadAggregate: "choice",
+    ast.ASTType.Disjunction: "disjunction",
+    ast.ASTType.TheoryAtom: "theory",
+}
+
+
+def _head(node: ast.AST) -> tuple[str, tuple[Atom, ...]]:
+    kind = _HEADS.get(node.ast_type, "atom")
+    if kind == "atom" and node.atom.ast_type is ast.ASTType.BooleanConstant:
+        return "constraint", ()
+    if kind == "atom" and node.atom.ast_type is not ast.ASTType.SymbolicAtom:
+        return "constraint", ()
+    return kind, tuple(_atoms(node, 0))
+
+
+def _literal(node: ast.AST) -> Literal:
+    place, text = _place(node), str(node)
+    if node.ast_type is ast.ASTType.ConditionalLiteral:
+        return Literal("conditional", 0, text, place, tuple(_atoms(node, 0)))
+    atom, sign = node.atom, int(node.sign)
+    if atom.ast_type is ast.ASTType.SymbolicAtom:
+        return Literal("atom", sign, text, place, tuple(_atoms(atom, sign)))
+    if atom.ast_type in (ast.ASTType.BodyAggregate, ast.ASTType.Aggregate):
+        elements = tuple(tuple(map(_literal, each.condition)) for each in atom.elements)
+        return Literal("aggregate", sign, text, place, tuple(_atoms(atom, sign)), elements)
+    if atom.ast_type is ast.ASTType.TheoryAtom:
+        return Literal("theory", sign, text, place, ())
+    return Literal("comparison", sign, text, place, ())
+
+
+_LEAVES = (ast.ASTType.SymbolicTerm, ast.ASTType.Variable, ast.ASTType.BooleanConstant)
+
+
+def _atoms(node: ast.AST, sign: int) -> Iterator[Atom]:
+    """Every atom below a node; the sign is the strongest negation on the way."""
+    if node.ast_type in _LEAVES:
+        return
+    if node.ast_type is ast.ASTType.Literal:
+        sign = max(sign, int(node.sign))
+    if node.ast_type is ast.ASTType.SymbolicAtom:
+        symbol = node.symbol
+        while symbol.ast_type is ast.ASTType.UnaryOperation:
+            symbol = symbol.argument
+        for each in symbol.arguments if symbol.ast_type is ast.ASTType.Pool else [symbol]:
+            signature = (each.name, len(each.arguments))
+            yield Atom(signature, str(node), sign, _place(node))
+        return
+    for child in _children(node):
+        yield from _atoms(child, sign)
+
+
+def _external(node: ast.AST) -> Iterator[Place]:
+    if node.ast_type is ast.ASTType.Function and node.external:
+        yield _place(node)
+    for child in _children(node):
+        yield from _external(child)
+
+
+def _children(node: ast.AST) -> Iterator[ast.AST]:
+    for key in node.child_keys:
+        child = getattr(node, key)
+        if isinstance(child, ast.AST):
+            yield child
+        elif isinstance(child, Sequence) and not isinstance(child, str):
+            yield from (each for each in child if isinstance(each, ast.AST))
+
+
+def _place(node: ast.AST) -> Place:
+    begin = getattr(node, "location", None)
+    if begin is None:
+        inner = next(_children(node), None)
+        return Place("", 0, 0) if inner is None else _place(inner)
+    return Place(begin.begin.filename, begin.begin.line, begin.begin.column)

@@ -1,0 +1,150 @@
+"""What is measured of bodies that handle and are handled, beside contact and motion."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import combinations
+
+import numpy as np
+
+from capar.model import geometry
+from capar.model.capture import Capture, TagObject, TagType
+from capar.model.facts import (
+    Between,
+    Closing,
+    Fact,
+    Flies,
+    Leans,
+    Lies,
+    Moving,
+    Nearest,
+    Passage,
+    Resting,
+    Reverses,
+    Swings,
+    Touching,
+    Upward,
+)
+from extractors.arrangement import ARRANGEMENTS, Holds, between, gap, sides
+from extractors.figures import Figure, figure
+from extractors.impulses import closing_speed, falls
+from extractors.intervals import Interval, intervals
+from extractors.leaning import leaning
+from extractors.marks import marks
+from extractors.normals import contact_normal
+from extractors.object_motion import motion_floor, stays
+from extractors.places import distances, places
+from extractors.poses import Poses
+from extractors.resting import resting
+from extractors.thresholds import Thresholds
+from extractors.turning_points import reversals, swings
+
+PASSED = ("inside", "above")
+"""Arrangements that a body may pass through."""
+
+
+def handling(
+    capture: Capture,
+    where: Mapping[tuple[str, str], Poses],
+    known: Iterable[Fact],
+    thresholds: Thresholds,
+) -> tuple[Fact, ...]:
+    """Rest, turning points, leaning, falls, arrangements and places of handled bodies.
+
+    Handled are the acting end-effectors and every mobile object that one of them touches.
+
+    Args:
+        capture: The trial.
+        where: Poses by ``("sensor", name)`` and ``("object", name)``.
+        known: Contacts and motions, as facts.
+        thresholds: What the measurements decide by.
+    """
+    seen = list(known)
+    touches = [each for each in seen if isinstance(each, Touching)]
+    acting = [each.name for each in capture.acting]
+    held = {each.other for each in touches if each.body in acting}
+    hands = {each.name: figure(each, where["sensor", each.name]) for each in capture.acting}
+    things = {each.name: figure(each, where["object", each.name]) for each in capture.objects}
+    mobile = [
+        each for each in capture.objects if each.tag is TagType.MOBILE and each.name in held
+    ]
+    out: list[Fact] = []
+    for name, hand in hands.items():
+        out += (Resting(name, *each) for each in resting(hand.where, thresholds))
+    for each in mobile:
+        out += _motion(each, things[each.name], seen, capture.rate_hz, thresholds)
+    borders = marks([*seen, *out], acting, len(capture.times) - 1)
+    figures = [*hands.values(), *(things[each.name] for each in mobile if each.name not in hands)]
+    for one in figures:
+        frames = tuple(borders.get(one.name, ()))
+        out += places(one, frames)
+        for other in things.values():
+            if other.name != one.name:
+                out += distances(one, other, frames)
+                out += _arranged(one, other, touches, thresholds)
+        out += _between(one, [each for each in things.values() if each is not one], thresholds)
+    out += _contacts({**things, **hands}, touches)
+    return tuple(out)
+
+
+def _motion(
+    each: TagObject, one: Figure, known: list[Fact], rate_hz: float, thresholds: Thresholds
+) -> Iterator[Fact]:
+    pose = one.where
+    floor = motion_floor(pose.noise, rate_hz, own_m=each.motion_floor_m, thresholds=thresholds)
+    moves = tuple(
+        (fact.first, fact.last)
+        for fact in known
+        if isinstance(fact, Moving) and fact.object == each.name
+    )
+    yield from (Reverses(each.name, frame) for frame in reversals(pose, moves, thresholds))
+    yield from (Swings(each.name, *span) for span in swings(pose, moves, thresholds))
+    rests = stays(pose, floor, thresholds)
+    yield from (Leans(each.name, *span) for span in leaning(pose, rests, thresholds))
+    yield from (Flies(each.name, *span) for span in falls(one, thresholds))
+
+
+def _arranged(
+    one: Figure, other: Figure, touches: Iterable[Touching], thresholds: Thresholds
+) -> Iterator[Fact]:
+    for how, arrangement in ARRANGEMENTS.items():
+        for span in _spans(arrangement(one, other, thresholds), one, thresholds):
+            yield Lies(one.name, how, other.name, *span)
+            if how in PASSED and span[0] > 0 and span[1] < len(one.middles) - 1:
+                yield Passage(one.name, how, other.name, span[0], sides(one, other, np.array(span)))
+    distance = gap(one, other)
+    touching = {
+        (each.first, each.last)
+        for each in touches
+        if (each.body, each.other) == (one.name, other.name)
+    }
+    with np.errstate(invalid="ignore"):
+        near = distance <= thresholds.near_m
+    for first, last in geometry.gaps(near):
+        frame = first + int(np.argmin(distance[first : last + 1]))
+        passed = not any(begin <= last and end >= first for begin, end in touching)
+        if first < frame < last and passed:
+            yield Nearest(one.name, other.name, frame)
+
+
+def _between(one: Figure, others: list[Figure], thresholds: Thresholds) -> Iterator[Fact]:
+    for first, second in combinations(sorted(others, key=lambda each: each.name), 2):
+        for span in _spans(between(one, first, second), one, thresholds):
+            yield Between(one.name, first.name, second.name, *span)
+
+
+def _spans(holds: Holds, one: Figure, thresholds: Thresholds) -> list[Interval]:
+    return intervals(
+        holds,
+        one.where.smooth.times,
+        dropout_s=thresholds.dropout_s,
+        minimum_s=thresholds.contact_minimum_s,
+    )
+
+
+def _contacts(figures: Mapping[str, Figure], touches: Iterable[Touching]) -> Iterator[Fact]:
+    for each in touches:
+        body, other = figures[each.body], figures[each.other]
+        normal = contact_normal(body, other, each.first)
+        if normal is not None:
+            yield Upward(each.body, each.other, each.first, round(1000.0 * float(normal[2])))
+        speed = closing_speed(body, other, each.first)
+        yield Closing(each.body, each.other, each.first, round(1000.0 * speed))

@@ -1,0 +1,58 @@
+"""Frames at which rules may draw a border, for each body whose place matters there."""
+
+from bisect import bisect_left, bisect_right
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+
+from capar.model.facts import Fact, Flies, Leans, Lies, Moving, Resting, Reverses, Swings, Touching
+
+Marks = Mapping[str, Sequence[int]]
+"""Frames by body, ascending."""
+
+
+def marks(facts: Iterable[Fact], acting: Iterable[str], last_frame: int) -> Marks:
+    """For each end-effector every frame where something that concerns it begins or ends.
+
+    For each object that it touches, those of these frames at which it touches it, with the one
+    before and the one after.
+
+    Args:
+        facts: Intervals and instants that were measured.
+        acting: The end-effectors.
+        last_frame: The capture's last frame.
+    """
+    frames: dict[str, set[int]] = defaultdict(set)
+    touches: dict[str, list[Touching]] = defaultdict(list)
+    for fact in facts:
+        body, found = _instants(fact)
+        frames[body].update(found)
+        if isinstance(fact, Touching):
+            touches[fact.body].append(fact)
+    out: dict[str, set[int]] = defaultdict(set)
+    for ee in acting:
+        own = {0, last_frame} | frames[ee]
+        for name in {each.other for each in touches[ee]}:
+            own |= frames[name]
+        out[ee] |= own
+        ordered = sorted(own)
+        for each in touches[ee]:
+            out[each.other].update(_around(ordered, each.first, each.last))
+    return {name: tuple(sorted(out[name])) for name in sorted(out)}
+
+
+def _instants(fact: Fact) -> tuple[str, tuple[int, ...]]:
+    """What a fact is about, and the frames where it begins and ends."""
+    if isinstance(fact, Moving | Leans | Flies):
+        return fact.object, (fact.first, fact.last)
+    if isinstance(fact, Touching | Swings | Lies):
+        return fact.body, (fact.first, fact.last)
+    if isinstance(fact, Resting):
+        return fact.ee, (fact.first, fact.last)
+    if isinstance(fact, Reverses):
+        return fact.object, (fact.frame,)
+    return "", ()
+
+
+def _around(ordered: Sequence[int], first: int, last: int) -> Sequence[int]:
+    low = max(bisect_left(ordered, first) - 1, 0)
+    return ordered[low : bisect_right(ordered, last) + 1]

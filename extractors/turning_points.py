@@ -1,0 +1,83 @@
+"""Where motion turns back: extrema of height, and motion to and fro."""
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from extractors.intervals import Interval
+from extractors.poses import Poses
+from extractors.thresholds import Thresholds
+
+
+def turning_points(
+    values: Float[np.ndarray, "frames"], least: float
+) -> Int[np.ndarray, "turns"]:
+    """Frames of extrema that lie at least so far from the extremum before and the one after.
+
+    Args:
+        values: A coordinate over time, known throughout.
+        least: The least way between neighbouring extrema, in the coordinate's unit.
+    """
+    found: list[int] = []
+    low = high = direction = 0
+    for frame, value in enumerate(values):
+        if direction >= 0 and value > values[high]:
+            high = frame
+        if direction <= 0 and value < values[low]:
+            low = frame
+        if direction >= 0 and values[high] - value >= least:
+            found += [high] if direction else []
+            direction, low = -1, frame
+        elif direction <= 0 and value - values[low] >= least:
+            found += [low] if direction else []
+            direction, high = 1, frame
+    return np.array(found, dtype=np.int64)
+
+
+def reversals(
+    where: Poses, moving: tuple[Interval, ...], thresholds: Thresholds
+) -> tuple[int, ...]:
+    """Frames at which the height of a moving body has an extremum after and before a real way."""
+    height = where.smooth.positions[:, 2]
+    found: list[int] = []
+    for first, last in moving:
+        part = height[first : last + 1]
+        if not np.isnan(part).any():
+            turns = turning_points(part, thresholds.reversal_m)
+            found += [first + int(each) for each in turns]
+    return tuple(found)
+
+
+def swings(
+    where: Poses, moving: tuple[Interval, ...], thresholds: Thresholds
+) -> tuple[Interval, ...]:
+    """Closed intervals of frames in which a body moves to and fro along an axis of the world.
+
+    To and fro is a chain of turning points, each soon after the one before; several axes that
+    swing at a time are one swinging.
+    """
+    stream = where.smooth
+    chains: list[Interval] = []
+    for first, last in moving:
+        part = stream.positions[first : last + 1]
+        for axis in range(3) if not np.isnan(part).any() else ():
+            turns = first + turning_points(part[:, axis], thresholds.swing_m)
+            chains += _chains(turns, stream.times, thresholds)
+    out: list[Interval] = []
+    for first, last in sorted(chains):
+        if out and first <= out[-1][1]:
+            out[-1] = (out[-1][0], max(last, out[-1][1]))
+        else:
+            out.append((first, last))
+    return tuple(out)
+
+
+def _chains(
+    turns: Int[np.ndarray, "turns"], times: Float[np.ndarray, "frames"], thresholds: Thresholds
+) -> list[Interval]:
+    if not len(turns):
+        return []
+    breaks = np.flatnonzero(np.diff(times[turns]) > thresholds.swing_s) + 1
+    groups = np.split(turns, breaks)
+    return [
+        (int(each[0]), int(each[-1])) for each in groups if len(each) >= thresholds.swing_turns
+    ]

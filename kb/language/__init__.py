@@ -1,0 +1,6 @@
+"""Between PARs and plain English: sentences out of observations, instructions and questions in."""
+
+from kb.language.describe import describe as describe
+from kb.language.parse import parse as parse
+from kb.language.sentence import Instruction as Instruction
+from kb.language.sentence import sentence as sentence

@@ -1,0 +1,76 @@
+"""Forms of English words: past tenses from data, names as nouns, lists joined."""
+
+import re
+from collections.abc import Sequence
+from functools import cache
+
+from kb.lexicon.tables import table
+
+_CAMEL = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
+
+
+@cache
+def _past_forms() -> dict[str, str]:
+    return {row["verb"]: row["past"] for row in table("past_forms")}
+
+
+def past(verb: str) -> str:
+    """The simple past of a verb, of which the first word is inflected: ``let go``."""
+    head, _, rest = verb.partition(" ")
+    form = _past_forms().get(head) or _regular(head)
+    return f"{form} {rest}" if rest else form
+
+
+def _regular(verb: str) -> str:
+    if verb.endswith("e"):
+        return f"{verb}d"
+    if verb.endswith("y") and verb[-2:-1] not in "aeiou":
+        return f"{verb[:-1]}ied"
+    return f"{verb}ed"
+
+
+@cache
+def base_forms() -> dict[str, str]:
+    """Irregular verbs by their past forms; the first in the alphabet where two share one."""
+    forms: dict[str, str] = {}
+    for verb, form in _past_forms().items():
+        forms.setdefault(form, verb)
+    return forms
+
+
+def noun(name: str) -> str:
+    """A name as people say it: ``blue_cup`` as ``blue cup``."""
+    return " ".join(name.split("_")).strip() or name
+
+
+def the(name: str) -> str:
+    """A name as a definite noun phrase; a proper name stays alone."""
+    spoken = noun(name)
+    return spoken if spoken[:1].isupper() else f"the {spoken}"
+
+
+def words_of(name: str) -> str:
+    """A name in mixed case as words: ``PickUp`` as ``pick up``."""
+    return " ".join(part.lower() for part in _CAMEL.findall(name))
+
+
+def name_of(words: str) -> str:
+    """Words as a name in mixed case: ``pick up`` as ``PickUp``."""
+    return "".join(word[:1].upper() + word[1:] for word in words.split())
+
+
+def joined(parts: Sequence[str]) -> str:
+    """Parts as a list in a sentence: ``a, b, and c``."""
+    if len(parts) <= 2:
+        return " and ".join(parts)
+    return f"{', '.join(parts[:-1])}, and {parts[-1]}"
+
+
+def capital(text: str) -> str:
+    """The text with a capital at its beginning."""
+    return text[:1].upper() + text[1:]
+
+
+def times(count: int) -> str:
+    """How often: ``twice``, ``3 times``."""
+    return {1: "once", 2: "twice"}.get(count, f"{count} times")

@@ -1,0 +1,73 @@
+"""Keeping, listing and forgetting whole observations."""
+
+from typing import TYPE_CHECKING
+
+from pyoxigraph import Literal
+
+from capar.model.errors import UnknownNameError
+from kb import names, writing
+from kb.encode import encode
+from kb.encode.scene import identity
+from kb.errors import ExistsError
+from kb.findings import Added, Stored
+from kb.lookup import recognition
+from kb.shapes import prove
+from kb.store import Store
+from ontology import CAPAR
+
+if TYPE_CHECKING:
+    from capar.model.observation import Observation
+
+_LIST = f"""SELECT ?name ?action ?agent ?profile ?version ?rules ?duration
+WHERE {{
+  ?seen a {CAPAR.Observation} ;
+    {CAPAR.capture}/{CAPAR.name} ?name ;
+    {CAPAR.name} ?action ;
+    {CAPAR.agent}/{CAPAR.name} ?agent ;
+    {CAPAR.profile} ?profile ;
+    {CAPAR.version} ?version ;
+    {CAPAR.ruleBase}/{CAPAR.sha256} ?rules ;
+    {CAPAR.duration} ?duration .
+  FILTERS
+}}
+ORDER BY ?name"""
+
+
+def add(store: Store, observation: "Observation", *, name: str | None, replace: bool) -> Added:
+    """Keep an observation, whole and checked."""
+    graph = names.observation(observation.capture)
+    there = store.ask(f"SELECT ?identity WHERE {{ {graph} {CAPAR.identity} ?identity }}").rows
+    same = there and getattr(there[0][0], "value", "") == identity(observation)
+    if there and not same and not replace:
+        raise ExistsError(
+            f"an observation {observation.capture!r} of another capture is in {store.place}; "
+            "give this capture another name, forget that one, or ask to replace it"
+        )
+    recognised = recognition.recognise(store, observation.complex_par, besides=graph) or ""
+    called = name or observation.complex_par.name or recognised or observation.capture
+    statements = encode(observation, name=called)
+    prove(observation.capture, statements)
+    quads = statements.quads
+    if there:
+        store.change(writing.replacement(graph, quads))
+    else:
+        store.insert(quads)
+    return Added(observation.capture, called, recognised, bool(there), len(quads))
+
+
+def forget(store: Store, name: str) -> None:
+    """Take an observation back."""
+    known = [each.name for each in observations(store)]
+    if name not in known:
+        raise UnknownNameError("observation", name, known, where=store.place)
+    store.change(writing.removal(names.observation(name)))
+
+
+def observations(store: Store, filters: str = "") -> tuple[Stored, ...]:
+    """Observations, by name; of those, the ones for which some patterns over ``?seen`` hold."""
+    rows = store.ask(_LIST.replace("FILTERS", filters)).rows
+    out = []
+    for row in rows:
+        text = [each.value if isinstance(each, Literal) else "" for each in row]
+        out.append(Stored(*text[:6], duration_s=float(text[6])))
+    return tuple(out)

@@ -1,0 +1,207 @@
+"""Tiny valid files of every format, all of one and the same motion."""
+
+import json
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+FRAMES = 12
+RATE = 50.0
+TIMES = np.arange(FRAMES) / RATE
+PLACES = np.stack([0.1 * TIMES / TIMES[-1] + 0.4, 0.2 + 0 * TIMES, 0.9 + 0.05 * TIMES], axis=1)
+TURNS = Rotation.from_euler("z", (40.0 * TIMES / TIMES[-1])[:, None], degrees=True)
+CORNERS = np.array([[0.0, 0.0, 0.0], [0.06, 0.0, 0.0], [0.0, 0.08, 0.0], [0.0, 0.0, 0.1]])
+NAMES = ("a", "b", "c", "d")
+
+
+def corner_tracks() -> np.ndarray:
+    """Markers over time [m]: frames, markers, 3."""
+    return TURNS.as_matrix() @ CORNERS.T[None] + PLACES[:, :, None]
+
+
+def markers() -> np.ndarray:
+    """Markers over time [m] as (frames, markers, 3)."""
+    return corner_tracks().transpose(0, 2, 1)
+
+
+def write_csv(path: Path) -> Path:
+    quaternions = TURNS.as_quat()
+    head = "t_s," + ",".join(
+        f"hand_{each}" for each in ("x", "y", "z", "qx", "qy", "qz", "qw", "valid")
+    )
+    rows = [
+        ",".join(f"{v:.9g}" for v in (t, *p, *q, 1))
+        for t, p, q in zip(TIMES, PLACES, quaternions, strict=True)
+    ]
+    path.write_text("\n".join([head, *rows]) + "\n")
+    return path
+
+
+def write_bvh(path: Path) -> Path:
+    rows = [
+        f"{p[0] * 100:.7f} {p[1] * 100:.7f} {p[2] * 100:.7f} {a:.7f} 0 0"
+        for p, a in zip(PLACES, TURNS.as_euler("zyx", degrees=True)[:, 0], strict=True)
+    ]
+    path.write_text(
+        "HIERARCHY\nROOT hand\n{\n OFFSET 0 0 0\n"
+        " CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+        " JOINT tip\n {\n  OFFSET 10 0 0\n  CHANNELS 0\n  End Site\n  {\n   OFFSET 1 0 0\n  }\n }\n"
+        f"}}\nMOTION\nFrames: {FRAMES}\nFrame Time: {1 / RATE}\n" + "\n".join(rows) + "\n"
+    )
+    return path
+
+
+def write_tsv(path: Path) -> Path:
+    head = {
+        "NO_OF_FRAMES": FRAMES, "NO_OF_CAMERAS": 7, "NO_OF_MARKERS": 4, "FREQUENCY": int(RATE),
+        "DESCRIPTION": "--", "DATA_INCLUDED": "3D", "MARKER_NAMES": "\t".join(NAMES),
+    }  # fmt: skip
+    rows = ["\t".join(f"{v * 1000:.6f}" for v in each.ravel()) for each in markers()]
+    path.write_text("\n".join([*(f"{k}\t{v}" for k, v in head.items()), *rows]) + "\n")
+    return path
+
+
+def write_tsv_6d(path: Path) -> Path:
+    head = {
+        "NO_OF_FRAMES": FRAMES, "NO_OF_CAMERAS": 7, "NO_OF_BODIES": 1, "FREQUENCY": int(RATE),
+        "DATA_INCLUDED": "6D", "BODY_NAMES": "hand",
+    }  # fmt: skip
+    rows = [
+        "\t".join(f"{v:.8f}" for v in (*p * 1000, 0, 0, 0, 0.5, *m.T.ravel()))
+        for p, m in zip(PLACES, TURNS.as_matrix(), strict=True)
+    ]
+    path.write_text("\n".join([*(f"{k}\t{v}" for k, v in head.items()), *rows]) + "\n")
+    return path
+
+
+def write_trc(path: Path) -> Path:
+    cells = [f"{v * 1000:.6f}" for v in markers()[0].ravel()]
+    assert len(cells) == 12
+    rows = [
+        "\t".join([str(n + 1), f"{t:.6f}", *(f"{v * 1000:.6f}" for v in each.ravel())])
+        for n, (t, each) in enumerate(zip(TIMES, markers(), strict=True))
+    ]
+    head = [
+        f"PathFileType\t4\t(X/Y/Z)\t{path.name}",
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits",
+        f"{RATE}\t{RATE}\t{FRAMES}\t4\tmm",
+        "Frame#\tTime\t" + "\t\t\t".join(NAMES),
+        "\t\t" + "\t".join(f"{axis}{n}" for n in range(1, 5) for axis in "XYZ"),
+    ]
+    path.write_text("\n".join([*head, *rows]) + "\n")
+    return path
+
+
+def write_npz(path: Path) -> Path:
+    np.savez_compressed(
+        path, names=np.array(["hand"]), p=PLACES[:, None], q=TURNS.as_quat()[:, None], fps=RATE
+    )
+    return path
+
+
+NPZ = {
+    "fps": "fps",
+    "arrays": [{"names": "names", "positions": "p", "quaternions": "q", "order": "xyzw"}],
+}
+
+
+def write_json(path: Path) -> Path:
+    samples = [
+        {"timeStamp": round(t * 1000), "rotation": m.tolist(), "translation": p.tolist()}
+        for t, m, p in zip(TIMES, TURNS.as_matrix(), PLACES, strict=True)
+    ]
+    path.write_text(json.dumps(samples))
+    return path
+
+
+def write_c3d(path: Path) -> Path:
+    import ezc3d
+
+    file = ezc3d.c3d()
+    file["parameters"]["POINT"]["RATE"]["value"] = [RATE]
+    file["parameters"]["POINT"]["LABELS"]["value"] = list(NAMES)
+    file["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
+    points = np.ones((4, 4, FRAMES))
+    points[:3] = markers().transpose(2, 1, 0) * 1000
+    file["data"]["points"] = points
+    file.write(str(path))
+    return path
+
+
+def write_bag(path: Path) -> Path:
+    """A ROS 1 bag of stamped poses on the topic /hand."""
+    from rosbags.rosbag1 import Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS1_NOETIC)
+    kinds = store.types
+    with Writer(path) as writer:
+        line = writer.add_connection("/hand", "geometry_msgs/msg/PoseStamped", typestore=store)
+        for n, (t, p, q) in enumerate(zip(TIMES, PLACES, TURNS.as_quat(), strict=True)):
+            stamp = kinds["builtin_interfaces/msg/Time"](sec=1000, nanosec=round(t * 1e9))
+            header = kinds["std_msgs/msg/Header"](seq=n, stamp=stamp, frame_id="world")
+            pose = kinds["geometry_msgs/msg/Pose"](
+                kinds["geometry_msgs/msg/Point"](*map(float, p)),
+                kinds["geometry_msgs/msg/Quaternion"](*map(float, q)),
+            )
+            message = kinds["geometry_msgs/msg/PoseStamped"](header, pose)
+            data = store.serialize_ros1(message, "geometry_msgs/msg/PoseStamped")
+            writer.write(line, 10**12 + n, data)
+    return path
+
+
+def write_bag2(path: Path) -> Path:
+    """A ROS 2 bag of transforms, child frame ``hand``."""
+    from rosbags.rosbag2 import Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    kinds = store.types
+    with Writer(path, version=8) as writer:
+        line = writer.add_connection("/tf", "tf2_msgs/msg/TFMessage", typestore=store)
+        for n, (t, p, q) in enumerate(zip(TIMES, PLACES, TURNS.as_quat(), strict=True)):
+            stamp = kinds["builtin_interfaces/msg/Time"](sec=1000, nanosec=round(t * 1e9))
+            header = kinds["std_msgs/msg/Header"](stamp=stamp, frame_id="world")
+            part = kinds["geometry_msgs/msg/Transform"](
+                kinds["geometry_msgs/msg/Vector3"](*map(float, p)),
+                kinds["geometry_msgs/msg/Quaternion"](*map(float, q)),
+            )
+            one = kinds["geometry_msgs/msg/TransformStamped"](header, "hand", part)
+            data = store.serialize_cdr(
+                kinds["tf2_msgs/msg/TFMessage"]([one]), "tf2_msgs/msg/TFMessage"
+            )
+            writer.write(line, 10**12 + n, data)
+    return path
+
+
+WRITERS: dict[str, tuple[str, Callable[[Path], Path]]] = {
+    "c3d": ("m.c3d", write_c3d),
+    "bvh": ("m.bvh", write_bvh),
+    "bag": ("m.bag", write_bag),
+    "tsv": ("m.tsv", write_tsv),
+    "tsv6d": ("m6.tsv", write_tsv_6d),
+    "trc": ("m.trc", write_trc),
+    "csv": ("m.csv", write_csv),
+    "npz": ("m.npz", write_npz),
+    "json": ("m.json", write_json),
+}
+"""Every format that is one file, by a name of its own."""
+
+
+def options(kind: str) -> dict[str, object]:
+    """What must be said about a sample of this kind."""
+    return dict(NPZ) if kind == "npz" else {}
+
+
+def zip_bomb(path: Path, member: str, megabytes: int) -> Path:
+    """A zip archive whose one member expands to so many megabytes of zeros."""
+    with (
+        zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive,
+        archive.open(member, "w") as file,
+    ):
+        for _ in range(megabytes):
+            file.write(bytes(1 << 20))
+    return path
