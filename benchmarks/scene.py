@@ -1,5 +1,7 @@
 """A capture of any length for the benchmarks: hands that handle objects of many triangles."""
 
+from itertools import pairwise
+
 import numpy as np
 import trimesh
 
@@ -61,7 +63,7 @@ def _ease(share: np.ndarray) -> np.ndarray:
 def _between(clock: np.ndarray, keys: list[tuple[float, np.ndarray]]) -> np.ndarray:
     """Minimum-jerk motion through places at times [s] within each round."""
     out = keys[0][1]
-    for (begin, one), (end, two) in zip(keys[:-1], keys[1:], strict=True):
+    for (begin, one), (end, two) in pairwise(keys):
         inside = (clock >= begin)[:, None]
         move = one + (two - one) * _ease((clock - begin) / (end - begin))[:, None]
         out = np.where(inside, move, out)

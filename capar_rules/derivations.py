@@ -31,6 +31,9 @@ class Grounds:
     because: tuple["Grounds", ...]
 
 
+_SHOWN = ("#show because/3.", "#show because_part/3.", "#show also/2.")
+
+
 class Recorder:
     """A rule base that tells, beside its answer, which instances of its rules fired."""
 
@@ -41,7 +44,7 @@ class Recorder:
         lines = [each.text for each in self.rules]
         for number, rule in enumerate(recorded):
             lines += _records(number, rule)
-        self.text = "\n".join(lines)
+        self.text = "\n".join([*lines, *_SHOWN])
 
     def solve(self, facts: Sequence[Fact]) -> "Derivations":
         """What follows from facts, and why.
@@ -49,13 +52,14 @@ class Recorder:
         Raises:
             RuleError: The rules have a fault over these facts, or no answer.
         """
-        control = clingo.Control(["--models=1"], logger=lambda code, message: None)
+        messages: list[str] = []
+        control = clingo.Control(["--models=1"], logger=lambda _, text: messages.append(text))
         try:
             control.add("base", [], self.text)
             control.add("base", [], program(tuple(facts)))
             control.ground([("base", [])])
         except RuntimeError as error:
-            raise RuleError(f"the rules cannot be explained: {error}") from None
+            raise RuleError(f"the rules cannot be explained: {messages or error}") from None
         return Derivations(self.places, _shown(control))
 
 
@@ -175,7 +179,7 @@ def _records(number: int, rule: Statement) -> list[str]:
     lines = [f"because({number},{head},{_tuple(rule.body)}) :- {body}."]
     shared = _variables(head).union(*(_variables(each.text) for each in _plainly(rule.body)))
     for literal in rule.body:
-        for element in literal.elements:
+        for element in filter(None, literal.elements):
             inside = "; ".join(each.text for each in element)
             part = f"because_part({number},{head},{_tuple(element)})"
             own = _variables(inside) - shared

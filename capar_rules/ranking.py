@@ -9,7 +9,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from capar.model.facts import Fact, Frames, Link, Moving, RateMhz, Touching, ZeroCrossing
+from capar.model.facts import Fact, Frames, Link, Moving, Pause, RateMhz, Touching, ZeroCrossing
+from capar_rules.spans import Stretches
 
 MARGIN_S = 1.0
 """How far beyond a possession the contacts of its object are numbered [s]: merging sees less."""
@@ -71,6 +72,16 @@ class MovesDuring(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class FreeBetween(Fact):
+    """Two ticks of a link, the end of a contact and the next begin of one, with none between."""
+
+    predicate = "free_between"
+    ee: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class CrossingNear(Fact):
     """The zero crossing nearest to a tick, where one is near."""
 
@@ -96,13 +107,15 @@ def rank(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:
 class _Scene:
     """The measurements by what they are about, in order of time."""
 
-    def __init__(self, facts: Iterable[Fact]) -> None:
+    def __init__(self, facts: Sequence[Fact]) -> None:
         self.links: list[Link] = []
+        self.stretches = Stretches(facts)
         self.frames = Frames(0, 0)
         self.rate = 0.0
         self.touching: dict[str, list[Touching]] = defaultdict(list)
         self.moving: dict[str, list[Moving]] = defaultdict(list)
         self.crossings: dict[str, list[int]] = defaultdict(list)
+        self.pauses: dict[str, list[int]] = defaultdict(list)
         for fact in facts:
             if isinstance(fact, Touching):
                 self.touching[fact.body].append(fact)
@@ -110,6 +123,8 @@ class _Scene:
                 self.moving[fact.object].append(fact)
             elif isinstance(fact, ZeroCrossing):
                 self.crossings[fact.ee].append(fact.frame)
+            elif isinstance(fact, Pause):
+                self.pauses[fact.ee].append(fact.frame)
             elif isinstance(fact, Link):
                 self.links.append(fact)
             elif isinstance(fact, Frames):
@@ -120,8 +135,8 @@ class _Scene:
             touches.sort(key=lambda each: each.first)
         for moves in self.moving.values():
             moves.sort(key=lambda each: each.first)
-        for crossings in self.crossings.values():
-            crossings.sort()
+        for frames in (*self.crossings.values(), *self.pauses.values()):
+            frames.sort()
 
 
 def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
@@ -144,6 +159,21 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
     else:
         marks = {frame for each in (*own, *others) for frame in (each.first, each.last)}
         marks |= {frame for name in reach for each in moves[name] for frame in _ends(each)}
+        marks |= {
+            pause
+            for gap in _free(own)
+            for pause in scene.pauses[ee][
+                bisect_right(scene.pauses[ee], gap[0]) : bisect_left(scene.pauses[ee], gap[1])
+            ]
+        }
+        marks |= {frame for ends in scene.stretches.frames(ee) for frame in ends}
+        marks |= {
+            frame
+            for name in reach
+            for ends in scene.stretches.frames(name)
+            if _overlap(reach[name], *ends)
+            for frame in ends
+        }
     first, last = scene.frames.first, scene.frames.last
     ticks = sorted({first, last} | {frame for frame in marks if first < frame < last})
     yield from (Tick(ee, index, frame) for index, frame in enumerate(ticks))
@@ -151,12 +181,19 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
     yield from _within(ee, ticks, own, others)
     yield from _moves(ee, ticks, moves)
     yield from (
+        FreeBetween(ee, bisect_left(ticks, gap[0]), bisect_left(ticks, gap[1]))
+        for gap in (() if crossings_only else _free(own))
+    )
+    yield from (
         MovesDuring(ee, each.other, each.first)
         for each in own
         if _overlap(
             [(each.first, each.last) for each in scene.moving[each.other]], each.first, each.last
         )
     )
+    if not crossings_only:
+        yield from scene.stretches.ranked(ee, ticks, reach)
+        yield from _shared(scene, ee, ticks, reach)
     yield from _confirmed(ee, ticks, crossings, CONFIRMING_S * scene.rate)
 
 
@@ -171,6 +208,17 @@ def _reach(own: Iterable[Touching], margin: int) -> dict[str, list[tuple[int, in
         else:
             spans.append((first, last))
     return dict(sorted(reach.items()))
+
+
+def _free(own: Iterable[Touching]) -> list[tuple[int, int]]:
+    """Last and first frames of neighbouring contacts, whatever is touched, with none between."""
+    gaps: list[tuple[int, int]] = []
+    last = None
+    for each in own:
+        if last is not None and each.first > last + 1:
+            gaps.append((last, each.first))
+        last = each.last if last is None else max(last, each.last)
+    return gaps
 
 
 def _overlap(spans: Sequence[tuple[int, int]], first: int, last: int) -> bool:
@@ -190,6 +238,20 @@ def _within(
         first, last = bisect_left(ticks, each.first), bisect_right(ticks, each.last) - 1
         if first <= last:
             yield Within(ee, each.body, each.other, each.first, first, last)
+
+
+def _shared(
+    scene: _Scene, ee: str, ticks: list[int], reach: dict[str, list[tuple[int, int]]]
+) -> Iterable[Fact]:
+    """Contacts of other end-effectors with what this one handles."""
+    others = [
+        each
+        for link in scene.links
+        if link.ee != ee
+        for each in scene.touching[link.ee]
+        if each.other in reach and _overlap(reach[each.other], each.first, each.last)
+    ]
+    return _within(ee, ticks, (), others)
 
 
 def _moves(ee: str, ticks: list[int], moves: dict[str, list[Moving]]) -> Iterable[Fact]:

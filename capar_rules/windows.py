@@ -5,7 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from capar.model.facts import Fact, Frames, RateMhz, Touching
+from capar.model.facts import Fact, Frames, Lies, RateMhz, Touching
 from capar_rules.ranking import LastTick, MovesDuring, Tick, Within
 
 SETTLED_S = 0.2
@@ -28,7 +28,7 @@ class Windows:
         self.always: list[Fact] = []
         self.timed = _Index()
         self.numbered: dict[str, _Index] = defaultdict(_Index)
-        ends = {(each.body, each.other, each.first): each.last for each in _touching(facts)}
+        ends = {(each.body, each.other, each.first): each.last for each in _stretches(facts)}
         for fact in facts:
             span = _span(fact, ends)
             if span is None:
@@ -128,8 +128,9 @@ class _Index:
             yield from (fact for _, _, fact in group)
 
 
-def _touching(facts: Iterable[Fact]) -> Iterator[Touching]:
-    return (each for each in facts if isinstance(each, Touching))
+def _stretches(facts: Iterable[Fact]) -> Iterator[Touching | Lies]:
+    """What other measurements name by its first frame."""
+    return (each for each in facts if isinstance(each, Touching | Lies))
 
 
 def _span(fact: Fact, ends: dict[tuple[str, str, int], int]) -> Span | None:

@@ -104,9 +104,7 @@ def gap(body: Figure, other: Figure) -> Float[np.ndarray, "frames"]:
 
 def sides(body: Figure, other: Figure, frames: Int[np.ndarray, "two"]) -> str:
     """Whether a body is at opposite sides of another at two frames, or merely at other ones."""
-    ends = [
-        other.turns[frame].T @ (body.middles[frame] - other.middles[frame]) for frame in frames
-    ]
+    ends = [other.turns[frame].T @ (body.middles[frame] - other.middles[frame]) for frame in frames]
     size = np.ones(3) if other.shape is None else np.maximum(other.shape.size, 1e-6)
     first, last = (each / size for each in ends)
     axis = int(np.argmax(np.abs(first - last)))

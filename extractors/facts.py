@@ -17,6 +17,7 @@ from capar.model.facts import (
     Link,
     LookingAt,
     Moving,
+    Pause,
     RateMhz,
     Tag,
     Touching,
@@ -30,7 +31,7 @@ from extractors.object_motion import motion_floor, moving
 from extractors.poses import Poses, poses
 from extractors.signals import speed
 from extractors.thresholds import Thresholds
-from extractors.zero_crossings import zero_crossings
+from extractors.zero_crossings import pauses, zero_crossings
 
 ANY = "any"
 """What an empty field of a purpose is in a fact."""
@@ -93,6 +94,11 @@ def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measur
             ZeroCrossing(each.name, int(frame))
             for each in capture.acting
             for frame in tracks[each.name].crossings
+        ),
+        *(
+            Pause(each.name, int(frame))
+            for each in capture.acting
+            for frame in pauses(tracks[each.name].speed_mps, tracks[each.name].crossings)
         ),
         *_touching(capture, touches),
         *_moving(capture, where, limits),

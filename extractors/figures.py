@@ -70,7 +70,7 @@ class Figure:
     def boxes(self) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
         """Lowest and highest corner of its box along the world's axes at each frame [m]."""
         if self.where.rests:
-            spread = (self.turns[:1] @ self.corners.T)
+            spread = self.turns[:1] @ self.corners.T
         else:
             spread = self.turns @ self.corners.T
         return self.middles + spread.min(axis=2), self.middles + spread.max(axis=2)

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import combinations
 
 import numpy as np
+from jaxtyping import Float
 
 from capar.model import geometry
 from capar.model.capture import Capture, TagObject, TagType
@@ -27,7 +28,7 @@ from extractors.arrangement import ARRANGEMENTS, Holds, between, gap, sides
 from extractors.figures import Figure, figure
 from extractors.impulses import closing_speed, falls
 from extractors.intervals import Interval, intervals
-from extractors.leaning import leaning
+from extractors.leaning import leaning, upright_axis
 from extractors.marks import marks
 from extractors.normals import contact_normal
 from extractors.object_motion import motion_floor, stays
@@ -63,9 +64,8 @@ def handling(
     held = {each.other for each in touches if each.body in acting}
     hands = {each.name: figure(each, where["sensor", each.name]) for each in capture.acting}
     things = {each.name: figure(each, where["object", each.name]) for each in capture.objects}
-    mobile = [
-        each for each in capture.objects if each.tag is TagType.MOBILE and each.name in held
-    ]
+    mobile = [each for each in capture.objects if each.tag is TagType.MOBILE and each.name in held]
+    floors = {each.name: each.motion_floor_m for each in mobile}
     out: list[Fact] = []
     for name, hand in hands.items():
         out += (Resting(name, *each) for each in resting(hand.where, thresholds))
@@ -75,7 +75,8 @@ def handling(
     figures = [*hands.values(), *(things[each.name] for each in mobile if each.name not in hands)]
     for one in figures:
         frames = tuple(borders.get(one.name, ()))
-        out += places(one, frames)
+        upright = _upright(one, floors.get(one.name), capture.rate_hz, thresholds)
+        out += places(one, upright, frames)
         for other in things.values():
             if other.name != one.name:
                 out += distances(one, other, frames)
@@ -89,7 +90,6 @@ def _motion(
     each: TagObject, one: Figure, known: list[Fact], rate_hz: float, thresholds: Thresholds
 ) -> Iterator[Fact]:
     pose = one.where
-    floor = motion_floor(pose.noise, rate_hz, own_m=each.motion_floor_m, thresholds=thresholds)
     moves = tuple(
         (fact.first, fact.last)
         for fact in known
@@ -97,9 +97,16 @@ def _motion(
     )
     yield from (Reverses(each.name, frame) for frame in reversals(pose, moves, thresholds))
     yield from (Swings(each.name, *span) for span in swings(pose, moves, thresholds))
-    rests = stays(pose, floor, thresholds)
-    yield from (Leans(each.name, *span) for span in leaning(pose, rests, thresholds))
+    upright = _upright(one, each.motion_floor_m, rate_hz, thresholds)
+    yield from (Leans(each.name, *span) for span in leaning(pose, upright, thresholds))
     yield from (Flies(each.name, *span) for span in falls(one, thresholds))
+
+
+def _upright(
+    one: Figure, own_m: float | None, rate_hz: float, thresholds: Thresholds
+) -> Float[np.ndarray, "3"]:
+    floor = motion_floor(one.where.noise, rate_hz, own_m=own_m, thresholds=thresholds)
+    return upright_axis(one.where, stays(one.where, floor, thresholds))
 
 
 def _arranged(

@@ -37,6 +37,4 @@ def falls(body: Figure, thresholds: Thresholds) -> tuple[Interval, ...]:
     apart = np.linalg.norm(rate + np.array([0.0, 0.0, GRAVITY_MPS2]), axis=1)
     with np.errstate(invalid="ignore"):
         free = apart < thresholds.fall_share * GRAVITY_MPS2
-    return tuple(
-        intervals(free, times, dropout_s=0.0, minimum_s=thresholds.fall_minimum_s)
-    )
+    return tuple(intervals(free, times, dropout_s=0.0, minimum_s=thresholds.fall_minimum_s))

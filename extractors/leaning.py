@@ -2,6 +2,7 @@
 
 import numpy as np
 from jaxtyping import Float
+from scipy.spatial.transform import Rotation
 
 from extractors.intervals import Interval, intervals
 from extractors.object_motion import Stay
@@ -10,22 +11,16 @@ from extractors.thresholds import Thresholds
 
 
 def leaning(
-    where: Poses, rests: tuple[Stay, ...], thresholds: Thresholds
+    where: Poses, upright: Float[np.ndarray, "3"], thresholds: Thresholds
 ) -> tuple[Interval, ...]:
     """Closed intervals of frames in which an object leans.
 
-    Its upright axis is the one that pointed up where it first rested; an object that never
-    rests has none, and never leans.
-
     Args:
         where: The object's poses.
-        rests: The places where it rests, in time.
+        upright: The axis that points up while it stands, in its own frame.
         thresholds: The angle, and least durations.
     """
-    if not rests:
-        return ()
     stream = where.smooth
-    upright = rotation_matrices(rests[0].orientation[None])[0].T @ np.array([0.0, 0.0, 1.0])
     angle = lean(stream.orientations, upright)
     with np.errstate(invalid="ignore"):
         far = angle > thresholds.lean_rad
@@ -39,9 +34,34 @@ def leaning(
     )
 
 
+def upright_axis(where: Poses, rests: tuple[Stay, ...]) -> Float[np.ndarray, "3"]:
+    """The axis that points up where a body first rests, or else in its first known frame."""
+    known = np.flatnonzero(~where.smooth.lost)
+    up = np.array([0.0, 0.0, 1.0])
+    if rests:
+        turn = rests[0].orientation
+    elif known.size:
+        turn = where.smooth.orientations[known[0]]
+    else:
+        return up
+    return np.asarray(rotation_matrices(turn[None])[0].T @ up)
+
+
 def lean(
     orientations: Float[np.ndarray, "frames 4"], upright: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "frames"]:
     """Angle of an axis of the body from the vertical at each frame [rad]."""
     up = (rotation_matrices(orientations) @ upright)[:, 2]
     return np.arccos(np.clip(up, -1.0, 1.0))
+
+
+def spin(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames"]:
+    """Angle by which a body has turned about the vertical since the first frame [rad].
+
+    Each step's turn about the vertical is the twist of its rotation; lost frames add nothing.
+    """
+    rotation = Rotation.from_quat(np.nan_to_num(orientations, nan=0.5), scalar_first=True)
+    steps = (rotation[1:] * rotation[:-1].inv()).as_rotvec()[:, 2]
+    lost = np.isnan(orientations[:, 0])
+    steps[lost[1:] | lost[:-1]] = 0.0
+    return np.concatenate(([0.0], np.cumsum(steps)))

@@ -6,9 +6,7 @@ from jaxtyping import Float
 from extractors.figures import Figure
 
 
-def contact_normal(
-    body: Figure, other: Figure, frame: int
-) -> Float[np.ndarray, "3"] | None:
+def contact_normal(body: Figure, other: Figure, frame: int) -> Float[np.ndarray, "3"] | None:
     """The unit normal of a contact, from the other to the body, in the world; None if unknown.
 
     Among the directions of the world's and both bodies' axes and the one that joins their
@@ -23,8 +21,6 @@ def contact_normal(
     own = body.corners @ body.turns[frame].T
     others = other.corners @ other.turns[frame].T
     apart = (
-        directions @ offset
-        + (own @ directions.T).min(axis=0)
-        - (others @ directions.T).max(axis=0)
+        directions @ offset + (own @ directions.T).min(axis=0) - (others @ directions.T).max(axis=0)
     )
     return np.asarray(directions[int(np.argmax(np.round(apart, 6)))])

@@ -65,9 +65,9 @@ def stays(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Stay, ...
     stream = where.smooth
     times = stream.times
     rate_hz = 1.0 / float(np.median(np.diff(times)))
-    slow = _slow(stream, where.noise, rate_hz, thresholds)
+    calm = slow(stream, where.noise, rate_hz, thresholds)
     found: list[Stay] = []
-    for first, last in intervals(slow, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
+    for first, last in intervals(calm, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
         if found and last <= found[-1].interval[1]:
             continue
         found.append(_stay(stream, (first, last), floor))
@@ -90,23 +90,27 @@ def moving(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Interval
     )
 
 
-def _slow(
+def slow(
     stream: Stream, noise: Noise, rate_hz: float, thresholds: Thresholds
 ) -> Bool[np.ndarray, "frames"]:
     """Whether the way's slope over the window of rest is no more than noise makes it."""
     half = max(1, round(0.5 * thresholds.rest_window_s * rate_hz))
-    steps = 2 * half + 1
-    speed = np.full(len(stream.times), np.inf)
+    # Least squares over n samples: the slope's deviation is sigma sqrt(12 / n^3) a step.
+    left = thresholds.rest_sigmas * rate_hz * np.sqrt(3.0 * 12.0 / (2 * half + 1) ** 3)
+    slow = np.zeros(len(stream.times), dtype=bool)
     for first, last in geometry.gaps(~stream.lost):
         part = slice(first, last + 1)
-        speed[part] = _slope(stream.positions[part], half) * rate_hz
-    # Least squares over n samples: the slope's deviation is sigma sqrt(12 / n^3) a step.
-    noise_mps = noise.position_m * rate_hz * np.sqrt(3.0 * 12.0 / steps**3)
-    return speed < max(thresholds.rest_speed_mps, thresholds.rest_sigmas * noise_mps)
+        speed = _slope(stream.positions[part], half) * rate_hz
+        # A quaternion changes by half of the angle.
+        turning = 2.0 * _slope(stream.orientations[part], half) * rate_hz
+        slow[part] = (speed < max(thresholds.rest_speed_mps, left * noise.position_m)) & (
+            turning < max(thresholds.rest_speed_radps, left * noise.orientation_rad)
+        )
+    return slow
 
 
-def _slope(positions: Float[np.ndarray, "frames 3"], half: int) -> Float[np.ndarray, "frames"]:
-    """Length of the slope of a straight line fitted to the frames around each [m a frame]."""
+def _slope(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.ndarray, "frames"]:
+    """Length of the slope of a straight line fitted to the frames around each, a frame."""
     count = len(positions)
     half = min(half, (count - 1) // 2)
     if half < 1:

@@ -6,18 +6,23 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model import geometry
-from capar.model.facts import Apart, Fact, Place, Travelled, Wound
+from capar.model.facts import Apart, Fact, Place, Posture, Travelled, Wound
 from extractors.figures import Figure
+from extractors.leaning import lean, spin
 
 
-def places(figure: Figure, frames: tuple[int, ...]) -> Iterator[Fact]:
-    """Place, way and turn of a body at some frames; lost frames are left out.
+def places(
+    figure: Figure, upright: Float[np.ndarray, "3"], frames: tuple[int, ...]
+) -> Iterator[Fact]:
+    """Place, way, turn and posture of a body at some frames; lost frames are left out.
 
     Args:
         figure: The body.
+        upright: The axis that points up while it stands, in its own frame.
         frames: Frames, ascending.
     """
     way, turn = _cumulated(figure)
+    leant, spun = lean(figure.orientations, upright), spin(figure.orientations)
     for frame in frames:
         middle = figure.middles[frame]
         if not np.isnan(middle).any():
@@ -25,6 +30,9 @@ def places(figure: Figure, frames: tuple[int, ...]) -> Iterator[Fact]:
             yield Place(figure.name, frame, x, y, z)
             yield Travelled(
                 figure.name, frame, round(1000.0 * way[frame]), round(1000.0 * turn[frame])
+            )
+            yield Posture(
+                figure.name, frame, round(1000.0 * leant[frame]), round(1000.0 * spun[frame])
             )
 
 

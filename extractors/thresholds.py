@@ -50,6 +50,9 @@ class Thresholds:
     rest_speed_mps: float = 0.03
     """A body rests in any case while it is slower than this [m/s]."""
 
+    rest_speed_radps: float = 0.3
+    """The same for its turning [rad/s]: the rim of a thing of 10 cm is then as fast."""
+
     rest_window_s: float = 0.2
     """An object's speed is the slope of its way over this time [s]."""
 

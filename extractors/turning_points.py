@@ -8,9 +8,7 @@ from extractors.poses import Poses
 from extractors.thresholds import Thresholds
 
 
-def turning_points(
-    values: Float[np.ndarray, "frames"], least: float
-) -> Int[np.ndarray, "turns"]:
+def turning_points(values: Float[np.ndarray, "frames"], least: float) -> Int[np.ndarray, "turns"]:
     """Frames of extrema that lie at least so far from the extremum before and the one after.
 
     Args:
@@ -78,6 +76,4 @@ def _chains(
         return []
     breaks = np.flatnonzero(np.diff(times[turns]) > thresholds.swing_s) + 1
     groups = np.split(turns, breaks)
-    return [
-        (int(each[0]), int(each[-1])) for each in groups if len(each) >= thresholds.swing_turns
-    ]
+    return [(int(each[0]), int(each[-1])) for each in groups if len(each) >= thresholds.swing_turns]

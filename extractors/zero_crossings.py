@@ -51,6 +51,24 @@ def zero_crossings(
     return np.array(sorted(found), dtype=np.int64)
 
 
+def pauses(
+    speed_mps: Float[np.ndarray, "frames"], crossings: Int[np.ndarray, "crossings"]
+) -> Int[np.ndarray, "pauses"]:
+    """Those crossings, the capture's first and last frame aside, that are no maximum of speed.
+
+    Args:
+        speed_mps: Speed of the low-passed stream [m/s].
+        crossings: Zero crossings, ascending.
+    """
+    if len(crossings) < 3:
+        return crossings[:0]
+    here, before, after = (speed_mps[crossings[each]] for each in (_INNER, _EARLIER, _LATER))
+    return crossings[1:-1][~((here > before) & (here > after))]
+
+
+_INNER, _EARLIER, _LATER = slice(1, -1), slice(None, -2), slice(2, None)
+
+
 def rests(
     speed_mps: Float[np.ndarray, "frames"],
     times: Float[np.ndarray, "frames"],
@@ -67,7 +85,7 @@ def rests(
         thresholds: Speed and least duration of rest.
     """
     limit = max(thresholds.rest_speed_mps, thresholds.rest_sigmas * noise_mps)
-    slow = np.nan_to_num(speed_mps, nan=np.inf) < limit
+    slow = _to_the_ends(np.nan_to_num(speed_mps, nan=np.inf) < limit, speed_mps, times, thresholds)
     out = np.zeros(len(speed_mps), dtype=bool)
     step = float(np.median(np.diff(times)))
     for first, last in intervals(slow, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
@@ -75,6 +93,27 @@ def rests(
         if duration((begin, end), times, step) < thresholds.rest_minimum_s:
             begin, end = first, last
         out[begin : end + 1] = True
+    return out
+
+
+def _to_the_ends(
+    slow: Bool[np.ndarray, "frames"],
+    speed_mps: Float[np.ndarray, "frames"],
+    times: Float[np.ndarray, "frames"],
+    thresholds: Thresholds,
+) -> Bool[np.ndarray, "frames"]:
+    """Slowness that begins or ends near the end of a known stretch reaches it.
+
+    A filter knows a stretch's end from one side only, and makes more of the noise there.
+    """
+    out = slow.copy()
+    reach = int(0.5 * thresholds.rest_minimum_s / float(np.median(np.diff(times)))) + 1
+    for first, last in geometry.gaps(~np.isnan(speed_mps)):
+        inside = np.flatnonzero(slow[first : last + 1]) + first
+        if inside.size and inside[0] - first <= reach:
+            out[first : inside[0]] = True
+        if inside.size and last - inside[-1] <= reach:
+            out[inside[-1] : last + 1] = True
     return out
 
 

@@ -25,7 +25,7 @@ def answer(source: BinaryIO) -> bytes:
 
 def _ask(request: dict[str, str], source: BinaryIO) -> tuple[str, bytes]:
     if request["address"]:
-        from kb.remote import post_query  # noqa: PLC0415 (slow to import)
+        from kb.remote import post_query
 
         return post_query(request["address"], request["query"])
     if request["folder"]:

@@ -83,8 +83,8 @@ class EmbeddedStore:
 
     def dataset(self) -> Any:
         """The same as rdflib's dataset, whose default graph is the union of all."""
-        from oxrdflib import OxigraphStore  # noqa: PLC0415 (slow to import)
-        from rdflib import Dataset  # noqa: PLC0415 (slow to import)
+        from oxrdflib import OxigraphStore
+        from rdflib import Dataset
 
         return Dataset(store=OxigraphStore(store=self._store), default_union=True)
 

@@ -15,10 +15,15 @@ GRAPHS = {
     "agents": NamedNode(DATA + "graph/agents"),
     "objects": NamedNode(DATA + "graph/objects"),
     "actions": NamedNode(DATA + "graph/actions"),
-    "lexicon": NamedNode(DATA + "graph/lexicon"),
+    "wordnet": NamedNode(DATA + "graph/lexicon/wordnet"),
+    "levin": NamedNode(DATA + "graph/lexicon/levin"),
+    "verbnet": NamedNode(DATA + "graph/lexicon/verbnet"),
+    "links": NamedNode(DATA + "graph/lexicon/links"),
     "imported": NamedNode(DATA + "graph/imported"),
 }
 """The named graphs that are no observation's, by what they hold."""
+
+_GRAPHS_BY_IRI = frozenset(each.value for each in GRAPHS.values())
 
 _OF_FOLDER = {
     "agent": "agents",
@@ -31,6 +36,13 @@ _OF_FOLDER = {
     "complex": "actions",
     "rules": "actions",
     "graph": "ontology",
+    "synset": "wordnet",
+    "sense": "wordnet",
+    "verb": "wordnet",
+    "levin": "levin",
+    "verbnet": "verbnet",
+    "claim": "levin",
+    "remark": "levin",
 }
 
 
@@ -70,6 +82,8 @@ def graph_of(subject: NamedNode) -> NamedNode:
     iri = subject.value
     if iri.startswith(OBSERVATION):
         return NamedNode(iri.partition("#")[0])
+    if iri in _GRAPHS_BY_IRI:
+        return subject
     if iri.startswith(DATA):
         folder, _, name = iri.removeprefix(DATA).partition("/")
         if folder == "kind" and unquote(name) in ontology_files.kinds():

@@ -65,8 +65,8 @@ class RemoteStore:
 
     def dataset(self) -> Any:
         """The same as rdflib's dataset, over the server's own endpoints."""
-        from rdflib import Dataset  # noqa: PLC0415 (slow to import)
-        from rdflib.plugins.stores.sparqlstore import SPARQLStore  # noqa: PLC0415 (slow to import)
+        from rdflib import Dataset
+        from rdflib.plugins.stores.sparqlstore import SPARQLStore
 
         return Dataset(store=SPARQLStore(_query_address(self.place)), default_union=True)
 

@@ -75,10 +75,10 @@ def open_store(where: str | Path | None, *, read_only: bool = False, wait_s: flo
         StoreError: There is no store to read, or it cannot be used.
     """
     if where is not None and is_address(str(where)):
-        from kb.remote import RemoteStore  # noqa: PLC0415 (slow to import)
+        from kb.remote import RemoteStore
 
         return RemoteStore(str(where))
-    from kb.embedded import EmbeddedStore  # noqa: PLC0415 (slow to import)
+    from kb.embedded import EmbeddedStore
 
     folder = None if where is None else Path(where)
     return EmbeddedStore(folder, read_only=read_only, wait_s=wait_s)

@@ -3,20 +3,19 @@
 from pyoxigraph import NamedNode, Quad
 
 from kb.names import GRAPHS
+from kb.sparql import fill
 from kb.statements import insertion
-from ontology import PREFIXES
+from ontology import CAPAR
 
-_PROLOGUE = f"PREFIX capar: <{PREFIXES['capar']}>\n"
-
-_ORPHANS = """DELETE {{ GRAPH ?shared {{ ?thing ?predicate ?value }} }}
+_ORPHANS = f"""DELETE {{ GRAPH ?shared {{ ?thing ?predicate ?value }} }}
 WHERE {{
-  GRAPH {graph} {{ {graph} capar:mentions ?thing }}
+  GRAPH @graph@ {{ @graph@ {CAPAR.mentions} ?thing }}
   FILTER NOT EXISTS {{
-    GRAPH ?elsewhere {{ ?other capar:mentions ?thing }}
-    FILTER(?elsewhere != {graph})
+    GRAPH ?elsewhere {{ ?other {CAPAR.mentions} ?thing }}
+    FILTER(?elsewhere != @graph@)
   }}
-  VALUES ?shared {{ {shared} }}
-  FILTER NOT EXISTS {{ GRAPH ?shared {{ ?thing capar:declared true }} }}
+  VALUES ?shared {{ @shared@ }}
+  FILTER NOT EXISTS {{ GRAPH ?shared {{ ?thing {CAPAR.declared} true }} }}
   GRAPH ?shared {{ ?thing ?predicate ?value }}
 }}"""
 
@@ -24,8 +23,8 @@ WHERE {{
 def removal(graph: NamedNode) -> str:
     """The update that takes an observation back, and what nobody else mentions."""
     shared = " ".join(str(GRAPHS[each]) for each in ("agents", "objects", "actions"))
-    orphans = _ORPHANS.format(graph=graph, shared=shared)
-    return f"{_PROLOGUE}{orphans} ;\nDROP SILENT GRAPH {graph}"
+    orphans = fill(_ORPHANS, graph=str(graph), shared=shared)
+    return f"{orphans} ;\nDROP SILENT GRAPH {graph}"
 
 
 def replacement(graph: NamedNode, quads: list[Quad]) -> str:

@@ -1,6 +1,7 @@
-"""The thesis's published results come out of motion, whoever performs and however it is recorded."""
+"""The published results of the thesis come out of motion, whoever performs, however recorded."""
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import motions
 import numpy as np
@@ -228,7 +229,7 @@ def _four_objects() -> tuple[Fact, ...]:
     ]
     for body, touched in (("right_hand", HAND_TOUCHES), ("obj1", TOOL_TOUCHES)):
         edges = [0, *(np.flatnonzero(np.diff(touched)) + 1), len(touched)]
-        for first, end in zip(edges, edges[1:], strict=False):
+        for first, end in pairwise(edges):
             if touched[first]:
                 span = int(first) * STEP, (int(end) - 1) * STEP
                 facts.append(Touching(body, f"obj{touched[first]}", *span))

@@ -6,9 +6,9 @@ Run as ``python tests/write_demo.py`` to write it anew.
 from pathlib import Path
 
 import numpy as np
+from motions import TALL_MAN, drink_from_mug
 
 from capar.model.capture import Capture, Sensor, Shape, TagObject
-from motions import TALL_MAN, drink_from_mug
 
 BUNDLE = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 NOISE_M = 0.0003

@@ -66,6 +66,8 @@ def _print(console: "Console", result: dict[str, Any]) -> None:
     for kind in ("missed", "inserted"):
         counts = ", ".join(f"{name} {count}" for name, count in result["all"][kind].items())
         console.print(f"segments {kind}: {counts or 'none'}", markup=False)
+    for notice in result["notices"]:
+        console.print(notice, markup=False, soft_wrap=True)
     if result["unlabelled_links"]:
         names = ", ".join(result["unlabelled_links"])
         console.print(f"not counted, because they bear no labels: {names}", markup=False)

@@ -52,6 +52,9 @@ class Evaluation:
     unlabelled: tuple[str, ...]
     """Links that were observed and bear no labels in any of the files: not counted."""
 
+    notices: tuple[str, ...] = ()
+    """What is odd about the labels."""
+
 
 def evaluate(
     pairs: Sequence[tuple[str, Path]],
@@ -104,6 +107,7 @@ def compare(cases: Sequence[Case], mapping: LabelMapping) -> Evaluation:
         links=by_link,
         whole=pooled(by_link.values()),
         unlabelled=tuple(sorted(observed - set(found))),
+        notices=tuple(each for case in cases for each in case.labels.notices),
     )
 
 
@@ -148,6 +152,7 @@ def report(evaluation: Evaluation) -> dict[str, Any]:
         "links": {name: scores(counts) for name, counts in evaluation.links.items()},
         "all": scores(evaluation.whole),
         "unlabelled_links": list(evaluation.unlabelled),
+        "notices": list(evaluation.notices),
     }
 
 

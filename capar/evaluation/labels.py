@@ -60,6 +60,9 @@ class Labels:
     in_frames: bool
     """Whether starts and ends are numbers of frames, not seconds."""
 
+    notices: tuple[str, ...] = ()
+    """Marks that contradict themselves or each other, and what was made of them."""
+
     def of(self, link: str) -> tuple[Label, ...]:
         """The marks of one link."""
         return tuple(each for each in self.marks if each.link == link)
@@ -82,17 +85,18 @@ def read_labels(path: Path) -> Labels:
     (``hand,start_frame,end_frame,...,action,...,object``) and the JSON of the KIT Bimanual
     Actions Dataset.
 
+    A mark that ends before it starts is left out, and what two marks claim belongs to neither;
+    notices say so.
+
     Raises:
-        FileError: It is none of these, or a mark ends before it starts or overlaps another.
+        FileError: It is none of these forms, or it marks nothing.
     """
     text = read_text(path)
     if text.lstrip().startswith("{"):
         marks, in_frames = _bimacts(path, text), True
     else:
         marks, in_frames = _table(path, text)
-    labels = Labels(path, tuple(sorted(marks)), in_frames)
-    _check(labels)
-    return labels
+    return _agreed(path, marks, "frame" if in_frames else "second")
 
 
 def in_seconds(labels: Labels, times: Float[np.ndarray, "frames"]) -> Labels:
@@ -125,7 +129,7 @@ def in_seconds(labels: Labels, times: Float[np.ndarray, "frames"]) -> Labels:
         )
         for each in labels.marks
     ]
-    return Labels(labels.path, tuple(marks), False)
+    return Labels(labels.path, tuple(marks), False, labels.notices)
 
 
 def _table(path: Path, text: str) -> tuple[list[Label], bool]:
@@ -185,15 +189,30 @@ def _alternating(link: str, marks: list[Any]) -> list[Label]:
     return out
 
 
-def _check(labels: Labels) -> None:
-    if not labels.marks:
-        raise FileError(labels.path, "marks nothing.", "A label file has at least one mark.")
-    for link in labels.links:
-        end = -math.inf
-        for each in labels.of(link):
-            span = f"{link}: {each.label} from {each.start:g} to {each.end:g}"
-            if each.end < each.start:
-                raise FileError(labels.path, f"{span} ends before it starts.")
-            if each.start < end:
-                raise FileError(labels.path, f"{span} starts before the mark before it ends.")
-            end = each.end
+def _agreed(path: Path, marks: list[Label], unit: str) -> Labels:
+    """The marks without what contradicts itself, which the notices name."""
+    if not marks:
+        raise FileError(path, "marks nothing.", "A label file has at least one mark.")
+    out: list[Label] = []
+    notices = []
+    claims: dict[str, Label] = {}
+    for each in sorted(marks):
+        if each.end < each.start:
+            notices.append(f"{path}: left out {_shown(each, unit)}: it ends before it starts")
+            continue
+        claim = claims.get(each.link, each)
+        if each.start < claim.end and claim is not each:
+            notices.append(
+                f"{path}: {_shown(each, unit)} and {_shown(claim, unit)} overlap; "
+                "what both claim is not counted"
+            )
+            out[-1] = replace(out[-1], end=min(out[-1].end, each.start))
+            out.append(replace(each, start=min(claim.end, each.end)))
+        else:
+            out.append(each)
+        claims[each.link] = max(claim, each, key=lambda mark: mark.end)
+    return Labels(path, tuple(out), unit == "frame", tuple(notices))
+
+
+def _shown(mark: Label, unit: str) -> str:
+    return f"{mark.label} of {mark.link} from {unit} {mark.start:g} to {mark.end:g}"

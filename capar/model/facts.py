@@ -124,6 +124,15 @@ class ZeroCrossing(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class Pause(Fact):
+    """A zero crossing at which the end-effector is slow: it starts, stops or turns."""
+
+    predicate = "pause"
+    ee: str
+    frame: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Touching(Fact):
     """Two bodies touch from the first to the last frame; an end-effector stands first."""
 
@@ -219,6 +228,21 @@ class Travelled(Fact):
     frame: int
     way: int
     turn: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Posture(Fact):
+    """How a body stands at a frame [milliradians].
+
+    How far its upright axis is from the vertical, and the angle by which it has turned about the
+    vertical since the capture began.
+    """
+
+    predicate = "posture"
+    body: str
+    frame: int
+    lean: int
+    spin: int
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -362,6 +386,7 @@ MEASURED: tuple[type[Fact], ...] = (
     Link,
     Tag,
     ZeroCrossing,
+    Pause,
     Touching,
     Gap,
     Moving,
@@ -371,6 +396,7 @@ MEASURED: tuple[type[Fact], ...] = (
     Resting,
     Place,
     Travelled,
+    Posture,
     Apart,
     Wound,
     Upward,

@@ -20,7 +20,7 @@ class Border:
     """Why a segment begins or ends: the relation that began or ended there."""
 
     kind: str
-    """``first``, ``last``, ``begins``, ``ends``, ``starts_moving`` or ``stops_moving``."""
+    """``first``, ``last``, ``begins``, ``ends``, ``starts_moving``, ``stops_moving`` or ``turns``."""
 
     body: str = ""
     other: str = ""

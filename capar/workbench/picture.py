@@ -55,6 +55,7 @@ def draw(observation: Observation, speeds: Speeds, *, path: Path) -> None:
         "svg.hashsalt": "capar",
         "font.family": "DejaVu Sans",
         "hatch.linewidth": 0.6,
+        "text.parse_math": False,
     }
     with mpl.rc_context(rc={**dict(mpl.rcParamsDefault), **settings, "backend": "agg"}):
         figure = _figure(observation, speeds)

@@ -1,5 +1,6 @@
 """A look at a C3D file's counts against its length, before a native library trusts them."""
 
+import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 from capar.model.errors import FileError
 
 BLOCK = 512
+_NAME = re.compile(r"[A-Z0-9_ ]+")
 _ORDERS = {84: "<", 85: "<", 86: ">"}
 
 
@@ -49,6 +51,8 @@ def _walk(
         name_end = at + 2 + abs(length)
         _inside(path, section, name_end + 2)
         name = section[at + 2 : name_end].decode("latin-1").upper()
+        if length == -128 or not _NAME.fullmatch(name):
+            raise FileError(path, f"has a parameter called {name[:20]!r}; it is damaged.")
         (step,) = struct.unpack_from(order + "h", section, name_end)
         if number < 0:
             groups[name] = -number
@@ -56,7 +60,9 @@ def _walk(
             entries.append(
                 _entry(path, section, name_end + 2, group=number, name=name, order=order, vax=vax)
             )
-        if step <= 0:
+        if step < 0:
+            raise FileError(path, f"has a parameter {name!r} that leads back; it is damaged.")
+        if step == 0:
             break
         at = name_end + step
         _inside(path, section, at)

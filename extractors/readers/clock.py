@@ -11,10 +11,10 @@ from capar.model.capture import Stream
 from capar.model.errors import CaptureError
 
 GAP_S = 0.1
-"""A sample further away than this is no neighbour [s]."""
+"""Nothing is interpolated between samples further apart than this [s]."""
 
 GAP_STEPS = 1.5
-"""Nor is one further than so many steps of the source."""
+"""Or than so many steps of a source that is slower."""
 
 SAME_S = 1e-6
 """Time stamps that differ by less are one [s]."""
@@ -36,6 +36,8 @@ def resampled(
     known = np.flatnonzero(~stream.lost)
     if not known.size:
         return _lost(times)
+    if extend == "none" and _is_on(stream, times):
+        return Stream(times, stream.positions, stream.orientations)  # what is lost stays so
     source = stream.times[known]
     wanted = np.clip(times, source[0], source[-1]) if extend == "rest" else times
     near = _near(source, wanted, stream.times)
@@ -45,6 +47,10 @@ def resampled(
     positions[near] = _positions(source, stream.positions[known], inside)
     orientations[near] = geometry.slerp(source, stream.orientations[known], inside)
     return Stream(times=times, positions=positions, orientations=orientations)
+
+
+def _is_on(stream: Stream, times: Float[np.ndarray, "frames"]) -> bool:
+    return len(times) == len(stream.times) and bool(np.abs(times - stream.times).max() < SAME_S)
 
 
 def _lost(times: Float[np.ndarray, "frames"]) -> Stream:
@@ -61,14 +67,13 @@ def _near(
     wanted: Float[np.ndarray, "frames"],
     clock: Float[np.ndarray, "samples"],
 ) -> Bool[np.ndarray, "frames"]:
-    """Where a wanted time has known samples near it on both sides, or one at itself."""
+    """Where a wanted time has a known sample at itself, or lies between two near ones."""
     reach = max(GAP_S, GAP_STEPS * float(np.median(np.diff(clock))))
     after = np.clip(np.searchsorted(source, wanted), 0, len(source) - 1)
     before = np.clip(after - 1, 0, len(source) - 1)
-    left, right = np.abs(wanted - source[before]), np.abs(source[after] - wanted)
-    inside = (wanted >= source[0] - 1e-9) & (wanted <= source[-1] + 1e-9)
-    exact = np.minimum(left, right) < 1e-9
-    return exact | (inside & (np.maximum(left, right) <= reach))
+    exact = np.minimum(np.abs(wanted - source[before]), np.abs(source[after] - wanted)) < SAME_S
+    inside = (wanted >= source[0]) & (wanted <= source[-1])
+    return exact | (inside & (source[after] - source[before] <= reach + SAME_S))
 
 
 def _positions(
@@ -81,7 +86,7 @@ def _positions(
         return np.repeat(positions, len(wanted), axis=0)
     out = np.stack([np.interp(wanted, source, each) for each in positions.T], axis=1)
     step = max(GAP_S, GAP_STEPS * float(np.median(np.diff(source))))
-    breaks = np.flatnonzero(np.diff(source) > 2.0 * step) + 1
+    breaks = np.flatnonzero(np.diff(source) > step) + 1
     for run in np.split(np.arange(len(source)), breaks):
         if len(run) < 4:
             continue

@@ -107,8 +107,14 @@ def check_span(
     low, high = np.quantile(points, [0.05, 0.95], axis=0)
     span = float(np.linalg.norm(high - low))
     if span > LARGEST_M or (span < SMALLEST_M and len(every) > 1):
-        likely = min(UNITS, key=lambda name: abs(np.log(span / unit_m * UNITS[name] + 1e-12)))
+        likely = _likely_unit(span / unit_m)
         raise CaptureError(
             f"{path}: in this unit ({unit_m:g} m) the recording spans {span:.4g} m; people move "
             f'in a few metres. The unit is likely {likely!r}: state unit = "{likely}"'
         )
+
+
+def _likely_unit(span: float) -> str:
+    """The unit in which a span is one of a person at work; the usual ones first."""
+    fitting = [name for name in ("m", "mm", *UNITS) if 0.1 <= span * UNITS[name] <= 20.0]
+    return fitting[0] if fitting else "m"

@@ -11,11 +11,12 @@ from kb.errors import StoreError
 from kb.findings import Ability
 from kb.lookup import kinds
 from kb.lookup.pars import upars
+from kb.sparql import fill
 from kb.statements import LABEL, TYPE, Statements
 from kb.store import Store
 from ontology import CAPAR
 
-YES = Literal(True)  # noqa: FBT003
+YES = Literal(True)
 
 _AGENT = f"""SELECT DISTINCT ?action ?declared
 WHERE {{
@@ -29,12 +30,12 @@ WHERE {{
     ?seen {CAPAR.agent} ?who ; {CAPAR.segment}/{CAPAR.action}/{CAPAR.name} ?action .
     BIND(false AS ?declared)
   }}
-  ?who {CAPAR.name} NAME .
+  ?who {CAPAR.name} @name@ .
 }}"""
 
 _KIND = f"""SELECT DISTINCT ?action ?declared
 WHERE {{
-  VALUES ?kind {{ KINDS }}
+  VALUES ?kind {{ @kinds@ }}
   {{
     ?kind {CAPAR.affords}/{CAPAR.name} ?action .
     BIND(true AS ?declared)
@@ -100,7 +101,7 @@ def of(store: Store, name: str) -> tuple[Ability, ...]:
     word = str(Literal(name))
     nodes = " ".join(str(names.shared("kind", each)) for each in kinds.above(store, name))
     found: set[Ability] = set()
-    for query in (_AGENT.replace("NAME", word), _KIND.replace("KINDS", nodes)):
+    for query in (fill(_AGENT, name=word), fill(_KIND, kinds=nodes)):
         for action, declared in store.ask(query).rows:
             if isinstance(action, Literal) and isinstance(declared, Literal):
                 evidence = "declared" if declared.value == "true" else "observed"

@@ -38,9 +38,9 @@ def rows(store: Store) -> tuple[FeatureRow, ...]:
     }
     seen: dict[tuple[str, FeatureSet], int] = {}
     general: dict[tuple[str, FeatureSet], tuple[str, ...]] = dict(declared)
-    for bits, name, more, times in store.ask(_SEEN).rows:
-        if isinstance(bits, NamedNode) and isinstance(name, Literal):
-            key = (name.value, decode_features(reading, bits))
+    for seen_bits, name, more, times in store.ask(_SEEN).rows:
+        if isinstance(seen_bits, NamedNode) and isinstance(name, Literal):
+            key = (name.value, decode_features(reading, seen_bits))
             seen[key] = seen.get(key, 0) + int(plain(times) or 0)
             general.setdefault(key, tuple(str(plain(more) or "").split()))
     return tuple(
@@ -72,7 +72,7 @@ def add(store: Store, name: str, value: FeatureSet, general: tuple[str, ...]) ->
     node = names.shared("row", names.hashed((name, value)))
     out.share(node, (CAPAR.FeatureRow,), said)
     keep = [each for each in (node, bits, action, *above) if each is not None]
-    marks = [Quad(each, CAPAR.declared, Literal(True), graph) for each in keep]  # noqa: FBT003
+    marks = [Quad(each, CAPAR.declared, Literal(True), graph) for each in keep]
     store.insert([each for each in out.quads if each.predicate != CAPAR.mentions] + marks)
     return next(row for row in rows(store) if (row.name, row.features) == (name, value))
 

@@ -4,8 +4,8 @@ from pyoxigraph import Literal, NamedNode, Quad
 
 from kb import names
 from kb.errors import StoreError
-from kb.store import Store
 from kb.statements import LABEL, TYPE, insertion
+from kb.store import Store
 from ontology import CAPAR
 from ontology.files import closure
 
@@ -52,7 +52,7 @@ def described(name: str) -> list[Quad]:
     """That a kind was declared, and what it is if the ontology does not know it."""
     graph = names.GRAPHS["objects"]
     node = names.shared("kind", name)
-    marks = [Quad(node, CAPAR.declared, Literal(True), graph)]  # noqa: FBT003
+    marks = [Quad(node, CAPAR.declared, Literal(True), graph)]
     if names.graph_of(node) == names.GRAPHS["ontology"]:
         return marks
     label = Literal(name.replace("_", " "), language="en")

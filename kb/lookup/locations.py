@@ -10,6 +10,7 @@ from kb.answers import Found
 from kb.findings import FoundLocation
 from kb.literals import nlt_of
 from kb.lookup import kinds
+from kb.sparql import fill
 from kb.store import Store
 from ontology import CAPAR
 
@@ -19,9 +20,9 @@ OTHER = {"right": "left", "left": "right"}
 _FIND = f"""SELECT DISTINCT ?kind ?observation ?agent ?action ?purpose ?side ?frame
   ?dominant ?goal ?ee ?at ?seen ?view
 WHERE {{
-  VALUES ?kind {{ KINDS }}
+  VALUES ?kind {{ @kinds@ }}
   {{ ?place {CAPAR.goalKind} ?kind }} UNION {{ ?place {CAPAR.dominantKind} ?kind }}
-  FILTERS
+  @filters@
   ?place {CAPAR.actionName} ?action ;
     {CAPAR.side} ?side ;
     {CAPAR.frame} ?frame .
@@ -49,7 +50,7 @@ def find(
         filters.append(f"?place {CAPAR.actionName} {Literal(action)} .")
     if purpose is not None:
         filters.append(f"?place {CAPAR.purpose} {Literal(purpose)} .")
-    query = _FIND.replace("KINDS", nodes).replace("FILTERS", "\n  ".join(filters))
+    query = fill(_FIND, kinds=nodes, filters="\n  ".join(filters))
     found = [_found(row, kind, side) for row in store.ask(query).rows]
     fitting = [each for each in found if side in {None, each.location.side}]
     return tuple(

@@ -12,6 +12,7 @@ from kb.errors import ExistsError
 from kb.findings import Added, Stored
 from kb.lookup import recognition
 from kb.shapes import prove
+from kb.sparql import fill
 from kb.store import Store
 from ontology import CAPAR
 
@@ -28,7 +29,7 @@ WHERE {{
     {CAPAR.version} ?version ;
     {CAPAR.ruleBase}/{CAPAR.sha256} ?rules ;
     {CAPAR.duration} ?duration .
-  FILTERS
+  @filters@
 }}
 ORDER BY ?name"""
 
@@ -65,9 +66,10 @@ def forget(store: Store, name: str) -> None:
 
 def observations(store: Store, filters: str = "") -> tuple[Stored, ...]:
     """Observations, by name; of those, the ones for which some patterns over ``?seen`` hold."""
-    rows = store.ask(_LIST.replace("FILTERS", filters)).rows
+    rows = store.ask(fill(_LIST, filters=filters)).rows
     out = []
     for row in rows:
         text = [each.value if isinstance(each, Literal) else "" for each in row]
-        out.append(Stored(*text[:6], duration_s=float(text[6])))
+        name, action, agent, profile, version, rules, duration = text
+        out.append(Stored(name, action, agent, profile, version, rules, float(duration)))
     return tuple(out)

@@ -5,12 +5,13 @@ from pyoxigraph import Literal
 from capar.model.par import Style
 from kb.findings import FoundStyle
 from kb.literals import numbers, path_of
+from kb.sparql import fill
 from kb.store import Store
 from ontology import CAPAR
 
 _FIND = f"""SELECT ?agent ?observation ?index ?action ?purpose ?ee ?velocity ?path
 WHERE {{
-  FILTERS
+  @filters@
   ?style a {CAPAR.AgentStyle} ;
     {CAPAR.agent}/{CAPAR.name} ?agent ;
     {CAPAR.index} ?index ;
@@ -35,7 +36,7 @@ def find(
         f"{CAPAR.ee}": ee,
     }
     filters = [f"?style {path} {Literal(word)} ." for path, word in wanted.items() if word]
-    rows = store.ask(_FIND.replace("FILTERS", "\n  ".join(filters))).rows
+    rows = store.ask(fill(_FIND, filters="\n  ".join(filters))).rows
     found = []
     for row in rows:
         text = [each.value if isinstance(each, Literal) else "" for each in row]

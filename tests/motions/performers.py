@@ -47,8 +47,8 @@ TALL_MAN = Performer(
     swing_m=0.06, table_m=1.05, aside_m=0.0, sway_m=0.003,
 )  # fmt: skip
 WOMAN = Performer(
-    name="woman", kind="woman", stature_m=1.63, mass_kg=61.0, pace=1.14, rise_m=0.20,
-    swing_m=0.16, table_m=0.92, aside_m=0.06, sway_m=0.002,
+    name="woman", kind="woman", stature_m=1.63, mass_kg=61.0, pace=1.14, rise_m=0.28,
+    swing_m=0.20, table_m=0.92, aside_m=0.06, sway_m=0.002,
 )  # fmt: skip
 CHILD = Performer(
     name="child", kind="child", stature_m=1.36, mass_kg=30.5, pace=1.27, rise_m=0.15,

@@ -77,22 +77,6 @@ def move_obj(performer: Performer, **options: Unpack[Options]) -> Trial:
     return record(Script("move_obj", performer, truth, bodies), Sampling(**options))
 
 
-def move_obj_to(performer: Performer, **options: Unpack[Options]) -> Trial:
-    """A block in the hand is set down as the capture ends: MoveObjTo."""
-    end = 1.0 * performer.pace
-    goal = np.array([0.5, -0.1 + performer.aside_m, performer.table_m])
-    lift = pose(goal + np.array([-0.1, -0.2, 0.3]))
-    stamp = Moves((Move(0.0, end, lift, pose(goal), arrive=(0.0, 0.0, -0.2),
-                        launch_mps2=2.0, halt_mps2=6.0),))  # fmt: skip
-    meetings = (
-        Meeting(HAND, "stamp", stamp, (0.0, 0.0, 0.0), UP, figure.GRIP_DEPTH),
-        Meeting("stamp", "table", stamp, (0.0, 0.0, 0.0), UP, 0.0, end, None),
-    )
-    truth = Truth(end, meetings, _steps("MoveObjTo"), {HAND: ()})
-    bodies = (*_held_stamp(performer, stamp), _table(performer))
-    return record(Script("move_obj_to", performer, truth, bodies), Sampling(**options))
-
-
 def touch(performer: Performer, **options: Unpack[Options]) -> Trial:
     """A flat hand lies on the table all along: Touch."""
     end = 1.0 * performer.pace
@@ -101,20 +85,6 @@ def touch(performer: Performer, **options: Unpack[Options]) -> Trial:
     truth = Truth(end, (meeting,), _steps("Touch"), {HAND: ()})
     bodies = (figure.hand_body(performer, HAND, hand), _table(performer))
     return record(Script("touch", performer, truth, bodies), Sampling(**options))
-
-
-def resume_posture(performer: Performer, **options: Unpack[Options]) -> Trial:
-    """A hand that lay on the table at the start goes back at once: ResumePosture."""
-    home = 1.1 * performer.pace
-    back = figure.withdraw(
-        performer, HAND, begin=_flat(performer), depart=(-0.05, 0.0, 0.25), start_s=0.0,
-        end_s=home, launch_mps2=figure.FIRM_MPS2,
-    )  # fmt: skip
-    hand = Moves((back,))
-    meeting = Meeting(HAND, "table", hand, _palm(performer), UP, figure.GRIP_DEPTH, None, 0.0)
-    truth = Truth(home + 0.2, (meeting,), _steps("ResumePosture"), {HAND: ()})
-    bodies = (figure.hand_body(performer, HAND, hand), _table(performer))
-    return record(Script("resume_posture", performer, truth, bodies), Sampling(**options))
 
 
 def _palm(performer: Performer) -> tuple[float, float, float]:

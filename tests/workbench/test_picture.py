@@ -40,11 +40,11 @@ def test_a_picture_holds_the_names_of_its_segments_and_what_is_assumed(tmp_path:
     seen = drink_from_mug()
     file = tmp_path / "drink.svg"
     draw(seen, speeds(seen), path=file)
-    comments = set(
+    comments = {
         line.strip().removeprefix("<!-- ").removesuffix(" -->")
         for line in file.read_text(encoding="utf-8").splitlines()
         if line.strip().startswith("<!-- ")
-    )
+    }
     assert {each.name for each in seen.segments} <= comments
     assert any(each.startswith("* table is assumed: a box") for each in comments)
     assert any(each.startswith("† stand-ins of stated size") for each in comments)

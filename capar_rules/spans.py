@@ -1,0 +1,127 @@
+"""Stretches and instants by a link's ticks, for what lies to what and moves in which way."""
+
+from bisect import bisect_left, bisect_right
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from capar.model.facts import (
+    Between,
+    Fact,
+    Flies,
+    Leans,
+    Lies,
+    Nearest,
+    Passage,
+    Resting,
+    Reverses,
+    Swings,
+)
+
+Stretch = tuple[str, str, str, int, int]
+"""What it is, the body, the other body (or the same), first and last frame."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Spans(Fact):
+    """The ticks of a link that lie inside a stretch."""
+
+    predicate = "spans"
+    ee: str
+    how: str
+    body: str
+    other: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Encloses(Fact):
+    """The last tick of a link before a stretch, and the first one after it, or at its ends."""
+
+    predicate = "encloses"
+    ee: str
+    how: str
+    body: str
+    other: str
+    first: int
+    last: int
+
+
+class Stretches:
+    """Every stretch by the body that it is about, in order of time."""
+
+    def __init__(self, facts: Iterable[Fact]) -> None:
+        self._by_body: dict[str, list[Stretch]] = defaultdict(list)
+        passed = {}
+        spans = {}
+        for fact in facts:
+            for each in _stretches(fact):
+                self._by_body[each[1]].append(each)
+            if isinstance(fact, Lies):
+                spans[fact.body, fact.how, fact.other, fact.first] = fact.last
+            elif isinstance(fact, Passage):
+                passed[fact.body, fact.how, fact.other, fact.first] = fact.sides
+        for key, way in passed.items():
+            body, how, other, first = key
+            if key in spans:
+                stretch = (f"{how}_{way}", body, other, first, spans[key])
+                self._by_body[body].append(stretch)
+        for stretches in self._by_body.values():
+            stretches.sort(key=lambda each: (each[3], each))
+
+    def frames(self, body: str) -> Iterable[tuple[int, int]]:
+        """First and last frames at which rules may draw a border for this body."""
+        return [
+            (first, last)
+            for how, _, _, first, last in self._by_body.get(body, ())
+            if how in BORDERS
+        ]
+
+    def ranked(
+        self, ee: str, ticks: Sequence[int], reach: dict[str, list[tuple[int, int]]]
+    ) -> Iterable[Fact]:
+        """The stretches of an end-effector, and of what it handles while it does."""
+        whole = [(ticks[0], ticks[-1])]
+        for body, times in {**reach, ee: whole}.items():
+            for how, _, other, first, last in self._by_body.get(body, ()):
+                if any(begin <= last and first <= end for begin, end in _near(times, first)):
+                    yield from _ranked(ee, (how, body, other, first, last), ticks)
+
+
+BORDERS = frozenset({"resting", "reverses", "swings", "leans", "flies"})
+"""Stretches at whose ends there may be a border."""
+
+
+def _stretches(fact: Fact) -> Iterable[Stretch]:
+    if isinstance(fact, Resting):
+        yield "resting", fact.ee, fact.ee, fact.first, fact.last
+    elif isinstance(fact, Swings):
+        yield "swings", fact.body, fact.body, fact.first, fact.last
+    elif isinstance(fact, Leans):
+        yield "leans", fact.object, fact.object, fact.first, fact.last
+    elif isinstance(fact, Flies):
+        yield "flies", fact.object, fact.object, fact.first, fact.last
+    elif isinstance(fact, Reverses):
+        yield "reverses", fact.object, fact.object, fact.frame, fact.frame
+    elif isinstance(fact, Lies):
+        yield fact.how, fact.body, fact.other, fact.first, fact.last
+    elif isinstance(fact, Between):
+        yield "between", fact.body, fact.one, fact.first, fact.last
+        yield "between", fact.body, fact.other, fact.first, fact.last
+    elif isinstance(fact, Nearest):
+        yield "nearest", fact.body, fact.other, fact.frame, fact.frame
+
+
+def _near(times: Sequence[tuple[int, int]], first: int) -> Sequence[tuple[int, int]]:
+    """Of disjoint stretches in order, those that end at a frame or later."""
+    return times[max(bisect_right(times, (first, first)) - 1, 0) :]
+
+
+def _ranked(ee: str, stretch: Stretch, ticks: Sequence[int]) -> Iterable[Fact]:
+    how, body, other, first, last = stretch
+    inside = bisect_left(ticks, first), bisect_right(ticks, last) - 1
+    if inside[0] <= inside[1]:
+        yield Spans(ee, how, body, other, *inside)
+    around = bisect_right(ticks, first) - 1, min(bisect_left(ticks, last), len(ticks) - 1)
+    yield Encloses(ee, how, body, other, max(around[0], 0), around[1])

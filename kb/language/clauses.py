@@ -1,0 +1,200 @@
+"""Segments as clauses: what each says, of which objects, with which hand, to which end."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from capar.model.observation import Observation, ObservedLink, Segment
+from capar.model.par import Ipar, Motion
+from kb.language.contacts import Scene
+from kb.language.english import words_of
+from kb.language.phrasing import Phrasebook
+from kb.lexicon.links import motion_senses
+from kb.lexicon.wordnet import wordnet
+
+
+@dataclass(frozen=True)
+class Clause:
+    """One thing that was done."""
+
+    pattern: str
+    """``put {1} on {2}``: places for objects, and ``{ee}`` for the hand."""
+
+    objects: tuple[str, ...]
+    ees: tuple[str, ...]
+    """The end-effectors that do it, sorted: one, or both hands."""
+
+    start_s: float
+    end_s: float
+    changes: bool
+    """Whether it changes the world: moves something, strikes it, or is the end itself."""
+
+    purpose: str = ""
+    """What it was done for, in words, where nothing else tells it: ``pour``."""
+
+    known: bool = True
+
+    @property
+    def signature(self) -> tuple[object, ...]:
+        """What makes two clauses say the same but for hands and times."""
+        return self.pattern, self.objects, self.purpose
+
+    def overlap_s(self, other: "Clause") -> float:
+        """For how long both go on [s]."""
+        return min(self.end_s, other.end_s) - max(self.start_s, other.start_s)
+
+
+def clauses(
+    observation: Observation,
+    link: ObservedLink,
+    book: Phrasebook,
+    scene: Scene,
+    *,
+    only_changes: bool = False,
+) -> tuple[Clause, ...]:
+    """What one link did, in order; free motion that touches nothing is left out.
+
+    With ``only_changes``, what changed nothing is left out too, unless nothing else happened.
+    """
+    ipars = {(each.ee, each.start_s): each for each in observation.ipars}
+    told = _told_segments(link, only_changes=only_changes)
+    found: list[tuple[Segment, Clause]] = []
+    held = False
+    before: Segment | None = None
+    for segment in link.segments:
+        held = segment.possessed or (held and _same_dominant(before, segment))
+        if segment.index in told:
+            last = found[-1][0] if found else None
+            ipar = ipars.get((segment.ee, segment.start_s))
+            cases = _cases(segment, last, scene, ipar, held=held)
+            found.append((segment, _clause(segment, before, book, cases)))
+        before = segment
+    return _with_purposes(found, book)
+
+
+def _told_segments(link: ObservedLink, *, only_changes: bool) -> set[int]:
+    touching = [each for each in link.segments if each.objects]
+    if not only_changes:
+        return {each.index for each in touching}
+    changing = [each for each in touching if not each.known or _changes(each)]
+    chosen = changing or touching[1:2] or touching[:1]
+    return {each.index for each in chosen}
+
+
+def _changes(segment: Segment) -> bool:
+    """Whether it moves or strikes something."""
+    return "1" in segment.features.change_loc + segment.features.force
+
+
+def _same_dominant(before: Segment | None, segment: Segment) -> bool:
+    return before is not None and before.objects[:1] == segment.objects[:1]
+
+
+def _cases(
+    segment: Segment, before: Segment | None, scene: Scene, ipar: Ipar | None, *, held: bool
+) -> set[str]:
+    motion = ipar.core.motion if ipar else Motion.NONE
+    cases = {"held"} if held else set()
+    if motion in {Motion.ROTATION, Motion.BOTH}:
+        cases.add("tilts" if motion is Motion.BOTH else "turns")
+    if len(segment.objects) < 2:
+        return cases | {"alone"}
+    thing, other = segment.objects[:2]
+    if before is not None and before.objects[:2] == (thing, other):
+        cases.add("there")
+    if scene.is_self(other):
+        cases.add("self")
+    if scene.rests_on(thing, other):
+        cases.add("on")
+    if scene.was_there(segment, thing, other):
+        cases.add("back")
+    return cases
+
+
+def _clause(segment: Segment, before: Segment | None, book: Phrasebook, cases: set[str]) -> Clause:
+    if not segment.known:
+        return _unknown(segment)
+    pattern = book.pattern(segment.name, segment.general, cases, len(segment.objects))
+    return Clause(
+        pattern=_deed(segment, before, book, cases) or pattern,
+        objects=segment.objects,
+        ees=(segment.ee,),
+        start_s=segment.start_s,
+        end_s=segment.end_s,
+        changes=_changes(segment),
+    )
+
+
+def _unknown(segment: Segment) -> Clause:
+    places = " and ".join(f"{{{number}}}" for number in range(1, len(segment.objects) + 1))
+    near = f" (nearest to {' or '.join(segment.candidates)})" if segment.candidates else ""
+    return Clause(
+        pattern=f"do something with {places} that no rule names{near}",
+        objects=segment.objects,
+        ees=(segment.ee,),
+        start_s=segment.start_s,
+        end_s=segment.end_s,
+        changes=True,
+        known=False,
+    )
+
+
+def _deed(segment: Segment, before: Segment | None, book: Phrasebook, cases: set[str]) -> str:
+    """The purpose itself, where a thing that was brought to its place for it is moved there.
+
+    At the agent's own body that needs no object (``drank``); else only verbs of two words, which
+    take up what is moved (``picked it up``), are certain to have it as their object.
+    """
+    stays = segment.features.rel_start == segment.features.rel_end
+    moves = "1" in segment.features.change_loc and segment.features.count > 1
+    prepared = (
+        before is not None
+        and before.purpose == segment.purpose
+        and before.objects == segment.objects
+    )
+    verb = _purpose_verb(segment.purpose, book)
+    if not (verb and stays and moves and prepared):
+        return ""
+    if "self" in cases:
+        return verb
+    head, _, particle = verb.partition(" ")
+    return f"{head} {{1}} {particle}" if particle else ""
+
+
+def _purpose_verb(purpose: str, book: Phrasebook) -> str:
+    """A user's purpose as a verb that WordNet knows; empty for any other."""
+    if not purpose or book.is_action(purpose):
+        return ""
+    words = words_of(purpose)
+    return words if wordnet().of_lemma(words) else ""
+
+
+def _with_purposes(found: Sequence[tuple[Segment, Clause]], book: Phrasebook) -> tuple[Clause, ...]:
+    """The clauses, with those purposes told that no later clause of the link fulfils."""
+    out = []
+    for index, (segment, clause) in enumerate(found):
+        verb = _purpose_verb(segment.purpose, book)
+        after = [each for other, each in found[index:]]
+        follows = found[index + 1][0].purpose if index + 1 < len(found) else ""
+        manipulates = segment.features.rel_start.startswith("1") and clause.changes
+        if verb and manipulates and follows != segment.purpose and not _told(verb, after):
+            clause = replace(clause, purpose=verb)  # noqa: PLW2901 (the same clause, with its end)
+        out.append(clause)
+    return tuple(out)
+
+
+def _told(verb: str, after: Sequence[Clause]) -> bool:
+    """Whether one of the clauses says what the verb says."""
+    meant = _lemmas(verb)
+    return any(
+        each.pattern.startswith(lemma + " ") or each.pattern == lemma
+        for each in after
+        for lemma in meant
+    )
+
+
+def _lemmas(verb: str) -> set[str]:
+    """The verb, its first word, and the verbs that share its senses as a motion."""
+    same = {verb, verb.split(maxsplit=1)[0]}
+    for key in motion_senses(verb):
+        same.update(wordnet().of_key(key).lemmas)
+    return same

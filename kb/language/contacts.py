@@ -1,0 +1,51 @@
+"""What contact facts say of a scene for its telling: what rests on what, and what came back."""
+
+from collections.abc import Iterable
+
+from capar.model.facts import Moving, Touching
+from capar.model.observation import Observation, Segment
+
+
+class Scene:
+    """Contacts between the objects of an observation."""
+
+    def __init__(self, observation: Observation) -> None:
+        effectors = {link.ee for link in observation.links}
+        touching = [each for each in observation.facts if isinstance(each, Touching)]
+        self._hands = [each for each in touching if each.body in effectors]
+        self._pairs = [each for each in touching if each.body not in effectors]
+        self._moving = [each for each in observation.facts if isinstance(each, Moving)]
+        self._tags = {each.name: each.tag for each in observation.objects}
+
+    def is_self(self, name: str) -> bool:
+        """Whether an object is of the agent's own body."""
+        return self._tags.get(name) == "self"
+
+    def rests_on(self, thing: str, support: str) -> bool:
+        """Whether the thing lay still on the support at some time while no hand touched it."""
+        if self.is_self(support):
+            return False
+        return any(self._free(each, thing) for each in self._between(thing, support))
+
+    def was_there(self, segment: Segment, thing: str, goal: str) -> bool:
+        """Whether the thing touched the goal before, and left it."""
+        return any(
+            each.first <= segment.first and each.last < segment.last
+            for each in self._between(thing, goal)
+        )
+
+    def _between(self, thing: str, other: str) -> Iterable[Touching]:
+        return (each for each in self._pairs if {each.body, each.other} == {thing, other})
+
+    def _free(self, contact: Touching, thing: str) -> bool:
+        """Whether frames of a contact remain in which the thing is neither touched nor moved."""
+        hands = [(each.first, each.last) for each in self._hands if each.other == thing]
+        moves = [(each.first, each.last) for each in self._moving if each.object == thing]
+        frame = contact.first
+        for first, last in sorted(hands + moves):
+            if first > frame:
+                return True
+            frame = max(frame, last + 1)
+            if frame > contact.last:
+                return False
+        return frame <= contact.last

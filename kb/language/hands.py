@@ -1,0 +1,64 @@
+"""What two hands did as one telling: together where they do the same, else in order of time."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from difflib import SequenceMatcher
+
+from capar.model.observation import ObservedLink
+from kb.language.clauses import Clause
+
+
+def told_in_order(
+    links: Sequence[ObservedLink], told: Sequence[tuple[Clause, ...]]
+) -> tuple[Clause, ...]:
+    """Every clause by its time; what the two hands of a pair do together is one clause."""
+    rest = [list(each) for each in told]
+    merged: list[Clause] = []
+    for first, second in _pairs(links):
+        common, left, right = _together(told[first], told[second])
+        merged += common
+        rest[first], rest[second] = left, right
+    every = [*merged, *(each for clauses in rest for each in clauses)]
+    return tuple(sorted(every, key=lambda each: (each.start_s, each.end_s, each.ees)))
+
+
+def _pairs(links: Sequence[ObservedLink]) -> list[tuple[int, int]]:
+    """Places of links that are the two sides of one body part."""
+    return [
+        (first, second)
+        for first in range(len(links))
+        for second in range(first + 1, len(links))
+        if links[first].kind == links[second].kind and links[first].side != links[second].side
+    ]
+
+
+def _together(
+    first: Sequence[Clause], second: Sequence[Clause]
+) -> tuple[list[Clause], list[Clause], list[Clause]]:
+    """What both do at once as single clauses, and what is left of each."""
+    matcher = SequenceMatcher(
+        None,
+        [each.signature for each in first],
+        [each.signature for each in second],
+        autojunk=False,
+    )
+    common, used_first, used_second = [], set[int](), set[int]()
+    for block in matcher.get_matching_blocks():
+        for step in range(block.size):
+            a, b = first[block.a + step], second[block.b + step]
+            if a.overlap_s(b) > 0.0:
+                common.append(_both(a, b))
+                used_first.add(block.a + step)
+                used_second.add(block.b + step)
+    left = [each for index, each in enumerate(first) if index not in used_first]
+    right = [each for index, each in enumerate(second) if index not in used_second]
+    return common, left, right
+
+
+def _both(first: Clause, second: Clause) -> Clause:
+    return replace(
+        first,
+        ees=tuple(sorted((*first.ees, *second.ees))),
+        start_s=min(first.start_s, second.start_s),
+        end_s=max(first.end_s, second.end_s),
+    )

@@ -1,0 +1,63 @@
+"""What primitives are said as: patterns of a verb with places for objects."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+
+from kb.language.english import past, words_of
+from kb.lexicon.links import PrimitiveWords
+from kb.lexicon.tables import table
+
+Cases = Collection[str]
+"""What holds of a segment: held, there, on, back, self, alone, turns, tilts."""
+
+USUAL_PREPOSITION = "with"
+"""Before the second object of a primitive whose rule file names none."""
+
+
+class Phrasebook:
+    """Patterns by primitive: shipped ones, and verbs of the rule files for all others."""
+
+    def __init__(self, words: Iterable[PrimitiveWords] = ()) -> None:
+        self._words: Mapping[str, PrimitiveWords] = {each.name: each for each in words}
+
+    def pattern(self, name: str, general: Sequence[str], cases: Cases, count: int) -> str:
+        """How a narrative says a primitive over so many objects: ``put {1} on {2}``."""
+        shipped = _first(name, cases)
+        if shipped:
+            return shipped
+        words = self._words.get(name)
+        if words is not None and words.verbs:
+            return self._own(words, cases, count)
+        for above in (*(words.general if words else ()), *general):
+            found = _first(above, cases)
+            if found:
+                return found
+        return built(words_of(name), count, USUAL_PREPOSITION)
+
+    def _own(self, words: PrimitiveWords, cases: Cases, count: int) -> str:
+        stated = words.prepositions[0] if words.prepositions else ""
+        usual = "on" if "on" in cases else USUAL_PREPOSITION
+        return built(words.verbs[0], count, stated or usual)
+
+    def is_action(self, name: str) -> bool:
+        """Whether a name is a primitive's, so that as a purpose it only tells what comes next."""
+        return name in self._words or any(row["primitive"] == name for row in table("canonical"))
+
+
+def _first(name: str, cases: Cases) -> str:
+    for row in table("phrases"):
+        if row["primitive"] == name and set(row["cases"].split()) <= set(cases):
+            return row["pattern"]
+    return ""
+
+
+def built(verb: str, count: int, preposition: str) -> str:
+    """A pattern of a verb over so many objects, the second after a preposition."""
+    more = [f"and {{{number}}}" for number in range(3, count + 1)]
+    parts = ["{1}"] * (count > 0) + [f"{preposition} {{2}}"] * (count > 1) + more
+    return " ".join([verb, *parts])
+
+
+def in_past(pattern: str) -> str:
+    """The pattern with its verb in the past: ``reached for {1}``."""
+    verb, _, rest = pattern.partition(" ")
+    return f"{past(verb)} {rest}".strip()

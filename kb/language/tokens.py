@@ -1,0 +1,98 @@
+"""A sentence as words with their places, and a cursor that reads them."""
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from kb.language.errors import SentenceError
+
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\w\'-]+|[^\w\s]')
+ARTICLES = frozenset({"the", "a", "an"})
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """A word of the sentence."""
+
+    text: str
+    column: int
+
+    @property
+    def quoted(self) -> bool:
+        """Whether it is a text in quotation marks."""
+        return self.text.startswith('"') and len(self.text) > 1
+
+
+class Cursor:
+    """Reads a sentence from left to right."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text.strip()
+        found = (Token(each.group(), each.start()) for each in _TOKEN.finditer(self.text))
+        self.tokens = list(found)
+        while self.tokens and self.tokens[-1].text in {".", "?", "!"}:
+            self.tokens.pop()
+        self.at = 0
+
+    @property
+    def done(self) -> bool:
+        """Whether every word is read."""
+        return self.at >= len(self.tokens)
+
+    def peek(self, ahead: int = 0) -> str:
+        """A word to come in lower case; empty beyond the end."""
+        index = self.at + ahead
+        return self.tokens[index].text.lower() if index < len(self.tokens) else ""
+
+    def take(self) -> Token:
+        """Read a word."""
+        self.at += 1
+        return self.tokens[self.at - 1]
+
+    def accept(self, *words: str) -> bool:
+        """Read these words if they come next."""
+        if [self.peek(each) for each in range(len(words))] == list(words):
+            self.at += len(words)
+            return True
+        return False
+
+    def skip_article(self) -> bool:
+        """Read an article if one comes next."""
+        if self.peek() in ARTICLES:
+            self.at += 1
+            return True
+        return False
+
+    def longest(self, phrases: Mapping[tuple[str, ...], str]) -> str | None:
+        """Read the longest of the phrases that comes next; None if none does."""
+        for size in range(min(len(self.tokens) - self.at, _longest(phrases)), 0, -1):
+            words = tuple(each.text for each in self.tokens[self.at : self.at + size])
+            lower = tuple(each.lower() for each in words)
+            for candidate in (words, lower):
+                if candidate in phrases:
+                    self.at += size
+                    return phrases[candidate]
+        return None
+
+    def quoted(self) -> str:
+        """Read a text in quotation marks."""
+        token = self.take()
+        try:
+            return str(json.loads(token.text))
+        except ValueError:
+            raise self.error("no text in quotation marks", (), back=1) from None
+
+    def error(
+        self, problem: str, could_be: Iterable[str], *, back: int = 0, at: int | None = None
+    ) -> SentenceError:
+        """An error at the next word, or at one before it."""
+        index = self.at - back if at is None else at
+        if index < len(self.tokens):
+            token = self.tokens[index]
+            return SentenceError(self.text, token.column, token.text, problem, could_be)
+        return SentenceError(self.text, len(self.text), "", problem, could_be)
+
+
+def _longest(phrases: Mapping[tuple[str, ...], str]) -> int:
+    return max(map(len, phrases), default=0)

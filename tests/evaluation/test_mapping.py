@@ -1,0 +1,129 @@
+"""A mapping gives each segment the label of the first rule that fits it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from observations import drink_from_mug, with_unknown
+
+from capar.evaluation.evaluate import known_names
+from capar.evaluation.mapping import LabelMapping, check_names, labelled, read_mapping
+from capar.model.errors import CaparError, UnknownNameError
+from capar.model.observation import Observation
+
+
+def mapping(folder: Path, text: str) -> LabelMapping:
+    path = folder / "mapping.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_mapping(path)
+
+
+def rule(**conditions: str) -> str:
+    return "[[rule]]\n" + "".join(f'{key} = "{value}"\n' for key, value in conditions.items())
+
+
+REST = rule(name="*", label="rest")
+
+
+def labels(seen: Observation, given: LabelMapping) -> list[str]:
+    times = np.arange(seen.frames) / seen.rate_hz
+    return [each.label for each in labelled(seen.links[0], given, times)]
+
+
+def test_the_first_rule_that_fits_gives_the_label(tmp_path: Path) -> None:
+    text = rule(name="MoveObjTo", object="mouth", label="bring") + rule(
+        name="MoveObjTo", label="place"
+    )
+    assert labels(drink_from_mug(), mapping(tmp_path, text + REST)) == [
+        "rest",
+        "bring",
+        "rest",
+        "place",
+        "rest",
+        "rest",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("conditions", "fits"),
+    [
+        ({"name": "*", "dominant": "mug"}, [0, 1, 2, 3, 4, 5]),
+        ({"name": "*", "dominant": "table"}, []),
+        ({"name": "*", "object": "table"}, [3, 4]),
+        ({"name": "*", "position": "before first"}, [0]),
+        ({"name": "*", "position": "after last"}, [5]),
+        ({"name": "*", "previous": ""}, [0]),
+        ({"name": "*", "next": ""}, [5]),
+        ({"name": "*", "previous": "MoveObjTo"}, [2, 4]),
+        ({"name": "MoveObjTo", "next": "TouchWith"}, [3]),
+        ({"name": "Reach", "next": "TouchWith"}, []),
+    ],
+)
+def test_each_condition_picks_its_segments(
+    conditions: dict[str, str], fits: list[int], tmp_path: Path
+) -> None:
+    given = mapping(tmp_path, rule(**conditions, label="yes") + REST)
+    found = labels(drink_from_mug(), given)
+    assert [index for index, each in enumerate(found) if each == "yes"] == fits
+
+
+def test_a_segment_that_no_rule_fits_is_named_with_the_rules_there_are(tmp_path: Path) -> None:
+    with pytest.raises(UnknownNameError) as raised:
+        labels(drink_from_mug(), mapping(tmp_path, rule(name="Reach", label="a")))
+    assert "right_hand from 1.72 s: no fitting rule for 'MoveObjTo'" in str(raised.value)
+    assert raised.value.known == ["Reach"]
+
+
+def test_unknown_segments_are_mapped_by_that_name(tmp_path: Path) -> None:
+    text = rule(name="Unknown", label="odd") + REST
+    assert labels(with_unknown(), mapping(tmp_path, text)) == ["rest", "odd"]
+
+
+def test_segments_have_the_times_of_their_frames(tmp_path: Path) -> None:
+    seen = drink_from_mug()
+    times = np.linspace(0.0, 1.0, seen.frames) ** 2
+    found = labelled(seen.links[0], mapping(tmp_path, REST), times)
+    assert [each.start_s for each in found] == [times[each.first] for each in seen.segments]
+    assert [each.end_s for each in found] == [times[each.last] for each in seen.segments]
+
+
+@pytest.mark.parametrize(
+    ("conditions", "says"),
+    [
+        ({"name": "Raech", "label": "a"}, "mapping.toml:2: no action 'Raech'"),
+        ({"name": "Reach", "label": "b"}, "no label 'b'; there are: a."),
+        ({"name": "Reach", "label": "a", "object": "mgu"}, "no object 'mgu'"),
+        ({"name": "Reach", "label": "a", "next": "Lit"}, "no action 'Lit'"),
+    ],
+)
+def test_a_name_that_does_not_exist_is_refused_with_those_that_do(
+    conditions: dict[str, str], says: str, tmp_path: Path
+) -> None:
+    given = mapping(tmp_path, rule(**conditions))
+    with pytest.raises(UnknownNameError) as raised:
+        check_names(given, names=["Reach", "Touch"], objects=["mug"], labels=["a"])
+    assert says in str(raised.value)
+
+
+def test_the_names_of_the_rules_that_ship_are_known_even_if_not_observed() -> None:
+    assert {"Reach", "Hit", "Touch", "TouchWith", "MoveObj", "MoveObjTo", "ResumePosture"} <= (
+        known_names([])
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "is empty"),
+        ("# nothing yet\n", "has no rule"),
+        ("rules = 3", "no key 'rules'"),
+        (rule(name="Reach"), "'label' is missing"),
+        (rule(name="Reach", label="a", when="now"), "no key 'when'"),
+        (rule(name="Reach", label="a", position="third"), "no position 'third'"),
+        ("[[rule]\n", "mapping.toml"),
+    ],
+)
+def test_a_bad_mapping_is_refused(text: str, says: str, tmp_path: Path) -> None:
+    with pytest.raises(CaparError) as raised:
+        mapping(tmp_path, text)
+    assert says in str(raised.value)

@@ -1,0 +1,197 @@
+"""A capture's facts: complete, in order, and the same however the world is turned or named."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from measured_bodies import UP, ball, box, pick_and_place, still, stream
+from scipy.spatial.transform import Rotation
+
+from capar.model.capture import (
+    Capture,
+    PivotContact,
+    Purpose,
+    Role,
+    Sensor,
+    ShapeSource,
+    TagObject,
+    TagType,
+)
+from capar.model.facts import (
+    MEASURED,
+    Fact,
+    Gap,
+    Intended,
+    LookingAt,
+    Moving,
+    Touching,
+    ZeroCrossing,
+)
+from extractors.facts import extract
+
+
+def of_kind(capture: Capture, kind: type[Fact]) -> list[Fact]:
+    return [each for each in extract(capture).facts if type(each) is kind]
+
+
+def pairs(capture: Capture) -> list[tuple[str, str]]:
+    return [(each.body, each.other) for each in of_kind(capture, Touching)]  # type: ignore[attr-defined]
+
+
+@given(st.sampled_from([30.0, 60.0, 100.0, 240.0]), st.floats(0.0, 0.003), st.integers(0, 1000))
+@settings(max_examples=12, deadline=None)
+def test_picking_and_placing_is_measured_alike_at_any_rate_and_noise(
+    rate_hz: float, noise_m: float, seed: int
+) -> None:
+    capture = pick_and_place(
+        rate_hz=rate_hz, noise_m=noise_m, noise_rad=np.radians(noise_m / 0.003), seed=seed
+    )
+    touching = [each for each in of_kind(capture, Touching) if isinstance(each, Touching)]
+    held = [each for each in touching if each.other == "thing"]
+    assert len(held) == 1
+    assert abs(held[0].first / rate_hz - 1.05) < 0.15
+    assert abs(held[0].last / rate_hz - 2.85) < 0.15
+    lying = [each for each in touching if (each.body, each.other) == ("thing", "table")]
+    assert len(lying) == 2
+    assert abs(lying[0].last / rate_hz - 1.45) < 0.15
+    assert abs(lying[1].first / rate_hz - 2.35) < 0.15
+    (moved,) = (each for each in of_kind(capture, Moving) if isinstance(each, Moving))
+    assert 1.4 < moved.first / rate_hz < 1.65
+    assert 2.15 < moved.last / rate_hz < 2.42
+
+
+@given(st.integers(0, 10_000))
+@settings(max_examples=8, deadline=None)
+def test_facts_do_not_depend_on_how_the_world_is_turned(seed: int) -> None:
+    plain = _without_up(pick_and_place())
+    turned = _without_up(pick_and_place(world=Rotation.random(random_state=seed)))
+    assert [type(each) for each in turned] == [type(each) for each in plain]
+    for one, two in zip(plain, turned, strict=True):
+        if not isinstance(one, Gap):
+            assert str(one) == str(two)
+
+
+def _without_up(capture: Capture) -> list[Fact]:
+    """The facts that need not know which way is up."""
+    kinds = (ZeroCrossing, Touching, Gap, Moving, LookingAt)
+    return [each for each in extract(capture).facts if isinstance(each, kinds)]
+
+
+def test_facts_do_not_depend_on_names() -> None:
+    plain = extract(pick_and_place()).facts
+    names = {"right_hand": "zz_paw", "thing": "a_cup", "table": "mesa"}
+    named = extract(pick_and_place(names=("zz_paw", "a_cup", "mesa"))).facts
+    expected = {_renamed(str(each), names) for each in plain}
+    assert {str(each) for each in named} == expected
+
+
+def _renamed(text: str, names: dict[str, str]) -> str:
+    for old, new in names.items():
+        text = text.replace(f"{old},", f"{new},").replace(f"{old})", f"{new})")
+    return text
+
+
+def test_facts_are_in_the_order_of_their_kinds_then_by_value_and_the_same_each_time() -> None:
+    facts = extract(pick_and_place()).facts
+    ranks = [MEASURED.index(type(each)) for each in facts]
+    assert ranks == sorted(ranks)
+    for kind in MEASURED:
+        same = [each for each in facts if type(each) is kind]
+        assert same == sorted(same)
+    assert facts == extract(pick_and_place()).facts
+
+
+def test_the_gap_where_a_contact_begins_is_within_the_tolerance() -> None:
+    measured = extract(pick_and_place())
+    gaps = [each for each in measured.facts if isinstance(each, Gap)]
+    assert gaps
+    assert all(0 <= each.micrometres <= 1e6 * measured.tolerance_m + 50 for each in gaps)
+
+
+def test_two_mobile_objects_touch_in_either_order_and_two_fixed_ones_never() -> None:
+    frames = 50
+    objects = (
+        TagObject("cup", TagType.MOBILE, still((0, 0, 0.05), frames), box(0.1, 0.1, 0.1)),
+        TagObject("tray", TagType.MOBILE, still((0, 0, -0.01), frames), box(0.4, 0.4, 0.02)),
+        TagObject("wall", TagType.FIXED, still((0.3, 0, 0), frames), box(0.2, 0.2, 0.2)),
+        TagObject("floor", TagType.FIXED, still((0.3, 0, -0.2), frames), box(1.0, 1.0, 0.2)),
+    )
+    hand = Sensor("hand", "hand", "right", "arm", still((0, 0, 2.0), frames), ball(0.04))
+    found = pairs(Capture("stack", (hand,), objects))
+    assert found == [("cup", "tray"), ("tray", "cup"), ("tray", "wall")]
+
+
+def test_a_sensor_does_not_touch_the_object_that_it_is() -> None:
+    where = still((0, 0, 1), 50)
+    head = TagObject("head", TagType.SELF, where, ball(0.1))
+    acts = Sensor("head", "head", "none", "neck", where, ball(0.1))
+    assert pairs(Capture("head", (acts,), (head,))) == []
+
+
+def test_bodies_without_shapes_touch_while_their_origins_are_near_and_it_is_said() -> None:
+    way = np.zeros((200, 3))
+    way[:, 0] = 0.5 - 0.005 * np.arange(200)
+    hand = Sensor("hand", "hand", "right", "arm", stream(way))
+    thing = TagObject("thing", TagType.MOBILE, still((0, 0, 0), 200))
+    capture = Capture(
+        "pivot", (hand,), (thing,), pivot_contacts=(PivotContact("thing", "hand", 0.1025),)
+    )
+    measured = extract(capture)
+    touching = [each for each in measured.facts if isinstance(each, Touching)]
+    assert touching == [Touching("hand", "thing", 80, 120)]
+    assert "pivot-distance" in {each.code for each in measured.notices}
+
+
+def test_what_is_assumed_lost_or_stood_in_for_is_told() -> None:
+    way = np.tile([0.0, 0.0, 1.0], (200, 1))
+    way[50:100] = np.nan
+    stand_in = replace(ball(0.04), source=ShapeSource.STAND_IN, description="ball of 40 mm")
+    hand = Sensor("hand", "hand", "right", "arm", stream(way), stand_in)
+    shelf = TagObject(
+        "shelf", TagType.FIXED, still((0, 0, 0), 200), box(1, 1, 0.1), assumed="from rest poses"
+    )
+    codes = {each.code for each in extract(Capture("x", (hand,), (shelf,))).notices}
+    assert codes == {"contact-tolerance", "stand-in-shape", "assumed-support", "long-gap"}
+
+
+def test_purposes_and_force_are_stated_in_the_users_order() -> None:
+    plain = pick_and_place()
+    capture = replace(
+        plain, force_transfer=True, purposes=(Purpose("drink", action="Reach"), Purpose("tidy"))
+    )
+    assert of_kind(capture, Intended) == [
+        Intended(0, "Reach", "any", "any", "drink"),
+        Intended(1, "any", "any", "any", "tidy"),
+    ]
+    assert "force_transfer" in map(str, extract(capture).facts)
+
+
+def test_the_nearest_object_on_the_line_of_sight_is_looked_at_and_where() -> None:
+    times = np.arange(400) / 100.0
+    turn = Rotation.from_rotvec(np.outer(times / 4.0, [0.0, 0.0, np.pi / 2]))
+    seen = stream(np.zeros((400, 3)), orientations=turn.as_quat(scalar_first=True))
+    head = Sensor("head", "head", "none", "neck", seen, None, Role.ATTENDS)
+    hand = Sensor("hand", "hand", "right", "arm", still((0, 0, 9), 400))
+    objects = (
+        TagObject("near", TagType.FIXED, still((1.0, 0, 0), 400), box(0.2, 0.2, 0.2)),
+        TagObject("far", TagType.FIXED, still((2.0, 0, 0), 400), box(0.2, 2.0, 0.2)),
+        TagObject("head", TagType.SELF, seen, ball(0.1)),
+    )
+    measured = extract(Capture("sight", (hand, head), objects))
+    looks = [each for each in measured.facts if isinstance(each, LookingAt)]
+    assert [each.object for each in looks] == ["far", "near"]
+    edge = np.arctan(0.1 / 0.9) / (np.pi / 2) * 400
+    assert looks[1].last == pytest.approx(edge, abs=1.0)
+    points = measured.attention["head"].points
+    assert points[0] == pytest.approx([0.9, 0.0, 0.0], abs=1e-4)
+    assert np.isnan(points[-1]).all()
+
+
+def test_a_fixed_table_with_a_shaky_tracker_stands_still() -> None:
+    capture = pick_and_place(noise_m=0.003, noise_rad=0.0175)
+    settled = extract(capture).poses["object", "table"].settled
+    assert (settled.positions == settled.positions[0]).all()
+    assert np.abs(settled.positions[0] - [0.5, 0.0, 0.0]).max() < 0.001
+    assert np.abs(settled.orientations[0] - UP).max() < 0.002
