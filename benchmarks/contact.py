@@ -42,9 +42,10 @@ def plain(one: Body, two: Body, frames: np.ndarray) -> np.ndarray:
     """Exact distances [m] at some frames, with nothing skipped."""
     first, second = fcl.CollisionObject(one.surface.tree), fcl.CollisionObject(two.surface.tree)
     out = np.empty(len(frames))
+    turns = one.turns_at(frames), two.turns_at(frames)
     for index, frame in enumerate(frames):
-        first.setTransform(fcl.Transform(one.turns[frame], one.positions[frame]))
-        second.setTransform(fcl.Transform(two.turns[frame], two.positions[frame]))
+        first.setTransform(fcl.Transform(turns[0][index], one.positions[frame]))
+        second.setTransform(fcl.Transform(turns[1][index], two.positions[frame]))
         out[index] = fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult())
     return out
 

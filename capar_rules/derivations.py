@@ -9,6 +9,7 @@ import clingo
 
 from capar.model.errors import RuleError
 from capar.model.facts import Fact, program
+from capar_rules.slicing import towards
 from capar_rules.syntax import Literal, Place, Signature, Statement
 
 ABSENT = "absent"
@@ -38,7 +39,7 @@ class Recorder:
     """A rule base that tells, beside its answer, which instances of its rules fired."""
 
     def __init__(self, statements: Iterable[Statement], *, targets: Iterable[Signature]) -> None:
-        self.rules = _towards(list(statements), set(targets))
+        self.rules = towards(list(statements), targets)
         recorded = [each for each in self.rules if each.body]
         self.places = [each.place for each in recorded]
         lines = [each.text for each in self.rules]
@@ -149,25 +150,6 @@ def _shown(control: clingo.Control) -> list[clingo.Symbol]:
 
 def _plain(symbol: clingo.Symbol) -> str:
     return symbol.string if symbol.type is clingo.SymbolType.String else str(symbol)
-
-
-def _towards(statements: Sequence[Statement], targets: set[Signature]) -> list[Statement]:
-    """The rules that targets rest on, and the constants, in their order."""
-    heads: dict[Signature, list[Statement]] = defaultdict(list)
-    for each in statements:
-        for head in each.heads:
-            heads[head.signature].append(each)
-    wanted, waiting = set(targets), sorted(targets)
-    while waiting:
-        for rule in heads[waiting.pop()]:
-            below = {atom.signature for literal in rule.body for atom in literal.atoms}
-            waiting += sorted(below - wanted)
-            wanted |= below
-    return [
-        each
-        for each in statements
-        if each.kind == "definition" or any(head.signature in wanted for head in each.heads)
-    ]
 
 
 def _records(number: int, rule: Statement) -> list[str]:

@@ -121,14 +121,15 @@ def _answer(control: clingo.Control) -> Answer:
 
 def _shown(model: clingo.Model) -> Answer:
     symbols = sorted(model.symbols(shown=True))
-    return Answer(tuple((each.name, tuple(map(_term, each.arguments))) for each in symbols))
+    return Answer(tuple((each.name, tuple(map(as_term, each.arguments))) for each in symbols))
 
 
-def _term(symbol: clingo.Symbol) -> Term:
+def as_term(symbol: clingo.Symbol) -> Term:
+    """A symbol of the solver as a plain value."""
     if symbol.type is clingo.SymbolType.Number:
         return symbol.number
     if symbol.type is clingo.SymbolType.String:
         return symbol.string
     if symbol.arguments:
-        return (symbol.name, *map(_term, symbol.arguments))
+        return (symbol.name, *map(as_term, symbol.arguments))
     return symbol.name

@@ -18,6 +18,9 @@ MARGIN_S = 1.0
 CONFIRMING_S = 0.1
 """How near a zero crossing confirms a border [s]."""
 
+TOGETHER_S = 0.15
+"""Contacts that begin, or end, within this time do so together [s]: events that would merge."""
+
 
 @dataclass(frozen=True, slots=True, order=True)
 class Tick(Fact):
@@ -89,6 +92,18 @@ class CrossingNear(Fact):
     ee: str
     tick: int
     frame: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Shares(Fact):
+    """Another end-effector touched the object before this one did, or does so after it."""
+
+    predicate = "shares"
+    ee: str
+    object: str
+    since: int
+    other: str
+    when: str
 
 
 def rank(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:
@@ -193,7 +208,7 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
     )
     if not crossings_only:
         yield from scene.stretches.ranked(ee, ticks, reach)
-        yield from _shared(scene, ee, ticks, reach)
+        yield from _shared(scene, ee, ticks, own)
     yield from _confirmed(ee, ticks, crossings, CONFIRMING_S * scene.rate)
 
 
@@ -241,17 +256,26 @@ def _within(
 
 
 def _shared(
-    scene: _Scene, ee: str, ticks: list[int], reach: dict[str, list[tuple[int, int]]]
+    scene: _Scene, ee: str, ticks: list[int], own: Sequence[Touching]
 ) -> Iterable[Fact]:
-    """Contacts of other end-effectors with what this one handles."""
-    others = [
-        each
-        for link in scene.links
-        if link.ee != ee
-        for each in scene.touching[link.ee]
-        if each.other in reach and _overlap(reach[each.other], each.first, each.last)
-    ]
-    return _within(ee, ticks, (), others)
+    """Contacts of other end-effectors with what this one touches, while it touches it."""
+    margin = TOGETHER_S * scene.rate
+    others: dict[str, list[Touching]] = defaultdict(list)
+    for link in scene.links:
+        for each in scene.touching[link.ee] if link.ee != ee else ():
+            others[each.other].append(each)
+    found = set()
+    for touch in own:
+        for each in others[touch.other]:
+            if each.first > touch.last or each.last < touch.first:
+                continue
+            found.add(each)
+            begins, ends = each.first - touch.first, each.last - touch.last
+            if begins < -margin and ends < -margin:
+                yield Shares(ee, touch.other, touch.first, each.body, "before")
+            if begins > margin and ends > margin:
+                yield Shares(ee, touch.other, touch.first, each.body, "after")
+    yield from _within(ee, ticks, (), sorted(found))
 
 
 def _moves(ee: str, ticks: list[int], moves: dict[str, list[Moving]]) -> Iterable[Fact]:

@@ -20,8 +20,8 @@ class Body:
     positions: Float[np.ndarray, "frames 3"]
     """World positions [m]; NaN where lost."""
 
-    turns: Float[np.ndarray, "frames 3 3"]
-    """Rotation matrices that take the body's axes to the world's."""
+    orientations: Float[np.ndarray, "frames 4"]
+    """Unit quaternions w x y z."""
 
     centres: Float[np.ndarray, "frames 3"]
     """Middle of the body's box in the world [m]."""
@@ -29,19 +29,28 @@ class Body:
     rests: bool
     """Whether it stands in one pose throughout."""
 
+    @property
+    def turns(self) -> Float[np.ndarray, "frames 3 3"]:
+        """Rotation matrices that take the body's axes to the world's; made anew, being large."""
+        return rotation_matrices(self.orientations)
+
+    def turns_at(self, frames: Int[np.ndarray, "some"]) -> Float[np.ndarray, "some 3 3"]:
+        """Those matrices at some frames."""
+        return rotation_matrices(self.orientations[frames])
+
 
 def body(surface: Surface, stream: Stream, *, rests: bool) -> Body:
     """A surface that follows a stream."""
-    turns = rotation_matrices(stream.orientations)
-    centres = stream.positions + turns @ surface.centre
-    return Body(surface, stream.positions, turns, centres, rests)
+    centres = stream.positions + rotation_matrices(stream.orientations) @ surface.centre
+    return Body(surface, stream.positions, stream.orientations, centres, rests)
 
 
 def still(surface: Surface, stream: Stream, frame: int) -> Body:
     """A surface at one frame of a stream, which is frame 0 of the body."""
     place = stream.positions[frame][None]
-    turn = rotation_matrices(stream.orientations[frame][None])
-    return Body(surface, place, turn, place + turn @ surface.centre, rests=True)
+    turn = stream.orientations[frame][None]
+    centre = place + rotation_matrices(turn) @ surface.centre
+    return Body(surface, place, turn, centre, rests=True)
 
 
 def near(first: Body, second: Body, *, distance_m: float) -> Bool[np.ndarray, "frames"]:
@@ -99,9 +108,9 @@ def _relative(
     first: Body, second: Body, frames: Int[np.ndarray, "some"]
 ) -> tuple[Float[np.ndarray, "some 3 3"], Float[np.ndarray, "some 3"]]:
     """``T_first_second`` at some frames: rotation matrices and places [m]."""
-    back = np.swapaxes(first.turns[frames], 1, 2)
+    back = np.swapaxes(first.turns_at(frames), 1, 2)
     offset = second.positions[frames] - first.positions[frames]
-    return back @ second.turns[frames], (back @ offset[..., None])[..., 0]
+    return back @ second.turns_at(frames), (back @ offset[..., None])[..., 0]
 
 
 def _candidates(
@@ -114,7 +123,7 @@ def _candidates(
     for box, ball, sign in ((first, second, 1.0), (second, first, -1.0)):
         if not found.size:
             break
-        local = (np.swapaxes(box.turns[found], 1, 2) @ (sign * offset[found])[..., None])[..., 0]
+        local = (np.swapaxes(box.turns_at(found), 1, 2) @ (sign * offset[found])[..., None])[..., 0]
         outside = np.maximum(np.abs(local) - 0.5 * box.surface.shape.size, 0.0)
         limit = ball.surface.radius + distance_m
         found = found[np.einsum("ij,ij->i", outside, outside) <= limit * limit]

@@ -28,7 +28,7 @@ LONGEST, SHORTEST = 8192, 32
 PATIENCE = 4
 """Answers in turn that tell of no other pose before a distance is asked for, ten times dearer."""
 
-DEPTHS = (0.0, 0.5, 1.0)
+DEPTHS = (0.0, 0.4, 0.75, 1.0)
 """Shares of the distance at whose shells a point of contact is sought, deepest first [1]."""
 
 DEEPER = 4
@@ -120,7 +120,8 @@ class _Sweep:
             if self._meet(distance, exact) is None:
                 self.level = min(level + 1, len(ROOMS_M) - 1)
                 return None, ROOMS_M[level] - 2.0 * exact
-        self.level = 0
+        # What has just come near is shallow.
+        self.level, self.depth, self.asked = 0, len(DEPTHS) - 1, 0
         return self._touch()
 
     def _meet(self, distance_m: float, exactness_m: float) -> Float[np.ndarray, "3"] | None:

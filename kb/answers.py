@@ -1,6 +1,6 @@
 """What a query answers, whatever store it was asked of."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -8,6 +8,7 @@ from pyoxigraph import (
     BlankNode,
     Literal,
     NamedNode,
+    Quad,
     QueryBoolean,
     QueryResultsFormat,
     QuerySolutions,
@@ -95,3 +96,13 @@ def decode(media_type: str, data: bytes) -> Answer:
             dict.fromkeys(each.triple for each in parse(data, format=RdfFormat.N_TRIPLES))
         )
     )
+
+
+def turtle(statements: Iterable[Triple] | Iterable[Quad], *, form: RdfFormat) -> str:
+    """Statements as Turtle or TriG with our prefixes, the same bytes each time."""
+    data = serialize(statements, format=form, prefixes=dict(PREFIXES)) or b""
+    lines = data.decode().splitlines(keepends=True)
+    count = next(
+        (at for at, each in enumerate(lines) if not each.startswith("@prefix")), len(lines)
+    )
+    return "".join([*sorted(lines[:count]), *lines[count:]])

@@ -17,6 +17,7 @@ from pyoxigraph import (
 
 from capar.model.errors import FileError, UnknownNameError
 from kb import names, shapes, writing
+from kb.answers import turtle
 from kb.errors import ShapeError
 from kb.lookup.stored import observations
 from kb.statements import insertion
@@ -66,11 +67,10 @@ def export(store: Store, format_name: str, *, observation: str | None = None) ->
     quads = sorted(set(store.quads() if observation is None else part(store, observation)), key=str)
     form = FORMATS[format_name]
     if form == RdfFormat.TURTLE:
-        triples = dict.fromkeys(each.triple for each in quads)
-        return serialize(triples, format=form, prefixes=dict(PREFIXES)) or b""
-    if form == RdfFormat.N_QUADS:
-        return serialize(quads, format=form) or b""
-    return serialize(quads, format=form, prefixes=dict(PREFIXES)) or b""
+        return turtle(dict.fromkeys(each.triple for each in quads), form=form).encode()
+    if form == RdfFormat.TRIG:
+        return turtle(quads, form=form).encode()
+    return serialize(quads, format=form) or b""
 
 
 def misplaced(store: Store) -> int:

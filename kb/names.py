@@ -1,6 +1,7 @@
 """What things are called in the store: IRIs that follow from what they name, and nothing else."""
 
 import hashlib
+from functools import lru_cache
 from urllib.parse import quote, unquote
 
 from pyoxigraph import NamedNode
@@ -46,9 +47,14 @@ _OF_FOLDER = {
 }
 
 
+@lru_cache(maxsize=4096)
+def _quoted(word: str) -> str:
+    return quote(word, safe="")
+
+
 def observation(name: str) -> NamedNode:
     """The observation of a capture of that name; its graph bears the same IRI."""
-    return NamedNode(OBSERVATION + quote(name, safe=""))
+    return NamedNode(OBSERVATION + _quoted(name))
 
 
 def observation_name(node: NamedNode) -> str:
@@ -58,13 +64,13 @@ def observation_name(node: NamedNode) -> str:
 
 def part(of: NamedNode, *words: str | int) -> NamedNode:
     """Something that belongs to an observation or another whole, by what tells it apart."""
-    fragment = ".".join(quote(str(each), safe="") for each in words)
+    fragment = ".".join(_quoted(str(each)) for each in words)
     return NamedNode(f"{of.value}{'.' if '#' in of.value else '#'}{fragment}")
 
 
 def shared(folder: str, *words: str | int) -> NamedNode:
     """Something that several observations may speak of, by what tells it apart."""
-    return NamedNode(DATA + folder + "/" + ".".join(quote(str(each), safe="") for each in words))
+    return NamedNode(DATA + folder + "/" + ".".join(_quoted(str(each)) for each in words))
 
 
 def last_word(node: NamedNode) -> str:

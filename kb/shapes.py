@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 
-from pyoxigraph import BlankNode, Literal, NamedNode, Triple
+from pyoxigraph import BlankNode, Literal, NamedNode, Quad, Triple
 
 from kb.errors import ShapeError
 from kb.literals import LiteralError, nlt_of
@@ -96,7 +96,7 @@ def _list(said: dict[object, dict[str, list[Node]]], node: Node) -> Iterable[str
         node = said[node][rdf + "rest"][0]
 
 
-def violations(triples: Iterable[Triple]) -> tuple[str, ...]:
+def violations(triples: Iterable[Triple | Quad]) -> tuple[str, ...]:
     """What is wrong with statements by our shapes, a line each, sorted."""
     said: dict[object, dict[NamedNode, list[Node]]] = {}
     things: dict[NamedNode, list[object]] = {}
@@ -145,7 +145,7 @@ def _number(value: Node) -> float:
         return math.nan
 
 
-def nlt_problems(triples: Iterable[Triple]) -> tuple[str, ...]:
+def nlt_problems(triples: Iterable[Triple | Quad]) -> tuple[str, ...]:
     """NLTs that are no finite place with a unit quaternion, a line each, sorted."""
     found = []
     for each in triples:
@@ -173,7 +173,7 @@ def prove(name: str, statements: Statements) -> None:
     Raises:
         ShapeError: They do; it says where and how.
     """
-    found = (*violations(statements.triples), *nlt_problems(statements.triples))
+    found = (*violations(statements.quads), *nlt_problems(statements.quads))
     if found:
         raise ShapeError(f"observation {name!r}", found)
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import TypeAlias
 
-from pyoxigraph import Literal, NamedNode, Quad, Triple
+from pyoxigraph import Literal, NamedNode, Quad
 
 from kb import names
 from ontology import CAPAR
@@ -22,46 +22,35 @@ class Statements:
 
     def __init__(self, about: NamedNode) -> None:
         self.about = about
-        self._own: dict[Triple, None] = {}
-        self._shared: dict[Triple, None] = {}
+        self._said: dict[Quad, None] = {}
         self._mentioned: set[NamedNode] = set()
 
     def say(self, subject: NamedNode, kinds: Iterable[NamedNode], said: Said) -> NamedNode:
         """State what a thing of the observation's own is; empty values say nothing."""
-        _write(self._own, subject, kinds, said)
+        self._write(subject, kinds, said, self.about)
         return subject
 
     def share(self, subject: NamedNode, kinds: Iterable[NamedNode], said: Said) -> NamedNode:
         """State what a shared thing is, whose name follows from all that is said of it."""
         if subject not in self._mentioned:
             self._mentioned.add(subject)
-            self._own[Triple(self.about, CAPAR.mentions, subject)] = None
-            _write(self._shared, subject, kinds, said)
+            self._said[Quad(self.about, CAPAR.mentions, subject, self.about)] = None
+            self._write(subject, kinds, said, names.graph_of(subject))
         return subject
-
-    @property
-    def triples(self) -> tuple[Triple, ...]:
-        """Everything that was said, in the order in which it was said."""
-        return (*self._own, *self._shared)
 
     @property
     def quads(self) -> list[Quad]:
         """Everything that was said, each statement in the graph where it stands."""
-        out = [Quad(t.subject, t.predicate, t.object, self.about) for t in self._own]
-        for t in self._shared:
-            assert isinstance(t.subject, NamedNode)
-            out.append(Quad(t.subject, t.predicate, t.object, names.graph_of(t.subject)))
-        return out
+        return list(self._said)
 
-
-def _write(
-    into: dict[Triple, None], subject: NamedNode, kinds: Iterable[NamedNode], said: Said
-) -> None:
-    for kind in kinds:
-        into[Triple(subject, TYPE, kind)] = None
-    for predicate, value in said.items():
-        for each in terms(value):
-            into[Triple(subject, predicate, each)] = None
+    def _write(
+        self, subject: NamedNode, kinds: Iterable[NamedNode], said: Said, graph: NamedNode
+    ) -> None:
+        for kind in kinds:
+            self._said[Quad(subject, TYPE, kind, graph)] = None
+        for predicate, value in said.items():
+            for each in terms(value):
+                self._said[Quad(subject, predicate, each, graph)] = None
 
 
 def terms(value: Value | Iterable[NamedNode]) -> list[Term]:

@@ -7,7 +7,7 @@ from importlib.resources.abc import Traversable
 
 from pyoxigraph import NamedNode, RdfFormat, Triple, parse
 
-from ontology.namespace import BASE, DATA
+from ontology.closed import BASE, DATA
 from ontology.vocabularies import RDF
 
 KIND = DATA + "kind/"

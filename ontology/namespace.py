@@ -1,36 +1,10 @@
-"""The words of the knowledge base as a closed namespace: a misspelt term is an error."""
+"""The words of the knowledge base as a closed namespace, file by file."""
 
 # ruff: noqa: N815  (the terms of an ontology are in mixed case)
 
-from typing import Any
-
 from pyoxigraph import NamedNode
 
-from capar.model.errors import UnknownNameError
-
-BASE = "https://w3id.org/capar/ontology#"
-"""The namespace of every term of ours."""
-
-DATA = "https://w3id.org/capar/data/"
-"""The namespace of what is stored: observations, agents, kinds, actions."""
-
-
-class Closed(type):
-    """A class whose annotated names are the terms of a namespace, and nothing else is."""
-
-    def __getattr__(cls, name: str) -> Any:
-        """The term of that name.
-
-        Raises:
-            UnknownNameError: The ontology has no such term.
-        """
-        if name.startswith("__"):
-            raise AttributeError(name)
-        if name not in cls.__annotations__:
-            raise UnknownNameError("term of the ontology", name, cls.__annotations__)
-        term = NamedNode(BASE + name)
-        setattr(cls, name, term)
-        return term
+from ontology.closed import Closed
 
 
 class CAPAR(metaclass=Closed):

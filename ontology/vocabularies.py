@@ -2,7 +2,7 @@
 
 from types import MappingProxyType
 
-from ontology.namespace import BASE, DATA
+from ontology.closed import BASE, DATA
 
 RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
 RDFS = "http://www.w3.org/2000/01/rdf-schema#"

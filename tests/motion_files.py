@@ -205,3 +205,46 @@ def zip_bomb(path: Path, member: str, megabytes: int) -> Path:
         for _ in range(megabytes):
             file.write(bytes(1 << 20))
     return path
+
+
+def write_c3d_rotations(path: Path) -> Path:
+    """A C3D whose bodies are 4x4 matrices: no markers, one rotation."""
+    import struct
+
+    def entry(number: int, name: str, kind: int, sizes: list[int], data: bytes) -> bytes:
+        body = struct.pack("bB", kind, len(sizes)) + bytes(sizes) + data + b"\0"
+        head = struct.pack("bb", len(name), number) + name.encode()
+        return head + struct.pack("<h", len(body) + 2) + body
+
+    def group(number: int, name: str) -> bytes:
+        return struct.pack("bb", len(name), -number) + name.encode() + struct.pack("<hB", 3, 0)
+
+    section = b"\x01\x50\x01\x54"
+    section += group(1, "POINT") + entry(1, "USED", 2, [], struct.pack("<H", 0))
+    section += group(2, "ROTATION") + entry(2, "USED", 2, [], struct.pack("<H", 1))
+    section += entry(2, "DATA_START", 2, [], struct.pack("<H", 3))
+    section += entry(2, "LABELS", -1, [4, 1], b"hand")
+    header = struct.pack("<BB4HH", 2, 0x50, 0, 0, 1, FRAMES, 0)
+    header += struct.pack("<fHHf", -1.0, 3, 0, RATE)
+    matrices = np.tile(np.eye(4), (FRAMES, 1, 1))
+    matrices[:, :3, :3], matrices[:, :3, 3] = TURNS.as_matrix(), PLACES
+    rows = np.concatenate(
+        [matrices.transpose(0, 2, 1).reshape(FRAMES, 16), np.ones((FRAMES, 1))], axis=1
+    )
+    path.write_bytes(
+        header.ljust(512, b"\0") + section.ljust(512, b"\0") + rows.astype("<f4").tobytes()
+    )
+    return path
+
+
+def recordings_folder() -> Path:
+    """The folder of real recordings, or the test is skipped."""
+    import os
+
+    import pytest
+
+    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
+    folder = Path(os.environ.get("CAPAR_DATA") or beside)
+    if not folder.is_dir():
+        pytest.skip("no folder of recordings: set CAPAR_DATA")
+    return folder

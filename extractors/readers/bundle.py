@@ -1,7 +1,7 @@
 """The capture bundle: a capture.toml that says what is what in the files it names."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,50 +18,19 @@ from capar.model.capture import (
     Stream,
     TagObject,
 )
-from capar.model.errors import FileError, UnknownNameError
+from capar.model.errors import UnknownNameError
 from capar.model.geometry import gaps
 from extractors.readers.clock import GAP_S
 from extractors.readers.declared import Declared, declared
 from extractors.readers.opening import source_of
+from extractors.readers.place import Place, find_place, open_bundle, takes
 from extractors.readers.registry import read_recording
 from extractors.readers.shapes import HANDS
-from extractors.readers.toml_table import Table, expanded, read_table
+from extractors.readers.toml_table import Table, expanded
 from extractors.readers.trc import UNITS
 from extractors.readers.world import UP, WorldRecording, to_world
 
-FILE = "capture.toml"
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where a capture is described, and which take of it is meant."""
-
-    file: Path
-    take: str = ""
-
-
-def find_place(place: str | Path) -> Place:
-    """The capture.toml of a folder, a file, or a motion file beside it, and a ``:take``.
-
-    Raises:
-        FileError: There is none.
-    """
-    text = str(place)
-    path, take = Path(text), ""
-    if not path.exists() and ":" in text:
-        stem, _, take = text.rpartition(":")
-        path = Path(stem)
-    if path.is_dir():
-        path = path / FILE
-    elif path.is_file() and path.suffix != ".toml":
-        path = path.parent / FILE
-    if not path.is_file():
-        raise FileError(
-            text,
-            f"no capture here: there is no file {path}.",
-            f"Write one with: capar new-capture FILES... -o {path}",
-        )
-    return Place(path, take)
+__all__ = ["Place", "find_place", "frame_times", "read_capture", "takes"]
 
 
 def read_capture(place: str | Path) -> Capture:
@@ -100,11 +69,6 @@ def _once(sources: tuple[Source, ...]) -> list[Source]:
     return list(dict.fromkeys(sources))
 
 
-def takes(place: str | Path) -> list[str]:
-    """The names of a bundle's takes; empty where it has one only."""
-    return list(_takes(read_table(find_place(place).file)))
-
-
 def frame_times(place: str | Path, *, file: str = "") -> Float[np.ndarray, "frames"]:
     """When each frame of a source file was taken, in seconds of the capture's clock [s].
 
@@ -123,43 +87,6 @@ def clock_of(recording: WorldRecording) -> Float[np.ndarray, "frames"]:
     if recording.markers:
         return recording.marker_times
     return next(iter(recording.bodies.values())).times
-
-
-def open_bundle(place: str | Path) -> tuple[Table, str]:
-    """The table of a capture.toml with the take's names filled in, and the take.
-
-    Raises:
-        FileError: The bundle has several takes and none was named, or it is no TOML.
-        UnknownNameError: It has no such take.
-    """
-    where = find_place(place)
-    table = read_table(where.file)
-    known = _takes(table)
-    if not known:
-        if where.take:
-            raise UnknownNameError("take", where.take, [], where=str(where.file))
-        table.raw("takes")
-        return table, ""
-    if where.take not in known:
-        if where.take:
-            raise UnknownNameError("take", where.take, known, where=table.where("takes"))
-        raise table.error(
-            "takes", "has several takes.", f"Name one of them: {place}:{next(iter(known))}"
-        )
-    table = read_table(where.file, known[where.take])
-    table.raw("takes")
-    return table, where.take
-
-
-def _takes(table: Table) -> dict[str, dict[str, str]]:
-    """Each take's name and what ``{...}`` stands for in it."""
-    out: dict[str, dict[str, str]] = {}
-    for each in table.raw("takes", []):
-        values = {"take": each} if isinstance(each, str) else dict(each)
-        if "take" not in values or not all(isinstance(v, str) for v in values.values()):
-            raise table.error("takes", f"{each!r} is no take.", 'Like "take0" or { take = "..." }.')
-        out[values["take"]] = values
-    return out
 
 
 def _name(table: Table, take: str) -> str:

@@ -54,6 +54,9 @@ def marker_sets(
     for prefix, names in groups.items():
         for index, members in enumerate(_rigid_sets(markers, names)):
             sets[prefix if index == 0 else f"{prefix}_{index + 1}"] = members
+    taken = {name for members in sets.values() for name in members}
+    for index, members in enumerate(_rigid_sets(markers, [n for n in markers if n not in taken])):
+        sets[f"markers_{index + 1}"] = members
     return sets
 
 

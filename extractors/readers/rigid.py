@@ -54,6 +54,8 @@ def arrangement(body: str, markers: Mapping[str, Float[np.ndarray, "frames 3"]])
             + (f"; never seen at all: {unseen}" if unseen else "; use fewer of them")
         )
     local = points[whole[0]] - points[whole[0]].mean(axis=0)
+    if np.linalg.svd(local, compute_uv=False)[1] < FLAT_M:
+        raise CaptureError(f"body {body!r}: markers {list(names)} lie on one line")
     for _ in range(3):
         fit = fit_cluster(Cluster(names, local), points[whole])
         turned = geometry.rotations(fit.orientations).inv().as_matrix()
@@ -61,8 +63,6 @@ def arrangement(body: str, markers: Mapping[str, Float[np.ndarray, "frames 3"]])
             whole
         )
         local = local - local.mean(axis=0)
-    if np.linalg.svd(local, compute_uv=False)[1] < FLAT_M:
-        raise CaptureError(f"body {body!r}: markers {list(names)} lie on one line")
     return Cluster(names, local)
 
 

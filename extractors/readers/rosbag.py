@@ -40,13 +40,14 @@ def read(path: Path, options: Any) -> Recording:
     doubled = 0
     for name, stamp, pose in _samples(path):
         doubled += stamp in samples[name]
-        samples[name].setdefault(stamp, pose)
+        if stamp not in samples[name] or pose is not _LOST:
+            samples[name][stamp] = pose
     if not samples:
         kinds = ", ".join(sorted(_KINDS))
         raise FileError(path, f"no message of a kind that is read here: {kinds}.")
     start = min(min(each) for each in samples.values())
     bodies = {name: _stream(name, each, start) for name, each in sorted(samples.items())}
-    notice = Notice("doubled-stamps", f"{doubled} samples repeat a stamp and were dropped")
+    notice = Notice("doubled-stamps", f"{doubled} samples repeat a stamp; the last of each is kept")
     return Recording(
         source=_source(path),
         bodies=bodies,

@@ -54,11 +54,13 @@ def facts(out: Statements, stated: tuple[Fact, ...], capture: NamedNode) -> list
 
 def _fact(out: Statements, fact: Fact, capture: NamedNode) -> NamedNode:
     arguments = {each.name: getattr(fact, each.name) for each in fields(fact)}
-    said: dict[NamedNode, Value] = {
-        PROPERTIES[name]: value for name, value in arguments.items() if name in PROPERTIES
-    }
     kind = CLASSES.get(fact.predicate)
-    said[CAPAR.message] = None if kind else str(fact)
+    said: dict[NamedNode, Value] = {}
+    if kind:
+        said = {PROPERTIES[name]: value for name, value in arguments.items()}
+    else:
+        said[CAPAR.name] = fact.predicate
+        said[CAPAR.parameters] = " ".join(map(str, arguments.values()))
     said[DERIVED] = capture
     node = names.part(out.about, "fact", fact.predicate, *arguments.values())
     return out.say(node, (kind or CAPAR.Fact,), said)

@@ -2,6 +2,6 @@
 
 from kb.language.describe import describe as describe
 from kb.language.parse import parse as parse
-from kb.language.sentence import Instruction as Instruction
 from kb.language.question import Question as Question
+from kb.language.sentence import Instruction as Instruction
 from kb.language.sentence import sentence as sentence

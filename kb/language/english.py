@@ -29,15 +29,6 @@ def _regular(verb: str) -> str:
     return f"{verb}ed"
 
 
-@cache
-def base_forms() -> dict[str, str]:
-    """Irregular verbs by their past forms; the first in the alphabet where two share one."""
-    forms: dict[str, str] = {}
-    for verb, form in _past_forms().items():
-        forms.setdefault(form, verb)
-    return forms
-
-
 def noun(name: str) -> str:
     """A name as people say it: ``blue_cup`` as ``blue cup``."""
     return " ".join(name.split("_")).strip() or name

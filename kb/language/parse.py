@@ -11,6 +11,8 @@ from kb.language.tokens import ARTICLES, Cursor
 from kb.language.vocabulary import PREPOSITIONS, Entry, Vocabulary
 
 WITH, FROM, TO, FOR = "with", "from", "to", "for"
+AFTER = (WITH, FROM, TO, FOR)
+"""What may follow a verb's objects: a hand, a source, a purpose."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +27,7 @@ class _Phrase:
     """The end-effector, if one is meant."""
 
     at: int
-    """Where its noun begins."""
+    """Where it begins."""
 
 
 def parse(text: str, vocabulary: Vocabulary | None = None) -> Instruction | Question:
@@ -44,12 +46,13 @@ def parse(text: str, vocabulary: Vocabulary | None = None) -> Instruction | Ques
     agent = _agent(cursor, words)
     instruction = _instruction(cursor, words, agent)
     if not cursor.done:
-        raise cursor.error(f"nothing can follow here, but {cursor.peek()!r} does", ())
+        raise cursor.error(f"nothing is known that {cursor.peek()!r} could begin", AFTER)
     return instruction
 
 
 def _beginnings(words: Vocabulary) -> list[str]:
-    return sorted({" ".join(each) for each in words.verbs}) + ["who", "which hand", "when"]
+    verbs = sorted({" ".join(each) for each in words.verbs})
+    return [*verbs, *(" ".join(each) for each in QUESTION_WORDS)]
 
 
 def _agent(cursor: Cursor, words: Vocabulary) -> str:
@@ -101,7 +104,7 @@ def _phrase(
     at = cursor.at
     limb = cursor.longest(words.limbs)
     after_limb, cursor.at = cursor.at, at
-    thing = _noun(cursor, words, limb is not None or (preposition == TO and not article))
+    thing = _noun(cursor, words, strict=limb is not None or (preposition == TO and not article))
     if thing is None and limb is None:
         if preposition == TO and not article:
             cursor.at = start
@@ -111,15 +114,15 @@ def _phrase(
         raise cursor.error(f"no object {cursor.peek()!r}", _names(words))
     if thing is None or (limb is not None and after_limb >= cursor.at):
         cursor.at = after_limb
-    return _Phrase(preposition, thing, limb, at)
+    return _Phrase(preposition, thing, limb, start)
 
 
 def _names(words: Vocabulary) -> list[str]:
     return sorted(words.objects or ()) or ["the name of an object"]
 
 
-def _noun(cursor: Cursor, words: Vocabulary, strict: bool) -> str | None:
-    """An object; where any noun will do, the words up to a preposition, unless it is to be known."""
+def _noun(cursor: Cursor, words: Vocabulary, *, strict: bool) -> str | None:
+    """An object; where any noun will do, the words up to a preposition, unless ``strict``."""
     if words.nouns is not None:
         return cursor.longest(words.nouns)
     if strict:
@@ -223,7 +226,7 @@ def _performed(cursor: Cursor, words: Vocabulary, agent: str) -> Instruction:
     objects: list[str] = []
     while cursor.accept("and") if objects else cursor.accept("on"):
         cursor.skip_article()
-        thing = _noun(cursor, words, False)
+        thing = _noun(cursor, words, strict=False)
         if thing is None:
             raise cursor.error(f"no object {cursor.peek()!r}", _names(words))
         objects.append(thing)
@@ -242,7 +245,7 @@ def _question(cursor: Cursor, words: Vocabulary, ask: Ask) -> Question:
                 break
         else:
             raise cursor.error(f"{cursor.peek()!r} cannot follow", ("did",))
-        agent = _agent(cursor, words) or ("" if not cursor.accept("anybody") else "")
+        agent = "" if cursor.accept("anybody") else _agent(cursor, words)
     else:
         agent = ""
     verb_at = cursor.at
@@ -251,5 +254,5 @@ def _question(cursor: Cursor, words: Vocabulary, ask: Ask) -> Question:
     cursor.at = verb_at
     asked = _instruction(cursor, words, agent)
     if not cursor.done:
-        raise cursor.error(f"nothing can follow here, but {cursor.peek()!r} does", ())
+        raise cursor.error(f"nothing is known that {cursor.peek()!r} could begin", AFTER)
     return Question(ask, asked)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from kb.language.english import base_forms, noun, past
+from kb.language.english import noun, past
 from kb.language.phrasing import USUAL_PREPOSITION, built
 from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.tables import table
@@ -17,10 +17,8 @@ EFFECTORS = (*(f"{side}_{part}" for part in PARTS for side in SIDES), "head", "a
 EVERYTHING = "everything"
 """How the end-effector of a step common to all links is said."""
 
-PREPOSITIONS = frozenset(
-    "to on onto in into out off of from with under above against beside between toward "
-    "through up down along across at around past for over away".split()
-)
+PREPOSITIONS = frozenset(row["preposition"] for row in table("prepositions"))
+"""Words that may stand before a place or a thing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,10 +93,6 @@ class Vocabulary:
     def limbs(self) -> Mapping[tuple[str, ...], str]:
         """End-effectors by the words that name them."""
         return {**_spoken(self.effectors - {"all"}), (EVERYTHING,): "all"}
-
-    def base(self, word: str) -> str:
-        """The base form of a verb's word in the past, where it is irregular."""
-        return base_forms().get(word, word)
 
 
 def entry(action: str, pattern: str) -> Entry:

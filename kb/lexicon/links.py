@@ -135,11 +135,32 @@ def sense_links(words: PrimitiveWords) -> tuple[SenseLink, ...]:
     if words.senses:
         verb = words.verbs[0] if words.verbs else ""
         return tuple(SenseLink(words.name, verb, key, Claimant.RULES) for key in words.senses)
+    own = own_links(words.name)
+    if own is not None:
+        verb = words.verbs[0] if words.verbs else ""
+        return tuple(SenseLink(words.name, verb, key, Claimant.LEXICON) for key in own[0])
     return tuple(
         SenseLink(words.name, verb, key, Claimant.LEXICON)
         for verb in words.verbs
         for key in motion_senses(verb)
     )
+
+
+def class_links(words: PrimitiveWords) -> tuple[tuple[str, ...], Claimant]:
+    """The Levin classes of a primitive that we claim: its rule file's, else its verbs'."""
+    if words.levin:
+        return words.levin, Claimant.RULES
+    own = own_links(words.name)
+    if own is not None:
+        return own[1], Claimant.LEXICON
+    found = (number for verb in words.verbs for number in motion_classes(verb))
+    return tuple(dict.fromkeys(found)), Claimant.LEXICON
+
+
+def own_links(name: str) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+    """Senses and classes of a primitive whose verb usually means something else; else None."""
+    row = next((row for row in table("primitive_links") if row["primitive"] == name), None)
+    return (tuple(row["senses"].split()), tuple(row["classes"].split())) if row else None
 
 
 def motion_senses(verb: str) -> tuple[str, ...]:

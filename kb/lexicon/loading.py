@@ -13,7 +13,7 @@ from kb.lexicon.rdf_links import levin_triples, link_triples
 from kb.lexicon.rdf_verbnet import BROADER, Row, classes_from, verbnet_triples
 from kb.lexicon.rdf_wordnet import wordnet_triples
 from kb.lexicon.tables import FOLDER
-from kb.lexicon.verbnet import VerbClass
+from kb.lexicon.verbnet import Member, VerbClass
 from kb.lexicon.wordnet import WordNet, wordnet
 from kb.store import Store
 from ontology import CAPAR
@@ -94,6 +94,22 @@ def verbnet_class_of(store: Store, levin: str) -> tuple[VerbClass, ...]:
     """VerbNet's classes of a Levin class, with the subclasses beside them."""
     rows = _ask(store, f"?class {CAPAR.levinClass} {terms.levin(levin)} .", "?class")
     return read_classes(store, [str(row["class"]) for row in rows])
+
+
+def every_verbnet_member(store: Store) -> tuple[VerbClass, ...]:
+    """VerbNet's classes with their members alone, by name."""
+    rows = _ask(
+        store,
+        f"?class {terms.LABEL} ?id ; {CAPAR.classMember} ?m . ?m {CAPAR.lemma} ?lemma",
+        "?id ?lemma",
+    )
+    found: dict[str, set[str]] = {}
+    for row in rows:
+        found.setdefault(str(row["id"]), set()).add(str(row["lemma"]))
+    return tuple(
+        VerbClass(name, "", tuple(Member(each, ()) for each in sorted(lemmas)), (), (), ())
+        for name, lemmas in sorted(found.items())
+    )
 
 
 def read_classes(store: Store, nodes: Sequence[str]) -> tuple[VerbClass, ...]:

@@ -11,7 +11,7 @@ from kb.lexicon.links import (
     Claimant,
     PrimitiveWords,
     SenseLink,
-    motion_classes,
+    class_links,
     remarks,
     sense_links,
     thesis_claims,
@@ -76,11 +76,7 @@ def link_triples(primitives: Iterable[PrimitiveWords]) -> Triples:
     for words in primitives:
         for link in sense_links(words):
             yield from _sense_link(link)
-        stated = bool(words.levin)
-        claimant = Claimant.RULES if stated else Claimant.LEXICON
-        classes = words.levin or tuple(
-            each for verb in words.verbs for each in motion_classes(verb)
-        )
+        classes, claimant = class_links(words)
         for number in classes:
             yield from _class_link(words.name, number, claimant)
 

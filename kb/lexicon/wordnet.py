@@ -155,20 +155,26 @@ class WordNet:
 
     def kinds_of(self, synset: Synset) -> tuple[Synset, ...]:
         """Every synset below this one in the hierarchy, nearest first."""
-        return self._walk(synset, lambda each: self._below.get(each.offset, ()))
+        return tuple(self._walk(synset, lambda each: self._below.get(each.offset, ())))
 
     def what_it_is(self, synset: Synset) -> tuple[Synset, ...]:
         """Every synset above this one in the hierarchy, nearest first."""
+        return tuple(self.steps_above(synset))
+
+    def steps_above(self, synset: Synset) -> dict[Synset, int]:
+        """How many steps above this one each synset stands, nearest first."""
         return self._walk(synset, lambda each: each.hypernyms)
 
-    def _walk(self, start: Synset, step: Callable[[Synset], Iterable[str]]) -> tuple[Synset, ...]:
-        seen, found, queue = {start.offset}, list[Synset](), [start]
+    def _walk(self, start: Synset, step: Callable[[Synset], Iterable[str]]) -> dict[Synset, int]:
+        seen, found, queue = {start.offset}, dict[Synset, int](), [start]
+        steps = 0
         while queue:
+            steps += 1
             level = sorted({offset for each in queue for offset in step(each)} - seen)
             seen.update(level)
             queue = [self._synset(offset) for offset in level]
-            found += queue
-        return tuple(found)
+            found |= dict.fromkeys(queue, steps)
+        return found
 
 
 def normal_key(key: str) -> str:

@@ -9,6 +9,8 @@ from motions.performers import Performer as Performer
 from motions.pick_up import pick_up_with_both_hands as pick_up_with_both_hands
 from motions.rows import hit as hit
 from motions.rows import move_obj as move_obj
+from motions.rows import move_obj_to as move_obj_to
+from motions.rows import resume_posture as resume_posture
 from motions.rows import touch as touch
 from motions.rows import touch_with as touch_with
 from motions.touching import slide_object as slide_object

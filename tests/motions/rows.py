@@ -47,7 +47,7 @@ def touch_with(performer: Performer, **options: Unpack[Options]) -> Trial:
     top = np.array([0.5, -0.1 + performer.aside_m, performer.table_m + BOX[2]])
     lift = pose(top + np.array([-0.1, -0.15, 0.25]))
     stamp = Moves((Move(0.0, set_down, lift, pose(top), arrive=(0.0, 0.0, -0.15),
-                        launch_mps2=2.0, halt_mps2=3.0),))  # fmt: skip
+                        launch_mps2=2.0, halt_mps2=6.0),))  # fmt: skip
     end = set_down + 0.8 * performer.pace
     meetings = (
         Meeting(HAND, "stamp", stamp, (0.0, 0.0, 0.0), UP, figure.GRIP_DEPTH),
@@ -85,6 +85,52 @@ def touch(performer: Performer, **options: Unpack[Options]) -> Trial:
     truth = Truth(end, (meeting,), _steps("Touch"), {HAND: ()})
     bodies = (figure.hand_body(performer, HAND, hand), _table(performer))
     return record(Script("touch", performer, truth, bodies), Sampling(**options))
+
+
+def move_obj_to(performer: Performer, **options: Unpack[Options]) -> Trial:
+    """A block in the hand is set down, and still held for a moment: MoveObjTo, TouchWith."""
+    set_down = 1.0 * performer.pace
+    goal = np.array([0.5, -0.1 + performer.aside_m, performer.table_m])
+    lift = pose(goal + np.array([-0.1, -0.2, 0.3]))
+    move = Move(
+        0.0, set_down, lift, pose(goal), arrive=(0.0, 0.0, -0.2), launch_mps2=4.0, halt_mps2=6.0
+    )
+    stamp = Moves((move,))
+    meetings = (
+        Meeting(HAND, "stamp", stamp, (0.0, 0.0, 0.0), UP, figure.GRIP_DEPTH),
+        Meeting("stamp", "table", stamp, (0.0, 0.0, 0.0), UP, 0.0, set_down, None),
+    )
+    steps = _steps("MoveObjTo", "TouchWith")
+    truth = Truth(set_down + 0.3, meetings, steps, {HAND: (set_down,)})
+    bodies = (*_held_stamp(performer, stamp), _table(performer))
+    return record(Script("move_obj_to", performer, truth, bodies), Sampling(**options))
+
+
+def resume_posture(performer: Performer, **options: Unpack[Options]) -> Trial:
+    """A hand that lay on the table at the start goes back at once: ResumePosture.
+
+    The contact's true end, a few frames on, is a border in ``extended``; ``thesis`` sees its
+    first crossing only, which is the first frame.
+    """
+    home = 1.1 * performer.pace
+    back = figure.withdraw(
+        performer,
+        HAND,
+        begin=_flat(performer),
+        depart=(-0.05, 0.0, 0.25),
+        start_s=0.0,
+        end_s=home,
+        launch_mps2=figure.GENTLE_MPS2,
+    )
+    hand = Moves((back,))
+    meeting = Meeting(HAND, "table", hand, _palm(performer), UP, figure.GRIP_DEPTH, None, 0.0)
+    steps: dict[str, dict[str, tuple[str, ...]]] = {
+        "thesis": {HAND: ("ResumePosture",)},
+        "extended": {HAND: ("Touch", "ResumePosture")},
+    }
+    truth = Truth(home + 0.2, (meeting,), steps, {HAND: ()})
+    bodies = (figure.hand_body(performer, HAND, hand), _table(performer))
+    return record(Script("resume_posture", performer, truth, bodies), Sampling(**options))
 
 
 def _palm(performer: Performer) -> tuple[float, float, float]:

@@ -20,7 +20,7 @@ def test_time_that_goes_back_is_told_with_its_frame(tmp_path: Path) -> None:
     lines = path.read_text().splitlines()
     lines[5], lines[6] = lines[6], lines[5]
     path.write_text("\n".join(lines))
-    with pytest.raises(CaptureError, match="time goes from .* at frame 5"):
+    with pytest.raises(CaptureError, match=r"time goes from .* at frame 5"):
         read_recording(path)
 
 

@@ -109,3 +109,26 @@ def test_an_invalid_sample_of_a_table_is_lost(tmp_path: Path) -> None:
     path = samples.write_csv(tmp_path / "m.csv")
     path.write_text(path.read_text().replace(",1\n", ",0\n", 1))
     assert list(np.flatnonzero(read_recording(path).bodies["hand"].lost)) == [0]
+
+
+def test_c3d_is_read_as_the_reference_library_reads_it() -> None:
+    import ezc3d
+
+    path = samples.recordings_folder() / "pyomeca_box_lift" / "markers_analogs.c3d"
+    theirs = ezc3d.c3d(str(path))
+    ours = read_recording(path)
+    assert list(ours.markers) == theirs["parameters"]["POINT"]["LABELS"]["value"]
+    points = np.stack(list(ours.markers.values()), axis=1)
+    assert np.allclose(points.transpose(2, 1, 0), theirs["data"]["points"][:3], equal_nan=True)
+
+
+def test_rotation_data_of_a_c3d_makes_bodies(tmp_path: Path) -> None:
+    path = samples.write_c3d_rotations(tmp_path / "r.c3d")
+    recording = read_recording(path)
+    body = recording.bodies["hand"]
+    assert np.allclose(body.positions, samples.PLACES, atol=1e-6)
+    turns = samples.TURNS.as_quat(scalar_first=True)
+    assert np.degrees(geometry.angle_between(body.orientations, turns)).max() < 0.05
+    path.write_bytes(path.read_bytes()[:-200])
+    with pytest.raises(FileError, match="rotations and ends before"):
+        read_recording(path)

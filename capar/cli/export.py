@@ -1,0 +1,55 @@
+"""Write the Actionary to a file that others can read."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from capar.cli._actionary import Place
+
+app = typer.Typer()
+
+
+@app.command()
+def export(
+    file: Annotated[
+        Path | None, typer.Argument(help="Where to; standard output if left out.")
+    ] = None,
+    format_: Annotated[
+        str | None,
+        typer.Option("--format", help="turtle, trig, nquads or jsonld; else by the file's name."),
+    ] = None,
+    observation: Annotated[
+        str | None, typer.Option(help="Only this observation, with all that it mentions.")
+    ] = None,
+    actionary: Place = None,
+) -> None:
+    """Write everything, or one observation, as Turtle, TriG, N-Quads or JSON-LD."""
+    from kb import Actionary
+    from kb.exchange import export as exported
+    from kb.exchange import format_of, misplaced
+
+    chosen = format_of(file or "", format_ or (None if file else "trig"))
+    with Actionary.open(actionary, read_only=True) as opened:
+        data = exported(opened.store, chosen, observation=observation)
+        lost = misplaced(opened.store) if chosen == "turtle" and observation is None else 0
+    if lost:
+        typer.echo(
+            f"capar: Turtle has no graphs; {lost} statements would come back in another one. "
+            "TriG and N-Quads keep them.",
+            err=True,
+        )
+    if file is None:
+        sys.stdout.buffer.write(data)
+    else:
+        _write(file, data)
+
+
+def _write(file: Path, data: bytes) -> None:
+    from capar.model.errors import FileError
+
+    try:
+        file.write_bytes(data)
+    except OSError as error:
+        raise FileError(file, f"cannot be written ({error.strerror})") from None

@@ -1,0 +1,24 @@
+"""Take observations back."""
+
+from typing import Annotated
+
+import typer
+
+from capar.cli._actionary import Place, Wait
+
+app = typer.Typer()
+
+
+@app.command()
+def forget(
+    names: Annotated[list[str], typer.Argument(help="The observations, by their captures' names.")],
+    wait: Wait = 0.0,
+    actionary: Place = None,
+) -> None:
+    """Take observations back, and everything that nothing else says."""
+    from kb import Actionary
+
+    with Actionary.open(actionary, wait_s=wait) as opened:
+        for each in names:
+            opened.forget(each)
+            typer.echo(f"forgot {each}")

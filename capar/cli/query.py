@@ -1,0 +1,148 @@
+"""Ask the Actionary: a named question, or any SPARQL."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from capar.cli._actionary import Place
+
+if TYPE_CHECKING:
+    from kb.answers import Answer
+
+app = typer.Typer()
+
+
+def _names(incomplete: str) -> list[tuple[str, str]]:
+    """Names of questions that begin so, for the shell."""
+    from kb.questions import questions
+
+    return [(n, q.text) for n, q in questions().items() if n.startswith(incomplete)]
+
+
+def _parameters(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
+    """Parameters of the question that was named, for the shell."""
+    from kb.questions import questions
+
+    asked = questions().get(str(ctx.params.get("question") or ""))
+    found = [(f"{each.name}=", each.meaning) for each in asked.parameters] if asked else []
+    return [each for each in found if each[0].startswith(incomplete)]
+
+
+@app.command()
+def query(
+    question: Annotated[
+        str | None,
+        typer.Argument(
+            help="A question's name, SPARQL, a file of SPARQL, or - for standard input.",
+            autocompletion=_names,
+            show_default=False,
+        ),
+    ] = None,
+    parameters: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[NAME=VALUE]...",
+            help="What a named question is asked of.",
+            autocompletion=_parameters,
+            show_default=False,
+        ),
+    ] = None,
+    list_: Annotated[bool, typer.Option("--list", help="List the named questions.")] = False,
+    format_: Annotated[str, typer.Option("--format", help="table, csv, json or turtle.")] = "table",
+    json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
+    time_limit: Annotated[
+        float, typer.Option(metavar="SECONDS", help="How long the question may take.")
+    ] = 30.0,
+    actionary: Place = None,
+) -> None:
+    """Ask the Actionary a QUESTION; see --list. It can neither write nor run for ever."""
+    from capar.model.errors import UnknownNameError
+    from kb.formats import FORMATS
+
+    chosen = "json" if json else format_
+    if chosen not in FORMATS:
+        raise UnknownNameError("format", chosen, FORMATS)
+    if list_ or question is None:
+        _list(chosen)
+        return
+    text = _text(question, parameters or [])
+    from kb import Actionary
+
+    with Actionary.open(actionary, read_only=True) as opened:
+        answer = opened.store.ask_within(text, seconds=time_limit)
+    _print(answer, chosen)
+
+
+def _text(question: str, parameters: list[str]) -> str:
+    """The SPARQL that is meant."""
+    from capar.model.errors import CaparError
+    from kb import sparql
+    from kb.questions import question as named
+
+    given = {}
+    for each in parameters:
+        name, equals, value = each.partition("=")
+        if not equals:
+            raise CaparError(f"{each!r} is no parameter; one is written NAME=VALUE")
+        given[name] = value
+    raw = _raw(question)
+    if raw is None:
+        return named(question).bind(given)
+    if given:
+        raise CaparError("SPARQL takes no parameters; write the values into it")
+    return sparql.prepare(raw)
+
+
+def _raw(question: str) -> str | None:
+    """SPARQL that was given itself, or by a file or standard input."""
+    if question == "-":
+        return sys.stdin.read()
+    if any(each in question for each in "{\n"):
+        return question
+    path = Path(question)
+    if path.suffix in {".rq", ".sparql"} or path.is_file():
+        from capar.model.errors import FileError
+
+        try:
+            return path.read_text("utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise FileError(path, f"cannot be read as a query ({error})") from None
+    return None
+
+
+def _list(chosen: str) -> None:
+    from pyoxigraph import Literal
+
+    from kb.answers import Answer
+    from kb.questions import questions
+
+    rows = [
+        (
+            each.name,
+            " ".join(p.name if p.required else f"[{p.name}]" for p in each.parameters),
+            each.text,
+        )
+        for each in questions().values()
+    ]
+    _print(
+        Answer(("name", "parameters", "question"), tuple(tuple(map(Literal, r)) for r in rows)),
+        chosen,
+    )
+
+
+def _print(answer: "Answer", chosen: str) -> None:
+    from kb.formats import FORMATS, cells, header
+
+    if chosen != "table" or not sys.stdout.isatty():
+        typer.echo(FORMATS[chosen](answer), nl=False)
+        return
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(*header(answer))
+    for row in cells(answer):
+        table.add_row(*map(Text, row))
+    Console().print(table)

@@ -1,0 +1,114 @@
+"""The pipeline of the linguistic report: the rule base's words, the lexical rules, the report."""
+
+import json
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from capar.model.errors import FileError, RuleError
+from capar_rules.engine import rule_file, solve
+from kb.lexicon.evidence import Case, Seen, seen_in
+from kb.lexicon.facts import lexical_facts, verbnet_members
+from kb.lexicon.links import PrimitiveWords
+from kb.lexicon.loading import every_verbnet_member
+from kb.reports.assembling import Derived, assemble
+from kb.reports.linguistics import LinguisticReport
+
+if TYPE_CHECKING:
+    from kb.store import Store
+
+MAIN = "lexical/main.lp"
+
+_COMMENT = re.compile(r"%\*.*?\*%|%[^\n]*", re.DOTALL)
+_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_FACT = re.compile(
+    rf"(?:^|\.)\s*(?P<predicate>[a-z]\w*)\((?P<arguments>\s*{_TEXT.pattern}"
+    rf"(?:\s*,\s*{_TEXT.pattern})*\s*)\)\s*(?=\.)",
+    re.MULTILINE,
+)
+
+
+def primitive_files(added: Iterable[Path] = ()) -> tuple[Path, ...]:
+    """The rule files of primitives that ship, by name, and the user's."""
+    return (*sorted(rule_file("primitives").glob("*.lp")), *sorted(added))
+
+
+def primitive_words(files: Sequence[Path]) -> tuple[PrimitiveWords, ...]:
+    """What the rule files call their primitives: the facts that each states, as they stand.
+
+    Raises:
+        FileError: A rule file that cannot be read.
+        RuleError: Two files state one primitive.
+    """
+    found: dict[str, PrimitiveWords] = {}
+    for path in files:
+        stated = _stated(path)
+        for (name,) in (each for each in stated.get("primitive", ()) if len(each) == 1):
+            if name in found:
+                raise RuleError(
+                    f"{path}: primitive {name!r} is also stated by {found[name].file}; "
+                    "one file states a primitive"
+                )
+            found[name] = _words(stated, name, f"{path.parent.name}/{path.name}")
+    return tuple(sorted(found.values()))
+
+
+def _stated(path: Path) -> dict[str, list[tuple[str, ...]]]:
+    """Facts over texts alone that stand in a rule file, by predicate, in their order."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(path, f"cannot be read ({error});", "name a rule file.") from None
+    facts: dict[str, list[tuple[str, ...]]] = {}
+    for match in _FACT.finditer(_COMMENT.sub("", text)):
+        arguments = tuple(json.loads(each) for each in _TEXT.findall(match["arguments"]))
+        facts.setdefault(match["predicate"], []).append(arguments)
+    return facts
+
+
+def _words(stated: dict[str, list[tuple[str, ...]]], name: str, file: str) -> PrimitiveWords:
+    def second(predicate: str) -> tuple[str, ...]:
+        rows = stated.get(predicate, [])
+        return tuple(row[1] for row in rows if len(row) == 2 and row[0] == name)
+
+    return PrimitiveWords(
+        name,
+        second("verb"),
+        second("specialises"),
+        second("sense"),
+        second("levin"),
+        second("preposition"),
+        file,
+    )
+
+
+def linguistics(
+    files: Sequence[Path] = (),
+    *,
+    store: "Store | None" = None,
+    cases: Sequence[Case] = (),
+) -> LinguisticReport:
+    """The linguistic report over rule files of primitives and a store's observations.
+
+    Args:
+        files: The rule files of primitives; by default those that ship.
+        store: Where observations are, and VerbNet if it was imported.
+        cases: Shipped cases that show primitives.
+    """
+    chosen = tuple(files) or primitive_files()
+    words = primitive_words(chosen)
+    seen: tuple[Seen, ...] = seen_in(store) if store else ()
+    members = verbnet_members(every_verbnet_member(store)) if store else {}
+    facts = lexical_facts(words, members=members, rules=_stems(chosen), seen=seen, cases=cases)
+    answer = solve([rule_file(MAIN)], facts)
+    rows: dict[str, list[tuple[str, ...]]] = {}
+    for predicate, arguments in answer.atoms:
+        rows.setdefault(predicate, []).append(tuple(map(str, arguments)))
+    return assemble(Derived(rows), words, seen, members)
+
+
+def _stems(files: Sequence[Path]) -> list[str]:
+    """Names of every rule file that counts: what ships beside the primitives, and these."""
+    shipped = {each.stem for each in rule_file("").rglob("*.lp")}
+    return sorted(shipped | {each.stem for each in files})

@@ -1,0 +1,146 @@
+"""The rule base over every segment that can be: what no rule covers, what several do, what none needs."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from capar_rules.engine import rule_file
+from capar_rules.profiles import Profile
+from capar_rules.searching import Atom, answer, worlds
+from capar_rules.slicing import heads_of, towards
+from capar_rules.syntax import Signature, Statement, parse
+
+ASKED: tuple[Signature, ...] = (
+    ("nameless", 4),
+    ("clash", 6),
+    ("fitting", 1),
+    ("winning", 1),
+    ("possible", 4),
+    ("primitive", 1),
+    ("excused", 5),
+)
+
+Features = tuple[str, str, str, str]
+"""Relations at the start and at the end, change of location, and force."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Clash:
+    """Two names that one segment can have, without order between them."""
+
+    first: str
+    second: str
+    features: tuple[Features, ...]
+    """Feature sets at which they meet, sorted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Audit:
+    """What the solver found over every segment that can be."""
+
+    possible: int
+    """How many feature sets there can be."""
+
+    uncovered: tuple[Features, ...]
+    """Those that no rule names, sorted."""
+
+    excused: tuple[tuple[Features, str], ...]
+    """Of the uncovered ones, those for which ``audit/uncovered.lp`` gives a reason."""
+
+    ambiguous: tuple[Clash, ...]
+    shadowed: tuple[str, ...]
+    """Primitives that can fit and never win."""
+
+    unreachable: tuple[str, ...]
+    """Primitives that fit no segment of the audit's world."""
+
+    @property
+    def clean(self) -> bool:
+        """Whether there is no ambiguity, nothing shadowed, and every uncovered case has a reason."""
+        reasoned = {features for features, _ in self.excused}
+        return not (self.ambiguous or self.shadowed or set(self.uncovered) - reasoned)
+
+
+def audit(profile: Profile) -> Audit:
+    """Audit the rules of a profile.
+
+    Raises:
+        RuleError: The rules have a fault.
+    """
+    atoms = evaluate(parse(profile.files), ASKED)
+    primitives = {str(each) for (each,) in _rows(atoms, "primitive")}
+    fitting = {str(each) for (each,) in _rows(atoms, "fitting")}
+    winning = {str(each) for (each,) in _rows(atoms, "winning")}
+    return Audit(
+        possible=len(_rows(atoms, "possible")),
+        uncovered=tuple(sorted(map(_features, _rows(atoms, "nameless")))),
+        excused=tuple(
+            sorted((_features(each), str(each[4])) for each in _rows(atoms, "excused"))
+        ),
+        ambiguous=_clashes(_rows(atoms, "clash")),
+        shadowed=tuple(sorted(fitting - winning)),
+        unreachable=tuple(sorted(primitives - fitting)),
+    )
+
+
+def evaluate(rules: Sequence[Statement], asked: Iterable[Signature]) -> frozenset[Atom]:
+    """What rules derive over all segments that can be: each stands in the world beside the others.
+
+    Raises:
+        RuleError: The rules have a fault.
+    """
+    space = _own("space.lp")
+    questions = [*_own("cases.lp"), *_own("uncovered.lp")]
+    kept = towards([*rules, *questions], asked, given=heads_of(space))
+    program = "\n".join(each.text for each in kept)
+    found: set[Atom] = set()
+    for facts in _worlds():
+        for force in ("", "force_transfer."):
+            found |= answer(f"{program}\n{facts}\n{force}", asked)
+    return frozenset(found)
+
+
+@cache
+def _worlds() -> tuple[str, ...]:
+    """Every world of the audit as facts about an end-effector of its own, in batches."""
+    rules = (*_own("space.lp"), *_own("physical.lp"))
+    fixed = "\n".join(each.text for each in rules if not each.body and each.head_kind == "atom")
+    texts = []
+    for number, atoms in enumerate(worlds("\n".join(each.text for each in rules))):
+        own = " ".join(f"{each}." for each in atoms)
+        texts.append(_LIMB.sub(f"limb{number}", f"{own} {fixed}"))
+    return tuple("\n".join(texts[at : at + BATCH]) for at in range(0, len(texts), BATCH))
+
+
+BATCH = 1000
+"""How many worlds one call of the solver holds: what bounds its memory."""
+
+_LIMB = re.compile(r"\blimb\b")
+
+
+def _own(name: str) -> list[Statement]:
+    """The rules of one file of the audit, without what it includes."""
+    path = rule_file("audit") / name
+    return [
+        each
+        for each in parse([path])
+        if Path(each.place.file).name == name and each.kind != "comment"
+    ]
+
+
+def _rows(atoms: Iterable[Atom], predicate: str) -> list[tuple[object, ...]]:
+    return [arguments for name, arguments in atoms if name == predicate]
+
+
+def _features(row: Sequence[object]) -> Features:
+    start, end, change, force = map(str, row[:4])
+    return start, end, change, force
+
+
+def _clashes(rows: Iterable[tuple[object, ...]]) -> tuple[Clash, ...]:
+    found: dict[tuple[str, str], set[Features]] = {}
+    for first, second, *features in rows:
+        found.setdefault((str(first), str(second)), set()).add(_features(features))
+    return tuple(Clash(*pair, tuple(sorted(found[pair]))) for pair in sorted(found))

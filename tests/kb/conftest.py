@@ -1,0 +1,61 @@
+"""An Actionary of each kind: in memory, in a folder, and at a real server on loopback."""
+
+import socket
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import motions
+import pytest
+from actionaries import ACTIONS, STORES, opened, oxigraph_binary
+
+from capar.model.observation import Observation
+from capar.observe import observe
+from kb.actionary import Actionary
+from kb.errors import StoreError
+from kb.remote import RemoteStore
+
+
+@pytest.fixture(scope="session")
+def server() -> Iterator[str]:
+    """The address of a server that runs while the tests do."""
+    binary = oxigraph_binary()
+    if binary is None:
+        pytest.skip("no oxigraph program beside this Python or on the path")
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    running = subprocess.Popen(
+        [binary, "serve", "--bind", f"127.0.0.1:{port}"],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    address = f"http://127.0.0.1:{port}"
+    for _ in range(200):
+        try:
+            RemoteStore(address)
+            break
+        except StoreError:
+            time.sleep(0.05)
+    yield address
+    running.kill()
+    running.wait()
+
+
+@pytest.fixture(params=STORES)
+def actionary(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Actionary]:
+    """An empty Actionary, of each kind in turn."""
+    with opened(request.param, tmp_path, request) as fresh:
+        yield fresh
+
+
+@pytest.fixture(scope="session")
+def five_by_three() -> tuple[Observation, ...]:
+    """The five test actions by three performers, observed as the thesis does."""
+    performers = motions.PERFORMERS
+    return tuple(
+        observe(trial(performer).capture, rules="thesis", name=name)
+        for performer in performers
+        for name, trial in ACTIONS.items()
+    )

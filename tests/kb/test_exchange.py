@@ -1,0 +1,109 @@
+"""The whole Actionary goes out and comes back in every format; literals keep every number."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
+
+from capar.model.errors import FileError, UnknownNameError
+from capar.model.par import Nlt, PathPoint
+from kb import literals
+from kb.actionary import Actionary
+from kb.errors import ShapeError
+from kb.exchange import FORMATS, bring_in, export, format_of, misplaced, read
+from kb.literals import LiteralError
+
+
+def full() -> Actionary:
+    actionary = Actionary.in_memory()
+    for each in (drink_from_mug(), pick_up_with_both_hands(), with_unknown()):
+        actionary.add(each)
+    actionary.define_kind("stein", broader="mug")
+    actionary.add_feature_row("Swap", with_unknown().segments[1].features)
+    actionary.add_ability("Swap", agent="ann")
+    actionary.add_ability("Pour", kind="container")
+    return actionary
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_everything_round_trips(name: str, actionary: Actionary) -> None:
+    source = full()
+    assert misplaced(source.store) == 0
+    bring_in(actionary.store, read(export(source.store, name), name))
+    assert set(actionary.store.quads()) == set(source.store.quads())
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_an_export_is_the_same_bytes_each_time(name: str) -> None:
+    assert export(full().store, name) == export(full().store, name)
+
+
+def test_rdflib_reads_the_turtle_as_an_isomorphic_graph() -> None:
+    from rdflib import Graph
+    from rdflib.compare import isomorphic
+
+    store = full().store
+    ours = Graph().parse(data=export(store, "turtle"), format="turtle")
+    lines = "".join(f"{each} .\n" for each in {quad.triple for quad in store.quads()})
+    assert isomorphic(ours, Graph().parse(data=lines, format="nt"))
+
+
+def test_one_observation_travels_with_all_that_it_mentions() -> None:
+    target = Actionary.in_memory()
+    bring_in(target.store, read(export(full().store, "trig", observation="Strange"), "trig"))
+    alone = Actionary.in_memory()
+    alone.add(with_unknown())
+    assert {q for q in alone.store.quads()} <= set(target.store.quads())
+    assert [each.name for each in target.observations()] == ["Strange"]
+
+
+def test_unnamed_things_get_names_that_follow_from_what_is_said() -> None:
+    text = b"@prefix ex: <http://ex/> . ex:a ex:b [ ex:c 1 ; ex:d [ ex:e 2 ] ] ."
+    again = b"@prefix ex: <http://ex/> . _:y ex:e 2 . _:x ex:d _:y ; ex:c 1 . ex:a ex:b _:x ."
+    assert set(read(text, "turtle")) == set(read(again, "turtle"))
+
+
+def test_what_breaks_the_model_is_not_taken_in() -> None:
+    store = full().store
+    before = set(store.quads())
+    text = export(store, "trig").decode().replace('capar:side "right"', 'capar:side "up"', 1)
+    with pytest.raises(ShapeError, match="right, "):
+        bring_in(store, read(text.encode(), "trig"))
+    assert set(store.quads()) == before
+
+
+def test_a_file_that_is_not_what_it_says_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="no turtle"):
+        read(b"<a> <b>", "turtle", path=tmp_path / "x.ttl")
+    with pytest.raises(UnknownNameError, match="jsonld, nquads, trig, turtle"):
+        format_of("facts.docx")
+    assert format_of("facts.nq") == "nquads"
+
+
+finite = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@given(st.lists(finite))
+def test_a_vector_keeps_every_bit(values: list[float]) -> None:
+    assert literals.numbers(literals.vector(values).value) == tuple(values)
+
+
+@given(st.tuples(finite, finite, finite), st.tuples(finite, finite, finite, finite))
+def test_an_nlt_keeps_every_bit(
+    place: tuple[float, float, float], turn: tuple[float, float, float, float]
+) -> None:
+    value = Nlt(place, turn)
+    assert literals.nlt_of(literals.nlt(value).value) == value
+
+
+@given(st.lists(st.builds(PathPoint, finite, st.tuples(finite, finite, finite))))
+def test_a_path_keeps_every_bit(points: list[PathPoint]) -> None:
+    assert literals.path_of(literals.path(points).value) == tuple(points)
+
+
+@pytest.mark.parametrize("text", ["1 2 3", "1 2 3 1 0 0 nan", "1 2 3 1 0 0 x", "1 2 3 1 0 0 inf"])
+def test_a_literal_that_is_no_nlt_is_refused(text: str) -> None:
+    with pytest.raises(LiteralError):
+        literals.nlt_of(text)
