@@ -11,7 +11,8 @@ from capar_rules.engine import rule_file, solve
 from kb.lexicon.evidence import Case, Seen, seen_in
 from kb.lexicon.facts import lexical_facts, verbnet_members
 from kb.lexicon.links import PrimitiveWords
-from kb.lexicon.loading import every_verbnet_member
+from kb.lexicon.loading import every_verbnet_member, verbnet_of
+from kb.lexicon.verbs import Standing, VerbAnswer, about, keys_of_primitives
 from kb.reports.assembling import Derived, assemble
 from kb.reports.linguistics import LinguisticReport
 
@@ -112,3 +113,33 @@ def _stems(files: Sequence[Path]) -> list[str]:
     """Names of every rule file that counts: what ships beside the primitives, and these."""
     shipped = {each.stem for each in rule_file("").rglob("*.lp")}
     return sorted(shipped | {each.stem for each in files})
+
+
+def standing(verb: str, words: Sequence[PrimitiveWords]) -> Standing:
+    """How the rule base stands to a verb, by the lexical rules."""
+    facts = lexical_facts(words, members={}, verbs=(verb,), classes=False)
+    answer = solve([rule_file(MAIN)], facts)
+
+    def primitives(predicate: str) -> tuple[str, ...]:
+        return tuple(str(row[0]) for row in answer.of(predicate) if row[1] == verb)
+
+    represented = primitives("represents")
+    return Standing(represented, () if represented else primitives("generalises"))
+
+
+def answer_verb(
+    verb: str, words: Sequence[PrimitiveWords], *, store: "Store | None" = None
+) -> VerbAnswer:
+    """Everything that is known of a verb.
+
+    Raises:
+        UnknownNameError: Neither WordNet nor the rule base has it.
+    """
+    plain = " ".join(verb.lower().replace("_", " ").split())
+    return about(
+        plain,
+        standing=standing(plain, words),
+        keys_of=keys_of_primitives(words),
+        verbnet=verbnet_of(store, plain.replace(" ", "_")) if store else (),
+        seen=seen_in(store) if store else (),
+    )

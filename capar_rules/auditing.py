@@ -8,8 +8,8 @@ from pathlib import Path
 
 from capar_rules.engine import rule_file
 from capar_rules.profiles import Profile
-from capar_rules.searching import Atom, answer, worlds
-from capar_rules.slicing import heads_of, towards
+from capar_rules.searching import Atom, brave, worlds
+from capar_rules.slicing import heads_of, signatures_below, towards
 from capar_rules.syntax import Signature, Statement, parse
 
 ASKED: tuple[Signature, ...] = (
@@ -69,7 +69,11 @@ def audit(profile: Profile) -> Audit:
     Raises:
         RuleError: The rules have a fault.
     """
-    atoms = evaluate(parse(profile.files), ASKED)
+    return summarise(evaluate(parse(profile.files), ASKED))
+
+
+def summarise(atoms: frozenset[Atom]) -> Audit:
+    """What the answers over all worlds come to."""
     primitives = {str(each) for (each,) in _rows(atoms, "primitive")}
     fitting = {str(each) for (each,) in _rows(atoms, "fitting")}
     winning = {str(each) for (each,) in _rows(atoms, "winning")}
@@ -85,21 +89,40 @@ def audit(profile: Profile) -> Audit:
     )
 
 
+def given_in_audit() -> frozenset[Signature]:
+    """The predicates that the audit's world states itself."""
+    return heads_of([*_own("space.lp"), *_own("scene.lp"), *_own("words.lp")]) | {("force_transfer", 0), ("gap", 4)}
+
+
 def evaluate(rules: Sequence[Statement], asked: Iterable[Signature]) -> frozenset[Atom]:
     """What rules derive over all segments that can be: each stands in the world beside the others.
 
     Raises:
         RuleError: The rules have a fault.
     """
-    space = _own("space.lp")
+    words = [*_own("scene.lp"), *words_of(rules)]
+    given = heads_of([*_own("space.lp"), *words])
+    base = [each for each in rules if not {head.signature for head in each.heads} & given]
     questions = [*_own("cases.lp"), *_own("uncovered.lp")]
-    kept = towards([*rules, *questions], asked, given=heads_of(space))
+    stated = heads_of(_own("space.lp")) - heads_of(words)
+    kept = towards([*base, *words, *questions], asked, given=stated)
     program = "\n".join(each.text for each in kept)
     found: set[Atom] = set()
     for facts in _worlds():
-        for force in ("", "force_transfer."):
-            found |= answer(f"{program}\n{facts}\n{force}", asked)
+        found |= brave(f"{program}\n{facts}\n{{ force_transfer }}.", asked)
     return frozenset(found)
+
+
+def words_of(rules: Sequence[Statement]) -> list[Statement]:
+    """The free relations of the audit's world, as far as a rule base speaks of them."""
+    words = _own("words.lp")
+    spoken = heads_of([*rules, *_own("space.lp")]) | {("course", 2), ("member", 3)}
+    return [each for each in words if signatures_below([each]) | heads_of([each]) <= spoken]
+
+
+def physics() -> tuple[Statement, ...]:
+    """What no segment can be."""
+    return _own("physical.lp")
 
 
 @cache
@@ -114,20 +137,21 @@ def _worlds() -> tuple[str, ...]:
     return tuple("\n".join(texts[at : at + BATCH]) for at in range(0, len(texts), BATCH))
 
 
-BATCH = 1000
+BATCH = 50
 """How many worlds one call of the solver holds: what bounds its memory."""
 
 _LIMB = re.compile(r"\blimb\b")
 
 
-def _own(name: str) -> list[Statement]:
+@cache
+def _own(name: str) -> tuple[Statement, ...]:
     """The rules of one file of the audit, without what it includes."""
     path = rule_file("audit") / name
-    return [
+    return tuple(
         each
         for each in parse([path])
-        if Path(each.place.file).name == name and each.kind != "comment"
-    ]
+        if Path(each.place.file).name == name and each.kind == "rule"
+    )
 
 
 def _rows(atoms: Iterable[Atom], predicate: str) -> list[tuple[object, ...]]:

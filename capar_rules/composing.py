@@ -1,7 +1,9 @@
 """Segments to one complex PAR: sequences in parallel, shares of time, and Allen's relations."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 
 from capar.model.observation import ObservedLink, Segment
 from capar.model.par import ComplexPar, LinkSteps, Relation, Step
@@ -9,6 +11,9 @@ from capar_rules.reasoning import Inference
 
 ALL = "all"
 """The end-effector of a step that is common to every link."""
+
+REST = "Rest"
+"""The name of a segment in which nothing is done, which is no step of an action."""
 
 
 def compose(inference: Inference, *, name: str, frames: int, duration_s: float) -> ComplexPar:
@@ -61,12 +66,24 @@ def _common(inference: Inference, name: str, frames: int) -> Step | None:
 def _steps(
     inference: Inference, link: ObservedLink, name: str, frames: int, end: float
 ) -> tuple[Step, ...]:
-    """One step a segment; the last before a common step waits for it."""
+    """One step a segment, but for rest; the last before a common step waits for it."""
     own = [each for each in link.segments if (each.ee, each.index) not in inference.common]
-    steps = [_step(each, name, frames) for each in own]
+    steps = [_step(each, name, frames) for each in _waited(own)]
     if steps and steps[-1].begin + steps[-1].share != end:
         steps[-1] = _lasting(steps[-1], end - steps[-1].begin)
     return tuple(steps)
+
+
+def _waited(segments: Sequence[Segment]) -> list[Segment]:
+    """Segments without those of rest: it belongs to what it precedes, or, at the end, follows."""
+    active = [each for each in segments if each.name != REST]
+    if not active:
+        return list(segments)
+    edges = [segments[0].first, *(each.last for each in active[:-1]), segments[-1].last]
+    return [
+        replace(each, first=first, last=last)
+        for each, (first, last) in zip(active, pairwise(edges), strict=True)
+    ]
 
 
 def _step(segment: Segment, name: str, frames: int) -> Step:

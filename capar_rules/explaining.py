@@ -14,7 +14,7 @@ from capar_rules.engine import rule_file
 from capar_rules.profiles import Profile
 from capar_rules.ranking import Tick, rank
 from capar_rules.sentences import Clock, Sentences
-from capar_rules.syntax import Place, parse
+from capar_rules.syntax import Place, Statement, parse
 from capar_rules.windows import Windows
 
 TARGETS = (("named", 2), ("parted_at", 2), ("nearest", 2), ("segment", 3), ("also", 2))
@@ -69,6 +69,7 @@ class RuleBase:
 
     recorder: Recorder
     sentences: Sentences
+    statements: tuple[Statement, ...]
 
 
 def rule_base(profile: Profile) -> RuleBase:
@@ -80,7 +81,7 @@ def rule_base(profile: Profile) -> RuleBase:
 def _rule_base(files: tuple[Path, ...], fingerprint: str) -> RuleBase:
     statements = parse((*files, rule_file("explaining.lp")))
     recorder = Recorder(statements, targets=TARGETS)
-    return RuleBase(recorder, Sentences(statements))
+    return RuleBase(recorder, Sentences(statements), statements)
 
 
 class Explainer:
@@ -112,11 +113,11 @@ class Explainer:
         """
         ticks = self.ticks(segment)
         term = f"seg({segment.ee},{ticks[0]})"
-        for facts in self._windows(segment.ee, ticks):
+        for facts in self.windows_of(segment.ee, ticks):
             derived = self.base.recorder.solve(facts)
             roots = list(_roots(derived, term, ticks, segment))
             if roots:
-                clock = self._clock(derived)
+                clock = self.clock(derived)
                 grounds = [derived.why(each) for each in roots]
                 reasons = [self._reason(each, clock, {}) for each in grounds]
                 return _explanation(segment, reasons)
@@ -140,13 +141,14 @@ class Explainer:
             )
         return found[0], found[1]
 
-    def _windows(self, ee: str, ticks: tuple[int, int]) -> Iterator[tuple[Fact, ...]]:
+    def windows_of(self, ee: str, ticks: tuple[int, int]) -> Iterator[tuple[Fact, ...]]:
         """Ever wider cuts of the facts; the first nearly always does."""
         for widen in (0, 3):
             yield self.windows.around(ee, *ticks, widen=widen)
         yield self.windows.whole()
 
-    def _clock(self, derived: Derivations) -> Clock:
+    def clock(self, derived: Derivations) -> Clock:
+        """When the ticks and segments of an answer are."""
         ends = {}
         for term, first, last in derived.holding("segment"):
             ends[term[4:].split(",")[0], int(first)] = int(last)
@@ -156,9 +158,10 @@ class Explainer:
         if grounds.atom in done:
             return done[grounds.atom]
         told = grounds.predicate, grounds.arguments
-        template = self.base.sentences.template(*told, absent=grounds.absent)
+        mood = "not" if grounds.absent else ""
+        template = self.base.sentences.template(*told, mood=mood)
         done[grounds.atom] = found = Reason(
-            self.base.sentences.tell(*told, clock, absent=grounds.absent),
+            self.base.sentences.tell(*told, clock, mood=mood),
             grounds.atom,
             _where(grounds.rule),
             None if grounds.absent else _frames(*told, clock),
@@ -180,8 +183,10 @@ def _roots(
     for predicate in ("parted_at", "nearest"):
         for place, value in derived.holding(predicate):
             if place == term:
-                yield f"{predicate}({term},{value})" if value.isdigit() else (
-                    f'{predicate}({term},"{value}")'
+                yield (
+                    f"{predicate}({term},{value})"
+                    if value.isdigit()
+                    else (f'{predicate}({term},"{value}")')
                 )
 
 
@@ -249,9 +254,7 @@ _FIELDS = {
 }
 
 
-def _frames(
-    predicate: str, arguments: Sequence[str], clock: Clock
-) -> tuple[int, int] | None:
+def _frames(predicate: str, arguments: Sequence[str], clock: Clock) -> tuple[int, int] | None:
     """When a measurement holds; or the instant of a tick, or the span of a segment."""
     names = _FIELDS.get((predicate, len(arguments)), ())
     named = dict(zip(names, arguments, strict=False))

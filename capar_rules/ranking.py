@@ -255,9 +255,7 @@ def _within(
             yield Within(ee, each.body, each.other, each.first, first, last)
 
 
-def _shared(
-    scene: _Scene, ee: str, ticks: list[int], own: Sequence[Touching]
-) -> Iterable[Fact]:
+def _shared(scene: _Scene, ee: str, ticks: list[int], own: Sequence[Touching]) -> Iterable[Fact]:
     """Contacts of other end-effectors with what this one touches, while it touches it."""
     margin = TOGETHER_S * scene.rate
     others: dict[str, list[Touching]] = defaultdict(list)

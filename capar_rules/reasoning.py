@@ -131,6 +131,10 @@ class _Reading:
             begins=self._borders(tick, first, "first"),
             ends=self._borders((link.ee, last), last, "last"),
             purpose=purposes[0] if purposes else "",
+            prepositions=tuple(
+                (str(name), str(body), str(other))
+                for name, body, other in sorted(self.tables["preposition"][tick])
+            ),
         )
 
     def _features(self, tick: Key, kind: str) -> FeatureSet:
@@ -171,6 +175,7 @@ _OF_SEGMENT = (
     "afterwards",
     "colliding",
     "common",
+    "preposition",
 )
 
 

@@ -30,7 +30,9 @@ def optima(text: str, shown: Iterable[Signature], *, limit: int = 1) -> list[fro
     Raises:
         RuleError: The program has a fault.
     """
-    control = _grounded(_showing(text, shown), ["--opt-mode=optN", "--project=show", f"--models={limit + 1}"])
+    control = _grounded(
+        _showing(text, shown), ["--opt-mode=optN", "--project=show", f"--models={limit + 1}"]
+    )
     found: list[frozenset[Atom]] = []
     with control.solve(yield_=True) as handle:
         for model in handle:
@@ -57,15 +59,17 @@ def _grounded(text: str, options: Sequence[str]) -> clingo.Control:
     return control
 
 
-def answer(text: str, shown: Iterable[Signature]) -> frozenset[Atom]:
-    """What is shown in the one answer of a program.
+def brave(text: str, shown: Iterable[Signature]) -> frozenset[Atom]:
+    """What is shown in at least one answer of a program.
 
     Raises:
         RuleError: The program has a fault, or no answer.
     """
-    control = _grounded(_showing(text, shown), ["--models=1"])
+    control = _grounded(_showing(text, shown), ["--enum-mode=brave", "--models=0"])
     found: list[frozenset[Atom]] = []
-    control.solve(on_model=lambda model: found.append(_atoms(model)))
+    with control.solve(yield_=True) as handle:
+        for model in handle:
+            found[:] = [_atoms(model)]
     if not found:
         raise RuleError("these rules contradict each other: they have no answer")
     return found[0]

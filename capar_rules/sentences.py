@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from capar_rules.syntax import Statement
 
-_TEMPLATE = re.compile(r"%!(!?)\s*(not )?(\w+)/(\d+)(?: (\w+))?:\s*(.+)")
+_TEMPLATE = re.compile(r"%!(!?)\s*(?:(had not|had|not) )?(\w+)/(\d+)(?: (\w+))?:\s*(.+)")
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
 
@@ -19,8 +19,8 @@ class Template:
     """Whether it belongs in the one sentence that sums up an explanation."""
 
 
-Key = tuple[bool, str, int, str]
-"""Whether it is told that the atom does not hold; predicate; arity; an argument or ""."""
+Key = tuple[str, str, int, str]
+"""Mood: it holds, "", it does "not", "had" it held, "had not"; predicate; arity; an argument."""
 
 
 @dataclass(frozen=True)
@@ -60,23 +60,25 @@ class Sentences:
             for line in each.text.splitlines() if each.kind == "comment" else ():
                 found = _TEMPLATE.match(line.strip())
                 if found:
-                    leading, absent, name, arity, kind, text = found.groups()
-                    key = bool(absent), name, int(arity), kind or ""
+                    leading, mood, name, arity, kind, text = found.groups()
+                    key = mood or "", name, int(arity), kind or ""
                     self.templates[key] = Template(text, bool(leading))
 
-    def template(self, predicate: str, arguments: Sequence[str], *, absent: bool) -> Template | None:
+    def template(
+        self, predicate: str, arguments: Sequence[str], *, mood: str = ""
+    ) -> Template | None:
         """The template for an atom; the one for a certain argument before the general one."""
-        key = absent, predicate, len(arguments)
+        key = mood, predicate, len(arguments)
         for each in arguments:
             if (*key, each) in self.templates:
                 return self.templates[*key, each]
         return self.templates.get((*key, ""))
 
     def tell(
-        self, predicate: str, arguments: Sequence[str], clock: Clock, *, absent: bool = False
+        self, predicate: str, arguments: Sequence[str], clock: Clock, *, mood: str = ""
     ) -> str:
         """The sentence for an atom; empty where nothing tells it."""
-        template = self.template(predicate, arguments, absent=absent)
+        template = self.template(predicate, arguments, mood=mood)
         if template is None:
             return ""
         values = [_Value(each, arguments, clock) for each in arguments]

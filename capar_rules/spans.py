@@ -11,7 +11,6 @@ from capar.model.facts import (
     Flies,
     Leans,
     Lies,
-    Nearest,
     Passage,
     Resting,
     Reverses,
@@ -109,8 +108,6 @@ def _stretches(fact: Fact) -> Iterable[Stretch]:
     elif isinstance(fact, Between):
         yield "between", fact.body, fact.one, fact.first, fact.last
         yield "between", fact.body, fact.other, fact.first, fact.last
-    elif isinstance(fact, Nearest):
-        yield "nearest", fact.body, fact.other, fact.frame, fact.frame
 
 
 def _near(times: Sequence[tuple[int, int]], first: int) -> Sequence[tuple[int, int]]:

@@ -4,12 +4,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
+from capar.model import geometry
 from capar.model.capture import Capture, PivotContact, Sensor, TagObject, TagType
 from extractors.intervals import Interval, intervals
 from extractors.poses import Poses
 from extractors.proximity import Body, body, near, nearest
+from extractors.signals import gains
 from extractors.surfaces import surface
 from extractors.thresholds import Thresholds
 
@@ -64,6 +66,10 @@ def contacts(
             touching = np.nan_to_num(apart, nan=np.inf) <= pivot.distance_m
         elif one is not None and two is not None:
             touching = near(one, two, distance_m=tolerance_m)
+            margin = _margin(where[first], where[second], capture.rate_hz, thresholds)
+            if margin > 0.0 and touching.any():
+                release = tolerance_m + min(margin, tolerance_m)
+                touching = bridged(touching, near(one, two, distance_m=release))
         else:
             continue
         for interval in intervals(
@@ -95,6 +101,26 @@ def watched(capture: Capture) -> Iterator[tuple[tuple[str, str], tuple[str, str]
         for each in sorted(capture.objects, key=lambda other: other.name):
             if each.name != name and not (each.tag is TagType.MOBILE and each.name < name):
                 yield ("object", name), ("object", each.name)
+
+
+def bridged(
+    touching: Bool[np.ndarray, "frames"], near_by: Bool[np.ndarray, "frames"]
+) -> Bool[np.ndarray, "frames"]:
+    """Contact that also lasts between two of its frames if the bodies stay near by throughout."""
+    out = touching.copy()
+    for first, last in geometry.gaps(near_by | touching):
+        inside = np.flatnonzero(touching[first : last + 1])
+        if inside.size:
+            out[first + inside[0] : first + inside[-1] + 1] = True
+    return out
+
+
+def _margin(first: Poses, second: Poses, rate_hz: float, thresholds: Thresholds) -> float:
+    """Room for what noise is left in the distance of two bodies [m]; none for quiet ones."""
+    noises = [each.noise.position_m for each in (first, second) if not each.rests]
+    noisy = [each for each in noises if each > thresholds.smoothing_noise_m]
+    left = thresholds.release_sigmas * gains(rate_hz, thresholds)[0]
+    return left * float(np.linalg.norm(noisy)) if noisy else 0.0
 
 
 def shaped(capture: Capture, key: tuple[str, str], where: Poses) -> Body | None:

@@ -6,7 +6,6 @@ from itertools import combinations
 import numpy as np
 from jaxtyping import Float
 
-from capar.model import geometry
 from capar.model.capture import Capture, TagObject, TagType
 from capar.model.facts import (
     Between,
@@ -16,7 +15,6 @@ from capar.model.facts import (
     Leans,
     Lies,
     Moving,
-    Nearest,
     Passage,
     Resting,
     Reverses,
@@ -40,6 +38,9 @@ from extractors.turning_points import reversals, swings
 
 PASSED = ("inside", "above")
 """Arrangements that a body may pass through."""
+
+NEAR = "near"
+"""That it is within reach of another for a while and does not touch it."""
 
 
 def handling(
@@ -117,19 +118,16 @@ def _arranged(
             yield Lies(one.name, how, other.name, *span)
             if how in PASSED and span[0] > 0 and span[1] < len(one.middles) - 1:
                 yield Passage(one.name, how, other.name, span[0], sides(one, other, np.array(span)))
-    distance = gap(one, other)
-    touching = {
+    touching = [
         (each.first, each.last)
         for each in touches
         if (each.body, each.other) == (one.name, other.name)
-    }
+    ]
     with np.errstate(invalid="ignore"):
-        near = distance <= thresholds.near_m
-    for first, last in geometry.gaps(near):
-        frame = first + int(np.argmin(distance[first : last + 1]))
-        passed = not any(begin <= last and end >= first for begin, end in touching)
-        if first < frame < last and passed:
-            yield Nearest(one.name, other.name, frame)
+        close = gap(one, other) <= thresholds.near_m
+    for first, last in _spans(close, one, thresholds):
+        if not any(begin <= last and end >= first for begin, end in touching):
+            yield Lies(one.name, NEAR, other.name, first, last)
 
 
 def _between(one: Figure, others: list[Figure], thresholds: Thresholds) -> Iterator[Fact]:

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from capar.model.capture import Stream
+from extractors.meeting import meeting_points
 from extractors.poses import rotation_matrices
 from extractors.surfaces import Surface
 from extractors.sweep import sweep
@@ -155,4 +156,9 @@ def _cut(
     two = fcl.CollisionObject(second.tree, fcl.Transform(turn, place))
     if not fcl.collide(one, two, request, result):
         return None
-    return np.mean([each.pos for each in result.contacts], axis=0)
+    ones = first.triangles[[each.b1 for each in result.contacts]]
+    twos = second.triangles[[each.b2 for each in result.contacts]] @ turn.T + place
+    points = meeting_points(ones, twos)
+    known = points[~np.isnan(points[:, 0])]
+    # Triangles that lie on each other share no line: their corners stand for it.
+    return np.mean(known if len(known) else twos.reshape(-1, 3), axis=0)

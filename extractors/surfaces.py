@@ -15,6 +15,14 @@ from extractors.shells import EXACTNESS_M, shell
 
 
 @dataclass(frozen=True, eq=False)
+class Shell:
+    """Triangles at a distance of a surface, and their tree for the proximity library."""
+
+    tree: fcl.BVHModel
+    triangles: Float[np.ndarray, "triangles 3 3"]
+
+
+@dataclass(frozen=True, eq=False)
 class Surface:
     """A shape's triangles with what questions of contact need of them, made once."""
 
@@ -33,6 +41,11 @@ class Surface:
     def tree(self) -> fcl.BVHModel:
         """The triangles for the proximity library."""
         return tree(np.asarray(self.mesh.vertices), np.asarray(self.mesh.faces))
+
+    @cached_property
+    def triangles(self) -> Float[np.ndarray, "faces 3 3"]:
+        """Corners of each triangle of that tree [m]."""
+        return np.array(self.mesh.triangles, float)
 
     @cached_property
     def closed(self) -> bool:
@@ -55,17 +68,22 @@ class Surface:
         return len(self.shape.faces)
 
     @cached_property
-    def _shells(self) -> dict[tuple[float, float], fcl.BVHModel]:
+    def _shells(self) -> dict[tuple[float, float], Shell]:
         return {}
 
-    def shell_tree(self, distance_m: float, *, exactness_m: float = EXACTNESS_M) -> fcl.BVHModel:
-        """The shell at that distance [m], for the proximity library; made when first asked for."""
+    def shell(self, distance_m: float, *, exactness_m: float = EXACTNESS_M) -> Shell:
+        """The shell at that distance [m], made when first asked for; at none, the surface."""
         key = distance_m, exactness_m
         if key not in self._shells:
-            parts = shell(self.mesh, distance_m, closed=self.closed, exactness_m=exactness_m)
-            faces = np.arange(3 * len(parts)).reshape(-1, 3)
-            self._shells[key] = tree(parts.reshape(-1, 3), faces)
+            self._shells[key] = self._shell(distance_m, exactness_m)
         return self._shells[key]
+
+    def _shell(self, distance_m: float, exactness_m: float) -> Shell:
+        if distance_m <= 0.0:
+            return Shell(self.tree, self.triangles)
+        parts = shell(self.mesh, distance_m, closed=self.closed, exactness_m=exactness_m)
+        faces = np.arange(3 * len(parts)).reshape(-1, 3)
+        return Shell(tree(parts.reshape(-1, 3), faces), parts)
 
     def contains(self, points: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, "points"]:
         """Whether points [m, body's frame] lie in the solid; never, if it bounds none."""

@@ -13,6 +13,7 @@ import fcl
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from extractors.meeting import meeting_points
 from extractors.shells import EXACTNESS_M
 from extractors.surfaces import Surface
 
@@ -33,6 +34,9 @@ DEPTHS = (0.0, 0.4, 0.75, 1.0)
 
 DEEPER = 4
 """One in so many such searches begins at the deepest, the others where the last one ended [1]."""
+
+_Meeting = tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3 3"]]
+"""A triangle of the first's shell in its frame, and one of the second in its own [m]."""
 
 _UNKNOWN, _APART, _TOUCHES = 0, 1, 2
 
@@ -77,7 +81,8 @@ class _Sweep:
         self.ask = fcl.CollisionRequest(enable_contact=True)
         self.bare = fcl.CollisionObject(self.first.tree)
         self.asked, self.depth = 0, 0
-        self.stand: dict[float, fcl.CollisionObject] = {0.0: self.bare}
+        self.stand: dict[float, tuple[fcl.CollisionObject, np.ndarray]] = {}
+        self.index = 0
         self.flat = self.turns.reshape(-1, 9)
         if self.first.radius < self.second.radius:
             back = np.swapaxes(self.turns, 1, 2)
@@ -91,6 +96,7 @@ class _Sweep:
         """Ask about each pose that no answer tells of."""
         index, touched, idle, patience = 0, False, 0, PATIENCE
         while index < len(self.known):
+            self.index = index
             self.moved.setTransform(fcl.Transform(self.turns[index], self.places[index]))
             point, slack = self._touch() if touched else self._room()
             touched = point is not None
@@ -106,10 +112,12 @@ class _Sweep:
         """A point of the second within the distance, and how far it may move [m]; deepest first."""
         self.asked += 1
         for depth in range(0 if self.asked % DEEPER == 0 else self.depth, len(DEPTHS)):
-            point = self._meet(DEPTHS[depth] * self.distance_m, EXACTNESS_M)
-            if point is not None:
+            meeting = self._meet(DEPTHS[depth] * self.distance_m, EXACTNESS_M)
+            if meeting is not None:
                 self.depth = depth
-                return point, (1.0 - DEPTHS[depth]) * self.distance_m - 2.0 * EXACTNESS_M
+                return self._point(meeting), (
+                    1.0 - DEPTHS[depth]
+                ) * self.distance_m - 2.0 * EXACTNESS_M
         return None, 0.0
 
     def _room(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
@@ -124,15 +132,26 @@ class _Sweep:
         self.level, self.depth, self.asked = 0, len(DEPTHS) - 1, 0
         return self._touch()
 
-    def _meet(self, distance_m: float, exactness_m: float) -> Float[np.ndarray, "3"] | None:
-        """A point at which the second meets the first's shell [m], if it does."""
+    def _meet(self, distance_m: float, exactness_m: float) -> _Meeting | None:
+        """Which triangle of the second meets the first's shell, if one does."""
         if distance_m not in self.stand:
-            shell = self.first.shell_tree(distance_m, exactness_m=exactness_m)
-            self.stand[distance_m] = fcl.CollisionObject(shell)
+            shell = self.first.shell(distance_m, exactness_m=exactness_m)
+            self.stand[distance_m] = fcl.CollisionObject(shell.tree), shell.triangles
+        stands, triangles = self.stand[distance_m]
         result = fcl.CollisionResult()
-        if not fcl.collide(self.stand[distance_m], self.moved, self.ask, result):
+        if not fcl.collide(stands, self.moved, self.ask, result):
             return None
-        return np.asarray(result.contacts[0].pos)
+        found = result.contacts[0]
+        return triangles[found.b1], self.second.triangles[found.b2]
+
+    def _point(self, meeting: _Meeting) -> Float[np.ndarray, "3"]:
+        """A point at which two triangles meet [m]; NaN where they only lie on each other.
+
+        The library's own point need not lie on both.
+        """
+        standing, own = meeting
+        moved = own @ self.turns[self.index].T + self.places[self.index]
+        return meeting_points(standing[None], moved[None])[0]
 
     def _distance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
         """What ``_touch`` or ``_room`` would say with shells at every distance."""

@@ -32,6 +32,11 @@ class Thresholds:
     tolerance_most_m: float = 0.010
     """The largest such tolerance [m]: beyond a centimetre, nearness is no contact."""
 
+    release_sigmas: float = 3.0
+    """Between two frames of contact of noisy bodies it lasts while they are nearer than the
+    tolerance and so many deviations of what noise the filter leaves [1], twice the tolerance at
+    most: noise does not cut a contact in two, and begins and ends none later or sooner."""
+
     smoothing_noise_m: float = 0.0005
     """A stream noisier than this at rest [m] is low-passed before its contacts are sought."""
 

@@ -7,20 +7,12 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
-from capar.model.par import (
-    ComplexPar,
-    Condition,
-    ConstraintLocation,
-    FeatureSet,
-    Ipar,
-    Style,
-    Upar,
-)
 from kb import names, sparql, writing
 from kb.answers import Answer, Plain
 from kb.errors import StoreError
-from kb.findings import Ability, Added, FeatureRow, FoundLocation, FoundStyle, Stored
-from kb.lookup import abilities, feature_table, kinds, locations, pars, recognition, stored, styles
+from kb.findings import Added, Stored
+from kb.knowledge import Knowledge
+from kb.lookup import stored
 from kb.questions import question
 from kb.store import Store, open_store
 from kb.store import place as default_place
@@ -34,7 +26,7 @@ TIME_LIMIT_S = 30.0
 """How long a user's query may take, unless the user says otherwise [s]."""
 
 
-class Actionary:
+class Actionary(Knowledge):
     """Observations, the actions, agents and objects that they are of, and the ontology."""
 
     def __init__(self, store: Store, *, read_only: bool = False) -> None:
@@ -137,161 +129,6 @@ class Actionary:
     def observations(self) -> tuple[Stored, ...]:
         """Every observation, by name."""
         return stored.observations(self.store)
-
-    # Actions
-
-    def recognise(self, value: ComplexPar) -> str | None:
-        """The name under which a complex action is known, whoever performed it."""
-        return recognition.recognise(self.store, value)
-
-    def find_pars(
-        self,
-        *,
-        action: str | None = None,
-        objects: Iterable[str] = (),
-        performer: str | None = None,
-    ) -> tuple[Stored, ...]:
-        """Observations of complex actions that fit.
-
-        Args:
-            action: Name of the complex action, or of a step of it.
-            objects: Kinds or names of objects, all of which take part.
-            performer: Name of the agent.
-        """
-        return pars.find(self.store, action=action, objects=tuple(objects), performer=performer)
-
-    def complex_par(self, name: str) -> ComplexPar:
-        """A complex action as it was observed: by the observation's name, or by its own.
-
-        Raises:
-            UnknownNameError: There is none.
-        """
-        return pars.complex_par(self.store, name)
-
-    def upars(self, name: str | None = None) -> tuple[Upar, ...]:
-        """Uninstantiated actions of a name, or all of them, by name and number of objects."""
-        return pars.upars(self.store, name)
-
-    def ipars(self, observation: str) -> tuple[Ipar, ...]:
-        """The instantiated actions of an observation, links in order.
-
-        Raises:
-            UnknownNameError: There is no such observation.
-        """
-        return pars.ipars(self.store, observation)
-
-    def effective(self, ipar: Ipar) -> Upar:
-        """An action as it is to be done: what the IPAR says overrides its UPAR (thesis 4.1.2).
-
-        Raises:
-            UnknownNameError: Its UPAR is not known.
-        """
-        return pars.effective(self.upars(ipar.upar), ipar)
-
-    # Features
-
-    def feature_table(self) -> tuple[FeatureRow, ...]:
-        """Known sets of features with their names (thesis 4.5), sorted."""
-        return feature_table.rows(self.store)
-
-    def add_feature_row(
-        self, name: str, features: FeatureSet, *, general: Iterable[str] = ()
-    ) -> FeatureRow:
-        """Name a set of features; it stays when observations are forgotten.
-
-        Raises:
-            ParError: Another name was given to the same set of features.
-        """
-        return feature_table.add(self.store, name, features, tuple(general))
-
-    # Objects, agents and what is stored with them
-
-    def define_kind(self, name: str, *, broader: str = "object") -> None:
-        """State that a kind of object or agent is a case of a more general one.
-
-        Raises:
-            StoreError: The more general kind would be a case of this one.
-        """
-        kinds.define(self.store, name, broader)
-
-    def kinds_above(self, kind: str) -> tuple[str, ...]:
-        """A kind and every more general one, nearest first."""
-        return kinds.above(self.store, kind)
-
-    def locations(
-        self,
-        kind: str,
-        *,
-        action: str | None = None,
-        purpose: str | None = None,
-        side: str | None = None,
-    ) -> tuple[FoundLocation, ...]:
-        """Constraint locations for a kind of object, best first.
-
-        Those of the kind itself stand before those of more general kinds, those of the side
-        before those mirrored from the other one; then by observation.
-        """
-        return locations.find(self.store, kind, action=action, purpose=purpose, side=side)
-
-    def location(
-        self, kind: str, *, action: str, purpose: str | None = None, side: str | None = None
-    ) -> ConstraintLocation | None:
-        """The best constraint location for a kind of object, mirrored if need be."""
-        found = self.locations(kind, action=action, purpose=purpose, side=side)
-        return found[0].location if found else None
-
-    def styles(
-        self,
-        *,
-        agent: str | None = None,
-        action: str | None = None,
-        purpose: str | None = None,
-        ee: str | None = None,
-    ) -> tuple[FoundStyle, ...]:
-        """Styles that fit, by observation."""
-        return styles.find(self.store, agent=agent, action=action, purpose=purpose, ee=ee)
-
-    def style(
-        self, agent: str, *, action: str, purpose: str | None = None, ee: str | None = None
-    ) -> Style | None:
-        """An agent's style of doing an action, from the first observation by name."""
-        found = self.styles(agent=agent, action=action, purpose=purpose, ee=ee)
-        return found[0].style if found else None
-
-    def add_ability(
-        self, action: str, *, agent: str = "", kind: str = "", conditions: Iterable[Condition] = ()
-    ) -> None:
-        """State that an agent is able to do an action, or that a kind lends itself to it.
-
-        Args:
-            action: Name of the action.
-            agent: Name of the agent; or
-            kind: Name of the kind of agents or objects.
-            conditions: What else must hold.
-
-        Raises:
-            StoreError: Neither of them is named, or both are.
-        """
-        abilities.declare(self.store, action, tuple(conditions), agent=agent, kind=kind)
-
-    def abilities(self, of: str) -> tuple[Ability, ...]:
-        """What an agent, or a kind of agent or object, was declared or observed to do."""
-        return abilities.of(self.store, of)
-
-    def unmet(
-        self, action: str, *, agent: str, objects: Iterable[str] = ()
-    ) -> tuple[Condition, ...]:
-        """Conditions of an action's applicability that nothing known speaks for (thesis 4.6.1.4).
-
-        Args:
-            action: Name of the action.
-            agent: Name of the agent.
-            objects: Kinds of the objects, dominant first.
-
-        Raises:
-            UnknownNameError: The action is not known.
-        """
-        return abilities.unmet(self.store, action, agent, tuple(objects))
 
     # Questions
 

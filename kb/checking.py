@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
+from typing import Any
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
@@ -77,17 +79,26 @@ def by_shacl(triples: Iterable[Triple]) -> list[tuple[str, str]]:
     from rdflib import Graph, Namespace
 
     shacl = Namespace(shapes.SH)
-    data, asked = Graph(), Graph()
+    data = Graph()
     data.parse(data="".join(f"{each} .\n" for each in triples), format="nt")
-    for file in shape_files():
-        asked.parse(data=file.read_text("utf-8"), format="turtle")
-    _, report, _ = validate(data, shacl_graph=asked, inference="none", advanced=False)
+    _, report, _ = validate(data, shacl_graph=_shapes(), inference="none", advanced=False)
     assert isinstance(report, Graph)
     found = {
         (str(report.value(each, shacl.focusNode)), str(report.value(each, shacl.resultMessage)))
         for each in report.objects(None, shacl.result)
     }
     return sorted((thing.rsplit("/", 1)[-1], message) for thing, message in found)
+
+
+@cache
+def _shapes() -> Any:
+    """Every shape, as rdflib's graph."""
+    from rdflib import Graph
+
+    graph = Graph()
+    for file in shape_files():
+        graph.parse(data=file.read_text("utf-8"), format="turtle")
+    return graph
 
 
 def _out_of_reach(quads: list[Quad]) -> list[str]:

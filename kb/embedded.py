@@ -1,6 +1,5 @@
 """A store in memory or in a folder, kept by pyoxigraph."""
 
-import time
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -12,12 +11,10 @@ from kb import answers, bounded
 from kb.answers import Answer
 from kb.errors import StoreError
 from kb.lock import WriterLock
+from kb.reading_folder import open_reader, read
 
 DATA_FOLDER = "store"
 """Where in the Actionary's folder the database stands."""
-
-OPEN_TRIES = 20
-"""How often a reader tries to open a database that its writer is just rearranging."""
 
 
 class EmbeddedStore:
@@ -64,7 +61,13 @@ class EmbeddedStore:
 
     def ask(self, query: str) -> Answer:
         """What a query of ours answers, over the union of all graphs."""
-        return answers.collect(self._store.query(query, use_default_graph_as_union=True))
+        try:
+            return _answer(self._store, query)
+        except (OSError, RuntimeError):
+            if not self._read_only or self._folder is None:
+                raise
+            found, self._store = read(self._folder / DATA_FOLDER, lambda s: _answer(s, query))
+            return found
 
     def ask_within(self, query: str, *, seconds: float) -> Answer:
         """What anybody's query answers, asked in a process of its own."""
@@ -117,6 +120,10 @@ class EmbeddedStore:
             self._store.flush()
 
 
+def _answer(store: Oxigraph, query: str) -> Answer:
+    return answers.collect(store.query(query, use_default_graph_as_union=True))
+
+
 def _locked(folder: Path, wait_s: float) -> WriterLock:
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -131,11 +138,4 @@ def _reader(folder: Path, data: Path) -> Oxigraph:
             f"{folder}: no Actionary there; `capar observe` makes one, and --actionary or "
             "CAPAR_ACTIONARY says where it is"
         )
-    problem: OSError | None = None
-    for _ in range(OPEN_TRIES):
-        try:
-            return Oxigraph.read_only(str(data))
-        except OSError as error:
-            problem = error
-            time.sleep(0.02)
-    raise StoreError(f"{folder}: its database cannot be read ({problem})")
+    return open_reader(data)

@@ -1,6 +1,7 @@
 """The Actionary in and out: Turtle, TriG, N-Quads and JSON-LD."""
 
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 from pyoxigraph import (
@@ -11,6 +12,7 @@ from pyoxigraph import (
     NamedNode,
     Quad,
     RdfFormat,
+    Triple,
     parse,
     serialize,
 )
@@ -23,6 +25,7 @@ from kb.lookup.stored import observations
 from kb.statements import insertion
 from kb.store import Store
 from ontology import DATA, PREFIXES
+from ontology import files as ontology_files
 
 FORMATS = {
     "turtle": RdfFormat.TURTLE,
@@ -78,7 +81,7 @@ def misplaced(store: Store) -> int:
     return sum(
         1
         for each in store.quads()
-        if isinstance(each.subject, NamedNode) and names.graph_of(each.subject) != each.graph_name
+        if isinstance(each.subject, NamedNode) and home(each.triple) != each.graph_name
     )
 
 
@@ -95,12 +98,12 @@ def part(store: Store, observation: str) -> list[Quad]:
         raise UnknownNameError("observation", observation, known, where=store.place)
     shared: list[Quad] = []
     for name in ("agents", "objects", "actions"):
-        home = names.GRAPHS[name]
+        where = names.GRAPHS[name]
         found = store.ask(
             f"CONSTRUCT {{ ?s ?p ?o }} WHERE {{ {graph} <{PREFIXES['capar']}mentions> ?s . "
-            f"GRAPH {home} {{ ?s ?p ?o }} }}"
+            f"GRAPH {where} {{ ?s ?p ?o }} }}"
         )
-        shared += [Quad(t.subject, t.predicate, t.object, home) for t in found.triples or ()]
+        shared += [Quad(t.subject, t.predicate, t.object, where) for t in found.triples or ()]
     return [*own, *shared]
 
 
@@ -120,8 +123,22 @@ def read(data: bytes, format_name: str, *, path: Path | str = "-") -> list[Quad]
 def _placed(quad: Quad) -> Quad:
     if not isinstance(quad.graph_name, DefaultGraph) or not isinstance(quad.subject, NamedNode):
         return quad
-    home = names.graph_of(quad.subject)
-    return Quad(quad.subject, quad.predicate, quad.object, home)
+    return Quad(quad.subject, quad.predicate, quad.object, home(quad.triple))
+
+
+def home(triple: Triple) -> NamedNode:
+    """The graph of a statement, by what it is about; the ontology says nothing but its own."""
+    assert isinstance(triple.subject, NamedNode)
+    if triple in _ontology():
+        return names.GRAPHS["ontology"]
+    if triple.subject.value.startswith(ontology_files.KIND):
+        return names.GRAPHS["objects"]
+    return names.graph_of(triple.subject)
+
+
+@cache
+def _ontology() -> frozenset[Triple]:
+    return frozenset(ontology_files.ontology())
 
 
 def _named(quads: list[Quad]) -> Iterable[Quad]:

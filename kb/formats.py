@@ -4,10 +4,11 @@ import csv
 import io
 import json
 
-from pyoxigraph import RdfFormat, serialize
+from pyoxigraph import Literal, RdfFormat, serialize
 
 from kb.answers import Answer, plain, turtle
 from kb.answers import Found as Term
+from kb.questions import questions
 
 RESULT_SET = "http://www.w3.org/2001/sw/DataAccess/tests/result-set#"
 
@@ -93,6 +94,15 @@ def as_table(answer: Answer) -> str:
         for row in rows
     ]
     return "\n".join(lines) + "\n"
+
+
+def listing() -> Answer:
+    """The named questions with their parameters, those in brackets not needed."""
+    rows = []
+    for each in questions().values():
+        names = (p.name if p.required else f"[{p.name}]" for p in each.parameters)
+        rows.append(tuple(map(Literal, (each.name, " ".join(names), each.text))))
+    return Answer(("name", "parameters", "question"), tuple(rows))
 
 
 FORMATS = {"table": as_table, "csv": as_csv, "json": as_json, "turtle": as_turtle}

@@ -68,7 +68,9 @@ class RemoteStore:
         from rdflib import Dataset
         from rdflib.plugins.stores.sparqlstore import SPARQLStore
 
-        return Dataset(store=SPARQLStore(_query_address(self.place)), default_union=True)
+        union = {"union-default-graph": "true"}
+        store = SPARQLStore(f"{self.place}/query", params=union)
+        return Dataset(store=store, default_union=True)
 
     def refresh(self) -> None:
         """A server always shows what was written."""

@@ -30,6 +30,12 @@ ELEMENT = (
     '<http://www.w3.org/2001/XMLSchema#double>(REPLACE(CONCAT(STR({0}), " x"), '
     'CONCAT("^(?:[^ ]+ ){{", STR({1}), "}}([^ ]+) .*$"), "$1"))'
 )
+ELEMENT_KNOWN = (
+    '<http://www.w3.org/2001/XMLSchema#double>(REPLACE(CONCAT(STR({0}), " x"), '
+    '"^(?:[^ ]+ ){{{1}}}([^ ]+) .*$", "$1"))'
+)
+"""The same for an index that is written out: a pattern that is made once."""
+
 ELEMENTS = '(STRLEN(REPLACE(STR({0}), "[^ ]", "")) + 1)'
 FUNCTIONS = {"element": (ELEMENT, 2), "elements": (ELEMENTS, 1)}
 """Our functions as expressions of plain SPARQL, which every server knows, with their arity."""
@@ -116,7 +122,10 @@ def _expand(pieces: list[Token]) -> str:
             template, arity = FUNCTIONS[name]
             if len(arguments) != arity:
                 raise QueryError(f"capar:{name} takes {arity} arguments, not {len(arguments)}")
-            out.append(template.format(*(_expand(each).strip() for each in arguments)))
+            words = [_expand(each).strip() for each in arguments]
+            if name == "element" and words[1].isdecimal():
+                template = ELEMENT_KNOWN
+            out.append(template.format(*words))
         else:
             out.append(pieces[at].text)
             at += 1

@@ -59,7 +59,11 @@ def seven(segment: Segment) -> str:
 
 
 def steps(observation: Observation) -> dict[str, tuple[str, ...]]:
-    return {each.ee: tuple(map(seven, each.segments)) for each in observation.links}
+    """Names of the segments of each link; rest is no step of an action (spec 5.4)."""
+    return {
+        each.ee: tuple(seven(one) for one in each.segments if one.name != "Rest")
+        for each in observation.links
+    }
 
 
 @pytest.mark.parametrize("rules", PROFILES)

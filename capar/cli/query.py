@@ -113,23 +113,9 @@ def _raw(question: str) -> str | None:
 
 
 def _list(chosen: str) -> None:
-    from pyoxigraph import Literal
+    from kb.formats import listing
 
-    from kb.answers import Answer
-    from kb.questions import questions
-
-    rows = [
-        (
-            each.name,
-            " ".join(p.name if p.required else f"[{p.name}]" for p in each.parameters),
-            each.text,
-        )
-        for each in questions().values()
-    ]
-    _print(
-        Answer(("name", "parameters", "question"), tuple(tuple(map(Literal, r)) for r in rows)),
-        chosen,
-    )
+    _print(listing(), chosen)
 
 
 def _print(answer: "Answer", chosen: str) -> None:

@@ -25,8 +25,8 @@ from capar.model.errors import UnknownNameError
 from capar.model.observation import Observation
 from capar.model.par import UNKNOWN
 from capar.observe import observe
-from capar_rules.engine import rule_file, solve
-from capar_rules.profiles import DEFAULT
+from capar_rules.engine import solve
+from capar_rules.profiles import DEFAULT, profile
 from extractors.readers.bundle import frame_times, read_capture
 
 
@@ -113,7 +113,7 @@ def compare(cases: Sequence[Case], mapping: LabelMapping) -> Evaluation:
 
 def known_names(observations: Sequence[Observation]) -> set[str]:
     """Every name that a segment can bear: of the rules that ship, and of those seen here."""
-    rules = solve(sorted(rule_file("primitives").glob("*.lp")))
+    rules = solve(profile(DEFAULT).files, "#show primitive/1.")
     names = {str(name) for (name,) in rules.of("primitive")} | {UNKNOWN}
     for segment in (each for one in observations for each in one.segments):
         names |= {segment.name, *segment.general, *segment.candidates}

@@ -333,7 +333,7 @@ class Flies(Fact):
 
 @dataclass(frozen=True, slots=True, order=True)
 class Lies(Fact):
-    """How a body lies to another: inside, above, below, beside or along it."""
+    """How a body lies to another: inside, above, below, beside or along it, or merely near."""
 
     predicate = "lies"
     body: str
@@ -370,16 +370,6 @@ class Passage(Fact):
     sides: str
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Nearest(Fact):
-    """The distance of two bodies has a minimum here; they are near and do not touch."""
-
-    predicate = "nearest"
-    body: str
-    other: str
-    frame: int
-
-
 MEASURED: tuple[type[Fact], ...] = (
     Frames,
     RateMhz,
@@ -408,7 +398,6 @@ MEASURED: tuple[type[Fact], ...] = (
     Lies,
     Between,
     Passage,
-    Nearest,
 )
 """Every kind of fact that extractors state, in the order in which they are written."""
 

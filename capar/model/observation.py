@@ -64,6 +64,8 @@ class Segment:
     begins: tuple[Border, ...]
     ends: tuple[Border, ...]
     purpose: str
+    prepositions: tuple[tuple[str, str, str], ...] = ()
+    """Where its body is or goes: preposition, body, and the other body; sorted."""
 
     @property
     def known(self) -> bool:

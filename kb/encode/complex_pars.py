@@ -1,9 +1,10 @@
 """Complex actions as such, and as they were done, as statements (thesis 4.6.2)."""
 
+from typing import TYPE_CHECKING
+
 from pyoxigraph import NamedNode
 
 from capar.model.errors import ParError, UnknownNameError
-from capar.model.observation import Observation
 from capar.model.par import UNKNOWN, ComplexPar, LinkSteps, Step
 from kb import names
 from kb.encode.scene import GENERATED
@@ -11,6 +12,9 @@ from kb.encode.segments import action, segment_node
 from kb.statements import LABEL, Said, Statements
 from ontology import CAPAR
 from ontology.vocabularies import ALLEN
+
+if TYPE_CHECKING:
+    from capar.model.observation import Observation
 
 COMMON = "all"
 """The end-effector of the step that ends every link."""
@@ -27,7 +31,7 @@ def complex_node(value: ComplexPar) -> NamedNode:
     return names.shared("complex", names.hashed(value.signature))
 
 
-def complex_par(out: Statements, observation: Observation, name: str) -> NamedNode:
+def complex_par(out: Statements, observation: "Observation", name: str) -> NamedNode:
     """The complex action and its steps; one with unknown steps is the observation's own."""
     value = observation.complex_par
     known = is_known(value)
@@ -56,7 +60,7 @@ def _with_common(value: ComplexPar) -> tuple[LinkSteps, ...]:
     return (*value.links, *common)
 
 
-def _enact(out: Statements, observation: Observation, node: NamedNode, name: str) -> None:
+def _enact(out: Statements, observation: "Observation", node: NamedNode, name: str) -> None:
     value = observation.complex_par
     links = _with_common(value)
     ees = [each.ee for each in observation.links]

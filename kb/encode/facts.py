@@ -1,14 +1,17 @@
 """Facts as statements: each has its predicate as its class, and its arguments by name."""
 
 from dataclasses import fields
+from typing import TYPE_CHECKING
 
 from pyoxigraph import NamedNode
 
-from capar.model.facts import Fact
 from kb import names
 from kb.encode.scene import DERIVED
 from kb.statements import Statements, Value
 from ontology import CAPAR
+
+if TYPE_CHECKING:
+    from capar.model.facts import Fact
 
 CLASSES = {
     "frames": CAPAR.FramesFact,
@@ -47,12 +50,12 @@ PROPERTIES = {
 """The property of each argument."""
 
 
-def facts(out: Statements, stated: tuple[Fact, ...], capture: NamedNode) -> list[NamedNode]:
+def facts(out: Statements, stated: "tuple[Fact, ...]", capture: NamedNode) -> list[NamedNode]:
     """Every fact, derived from its capture."""
     return [_fact(out, each, capture) for each in stated]
 
 
-def _fact(out: Statements, fact: Fact, capture: NamedNode) -> NamedNode:
+def _fact(out: Statements, fact: "Fact", capture: NamedNode) -> NamedNode:
     arguments = {each.name: getattr(fact, each.name) for each in fields(fact)}
     kind = CLASSES.get(fact.predicate)
     said: dict[NamedNode, Value] = {}

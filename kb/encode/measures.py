@@ -1,8 +1,9 @@
 """Constraint locations and styles as statements (thesis 4.4.2)."""
 
+from typing import TYPE_CHECKING
+
 from pyoxigraph import NamedNode
 
-from capar.model.observation import Observation
 from capar.model.par import ConstraintLocation, Style
 from kb import literals, names
 from kb.encode.scene import GENERATED, kind, kind_of
@@ -10,9 +11,12 @@ from kb.encode.segments import action, segment_node
 from kb.statements import Said, Statements
 from ontology import CAPAR
 
+if TYPE_CHECKING:
+    from capar.model.observation import Observation
+
 
 def locations(
-    out: Statements, observation: Observation, objects: dict[str, NamedNode]
+    out: Statements, observation: "Observation", objects: dict[str, NamedNode]
 ) -> list[NamedNode]:
     """Every constraint location, with the kinds of objects that it is kept with."""
     kinds = {each.name: kind_of(each) for each in observation.objects}
@@ -23,7 +27,7 @@ def locations(
 
 
 def _segment(
-    out: Statements, observation: Observation, value: ConstraintLocation
+    out: Statements, observation: "Observation", value: ConstraintLocation
 ) -> NamedNode | None:
     """The segment at whose end the constraint was made."""
     for link in observation.links:
@@ -67,7 +71,7 @@ def _location(
     return out.say(names.part(out.about, "location", index), (CAPAR.ConstraintLocation,), said)
 
 
-def styles(out: Statements, observation: Observation, agent: NamedNode) -> list[NamedNode]:
+def styles(out: Statements, observation: "Observation", agent: NamedNode) -> list[NamedNode]:
     """Every style of the performer that was seen."""
     return [_style(out, index, each, agent) for index, each in enumerate(observation.styles)]
 

@@ -1,15 +1,19 @@
 """A whole observation as statements: what it found, and where that comes from."""
 
+from typing import TYPE_CHECKING
+
 from pyoxigraph import NamedNode
 
-from capar.model.observation import Observation
 from kb import names
 from kb.encode import complex_pars, facts, measures, pars, scene, segments
 from kb.statements import LABEL, Said, Statements
 from ontology import CAPAR
 
+if TYPE_CHECKING:
+    from capar.model.observation import Observation
 
-def encode(observation: Observation, *, name: str | None = None) -> Statements:
+
+def encode(observation: "Observation", *, name: str | None = None) -> Statements:
     """Everything that an observation says.
 
     Args:
@@ -60,7 +64,7 @@ def encode(observation: Observation, *, name: str | None = None) -> Statements:
     return out
 
 
-def _notices(out: Statements, observation: Observation) -> list[NamedNode]:
+def _notices(out: Statements, observation: "Observation") -> list[NamedNode]:
     return [
         out.say(
             names.part(out.about, "notice", index),

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from pyoxigraph import NamedNode
 
-from capar.model.observation import Observation, Segment
 from capar.model.par import (
     Call,
     Condition,
@@ -20,6 +20,9 @@ from kb.encode.scene import DERIVED, GENERATED
 from kb.encode.segments import action, actions, features, segment_node
 from kb.statements import LABEL, Said, Statements
 from ontology import CAPAR
+
+if TYPE_CHECKING:
+    from capar.model.observation import Observation, Segment
 
 MOTIONS = {
     Motion.NONE: CAPAR.NoMotion,
@@ -81,7 +84,7 @@ def upar(out: Statements, value: Upar) -> NamedNode:
 
 
 def ipars(
-    out: Statements, observation: Observation, agent: NamedNode, objects: dict[str, NamedNode]
+    out: Statements, observation: "Observation", agent: NamedNode, objects: dict[str, NamedNode]
 ) -> list[NamedNode]:
     """One instantiated action for each segment, links in order."""
     known = {
@@ -97,7 +100,7 @@ def ipars(
 def _ipar(
     out: Statements,
     value: Ipar,
-    segment: Segment,
+    segment: "Segment",
     of: NamedNode | None,
     *,
     agent: NamedNode,

@@ -1,14 +1,17 @@
 """The capture, its performer, its objects and its links, as statements."""
 
 import hashlib
+from typing import TYPE_CHECKING
 
 from pyoxigraph import Literal, NamedNode
 
-from capar.model.observation import Observation, ObservedObject
 from kb import literals, names
 from kb.statements import LABEL, Said, Statements
 from ontology import CAPAR
 from ontology.vocabularies import PREFIXES, PROV
+
+if TYPE_CHECKING:
+    from capar.model.observation import Observation, ObservedObject
 
 TAGS = {"self": CAPAR.Self, "fixed": CAPAR.Fixed, "mobile": CAPAR.Mobile}
 
@@ -19,14 +22,14 @@ ASSOCIATED = NamedNode(PROV + "wasAssociatedWith")
 OF_INTEREST = NamedNode(PREFIXES["sosa"] + "hasFeatureOfInterest")
 
 
-def identity(observation: Observation) -> str:
+def identity(observation: "Observation") -> str:
     """A digest by which the same capture is known again, whatever rules read it."""
     sources = sorted(each.sha256 for each in observation.sources)
     scene = (observation.agent.name, observation.frames, observation.rate_hz, sources)
     return hashlib.sha256(repr(scene).encode()).hexdigest()
 
 
-def kind_of(seen: ObservedObject) -> str:
+def kind_of(seen: "ObservedObject") -> str:
     """The noun under which an object's knowledge is kept: its kind, else its own name."""
     return seen.kind or seen.name
 
@@ -46,7 +49,7 @@ def kind(out: Statements, name: str) -> NamedNode:
     return out.share(node, (CAPAR.ObjectKind,), said)
 
 
-def capture(out: Statements, observation: Observation) -> NamedNode:
+def capture(out: Statements, observation: "Observation") -> NamedNode:
     """The capture with the files that it was read from."""
     files = [
         out.say(
@@ -71,7 +74,7 @@ def capture(out: Statements, observation: Observation) -> NamedNode:
     return out.say(names.part(out.about, "capture"), (CAPAR.Capture,), said)
 
 
-def performer(out: Statements, observation: Observation) -> NamedNode:
+def performer(out: Statements, observation: "Observation") -> NamedNode:
     """The agent in this capture, with its kind and its measures there."""
     agent = observation.agent
     who = out.share(
@@ -92,12 +95,12 @@ def performer(out: Statements, observation: Observation) -> NamedNode:
     return out.say(node, (CAPAR.Performer,), said)
 
 
-def objects(out: Statements, observation: Observation) -> dict[str, NamedNode]:
+def objects(out: Statements, observation: "Observation") -> dict[str, NamedNode]:
     """Every tag object by name."""
     return {each.name: _object(out, each) for each in observation.objects}
 
 
-def _object(out: Statements, seen: ObservedObject) -> NamedNode:
+def _object(out: Statements, seen: "ObservedObject") -> NamedNode:
     node = names.part(out.about, "object", seen.name)
     site = out.say(
         names.part(node, "site"),
@@ -120,7 +123,7 @@ def _object(out: Statements, seen: ObservedObject) -> NamedNode:
     return out.say(node, (CAPAR.TagObject,), said)
 
 
-def links(out: Statements, observation: Observation) -> dict[str, NamedNode]:
+def links(out: Statements, observation: "Observation") -> dict[str, NamedNode]:
     """Every acting link by its end-effector."""
     return {
         each.ee: out.say(

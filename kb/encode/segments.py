@@ -1,14 +1,18 @@
 """Segments and why they begin and end, as statements."""
 
+from typing import TYPE_CHECKING
+
 from pyoxigraph import NamedNode
 
-from capar.model.observation import Border, Observation, ObservedLink, Segment
 from capar.model.par import UNKNOWN, FeatureSet
 from kb import names
 from kb.encode.scene import GENERATED
 from kb.statements import LABEL, Said, Statements
 from ontology import CAPAR
 from ontology.vocabularies import TIME
+
+if TYPE_CHECKING:
+    from capar.model.observation import Border, Observation, ObservedLink, Segment
 
 MEETS = NamedNode(TIME + "intervalMeets")
 
@@ -47,7 +51,7 @@ def segment_node(about: NamedNode, ee: str, index: int) -> NamedNode:
 
 def segments(
     out: Statements,
-    observation: Observation,
+    observation: "Observation",
     links: dict[str, NamedNode],
     objects: dict[str, NamedNode],
 ) -> list[NamedNode]:
@@ -61,8 +65,8 @@ def segments(
 
 def _segment(
     out: Statements,
-    link: ObservedLink,
-    seen: Segment,
+    link: "ObservedLink",
+    seen: "Segment",
     link_node: NamedNode,
     objects: dict[str, NamedNode],
 ) -> NamedNode:
@@ -102,7 +106,7 @@ def _segment(
 
 
 def _borders(
-    out: Statements, of: NamedNode, where: str, borders: tuple[Border, ...]
+    out: Statements, of: NamedNode, where: str, borders: "tuple[Border, ...]"
 ) -> list[NamedNode]:
     return [
         out.say(

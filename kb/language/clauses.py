@@ -1,7 +1,8 @@
 """Segments as clauses: what each says, of which objects, with which hand, to which end."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import Ipar, Motion
@@ -32,11 +33,13 @@ class Clause:
     """What it was done for, in words, where nothing else tells it: ``pour``."""
 
     known: bool = True
+    count: int = 1
+    """How often it was done on end."""
 
     @property
     def signature(self) -> tuple[object, ...]:
         """What makes two clauses say the same but for hands and times."""
-        return self.pattern, self.objects, self.purpose
+        return self.pattern, self.objects, self.purpose, self.count
 
     def overlap_s(self, other: "Clause") -> float:
         """For how long both go on [s]."""
@@ -57,6 +60,7 @@ def clauses(
     """
     ipars = {(each.ee, each.start_s): each for each in observation.ipars}
     told = _told_segments(link, only_changes=only_changes)
+    names = {each.name for each in observation.segments}
     found: list[tuple[Segment, Clause]] = []
     held = False
     before: Segment | None = None
@@ -66,9 +70,15 @@ def clauses(
             last = found[-1][0] if found else None
             ipar = ipars.get((segment.ee, segment.start_s))
             cases = _cases(segment, last, scene, ipar, held=held)
-            found.append((segment, _clause(segment, before, book, cases)))
+            found.append((segment, _clause(segment, before, book, cases, names)))
         before = segment
-    return _with_purposes(found, book)
+    return _on_end(_with_purposes(found, names))
+
+
+def _on_end(told: Iterable[Clause]) -> tuple[Clause, ...]:
+    """The clauses, with those that say the same on end as one that says how often."""
+    runs = (list(same) for _, same in groupby(told, key=lambda each: each.signature))
+    return tuple(replace(run[0], end_s=run[-1].end_s, count=len(run)) for run in runs)
 
 
 def _told_segments(link: ObservedLink, *, only_changes: bool) -> set[int]:
@@ -110,12 +120,18 @@ def _cases(
     return cases
 
 
-def _clause(segment: Segment, before: Segment | None, book: Phrasebook, cases: set[str]) -> Clause:
+def _clause(
+    segment: Segment,
+    before: Segment | None,
+    book: Phrasebook,
+    cases: set[str],
+    names: set[str],
+) -> Clause:
     if not segment.known:
         return _unknown(segment)
     pattern = book.pattern(segment.name, segment.general, cases, len(segment.objects))
     return Clause(
-        pattern=_deed(segment, before, book, cases) or pattern,
+        pattern=_deed(segment, before, cases, names) or pattern,
         objects=segment.objects,
         ees=(segment.ee,),
         start_s=segment.start_s,
@@ -138,7 +154,7 @@ def _unknown(segment: Segment) -> Clause:
     )
 
 
-def _deed(segment: Segment, before: Segment | None, book: Phrasebook, cases: set[str]) -> str:
+def _deed(segment: Segment, before: Segment | None, cases: set[str], names: set[str]) -> str:
     """The purpose itself, where a thing that was brought to its place for it is moved there.
 
     At the agent's own body that needs no object (``drank``); else only verbs of two words, which
@@ -151,7 +167,7 @@ def _deed(segment: Segment, before: Segment | None, book: Phrasebook, cases: set
         and before.purpose == segment.purpose
         and before.objects == segment.objects
     )
-    verb = _purpose_verb(segment.purpose, book)
+    verb = _purpose_verb(segment.purpose, names)
     if not (verb and stays and moves and prepared):
         return ""
     if "self" in cases:
@@ -160,19 +176,22 @@ def _deed(segment: Segment, before: Segment | None, book: Phrasebook, cases: set
     return f"{head} {{1}} {particle}" if particle else ""
 
 
-def _purpose_verb(purpose: str, book: Phrasebook) -> str:
-    """A user's purpose as a verb that WordNet knows; empty for any other."""
-    if not purpose or book.is_action(purpose):
+def _purpose_verb(purpose: str, names: set[str]) -> str:
+    """A user's purpose as a verb that WordNet knows; empty for any other.
+
+    A purpose that is the name of another step only tells what comes next.
+    """
+    if not purpose or purpose in names:
         return ""
     words = words_of(purpose)
     return words if wordnet().of_lemma(words) else ""
 
 
-def _with_purposes(found: Sequence[tuple[Segment, Clause]], book: Phrasebook) -> tuple[Clause, ...]:
+def _with_purposes(found: Sequence[tuple[Segment, Clause]], names: set[str]) -> tuple[Clause, ...]:
     """The clauses, with those purposes told that no later clause of the link fulfils."""
     out = []
     for index, (segment, clause) in enumerate(found):
-        verb = _purpose_verb(segment.purpose, book)
+        verb = _purpose_verb(segment.purpose, names)
         after = [each for other, each in found[index:]]
         follows = found[index + 1][0].purpose if index + 1 < len(found) else ""
         manipulates = segment.features.rel_start.startswith("1") and clause.changes

@@ -6,7 +6,7 @@ from typing import Literal
 from capar.model.observation import Observation
 from kb.language.clauses import Clause, clauses
 from kb.language.contacts import Scene
-from kb.language.english import capital, the, times
+from kb.language.english import capital, the_agent, times
 from kb.language.hands import told_in_order
 from kb.language.phrasing import Phrasebook
 from kb.language.telling import Telling
@@ -16,6 +16,9 @@ Detail = Literal["steps", "summary"]
 
 LONGEST = 6
 """The most clauses of one sentence."""
+
+LONGEST_OF_TWO = 4
+"""The most clauses of each hand in a sentence about two."""
 
 OPENINGS = ("Then", "Next,", "After that,")
 """How sentences after the first begin, in turn."""
@@ -43,7 +46,7 @@ def describe(
         for link in observation.links
     ]
     steps = told_in_order(observation.links, told)
-    subject = the(observation.agent.name)
+    subject = the_agent(observation.agent.name)
     if not steps:
         return f"{capital(subject)} touched nothing."
     telling = Telling(observation.links, timed=timed)
@@ -65,31 +68,37 @@ def _sentences(steps: Sequence[Clause]) -> list[tuple[list[Clause], str, float]]
     at = 0
     while at < len(steps):
         size, count = _repetition(steps, at)
+        if current and (count > 1 or _ends(current, steps[at])):
+            out.append((current, "", 0.0))
+            current = []
         if count > 1:
-            if current:
-                out.append((current, "", 0.0))
-                current = []
             end = steps[at + size * count - 1].end_s
             out.append((list(steps[at : at + size]), times(count), end))
             at += size * count
-            continue
-        current.append(steps[at])
-        at += 1
-        if _ends(current, steps[at : at + 1]):
-            out.append((current, "", 0.0))
-            current = []
+        else:
+            current.append(steps[at])
+            at += 1
     return [*out, (current, "", 0.0)] if current else out
 
 
-def _ends(current: Sequence[Clause], following: Sequence[Clause]) -> bool:
-    """Whether a sentence ends here: it is long, or a hand is free and takes up something else."""
-    if not following:
-        return False
-    last, after = current[-1], following[0]
-    if last.overlap_s(after) > 0.0:
-        return False
-    lets_go = last.pattern.startswith(("let go", "take {ee}"))
-    return len(current) >= LONGEST or lets_go or last.ees != after.ees
+def _ends(current: Sequence[Clause], following: Clause) -> bool:
+    """Whether a sentence ends before a clause.
+
+    One hand's sentence ends when it is long or the hand has let go. What the other hand does at
+    the same time goes on in the same sentence; what it does later, or both do, in another.
+    """
+    own = [each for each in current if each.ees == following.ees]
+    other = [each for each in current if each.ees != following.ees]
+    if other and max(each.end_s for each in other) <= following.start_s:
+        return True
+    if any(set(each.ees) & set(following.ees) for each in other):
+        return True
+    freed = not other and any(_frees(each) for each in own[-1:])
+    return freed or len(own) >= (LONGEST_OF_TWO if other else LONGEST)
+
+
+def _frees(clause: Clause) -> bool:
+    return clause.pattern.startswith(("let go", "take {ee}"))
 
 
 def _repetition(steps: Sequence[Clause], at: int) -> tuple[int, int]:

@@ -40,6 +40,11 @@ def the(name: str) -> str:
     return spoken if spoken[:1].isupper() else f"the {spoken}"
 
 
+def the_agent(name: str) -> str:
+    """Who acts: a name with a number stands alone, as proper names do."""
+    return noun(name) if any(each.isdigit() for each in name) else the(name)
+
+
 def words_of(name: str) -> str:
     """A name in mixed case as words: ``PickUp`` as ``pick up``."""
     return " ".join(part.lower() for part in _CAMEL.findall(name))

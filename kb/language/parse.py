@@ -104,7 +104,10 @@ def _phrase(
     at = cursor.at
     limb = cursor.longest(words.limbs)
     after_limb, cursor.at = cursor.at, at
-    thing = _noun(cursor, words, strict=limb is not None or (preposition == TO and not article))
+    strict = limb is not None or (preposition == TO and not article)
+    thing = _noun(cursor, words, strict=strict)
+    if words.nouns is None and limb is not None:
+        thing, cursor.at = limb, after_limb
     if thing is None and limb is None:
         if preposition == TO and not article:
             cursor.at = start

@@ -38,10 +38,6 @@ class Phrasebook:
         usual = "on" if "on" in cases else USUAL_PREPOSITION
         return built(words.verbs[0], count, stated or usual)
 
-    def is_action(self, name: str) -> bool:
-        """Whether a name is a primitive's, so that as a purpose it only tells what comes next."""
-        return name in self._words or any(row["primitive"] == name for row in table("canonical"))
-
 
 def _first(name: str, cases: Cases) -> str:
     for row in table("phrases"):

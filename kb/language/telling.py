@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 from capar.model.observation import ObservedLink
 from kb.language.clauses import Clause
-from kb.language.english import joined, noun, the
+from kb.language.english import joined, noun, the, times
 from kb.language.phrasing import in_past
 
 
 class Telling:
-    """Says clauses, each sentence anew; remembers within it what is spoken of."""
+    """Says clauses; remembers the hand, and within a sentence what each hand has to do with."""
 
     def __init__(self, links: Sequence[ObservedLink], *, timed: bool) -> None:
         self._kinds = {link.ee: link.kind for link in links}
@@ -19,39 +19,44 @@ class Telling:
 
     def sentence(self, steps: Sequence[Clause], often: str, until_s: float) -> str:
         """The clauses as the rest of a sentence whose subject is the agent."""
-        self._topic, self._ees = "", ()
-        parts: list[str] = []
-        last: Clause | None = None
+        streams: dict[tuple[str, ...], list[Clause]] = {}
         for step in steps:
-            if last is not None and self._at_once(last, step):
-                parts[-1] = f"{parts[-1]} while {self._of_hand(step)}"
-            else:
-                parts.append(self._of_agent(step))
-            last = step
+            streams.setdefault(step.ees, []).append(step)
+        if len(streams) > 1:
+            self._ees = ()
+        main, *others = streams.values()
+        text = self._of_agent(main)
+        for each in others:
+            comma = "," if len(main) + len(each) > 2 else ""
+            text = f"{text}{comma} while {self._of_hand(each)}"
         if often and self._timed:
-            parts[-1] = f"{parts[-1]} (the last until {until_s:.2f} s)"
-        return joined(parts) + (f", {often} in all" if often else "")
+            text = f"{text} (the last until {until_s:.2f} s)"
+        return f"{text}, {often} in all" if often else text
 
-    def _at_once(self, last: Clause, step: Clause) -> bool:
-        """Whether two clauses of different hands go on at the same time."""
-        shorter = min(last.end_s - last.start_s, step.end_s - step.start_s)
-        return set(last.ees).isdisjoint(step.ees) and last.overlap_s(step) > shorter / 2
+    def _of_agent(self, steps: Sequence[Clause]) -> str:
+        parts = []
+        self._topic = ""
+        for step in steps:
+            text = self._verb_phrase(step)
+            if step.ees != self._ees and "{ee}" not in step.pattern:
+                text = f"{text} with {self._hands(step.ees)}"
+            self._ees = step.ees
+            parts.append(f"{text}{self._end(step)}")
+        return joined(parts)
 
-    def _of_agent(self, step: Clause) -> str:
-        text = self._verb_phrase(step)
-        if step.ees != self._ees and "{ee}" not in step.pattern:
-            text = f"{text} with {self._hands(step.ees)}"
-        self._ees = step.ees
-        return f"{text}{self._end(step)}"
-
-    def _of_hand(self, step: Clause) -> str:
-        """The clause with its hand as the subject."""
-        text = f"{self._hands(step.ees)} {self._verb_phrase(step)}"
-        self._ees = step.ees
-        return f"{text}{self._end(step)}"
+    def _of_hand(self, steps: Sequence[Clause]) -> str:
+        """The clauses with their hand as the subject."""
+        parts = []
+        self._topic = ""
+        hand = self._hands(steps[0].ees)
+        self._ees = ()
+        for step in steps:
+            parts.append(f"{self._verb_phrase(step)}{self._end(step)}")
+        return f"{hand} {joined(parts)}"
 
     def _end(self, step: Clause) -> str:
-        purpose = f" to {_with_it(step.purpose)}" if step.purpose else ""
+        often = f" {times(step.count)}" if step.count > 1 else ""
+        purpose = f"{often} to {_with_it(step.purpose)}" if step.purpose else often
         return f"{purpose} ({step.start_s:.2f}–{step.end_s:.2f} s)" if self._timed else purpose
 
     def _verb_phrase(self, step: Clause) -> str:

@@ -27,6 +27,8 @@ def lexical_facts(
     rules: Iterable[str] = (),
     seen: Iterable[Seen] = (),
     cases: Iterable[Case] = (),
+    verbs: Iterable[str] = (),
+    classes: bool = True,
 ) -> str:
     """A program of facts, one a line, sorted.
 
@@ -36,12 +38,15 @@ def lexical_facts(
         rules: Stems of the rule base's files.
         seen: What was observed.
         cases: What shipped cases show.
+        verbs: Further verbs that are asked about.
+        classes: Whether classes and their members are told; else only those verbs are.
     """
+    asked = set(verbs) | (_every_verb(words, members) if classes else set())
     lines = {
         *_primitives(words),
-        *_classes(),
-        *_members(members),
-        *_senses(words, _every_verb(words, members)),
+        *(_classes() if classes else ()),
+        *(_members(members) if classes else ()),
+        *_senses(words, asked),
         *(_fact("rule", each) for each in rules),
         *(_fact("observed", each.primitive, each.observation) for each in seen if each.primitive),
         *(
@@ -118,11 +123,11 @@ def _senses(words: Sequence[PrimitiveWords], verbs: set[str]) -> Iterator[str]:
             synset = wordnet().of_key(link.key)
             for lemma in synset.lemmas:
                 if lemma in verbs and lemma != link.verb:
-                    yield _fact("same_sense", link.verb, lemma)
+                    yield _fact("same_sense", each.name, lemma)
             for other in verbs:
                 steps = _steps_to(synset, other)
                 if steps:
-                    yield f"kind_of({_text(link.verb)}, {_text(other)}, {steps})."
+                    yield f"kind_of({_text(each.name)}, {_text(other)}, {steps})."
 
 
 def _steps_to(synset: Synset, verb: str) -> int:
@@ -138,8 +143,8 @@ def verbnet_members(classes: Iterable[VerbClass]) -> dict[str, frozenset[str]]:
     found: dict[str, set[str]] = {}
     by_name = {name: each.number for each in levin_classes().values() for name in each.verbnet}
     for each in classes:
-        number = by_name.get(_top(each.id))
-        if number:
+        number = by_name.get(_top(each.id), each.levin)
+        if number in levin_classes():
             verbs = {member.lemma.replace("_", " ") for member in each.members}
             found.setdefault(number, set()).update(verbs)
     return {number: frozenset(verbs) for number, verbs in found.items()}

@@ -5,6 +5,10 @@ from enum import StrEnum
 from functools import cache
 
 from kb.lexicon.tables import table
+from kb.lexicon.wordnet import wordnet
+
+MOTION_FILES = (35, 38)
+"""WordNet's files of verbs of contact and of motion."""
 
 
 class Claimant(StrEnum):
@@ -164,8 +168,17 @@ def own_links(name: str) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
 
 
 def motion_senses(verb: str) -> tuple[str, ...]:
-    """Sense keys in which a verb is a motion of the body, none if our table lacks it."""
-    return tuple(row["key"] for row in table("motion_senses") if row["verb"] == verb)
+    """Sense keys in which a verb is a motion of the body.
+
+    They are those of our table; for a verb that it lacks, its most frequent sense among those
+    of contact or motion, if it has one.
+    """
+    stated = tuple(row["key"] for row in table("motion_senses") if row["verb"] == verb)
+    if stated:
+        return stated
+    return tuple(
+        sense.key for sense, synset in wordnet().of_lemma(verb) if synset.lexfile in MOTION_FILES
+    )[:1]
 
 
 def motion_classes(verb: str) -> tuple[str, ...]:

@@ -157,6 +157,10 @@ class WordNet:
         """Every synset below this one in the hierarchy, nearest first."""
         return tuple(self._walk(synset, lambda each: self._below.get(each.offset, ())))
 
+    def directly_below(self, synset: Synset) -> tuple[Synset, ...]:
+        """The synsets one step below this one, by offset."""
+        return tuple(map(self._synset, sorted(self._below.get(synset.offset, ()))))
+
     def what_it_is(self, synset: Synset) -> tuple[Synset, ...]:
         """Every synset above this one in the hierarchy, nearest first."""
         return tuple(self.steps_above(synset))

@@ -1,6 +1,6 @@
 """Constraint locations by kind of object, action, purpose and side (thesis 4.4.2.2)."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from pyoxigraph import Literal, NamedNode
 
@@ -17,12 +17,18 @@ from ontology import CAPAR
 OTHER = {"right": "left", "left": "right"}
 """The other side of the body."""
 
-_FIND = f"""SELECT DISTINCT ?kind ?observation ?agent ?action ?purpose ?side ?frame
-  ?dominant ?goal ?ee ?at ?seen ?view
+_RANK = f"""SELECT DISTINCT ?kind ?place ?side
 WHERE {{
   VALUES ?kind {{ @kinds@ }}
   {{ ?place {CAPAR.goalKind} ?kind }} UNION {{ ?place {CAPAR.dominantKind} ?kind }}
   @filters@
+  ?place {CAPAR.side} ?side .
+}}"""
+
+_DETAIL = f"""SELECT ?place ?observation ?agent ?action ?purpose ?side ?frame
+  ?dominant ?goal ?ee ?at ?seen ?view
+WHERE {{
+  VALUES ?place {{ @places@ }}
   ?place {CAPAR.actionName} ?action ;
     {CAPAR.side} ?side ;
     {CAPAR.frame} ?frame .
@@ -39,37 +45,59 @@ WHERE {{
 }}"""
 
 
+@dataclass(frozen=True, slots=True, order=True)
+class _Ranked:
+    """A place by how well it fits: less is better."""
+
+    distance: int
+    mirrored: bool
+    place: str
+    kind: str
+
+
 def find(
-    store: Store, kind: str, *, action: str | None, purpose: str | None, side: str | None
+    store: Store,
+    kind: str,
+    *,
+    action: str | None,
+    purpose: str | None,
+    side: str | None,
+    most: int | None = None,
 ) -> tuple[FoundLocation, ...]:
-    """Constraint locations that fit, best first."""
+    """Constraint locations that fit, best first, and so many at most."""
     order = kinds.above(store, kind)
-    nodes = " ".join(str(names.shared("kind", each)) for each in order)
     filters = []
     if action is not None:
         filters.append(f"?place {CAPAR.actionName} {Literal(action)} .")
     if purpose is not None:
         filters.append(f"?place {CAPAR.purpose} {Literal(purpose)} .")
-    query = fill(_FIND, kinds=nodes, filters="\n  ".join(filters))
-    found = [_found(row, kind, side) for row in store.ask(query).rows]
-    fitting = [each for each in found if side in {None, each.location.side}]
-    return tuple(
-        sorted(
-            fitting,
-            key=lambda each: (
-                order.index(each.kind),
-                each.mirrored,
-                each.observation,
-                each.location.frame,
-                repr(each.location),
-            ),
-        )
+    nodes = " ".join(str(names.shared("kind", each)) for each in order)
+    rows = store.ask(fill(_RANK, kinds=nodes, filters="\n  ".join(filters))).rows
+    ranked = [each for row in rows if (each := _ranked(row, order, side)) is not None]
+    nearest = {each.place: each for each in sorted(ranked, reverse=True)}
+    best = sorted(nearest.values())[:most]
+    if not best:
+        return ()
+    places = " ".join(each.place for each in best)
+    details = {str(row[0]): row[1:] for row in store.ask(fill(_DETAIL, places=places)).rows}
+    return tuple(_found(details[each.place], each, kind) for each in best)
+
+
+def _ranked(row: tuple[Found, ...], order: tuple[str, ...], side: str | None) -> _Ranked | None:
+    """How well a place fits; nothing if it was made with neither the side nor its other one."""
+    kind, place, on = row
+    if not isinstance(kind, NamedNode) or not isinstance(on, Literal):
+        return None
+    word = names.last_word(kind)
+    if side in {None, on.value}:
+        return _Ranked(order.index(word), False, str(place), word)
+    return (
+        _Ranked(order.index(word), True, str(place), word) if OTHER.get(on.value) == side else None
     )
 
 
-def _found(row: tuple[Found, ...], asked: str, side: str | None) -> FoundLocation:
-    kind, *rest = row
-    text = [each.value if isinstance(each, Literal) else "" for each in rest]
+def _found(row: tuple[Found, ...], ranked: _Ranked, asked: str) -> FoundLocation:
+    text = [each.value if isinstance(each, Literal) else "" for each in row]
     observation, agent, action, purpose, on, frame, dominant, goal, ee, at, seen, view = text
     location = ConstraintLocation(
         action=action,
@@ -83,15 +111,13 @@ def _found(row: tuple[Found, ...], asked: str, side: str | None) -> FoundLocatio
         seen=seen,
         v_nlt=_nlt(view),
     )
-    other = side is not None and on != side and OTHER.get(on) == side
-    word = names.last_word(kind) if isinstance(kind, NamedNode) else ""
     return FoundLocation(
-        location=mirrored(location) if other else location,
-        kind=word,
+        location=mirrored(location) if ranked.mirrored else location,
+        kind=ranked.kind,
         observation=observation,
         agent=agent,
-        mirrored=other,
-        inherited=word != asked,
+        mirrored=ranked.mirrored,
+        inherited=ranked.kind != asked,
     )
 
 

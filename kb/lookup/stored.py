@@ -13,7 +13,7 @@ from kb.findings import Added, Stored
 from kb.lookup import recognition
 from kb.shapes import prove
 from kb.sparql import fill
-from kb.store import Store
+from kb.store import Store, is_address
 from ontology import CAPAR
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def add(store: Store, observation: "Observation", *, name: str | None, replace: 
     statements = encode(observation, name=called)
     prove(observation.capture, statements)
     quads = statements.quads
-    if there:
+    if there or is_address(store.place):
         store.change(writing.replacement(graph, quads))
     else:
         store.insert(quads)

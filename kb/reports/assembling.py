@@ -117,7 +117,7 @@ class _Parts:
             files=tuple(sorted({self.files[each] for each in doers if each in self.files})),
             proofs=tuple(self.proofs[number]),
             remarks=tuple(each for each in remarks() if _concerns(each.levin, number)),
-            segments=total(each for each in self.seen if each.primitive in linked),
+            segments=total(each for each in self.seen if each.primitive in {*linked, *doers}),
         )
 
     def _verb(self, number: str, verb: str, *, counts: bool) -> VerbReport:

@@ -12,6 +12,7 @@ from measured_bodies import ball, box, cup, handle, shape, still, stream
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Shape, Stream
+from extractors.contact import bridged
 from extractors.intervals import intervals
 from extractors.proximity import Body, body, near, nearest
 from extractors.shells import EXACTNESS_M, shell
@@ -144,3 +145,16 @@ def test_closed_and_weeded_intervals_leave_no_short_gap_and_no_short_stretch(
     assert all(last - first + 1 >= least for first, last in found)
     assert all(two[0] - one[1] - 1 >= max(dropout, 1) for one, two in pairwise(found))
     assert all(holds[first] and holds[last] for first, last in found)
+
+
+@given(st.lists(st.sampled_from([0, 1, 2]), max_size=60))
+def test_a_bridged_contact_keeps_its_first_and_its_last_frame_and_spans_only_what_is_near(
+    nearness: list[int],
+) -> None:
+    touching, near_by = np.array(nearness) == 2, np.array(nearness) >= 1
+    found = bridged(touching, near_by)
+    assert (found >= touching).all()
+    assert (found <= near_by).all()
+    for first, last in intervals(found, np.arange(len(found) + 2.0), dropout_s=0, minimum_s=0):
+        assert touching[first]
+        assert touching[last]

@@ -55,7 +55,7 @@ def test_one_observation_travels_with_all_that_it_mentions() -> None:
     bring_in(target.store, read(export(full().store, "trig", observation="Strange"), "trig"))
     alone = Actionary.in_memory()
     alone.add(with_unknown())
-    assert {q for q in alone.store.quads()} <= set(target.store.quads())
+    assert set(alone.store.quads()) <= set(target.store.quads())
     assert [each.name for each in target.observations()] == ["Strange"]
 
 
@@ -68,7 +68,7 @@ def test_unnamed_things_get_names_that_follow_from_what_is_said() -> None:
 def test_what_breaks_the_model_is_not_taken_in() -> None:
     store = full().store
     before = set(store.quads())
-    text = export(store, "trig").decode().replace('capar:side "right"', 'capar:side "up"', 1)
+    text = export(store, "trig").decode().replace('capar:side "right"', 'capar:side "up"')
     with pytest.raises(ShapeError, match="right, "):
         bring_in(store, read(text.encode(), "trig"))
     assert set(store.quads()) == before

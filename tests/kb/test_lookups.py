@@ -12,7 +12,6 @@ from capar.model.observation import Observation
 from capar.model.par import FeatureSet, Ipar, Nlt, Upar
 from kb.actionary import Actionary
 from kb.errors import StoreError
-from kb.lookup.feature_table import program
 from kb.lookup.pars import effective
 
 
@@ -123,7 +122,7 @@ def test_the_feature_table_starts_empty_and_learns(actionary: Actionary) -> None
     assert row.declared and row.general == ("MoveObj",)
     with pytest.raises(ParError, match="named 'Swap' already"):
         actionary.add_feature_row("Other", strange)
-    text = program(actionary.feature_table())
+    text = actionary.feature_program()
     assert 'feature_row("Swap", hand, "011", "110", "10", "00").' in text.splitlines()
     assert 'specialises("Swap", "MoveObj").' in text.splitlines()
     assert 'primitive("Reach").' in text.splitlines()

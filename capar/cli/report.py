@@ -1,0 +1,57 @@
+"""Reports over the rule base and an Actionary."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(no_args_is_help=True, help="Reports over the rule base and an Actionary.")
+
+
+@app.callback()
+def _reports() -> None:
+    """Reports over the rule base and an Actionary."""
+
+
+class Format(StrEnum):
+    """How a report is written."""
+
+    TEXT = "text"
+    MD = "md"
+    HTML = "html"
+    CSV = "csv"
+    JSON = "json"
+    LATEX = "latex"
+    SVG = "svg"
+
+
+@app.command()
+def linguistics(
+    actionary: Annotated[
+        str | None, typer.Option(help="Folder or address; else CAPAR_ACTIONARY, else ./actionary.")
+    ] = None,
+    form: Annotated[
+        Format, typer.Option("--format", help="How to write it; svg is the drawing alone.")
+    ] = Format.TEXT,
+    rules: Annotated[
+        Path | None,
+        typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="A file, instead of standard output.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
+) -> None:
+    """Which verbs and classes of verbs the system addresses, with what proves it."""
+    from capar.cli._words import open_words
+    from capar.report import linguistics as report_of
+    from capar.report import primitive_files
+    from capar_rules.teaching import rule_files
+    from kb.reports.writing import write
+
+    with open_words(actionary) as store:
+        report = report_of(primitive_files(rule_files(rules)), store=store)
+    text = write(report, Format.JSON.value if json else form.value)
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        out.write_text(text, encoding="utf-8")

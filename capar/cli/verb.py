@@ -1,0 +1,128 @@
+"""What a verb means to the system, and which verbs fit a segment."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from kb.lexicon.fitting import Fit
+    from kb.lexicon.verbs import VerbAnswer
+    from kb.store import Store
+
+app = typer.Typer()
+
+FIRST_SENSES = 4
+"""How many of a verb's most frequent senses are shown beside those as a motion."""
+
+
+@app.command()
+def verb(
+    lemma: Annotated[str, typer.Argument(help="A verb, such as carry or 'pick up'.")] = "",
+    segment: Annotated[
+        str,
+        typer.Option("--for", help="A segment, as CAPTURE:END_EFFECTOR:INDEX: which verbs fit it?"),
+    ] = "",
+    kinds: Annotated[
+        bool, typer.Option("--kinds", help="Which primitives do the verb, or a kind of it?")
+    ] = False,
+    actionary: Annotated[
+        str | None, typer.Option(help="Folder or address; else CAPAR_ACTIONARY, else ./actionary.")
+    ] = None,
+    rules: Annotated[
+        Path | None,
+        typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
+    ] = None,
+    most: Annotated[int, typer.Option(help="How many verbs of a segment to show.", min=1)] = 15,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Say what is known of a verb: senses, classes, roles, primitives, and where it was seen."""
+    from capar.cli._words import open_words, rule_words
+    from capar.model.errors import CaparError
+
+    if bool(lemma) == bool(segment):
+        raise CaparError("name a verb, or a segment with --for CAPTURE:END_EFFECTOR:INDEX")
+    words = rule_words(rules)
+    with open_words(actionary) as store:
+        if segment:
+            from capar.words import verbs_for
+
+            _print_fits(verbs_for(segment, words, store=store, rules=rules)[:most], json=json)
+        elif kinds:
+            from kb.lexicon.verbs import keys_of_primitives
+            from kb.lexicon.verbs import kinds as kinds_of
+
+            names = kinds_of(lemma, keys_of_primitives(words))
+            _print_kinds(lemma, names, store, json=json)
+        else:
+            from capar.report import answer_verb
+
+            _print_verb(answer_verb(lemma, words, store=store), json=json)
+
+
+def _print_verb(answer: "VerbAnswer", *, json: bool) -> None:
+    from capar.cli._words import print_json
+
+    if json:
+        print_json(answer)
+        return
+    from rich.console import Console
+
+    console = Console(highlight=False, soft_wrap=True)
+    console.print(f"[bold]{answer.verb}[/]: {answer.standing.words}.")
+    shown = [each for each in answer.senses if each.motion or each.sense.number <= FIRST_SENSES]
+    for each in shown:
+        mark, gloss = "→" if each.motion else " ", each.synset.definition
+        console.print(f" {mark} {each.sense.number}. {gloss} [dim]{each.sense.key}[/]")
+    if len(shown) < len(answer.senses):
+        console.print(f"   and {len(answer.senses) - len(shown)} more senses (--json shows all)")
+    _print_classes(console, answer)
+    for near in answer.neighbours:
+        by = f" ({', '.join(near.primitives)})" if near.primitives else ""
+        console.print(f"{near.relation} {', '.join(near.verbs)}{by}: [dim]{near.definition}[/]")
+    for claim in answer.claims:
+        console.print(f"Thesis {claim.section}: {claim.status.value}. {claim.reason}")
+    for seen in answer.seen:
+        console.print(f"Seen: {seen.primitive} in {seen.observation}, {seen.count} times.")
+
+
+def _print_classes(console: "Console", answer: "VerbAnswer") -> None:
+    for each in answer.classes:
+        title = f"Levin {each.levin.number} {each.levin.title}" if each.levin else "no Levin class"
+        verbnet = f", VerbNet {each.verbnet}" if each.verbnet else ""
+        roles = f": {', '.join(each.roles)}" if each.roles else ""
+        console.print(f"{title}{verbnet}{roles}")
+        if each.frame and each.frame.example:
+            meaning = " ".join(map(str, each.frame.semantics))
+            console.print(f"   “{each.frame.example}” [dim]{meaning}[/]")
+    if not any(each.verbnet for each in answer.classes):
+        console.print("[dim]VerbNet's classes come with `capar lexicon import verbnet DIR`.[/]")
+
+
+def _print_kinds(lemma: str, names: tuple[str, ...], store: "Store | None", *, json: bool) -> None:
+    from capar.cli._words import print_json
+    from kb.lexicon.evidence import seen_in
+
+    seen = [each for each in (seen_in(store) if store else ()) if each.primitive in names]
+    if json:
+        print_json({"verb": lemma, "primitives": names, "seen": seen})
+        return
+    typer.echo(f"{lemma}, and every kind of it: {', '.join(names) or 'no primitive'}")
+    for each in seen:
+        typer.echo(f"  {each.observation}: {each.primitive}, {each.count} times")
+
+
+def _print_fits(fits: "tuple[Fit, ...]", *, json: bool) -> None:
+    from capar.cli._words import print_json
+
+    if json:
+        print_json(fits)
+        return
+    for number, each in enumerate(fits, 1):
+        typer.echo(f"{number:2d}. {each.verb}  ({each.source})")
+        for reason in each.reasons:
+            typer.echo(f"      + {reason}")
+        for reason in each.against:
+            typer.echo(f"      - {reason}")

@@ -1,0 +1,62 @@
+"""The pipeline from a capture to reasons: observe it, then say why, and why not."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from capar.model.capture import Capture
+from capar.model.errors import UnknownNameError
+from capar.model.observation import Observation, Segment
+from capar.observe import observe_measured
+from capar_rules.explaining import Explainer
+from capar_rules.profiles import Profile
+from extractors.facts import Measurements, extract
+
+
+@dataclass(frozen=True, eq=False)
+class Explained:
+    """A capture that was observed, and what explains its segments."""
+
+    observation: Observation
+    explainer: Explainer
+
+
+def explained(capture: Capture, *, rules: Profile) -> Explained:
+    """Observe a capture and make ready to explain it.
+
+    Raises:
+        CaparError: The capture or the rules have a fault.
+    """
+    measurements = extract(capture)
+    observation = observe_measured(capture, measurements, rules=rules)
+    explainer = Explainer(
+        measurements.facts, profile=rules, distance_m=distances(capture, measurements)
+    )
+    return Explained(observation, explainer)
+
+
+def distances(capture: Capture, measurements: Measurements) -> Callable[[str, int, int], float]:
+    """How far an object's origin is from where it was, between two frames [m]."""
+    names = {each.name for each in capture.objects}
+
+    def distance(name: str, first: int, last: int) -> float:
+        kind = "object" if name in names else "sensor"
+        track = measurements.poses[kind, name].smooth.positions
+        return float(np.linalg.norm(track[last] - track[first]))
+
+    return distance
+
+
+def segment_named(observation: Observation, text: str) -> Segment:
+    """The segment that a user names: ``right_hand/3``, or ``3`` where one end-effector acts.
+
+    Raises:
+        UnknownNameError: There is none.
+    """
+    known = {f"{each.ee}/{each.index}": each for each in observation.segments}
+    if len(observation.links) == 1:
+        known |= {str(each.index): each for each in observation.segments}
+    if text not in known:
+        raise UnknownNameError("segment", text, known, where=observation.capture)
+    return known[text]

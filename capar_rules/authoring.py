@@ -1,0 +1,235 @@
+"""Rules that people write: which there are, new ones from what was seen, and adding and removing."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from capar.model.errors import FileError, RuleError, UnknownNameError
+from capar.model.facts import Fact, Gap, Moving, ZeroCrossing
+from capar.model.facts import ForceTransfer, Frames, Link, RateMhz, Tag, Touching
+from capar.model.par import FeatureSet
+from capar_rules.checking import check, require
+from capar_rules.examples import Example, lacking, read_examples, try_examples, written
+from capar_rules.profiles import DEFAULT, Profile, profile
+from capar_rules.statics import split_arguments
+from capar_rules.syntax import Statement, parse
+from capar_rules.teaching import rule_files, taught
+
+TELLING = (Frames, RateMhz, Link, Tag, ZeroCrossing, Touching, Gap, Moving, ForceTransfer)
+"""The facts that an example tells: contacts and motions, without places and courses."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class RuleInfo:
+    """One primitive and where it comes from."""
+
+    name: str
+    origin: str
+    """``core`` if it ships, ``user`` if it is the user's."""
+
+    file: str
+    definition: str
+    verb: str
+    general: tuple[str, ...]
+
+
+def user_rules(*folders: Path | None) -> tuple[Path, ...]:
+    """The rule files of the user's folders, each folder's sorted by name.
+
+    Args:
+        folders: Folders of rules; None, or none at all, is ``CAPAR_RULES``, else ``./rules``.
+
+    Raises:
+        FileError: A folder was named that is none.
+    """
+    files = [file for folder in folders or (None,) for file in rule_files(folder)]
+    return tuple(dict.fromkeys(files))
+
+
+def actionary_rules(place: str | Path) -> Path:
+    """The folder of rules beside an Actionary."""
+    return Path(place) / "rules"
+
+
+def rules_of(base: Profile) -> tuple[RuleInfo, ...]:
+    """Every primitive of a rule base, by name."""
+    statements = parse(base.files)
+    added = {str(each) for each in base.added}
+    verbs = dict(_pairs(statements, "verb"))
+    general: dict[str, list[str]] = {}
+    for name, other in _pairs(statements, "specialises"):
+        general.setdefault(name, []).append(other)
+    heads = {}
+    for each in statements:
+        if each.kind == "comment":
+            heads.setdefault(each.place.file, each.text)
+    found = [
+        RuleInfo(
+            split_arguments(each.heads[0].text)[0].strip('"'),
+            "user" if each.place.file in added else "core",
+            each.place.file,
+            _definition(heads.get(each.place.file, "")),
+            "",
+            (),
+        )
+        for each in statements
+        if each.heads and each.heads[0].signature == ("primitive", 1)
+    ]
+    return tuple(
+        sorted(
+            replace(each, verb=verbs.get(each.name, ""), general=tuple(general.get(each.name, ())))
+            for each in found
+        )
+    )
+
+
+def rule_of(base: Profile, name: str) -> RuleInfo:
+    """One primitive of a rule base.
+
+    Raises:
+        UnknownNameError: There is none of that name.
+    """
+    known = {each.name: each for each in rules_of(base)}
+    if name not in known:
+        raise UnknownNameError("primitive", name, known)
+    return known[name]
+
+
+def new_rule(
+    name: str,
+    features: FeatureSet,
+    *,
+    definition: str = "",
+    general: str = "",
+    verb: str = "",
+    examples: Sequence[Example] = (),
+) -> str:
+    """The rule file of a primitive that has these features.
+
+    Args:
+        name: What it is called.
+        features: The feature set that a segment has.
+        definition: What it is, in words.
+        general: The primitive that it specialises, if any.
+        verb: The verb for it; its name in small letters if empty.
+        examples: Stories that it must, or must not, match.
+
+    Raises:
+        RuleError: The name is no name of a primitive.
+    """
+    _, *lines = taught(name, features, verb=verb).splitlines(keepends=True)
+    said = definition or "named by a user for this feature set"
+    text = f"%* {name}: {said.rstrip('.')}. *%\n{''.join(lines)}"
+    if general:
+        text += f'specialises("{name}", "{general}").\n'
+    return "\n".join([text, *map(written, examples)])
+
+
+def telling(facts: Sequence[Fact]) -> tuple[Fact, ...]:
+    """Of a capture's facts those that an example tells."""
+    return tuple(each for each in facts if isinstance(each, TELLING))
+
+
+def test_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) -> tuple[str, ...]:
+    """What the examples of a rule file do not show as they say; empty if all is well.
+
+    Raises:
+        RuleError: An example cannot be read, or the rules have a fault.
+    """
+    examples = read_examples(_text(path), file=path)
+    names = [name for name, _ in _introduced(path)]
+    failures = []
+    rules = profile(base, added=(*(each for each in beside if each != path), path))
+    for outcome in try_examples(examples, profile=rules):
+        if not outcome.met:
+            found = dict(outcome.found)
+            for ee, expected in outcome.example.names:
+                if found.get(ee) != expected:
+                    failures.append(
+                        f"{path}:{outcome.example.line}: {outcome.example.story!r} expects "
+                        f"{ee}: {', '.join(expected)}; found {', '.join(found.get(ee, ()))}"
+                    )
+    return (
+        *failures,
+        *(f"{path}: it lacks {each}" for name in names for each in lacking(examples, name)),
+    )
+
+
+def add_rule(
+    path: Path, *, folder: Path, base: str = DEFAULT, over: Sequence[str] = ()
+) -> Path:
+    """Take a rule file among the user's rules, once it is checked and its examples hold.
+
+    Args:
+        path: The file.
+        folder: The folder of the user's rules.
+        base: The profile that it joins.
+        over: Primitives that it is to be more specific than, which orders what is ambiguous.
+
+    Returns:
+        Where it now is.
+
+    Raises:
+        RuleError: The check finds errors, an ambiguity among them, or an example fails.
+        FileError: A file of that name is there already.
+    """
+    target = folder / path.name
+    if target.exists():
+        raise FileError(target, "exists already.", "Remove that rule first, or rename this file.")
+    beside = rule_files(folder) if folder.is_dir() else ()
+    folder.mkdir(parents=True, exist_ok=True)
+    draft = folder / f".{path.name}"
+    draft.write_text(_text(path) + _ordering(path, over), encoding="utf-8")
+    try:
+        require(path, check(draft, profile=base, beside=beside))
+        failures = test_rule(draft, base=base, beside=beside)
+        if failures:
+            raise RuleError("its examples do not hold:\n" + "\n".join(failures))
+        draft.replace(target)
+    finally:
+        draft.unlink(missing_ok=True)
+    return target
+
+
+def remove_rule(name: str, *, folder: Path, base: str = DEFAULT) -> Path:
+    """Take a primitive out of the user's rules.
+
+    Raises:
+        UnknownNameError: No file of the user's introduces it.
+    """
+    info = {each: path for path in rule_files(folder) for each, _ in _introduced(path)}
+    if name not in info:
+        raise UnknownNameError("rule of the user's", name, info, where=str(folder))
+    info[name].unlink()
+    return info[name]
+
+
+def _ordering(path: Path, over: Sequence[str]) -> str:
+    names = [name for name, _ in _introduced(path)] if over else []
+    return "".join(f'specialises("{name}", "{other}").\n' for name in names for other in over)
+
+
+def _introduced(path: Path) -> list[tuple[str, str]]:
+    text = _text(path)
+    return [(each, str(path)) for each in re.findall(r'^\s*primitive\("(\w+)"\)', text, re.M)]
+
+
+def _pairs(statements: Sequence[Statement], predicate: str) -> Iterator[tuple[str, str]]:
+    for each in statements:
+        for head in each.heads:
+            if head.signature == (predicate, 2):
+                first, second = split_arguments(head.text)
+                yield first.strip('"'), second.strip('"')
+
+
+def _definition(comment: str) -> str:
+    text = " ".join(comment.strip("%* \n").split())
+    return text.partition(": ")[2] or text
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise FileError(path, f"cannot be read: {error.strerror}.", "Name a rule file.") from None

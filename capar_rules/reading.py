@@ -1,0 +1,135 @@
+"""A rule file read with care: its size, its letters, what it includes; then its statements."""
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from capar.model.errors import RuleError
+from capar_rules.findings import Finding
+from capar_rules.syntax import Place, Statement, parse_text
+from capar_rules.trials import solver_findings
+
+LARGEST_BYTES = 256 * 1024
+"""A rule file is a definition that a person reads; none is larger [bytes]."""
+
+DEEPEST = 100
+"""Brackets nest no deeper."""
+
+_INCLUDE = re.compile(r"#include\s*(\"([^\"\n]*)\"|<([^>\n]*)>|\S*)[^.\n]*\.?")
+_STRING_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|%\*.*?\*%|%[^\n]*', re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A rule file's statements, or what stands in the way of them."""
+
+    text: str
+    statements: tuple[Statement, ...]
+    findings: tuple[Finding, ...]
+
+
+def read_rules(path: Path, *, folders: Iterable[Path] = ()) -> Reading:
+    """Read a rule file without running anything of it.
+
+    Args:
+        path: The file.
+        folders: Folders of rules; what lies in one of them may be included.
+    """
+    text, findings = _text(path)
+    if not findings:
+        findings = list(_tokens(text, path, tuple(folders)))
+    if findings:
+        return Reading(text, (), tuple(findings))
+    text = _INCLUDE.sub(lambda found: " " * len(found[0]), text)
+    try:
+        statements = parse_text(text)
+    except RuleError as error:
+        return Reading(text, (), tuple(solver_findings(str(error), str(path))))
+    return Reading(text, tuple(_placed(each, str(path)) for each in statements), ())
+
+
+def _text(path: Path) -> tuple[str, list[Finding]]:
+    start = Place(str(path), 1, 1)
+    if not path.is_file():
+        return "", [Finding(start, "no-file", "there is no such file.", "Name a rule file, *.lp.")]
+    if path.stat().st_size > LARGEST_BYTES:
+        return "", [
+            Finding(
+                start, "too-large", f"it has more than {LARGEST_BYTES // 1024} kB.",
+                "Split it: one primitive a file.",
+            )
+        ]  # fmt: skip
+    content = path.read_bytes()
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        place = Place(str(path), line, error.start - content.rfind(b"\n", 0, error.start))
+        return "", [Finding(place, "encoding", "this is no UTF-8 text.", "Save it as UTF-8.")]
+    return text, []
+
+
+def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Finding]:
+    """What is refused before anything is parsed."""
+    bare = _STRING_OR_COMMENT.sub(_blank, text)
+    if "\0" in text:
+        yield _at(text, text.index("\0"), path, "encoding", "there is a zero byte.", "Remove it.")
+    for found in re.finditer(r"#script\b", bare):
+        yield _at(
+            text, found.start(), path, "script", "#script runs code and is refused.",
+            "Remove it; rules are logic alone.",
+        )  # fmt: skip
+    for found in _INCLUDE.finditer(_COMMENT.sub(_blank, text)):
+        name = found[2] or found[3] or ""
+        target = (path.parent / name).resolve()
+        inside = any(target.parent == each.resolve() for each in folders) and name.endswith(".lp")
+        if not inside or not target.is_file():
+            yield _at(
+                text, found.start(), path, "include",
+                f"#include of {name!r} reaches outside the rule folders and is refused.",
+                "The rule base is there already; include only rule files beside this one.",
+            )  # fmt: skip
+    depth = deepest = 0
+    for sign in bare:
+        depth += (sign in "([{") - (sign in ")]}")
+        deepest = max(deepest, depth)
+    if deepest > DEEPEST:
+        yield Finding(
+            Place(str(path), 1, 1), "too-deep", f"brackets nest {deepest} deep.",
+            f"Nest them at most {DEEPEST} deep.",
+        )  # fmt: skip
+
+
+_COMMENT = re.compile(r"%\*.*?\*%|%[^\n]*", re.DOTALL)
+
+
+def _blank(found: re.Match[str]) -> str:
+    return re.sub(r"[^\n]", " ", found[0])
+
+
+def _at(text: str, at: int, path: Path, code: str, message: str, remedy: str) -> Finding:
+    line = text.count("\n", 0, at) + 1
+    return Finding(Place(str(path), line, at - text.rfind("\n", 0, at)), code, message, remedy)
+
+
+def _placed(statement: Statement, file: str) -> Statement:
+    """The statement with its file's name at all its places."""
+
+    def here(place: Place) -> Place:
+        return replace(place, file=file)
+
+    return replace(
+        statement,
+        place=here(statement.place),
+        heads=tuple(replace(each, place=here(each.place)) for each in statement.heads),
+        body=tuple(
+            replace(
+                each,
+                place=here(each.place),
+                atoms=tuple(replace(atom, place=here(atom.place)) for atom in each.atoms),
+            )
+            for each in statement.body
+        ),
+        external=tuple(map(here, statement.external)),
+    )

@@ -1,0 +1,151 @@
+"""Checks that ask the solver: safety, and what the rules of a file do in every possible segment."""
+
+import re
+from collections.abc import Iterator, Sequence
+
+from capar.model.errors import RuleError
+from capar_rules.auditing import ASKED, Audit, evaluate, given_in_audit, summarise
+from capar_rules.findings import NOTE, Finding
+from capar_rules.searching import Atom, brave
+from capar_rules.slicing import heads_of, towards
+from capar_rules.statics import Known, split_arguments
+from capar_rules.syntax import Place, Signature, Statement, parse_text
+
+FIRED, IDLE = ("fired", 1), ("idle", 1)
+
+_MESSAGE = re.compile(r"[^:\n]*:(\d+):(\d+)(?:-[\d:]+)?: (?:error|info): (.*)")
+_UNSAFE = re.compile(r": note: '(\w+)' is unsafe")
+
+
+def safety_findings(text: str, file: str) -> Iterator[Finding]:
+    """What the solver refuses of a file by itself: unsafe variables above all."""
+    try:
+        brave(text, ())
+    except RuleError as error:
+        yield from solver_findings(str(error), file)
+
+
+def solver_findings(message: str, file: str) -> Iterator[Finding]:
+    """The solver's own remarks as findings."""
+    variables = _UNSAFE.findall(message)
+    found = False
+    for line in message.splitlines():
+        match = _MESSAGE.match(line)
+        if match is None:
+            continue
+        found = True
+        place = Place(file, int(match[1]), int(match[2]))
+        if "unsafe" in match[3]:
+            names = ", ".join(dict.fromkeys(variables)) or "a variable"
+            yield Finding(
+                place, "unsafe-variable", f"nothing says which values {names} may take.",
+                "Name it in a condition without not, such as segment(Segment, From, To).",
+            )  # fmt: skip
+        elif "syntax error" in match[3] or "lexer error" in match[3]:
+            wrong = match[3].split("error, ")[-1]
+            yield Finding(
+                place, "syntax", f"this is no rule: {wrong}.",
+                "A rule reads head :- condition, condition. and ends with a full stop.",
+            )  # fmt: skip
+        else:
+            yield Finding(place, "refused", f"the solver refuses it: {match[3]}.", "Rewrite it.")
+    if not found:
+        yield Finding(
+            Place(file, 1, 1), "refused", f"the solver refuses it: {message.strip()[:200]}.",
+            "Rewrite it.",
+        )  # fmt: skip
+
+
+def world_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
+    """Rules that can never fire or always do, and names that clash with others."""
+    rules = [each for each in own if each.kind == "rule" and each.heads]
+    judged = [each for each in rules if not _beyond(each, own, base)]
+    for each in rules:
+        if each not in judged:
+            words = ", ".join(f"{name}/{arity}" for name, arity in _beyond(each, own, base))
+            yield Finding(
+                each.place, "not-judged",
+                f"whether it can fire was not judged: it rests on {words}, measured outside the "
+                "audit's world.", "Give the file examples that it must and must not match.", NOTE,
+            )  # fmt: skip
+    asked = (*ASKED, FIRED, IDLE, ("feature_row", 6))
+    atoms = evaluate([*base.rules, *own, *_probes(judged)], asked)
+    yield from _firing(judged, atoms)
+    yield from _clashes(own, summarise(atoms))
+
+
+def _probes(rules: Sequence[Statement]) -> Iterator[Statement]:
+    for number, rule in enumerate(rules):
+        if rule.body:
+            body = "; ".join(each.text for each in rule.body)
+            text = f"fired({number}) :- {body}.\n"
+            if rule.heads[0].signature == ("fits", 2):
+                segment = split_arguments(rule.heads[0].text)[0]
+                text += f"fired({number},{segment}) :- {body}.\n"
+                text += f"idle({number}) :- segment(S,_,_); not fired({number},S).\n"
+            yield from parse_text(text)
+
+
+def _firing(rules: Sequence[Statement], atoms: frozenset[Atom]) -> Iterator[Finding]:
+    fired = {row[0] for name, row in atoms if name == "fired" and len(row) == 1}
+    idle = {row[0] for name, row in atoms if name == "idle"}
+    possible = {tuple(map(str, row)) for name, row in atoms if name == "possible"}
+    for number, rule in enumerate(rules):
+        head = rule.heads[0]
+        arguments = [each.strip('"') for each in split_arguments(head.text)]
+        row = head.signature == ("feature_row", 6) and tuple(arguments[2:]) not in possible
+        if (rule.body and number not in fired) or row:
+            what = f"the features {', '.join(arguments[2:])}" if row else "what it asks for"
+            yield Finding(
+                rule.place, "never-fires",
+                f"this rule can never fire: no segment has {what}.",
+                "`capar rules audit` lists the feature sets that segments can have.",
+            )  # fmt: skip
+        elif rule.body and head.signature == ("fits", 2) and number not in idle:
+            yield Finding(
+                rule.place, "always-fires", "this rule always fires: every segment fits it.",
+                "Add a condition, such as features(Segment, Start, End, Change, Force).",
+            )  # fmt: skip
+
+
+def _clashes(own: Sequence[Statement], audit: Audit) -> Iterator[Finding]:
+    places = {
+        split_arguments(head.text)[0].strip('"'): head.place
+        for each in own
+        for head in each.heads
+        if head.signature == ("primitive", 1)
+    }
+    for name, place in places.items():
+        pairs = [each for each in audit.ambiguous if name in (each.first, each.second)]
+        others = sorted(each.second if each.first == name else each.first for each in pairs)
+        if others:
+            where = ", ".join(each or "none" for each in pairs[0].features[0])
+            yield Finding(
+                place, "ambiguous",
+                f"{name} and {', '.join(others)} name the same segments, such as those with "
+                f"features {where}, and neither is the more specific.",
+                f'Order them, as by specialises("{name}", "{others[0]}"), or add a condition.',
+            )  # fmt: skip
+        if name in audit.shadowed:
+            yield Finding(
+                place, "shadowed", f"{name} never names a segment: others are always more "
+                "specific.", "Remove what specialises it, or add a case of its own.",
+            )  # fmt: skip
+
+
+def _beyond(
+    rule: Statement, own: Sequence[Statement], base: Known
+) -> tuple[Signature, ...]:
+    """The measurements below a rule that the audit's world does not have."""
+    below = {atom.signature for literal in rule.body for atom in literal.atoms}
+    given = given_in_audit()
+    slice_ = towards([*base.rules, *own], below - given, given=given)
+    read = below | {
+        atom.signature
+        for each in slice_
+        for literal in each.body
+        for atom in literal.atoms
+        if each.kind == "rule"
+    }
+    defined = heads_of([*base.rules, *own])
+    return tuple(sorted((read & base.inputs) - given - defined))

@@ -1,0 +1,93 @@
+"""The measured facts of an observation, and several observations replaced at once."""
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import fields
+from typing import TYPE_CHECKING
+
+from pyoxigraph import Literal, NamedNode
+
+from capar.model.facts import MEASURED, Fact
+from kb import names, writing
+from kb.encode import encode
+from kb.encode.facts import CLASSES, PROPERTIES
+from kb.shapes import prove
+from kb.sparql import fill
+from kb.store import Store
+from ontology import CAPAR
+
+if TYPE_CHECKING:
+    from capar.model.observation import Observation
+
+_FACTS = f"""SELECT ?fact ?property ?value
+WHERE {{ GRAPH @graph@ {{ @graph@ {CAPAR.fact} ?fact . ?fact ?property ?value }} }}"""
+
+_TYPE = NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#type")
+
+
+def facts(store: Store, name: str) -> tuple[Fact, ...]:
+    """What was measured in the capture of an observation, in the order of the extractors."""
+    said: dict[str, dict[str, str]] = defaultdict(dict)
+    kinds: dict[str, str] = {}
+    for fact, key, value in store.ask(fill(_FACTS, graph=str(names.observation(name)))).rows:
+        if key == _TYPE:
+            kinds[str(fact)] = str(value)
+        else:
+            said[str(fact)][str(key)] = value.value if isinstance(value, Literal) else str(value)
+    found = [_fact(kinds[node], said[node]) for node in said]
+    rank = {kind: index for index, kind in enumerate(MEASURED)}
+    return tuple(sorted(found, key=lambda each: (rank[type(each)], each)))
+
+
+_FILES = f"""SELECT ?path ?digest
+WHERE {{ GRAPH @graph@ {{ ?file {CAPAR.filePath} ?path ; {CAPAR.sha256} ?digest }} }}
+ORDER BY ?path"""
+
+
+def source_files(store: Store, name: str) -> tuple[tuple[str, str], ...]:
+    """Path and SHA-256 of each file that an observation's capture was read from."""
+    rows = store.ask(fill(_FILES, graph=str(names.observation(name)))).rows
+    return tuple(
+        (path.value, digest.value)
+        for path, digest in rows
+        if isinstance(path, Literal) and isinstance(digest, Literal)
+    )
+
+
+_BY_CLASS = {str(node): predicate for predicate, node in CLASSES.items()}
+_BY_PREDICATE = {each.predicate: each for each in MEASURED}
+
+
+def _fact(kind: str, said: dict[str, str]) -> Fact:
+    if kind in _BY_CLASS:
+        cls = _BY_PREDICATE[_BY_CLASS[kind]]
+        values = [said[str(PROPERTIES[each.name])] for each in fields(cls)]
+    else:
+        cls = _BY_PREDICATE[said[str(CAPAR.name)]]
+        values = said[str(CAPAR.parameters)].split(" ")
+    return cls(
+        *(
+            int(value) if each.type is int else value
+            for each, value in zip(fields(cls), values, strict=True)
+        )
+    )
+
+
+def replace_all(store: Store, observations: Iterable[tuple["Observation", str]]) -> None:
+    """Put several observations in the places of those of their captures, in one transaction.
+
+    Args:
+        store: Where they are.
+        observations: Each with what its complex action is called.
+
+    Raises:
+        ShapeError: One of them breaks the model; then none is replaced.
+    """
+    updates = []
+    for observation, called in observations:
+        statements = encode(observation, name=called)
+        prove(observation.capture, statements)
+        graph = names.observation(observation.capture)
+        updates.append(writing.replacement(graph, statements.quads))
+    if updates:
+        store.change(" ;\n".join(updates))

@@ -1,0 +1,57 @@
+"""Opening a folder's database to be read while its writer may be rearranging it."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from pyoxigraph import Store as Oxigraph
+
+from kb.errors import StoreError
+
+TRIES = 60
+"""How often a reader tries again when files are replaced under it."""
+
+PAUSE_S = 0.02
+"""How long it waits between [s]."""
+
+_T = TypeVar("_T")
+
+
+def open_reader(data: Path) -> Oxigraph:
+    """The database as it is now.
+
+    The writer merges its files now and then and removes the old ones; a reader that opens at
+    that instant meets a file that is gone, and tries again.
+
+    Raises:
+        StoreError: It cannot be opened even so.
+    """
+    return _again(lambda: Oxigraph.read_only(str(data)), data)
+
+
+def read(data: Path, reading: Callable[[Oxigraph], _T]) -> tuple[_T, Oxigraph]:
+    """What a reading of the database gives, and the database; read anew if files go meanwhile.
+
+    Raises:
+        StoreError: It cannot be read even so.
+    """
+
+    def both() -> tuple[_T, Oxigraph]:
+        store = Oxigraph.read_only(str(data))
+        return reading(store), store
+
+    return _again(both, data)
+
+
+def _again(action: Callable[[], _T], data: Path) -> _T:
+    problem: Exception | None = None
+    for _ in range(TRIES):
+        try:
+            return action()
+        except SyntaxError:
+            raise
+        except (OSError, RuntimeError) as error:
+            problem = error
+            time.sleep(PAUSE_S)
+    raise StoreError(f"{data.parent}: its database cannot be read ({problem})")

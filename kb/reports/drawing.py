@@ -1,0 +1,180 @@
+"""A drawing of verb classes as boxes by status, ours beside the thesis's (thesis Fig 6.1)."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+
+from kb.lexicon.levin import above, levin_class
+from kb.lexicon.links import ThesisStatus
+from kb.reports.linguistics import ClassReport, How, LinguisticReport
+
+WIDTH = 960
+LEFT, BOX, GUTTER = 190, 360, 30
+LINE, PAD, GAP = 17, 8, 8
+CHARACTERS = 50
+"""Letters of the drawing's size that a line of a box holds."""
+
+STYLES = ("direct", "extension", "not")
+"""Classes of boxes: shaded; outlined; dotted, as in the figure."""
+
+_OF_HOW = {
+    How.ADDRESSED: "direct",
+    How.GENERAL: "extension",
+    How.PURPOSE: "extension",
+    How.MISSING: "not",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """Verbs of one status."""
+
+    style: str
+    lines: tuple[str, ...]
+
+    @property
+    def height(self) -> int:
+        """In units of the drawing."""
+        return LINE * len(self.lines) + 2 * PAD
+
+
+def draw(report: LinguisticReport) -> str:
+    """The drawing as SVG; its colours and fonts stand in it."""
+    parts: list[str] = []
+    y = 56
+    group = ""
+    for each in report.classes:
+        top = _top(each.number)
+        if top != group:
+            group = top
+            y += 14
+            parts.append(_text(0, y + 12, _heading(top), "group"))
+            parts.append(f'<line x1="0" y1="{y + 20}" x2="{WIDTH}" y2="{y + 20}" class="rule"/>')
+            y += 30
+        y = _row(parts, each, y)
+    return _page(parts, y + 52)
+
+
+def _top(number: str) -> str:
+    return [number, *above(number)][-1]
+
+
+def _heading(number: str) -> str:
+    return f"{number}  {levin_class(number).title}"
+
+
+def _row(parts: list[str], each: ClassReport, y: int) -> int:
+    thesis, ours = _thesis_boxes(each), _own_boxes(each)
+    parts.append(_text(0, y + 20, each.number, "number"))
+    for index, line in enumerate(_wrapped(each.title.split(), 22, " ")):
+        parts.append(_text(44, y + 20 + index * 14, line, "title"))
+    bottoms = [
+        _column(parts, thesis, LEFT, y) if thesis else _nothing(parts, LEFT, y),
+        _column(parts, ours, LEFT + BOX + GUTTER, y),
+        y + 20 + 14 * len(_wrapped(each.title.split(), 22, " ")),
+    ]
+    return max(bottoms) + GAP
+
+
+def _nothing(parts: list[str], x: int, y: int) -> int:
+    parts.append(_text(x + PAD, y + 20, "not mentioned", "none"))
+    return y + LINE + 2 * PAD
+
+
+def _column(parts: list[str], boxes: Sequence[Box], x: int, y: int) -> int:
+    for box in boxes:
+        parts.append(
+            f'<rect x="{x}" y="{y}" width="{BOX}" height="{box.height}" rx="3" '
+            f'class="{box.style}"/>'
+        )
+        for index, line in enumerate(box.lines):
+            parts.append(_text(x + PAD + 2, y + PAD + 12 + index * LINE, line, "verbs"))
+        y += box.height + 4
+    return y
+
+
+def _thesis_boxes(each: ClassReport) -> list[Box]:
+    verbs: dict[ThesisStatus, list[str]] = {}
+    for claim in each.claims:
+        verbs.setdefault(claim.status, []).extend(claim.verbs)
+    order = (ThesisStatus.DIRECT, ThesisStatus.EXTENSION, ThesisStatus.NOT)
+    return [
+        Box(status.value, _lines(dict.fromkeys(verbs[status])))
+        for status in order
+        if status in verbs
+    ]
+
+
+def _own_boxes(each: ClassReport) -> list[Box]:
+    found: dict[str, list[str]] = {}
+    for verb in each.judged:
+        by = f" ({', '.join(verb.primitives)})" if verb.primitives else ""
+        found.setdefault(_OF_HOW[verb.how], []).append(f"{verb.verb}{by}")
+    return [Box(style, _lines(found[style])) for style in STYLES if style in found]
+
+
+def _lines(words: Iterable[str]) -> tuple[str, ...]:
+    return tuple(_wrapped(list(words), CHARACTERS, ", "))
+
+
+def _wrapped(words: Sequence[str], width: int, between: str) -> list[str]:
+    """Words in lines; what stands between them stays at the end of a line."""
+    lines: list[str] = []
+    for index, word in enumerate(words):
+        piece = word + (between if index < len(words) - 1 else "")
+        if lines and len(lines[-1] + piece.rstrip()) <= width:
+            lines[-1] += piece
+        else:
+            lines.append(piece)
+    return [line.rstrip() for line in lines]
+
+
+def _text(x: int, y: int, text: str, style: str) -> str:
+    return f'<text x="{x}" y="{y}" class="{style}">{escape(text)}</text>'
+
+
+_STYLE = """
+svg { font-family: Charter, "Bitstream Charter", "Iowan Old Style", Palatino, Georgia, serif; }
+text { fill: #1d1b18; font-size: 13px; }
+.column { font-size: 15px; font-weight: 600; }
+.group { font-size: 13px; font-variant: small-caps; letter-spacing: 0.04em; fill: #6b4f2a; }
+.number { font-size: 14px; font-weight: 600; }
+.title { font-size: 11.5px; fill: #575048; }
+.none { font-style: italic; fill: #8a8278; }
+.rule { stroke: #d9d2c5; stroke-width: 1; }
+rect { stroke: #3b362f; stroke-width: 1; fill: none; }
+rect.direct { fill: #dfe7dc; }
+rect.extension { fill: #ffffff; }
+rect.not { fill: #ffffff; stroke-dasharray: 2 3; stroke: #857d72; }
+"""
+
+
+def _page(parts: Sequence[str], height: int) -> str:
+    legend = (
+        ("direct", "addressed"),
+        ("extension", "with an extension; ours: in general only"),
+        ("not", "not addressed"),
+    )
+    marks: list[str] = []
+    x = LEFT
+    for style, words in legend:
+        marks.append(
+            f'<rect x="{x}" y="{height - 32}" width="22" height="14" rx="2" class="{style}"/>'
+        )
+        marks.append(_text(x + 30, height - 20, words, "title"))
+        x += 60 + 7 * len(words)
+    heads = [
+        _text(LEFT, 22, "The thesis (section 6.1)", "column"),
+        _text(LEFT + BOX + GUTTER, 22, "This system, by its rules", "column"),
+    ]
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-1 -4 {WIDTH + 2} {height}" '
+            'role="img" aria-label="Levin classes of verbs by status">',
+            f"<style>{_STYLE}</style>",
+            *heads,
+            *parts,
+            *marks,
+            "</svg>\n",
+        ]
+    )

@@ -1,0 +1,160 @@
+"""Descriptions read as a person would write them: golden texts, each read by us."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+from motions import (
+    TALL_MAN,
+    WOMAN,
+    Trial,
+    drink_from_mug,
+    hit,
+    pick_up_with_both_hands,
+    slide_object,
+    touch_cycle,
+    touch_from_rest,
+)
+from observations import MUG, RATE_HZ, TABLE, Piece, observation, with_unknown
+from observations import drink_from_mug as observed_drinking
+from observations import pick_up_with_both_hands as observed_picking_up
+
+from capar.model.facts import Touching
+from capar.model.par import FeatureSet
+from capar.observe import observe
+from kb.language.describe import describe
+from kb.lexicon.links import PrimitiveWords
+
+ACTIONS = {
+    drink_from_mug: (
+        "reached for the mug with the right hand, moved it to the head, drank, put it back on the "
+        "table, held it there, and let go.",
+        "reached for the mug with the right hand, moved it to the head, drank, put it back on the "
+        "table, held it there, and let go.",
+    ),
+    touch_from_rest: ("reached for the box with the right hand and touched it.",) * 2,
+    touch_cycle: ("reached for the box with the right hand, touched it, and took the hand away.",)
+    * 2,
+    slide_object: (
+        "reached for the box with the right hand and moved it on the table.",
+        "reached for the box with the right hand and pushed it along the table.",
+    ),
+    pick_up_with_both_hands: (
+        "reached for the box with both hands, held it on the table, moved it about, held it there, "
+        "and let go.",
+        "reached for the box with both hands, held it, lifted it, lowered it back onto the table, "
+        "held it there, and let go.",
+    ),
+    hit: ("hit the drum with the right hand and took the hand away.",) * 2,
+}
+"""What the thesis's rules and ours let one say of each test action."""
+
+
+@pytest.mark.parametrize("profile", [0, 1], ids=["thesis", "extended"])
+@pytest.mark.parametrize("action", ACTIONS, ids=lambda each: each.__name__)
+def test_an_action_is_told_as_it_was(action: Callable[..., Trial], profile: int) -> None:
+    trial = action(TALL_MAN)
+    told = describe(observe(trial.capture, rules=("thesis", "extended")[profile]))
+    assert told == f"The tall man {ACTIONS[action][profile]}"
+
+
+def test_the_same_is_told_of_another_performer() -> None:
+    told = describe(observe(drink_from_mug(WOMAN).capture))
+    assert told == f"The woman {ACTIONS[drink_from_mug][1]}"
+
+
+def test_the_published_drinking_reads_as_one_sentence() -> None:
+    assert describe(observed_drinking()) == (
+        "The agent reached for the mug with the right hand, moved it to the mouth, drank, put it "
+        "back on the table, held it there, and let go."
+    )
+
+
+def test_a_summary_tells_what_changed() -> None:
+    assert describe(observed_drinking(), detail="summary") == (
+        "The agent moved the mug to the mouth with the right hand, drank, and put it back on the "
+        "table."
+    )
+
+
+def test_times_stand_behind_the_steps() -> None:
+    assert describe(observed_drinking(), detail="summary", timed=True) == (
+        "The agent moved the mug to the mouth with the right hand (1.72–2.38 s), drank "
+        "(2.38–2.56 s), and put it back on the table (2.56–3.02 s)."
+    )
+
+
+def test_two_hands_that_do_the_same_are_told_once() -> None:
+    assert describe(observed_picking_up()) == (
+        "The agent reached for the box with both hands, held it on the table, picked it up, and "
+        "let go."
+    )
+
+
+def test_what_no_rule_names_is_said_to_be_so() -> None:
+    assert describe(with_unknown()) == (
+        "The agent reached for the mug with the right hand and did something with it and the table "
+        "that no rule names (nearest to MoveObj or MoveObjTo)."
+    )
+
+
+def _two_hands() -> str:
+    links = {
+        "right_hand": (
+            Piece("Reach", 50, ("mug",)),
+            Piece("MoveObjTo", 150, ("mug", "bowl")),
+            Piece("ResumePosture", 200, ("mug",)),
+        ),
+        "left_hand": (Piece("Reach", 60, ("bowl",)), Piece("Touch", 200, ("bowl",))),
+    }
+    bowl = replace(MUG, name="bowl", kind="bowl")
+    return describe(observation("Two", links, (MUG, bowl), frames=201, rate_hz=100.0))
+
+
+def test_two_hands_that_do_different_things_are_told_side_by_side() -> None:
+    assert _two_hands() == (
+        "The agent reached for the mug with the right hand, moved it to the bowl, and let go, "
+        "while the left hand reached for the bowl and touched it."
+    )
+
+
+def test_what_is_repeated_is_told_once_with_how_often() -> None:
+    cycle = ("Reach", "Touch", "ResumePosture")
+    pieces = tuple(
+        Piece(cycle[index % 3], (index + 1) * 40, ("mug",)) for index in range(3 * len(cycle))
+    )
+    seen = observation("Thrice", {"right_hand": pieces}, (MUG,), frames=361, rate_hz=RATE_HZ)
+    assert describe(seen) == (
+        "The agent reached for the mug with the right hand, touched it, and took the hand away, "
+        "3 times in all."
+    )
+
+
+def test_a_purpose_is_told_where_nothing_fulfils_it() -> None:
+    pieces = (Piece("Reach", 50, ("mug",)), Piece("MoveObj", 120, ("mug", "table"), "Clean"))
+    facts = (Touching("mug", "table", 0, 120), Touching("right_hand", "mug", 50, 120))
+    seen = observation(
+        "Cleaning", {"right_hand": pieces}, (MUG, TABLE), facts=facts, frames=121, rate_hz=100.0
+    )
+    assert describe(seen) == (
+        "The agent reached for the mug with the right hand and moved it on the table to clean."
+    )
+
+
+def test_nothing_touched_is_told_as_nothing() -> None:
+    seen = observation(
+        "Idle", {"right_hand": (Piece("Unknown", 50, ()),)}, (MUG,), frames=51, rate_hz=100.0
+    )
+    assert describe(seen) == "The agent touched nothing."
+
+
+def test_a_users_primitive_is_told_by_its_own_verb_or_by_what_it_specialises() -> None:
+    features = FeatureSet("1", "1", "1", "hand", "0")
+    pieces = (
+        Piece("Reach", 50, ("mug",)),
+        Piece("Nudge", 120, ("mug",), features=features, general=("MoveObj",)),
+    )
+    seen = observation("Nudging", {"right_hand": pieces}, (MUG,), frames=121, rate_hz=100.0)
+    start = "The agent reached for the mug with the right hand and "
+    assert describe(seen, words=[PrimitiveWords("Nudge", ("nudge",))]) == f"{start}nudged it."
+    assert describe(seen) == f"{start}moved it."

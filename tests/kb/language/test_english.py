@@ -1,0 +1,44 @@
+"""Forms of words: pasts from data and by rule, names as nouns, lists."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kb.language.english import joined, name_of, noun, past, the, the_agent, times, words_of
+
+
+@pytest.mark.parametrize(
+    ("verb", "form"),
+    [
+        ("drink", "drank"),
+        ("put", "put"),
+        ("let go of", "let go of"),
+        ("reach for", "reached for"),
+        ("move", "moved"),
+        ("carry", "carried"),
+        ("stay", "stayed"),
+        ("stir", "stirred"),
+        ("pick up", "picked up"),
+        ("withdraw", "withdrew"),
+    ],
+)
+def test_a_verb_has_its_past(verb: str, form: str) -> None:
+    assert past(verb) == form
+
+
+def test_names_are_said_as_nouns() -> None:
+    assert (noun("blue_cup"), the("blue_cup"), the("Anna")) == ("blue cup", "the blue cup", "Anna")
+    assert (the_agent("agent"), the_agent("subject0")) == ("the agent", "subject0")
+    assert [times(each) for each in (1, 2, 20)] == ["once", "twice", "20 times"]
+
+
+@given(st.lists(st.from_regex(r"[a-z]{2,8}", fullmatch=True), min_size=1, max_size=4))
+def test_words_make_a_name_that_gives_them_back(words: list[str]) -> None:
+    text = " ".join(words)
+    assert words_of(name_of(text)) == text
+
+
+def test_lists_are_joined_as_in_a_sentence() -> None:
+    assert joined(["a"]) == "a"
+    assert joined(["a", "b"]) == "a and b"
+    assert joined(["a", "b", "c"]) == "a, b, and c"

@@ -1,0 +1,118 @@
+"""WordNet's verbs: found by key, lemma and index; quick to load; the thesis's senses settled."""
+
+import re
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from capar.model.errors import UnknownNameError
+from kb.lexicon.links import thesis_senses
+from kb.lexicon.tables import compressed_lines, table
+from kb.lexicon.wordnet import WordNet, frame_sentence, normal_key, wordnet
+
+SETTLED = [
+    ("reach%2:42:00::", 6, "02691488", "i35083"),
+    ("hit%2:35:03::", 1, "01407698", "i28752"),
+    ("hit%2:35:00::", 3, "01402698", "i28723"),
+    ("touch%2:35:00::", 1, "01208838", "i27654"),
+    ("touch%2:35:01::", 5, "01208316", "i27653"),
+    ("touch%2:35:04::", 8, "01209469", "i27655"),
+    ("move%2:38:01::", 2, "01854282", "i30960"),
+    ("resume%2:30:01::", 2, "00350937", "i23488"),
+    ("reach%2:35:00::", 3, "01442758", "i28928"),
+]
+"""Senses that the thesis cites, and the one of reach that fits: key, number, offset, index."""
+
+OFFSETS = st.sampled_from([each.offset for each in wordnet()])
+
+
+def test_the_lexicon_holds_every_verb_synset_of_wordnet_3_1() -> None:
+    assert len(wordnet()) == 13789
+    assert sum(len(each.senses) for each in wordnet()) == 25061
+    assert len(wordnet().lemmas) == 11540
+
+
+@pytest.mark.parametrize(("key", "number", "offset", "ili"), SETTLED)
+def test_a_settled_sense_stands_where_it_should(
+    key: str, number: int, offset: str, ili: str
+) -> None:
+    synset = wordnet().of_key(key)
+    assert (synset.offset, synset.ili) == (offset, ili)
+    assert next(each.number for each in synset.senses if each.key == key) == number
+
+
+def test_the_thesis_table_of_senses_is_whole() -> None:
+    rows = [(each.primitive, each.number_1_6, each.key) for each in thesis_senses()]
+    touch = [(1, "touch%2:35:00::"), (5, "touch%2:35:01::"), (8, "touch%2:35:04::")]
+    assert rows == [
+        ("Reach", 6, "reach%2:42:00::"),
+        ("Hit", 1, "hit%2:35:03::"),
+        ("Hit", 4, "hit%2:35:00::"),
+        *[("Touch", *each) for each in touch],
+        *[("TouchWith", *each) for each in touch],
+        ("MoveObj", 2, "move%2:38:01::"),
+        ("MoveObjTo", 2, "move%2:38:01::"),
+        ("ResumePosture", 2, "resume%2:30:01::"),
+    ]
+
+
+@given(OFFSETS)
+def test_a_synset_is_found_by_each_of_its_names(offset: str) -> None:
+    words = wordnet()
+    synset = words.of_offset(offset)
+    for sense in synset.senses:
+        assert words.of_key(sense.key) == synset
+        assert (sense, synset) in words.of_lemma(sense.lemma)
+    if synset.ili:
+        assert words.of_ili(synset.ili) == synset
+
+
+@given(OFFSETS)
+def test_what_is_above_a_synset_has_it_below(offset: str) -> None:
+    words = wordnet()
+    synset = words.of_offset(offset)
+    for above in words.what_it_is(synset):
+        assert synset in words.kinds_of(above)
+    assert all(frame_sentence(each) for each in synset.frames)
+
+
+def test_senses_of_a_verb_come_in_their_order() -> None:
+    numbers = [sense.number for sense, _ in wordnet().of_lemma("Pick up")]
+    assert numbers == list(range(1, len(numbers) + 1))
+
+
+def test_an_index_names_one_synset() -> None:
+    known = [each.ili for each in wordnet() if each.ili]
+    assert len(known) == len(set(known)) == 13752
+    assert all(re.fullmatch(r"i\d+", each) for each in known)
+
+
+def test_the_lexicon_loads_in_less_than_a_third_of_a_second() -> None:
+    best = min(_seconds_to_load() for _ in range(3))
+    assert best < 0.3
+
+
+def _seconds_to_load() -> float:
+    start = time.perf_counter()
+    WordNet(compressed_lines("wordnet-3.1-verbs"))
+    return time.perf_counter() - start
+
+
+def test_a_key_in_verbnets_form_is_found() -> None:
+    assert normal_key("?graze%2:35:02") == "graze%2:35:02::"
+    assert "hit%2:35:00" in wordnet()
+
+
+def test_an_unknown_sense_is_answered_with_the_verbs_own() -> None:
+    with pytest.raises(UnknownNameError, match=r"hit%2:35:99.*hit%2:35:00::"):
+        wordnet().of_key("hit%2:35:99::")
+    with pytest.raises(UnknownNameError):
+        wordnet().of_ili("i0")
+
+
+def test_every_sense_that_we_claim_is_one_of_its_verb() -> None:
+    for row in table("motion_senses"):
+        synset = wordnet().of_key(row["key"])
+        assert row["verb"] in synset.lemmas

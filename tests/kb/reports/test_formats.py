@@ -1,0 +1,114 @@
+"""Each format shows the whole report, and can be read by what reads such files."""
+
+import csv
+import io
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from capar.model.errors import UnknownNameError
+from capar.report import linguistics
+from kb.reports.linguistics import LinguisticReport
+from kb.reports.writing import FORMATS, write
+
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--hide-scrollbars",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--window-size=1200,1600",
+)
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+
+
+@pytest.fixture(scope="module")
+def report() -> LinguisticReport:
+    return linguistics()
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_every_format_is_the_same_each_time_and_names_every_class(
+    report: LinguisticReport, form: str
+) -> None:
+    text = write(report, form)
+    assert text == write(linguistics(), form)
+    assert text.endswith("\n")
+    for each in report.classes:
+        assert each.number in text
+
+
+@pytest.mark.parametrize("form", ["text", "md", "html", "json", "latex"])
+def test_every_claim_stands_there_with_its_sentence(report: LinguisticReport, form: str) -> None:
+    plain = " ".join(write(report, form).replace("&quot;", '"').replace("&#x27;", "'").split())
+    for claim in report.claims:
+        if claim.levin:
+            assert claim.quote in plain
+
+
+def test_the_table_of_verbs_is_csv(report: LinguisticReport) -> None:
+    rows = list(csv.DictReader(io.StringIO(write(report, "csv"))))
+    assert len(rows) == sum(len(each.verbs) for each in report.classes)
+    touch = next(row for row in rows if (row["class"], row["verb"]) == ("20", "touch"))
+    assert touch["system"] == "addressed"
+    assert touch["class: thesis"] == "direct, not"
+
+
+def test_json_holds_the_values(report: LinguisticReport) -> None:
+    value = json.loads(write(report, "json"))
+    assert [each["number"] for each in value["classes"]] == [e.number for e in report.classes]
+    assert value["coverage"]["classes"] == len(report.classes)
+
+
+def test_the_drawing_is_svg_with_a_box_for_each_status(report: LinguisticReport) -> None:
+    root = ElementTree.fromstring(write(report, "svg"))
+    rects = [each.get("class") for each in root.iter("{http://www.w3.org/2000/svg}rect")]
+    assert {"direct", "extension", "not"} == set(rects)
+    texts = " ".join(each.text or "" for each in root.iter("{http://www.w3.org/2000/svg}text"))
+    assert "blink, point, squint" in texts
+
+
+def test_latex_leaves_no_sign_of_its_own_unescaped(report: LinguisticReport) -> None:
+    for line in write(report, "latex").splitlines():
+        if line.startswith("\\"):
+            continue
+        assert not re.search(r"(?<!\\)[%#$_]", line)
+
+
+def test_an_unknown_format_is_answered_with_the_known(report: LinguisticReport) -> None:
+    with pytest.raises(UnknownNameError, match="html"):
+        write(report, "pdf")
+
+
+def test_the_page_loads_nothing_from_elsewhere(report: LinguisticReport) -> None:
+    page = write(report, "html")
+    assert not re.search(r"""(?:src|href)=["'](?!#)""", page)
+    assert "@import" not in page
+    assert "url(" not in page
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine")
+def test_a_browser_shows_the_page(report: LinguisticReport, tmp_path: Path) -> None:
+    page = tmp_path / "report.html"
+    page.write_text(write(report, "html"), encoding="utf-8")
+    picture = tmp_path / "page.png"
+    dom = _chromium(tmp_path, "--dump-dom", page)
+    assert dom.count("<article") == len(report.classes)
+    assert "<svg" in dom
+    _chromium(tmp_path, f"--screenshot={picture}", page)
+    assert picture.stat().st_size > 20_000
+
+
+def _chromium(folder: Path, what: str, page: Path) -> str:
+    command = [str(CHROMIUM), *FLAGS, f"--user-data-dir={folder / 'profile'}", what, page.as_uri()]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=90, check=True)
+    return done.stdout

@@ -1,0 +1,158 @@
+"""The statuses are derived: they follow from the rule files, the lexicon and what was observed."""
+
+from pathlib import Path
+
+import pytest
+from motions import TALL_MAN, drink_from_mug, slide_object
+
+from capar.model.errors import RuleError
+from capar.observe import observe
+from capar.report import linguistics, primitive_files, primitive_words, standing
+from kb.actionary import Actionary
+from kb.lexicon.evidence import Case
+from kb.lexicon.loading import load_verbnet
+from kb.lexicon.verbnet_files import read_class
+from kb.lexicon.wordnet import wordnet
+from kb.reports.linguistics import ClassReport, How, LinguisticReport, Status
+
+EXAMPLE = Path(__file__).parent.parent / "lexicon" / "example-18.1.xml"
+PUBLISHED = ("reach", "hit", "touch", "touch_with", "move_obj", "move_obj_to", "resume_posture")
+
+
+def files(*stems: str) -> list[Path]:
+    return [each for each in primitive_files() if each.stem in stems]
+
+
+def of(report: LinguisticReport, number: str) -> ClassReport:
+    return next(each for each in report.classes if each.number == number)
+
+
+def verbs(report: LinguisticReport) -> dict[tuple[str, str], tuple[How, tuple[str, ...]]]:
+    return {
+        (each.number, verb.verb): (verb.how, verb.primitives)
+        for each in report.classes
+        for verb in each.verbs
+    }
+
+
+@pytest.fixture(scope="module")
+def published() -> LinguisticReport:
+    return linguistics(files(*PUBLISHED))
+
+
+def test_the_published_primitives_address_what_the_thesis_shows(
+    published: LinguisticReport,
+) -> None:
+    found = verbs(published)
+    assert found["20", "touch"] == (How.ADDRESSED, ("Touch", "TouchWith"))
+    assert found["18.1", "hit"] == found["18.1", "strike"] == (How.ADDRESSED, ("Hit",))
+    assert found["11.2", "move"] == (How.ADDRESSED, ("MoveObj", "MoveObjTo"))
+    assert found["11.4", "carry"] == (How.GENERAL, ("MoveObj", "MoveObjTo"))
+    assert found["18.1", "kick"] == (How.GENERAL, ("Hit",))
+    assert found["13.5.1", "catch"] == (How.MISSING, ())
+    assert of(published, "18.2").status is Status.NOT
+    assert of(published, "20").status is Status.PARTLY
+
+
+def test_every_class_that_the_thesis_names_is_there_with_its_sentence(
+    published: LinguisticReport,
+) -> None:
+    for claim in published.claims:
+        if claim.levin:
+            assert claim in of(published, claim.levin).claims
+
+
+@pytest.mark.parametrize("stem", ["throw", "kick", "lift"])
+def test_adding_a_rule_file_changes_only_what_depends_on_it(stem: str) -> None:
+    before = verbs(linguistics(files(*PUBLISHED)))
+    after = verbs(linguistics(files(*PUBLISHED, stem)))
+    (own,) = primitive_words(files(stem))
+    changed = {key for key in before | after if before.get(key) != after.get(key)}
+    assert changed
+    assert {verb for _, verb in changed if verb in own.verbs} == set(own.verbs)
+    for key in changed:
+        assert own.name in after[key][1] or key[1] in own.verbs
+
+
+def test_removing_a_rule_file_takes_its_status_back() -> None:
+    whole = linguistics()
+    without = linguistics([each for each in primitive_files() if each.stem != "throw"])
+    assert of(whole, "17.1").status is Status.ADDRESSED
+    assert of(without, "17.1").status is Status.PARTLY
+    assert "throw" in of(without, "17.1").reason
+    others = {each.number for each in whole.classes} - {"17.1"}
+    for number in others:
+        assert of(whole, number).status is of(without, number).status
+        assert of(whole, number).primitives == of(without, number).primitives
+
+
+def test_a_users_primitive_counts_by_its_verb_alone(tmp_path: Path) -> None:
+    path = tmp_path / "nudge.lp"
+    path.write_text('%* Nudge: a little push. *%\nprimitive("Nudge").\nverb("Nudge", "nudge").\n')
+    found = verbs(linguistics([*files(*PUBLISHED), path]))
+    assert found["20", "nudge"] == (How.ADDRESSED, ("Nudge",))
+
+
+def test_a_class_that_a_rule_file_states_wins(tmp_path: Path) -> None:
+    path = tmp_path / "prod.lp"
+    path.write_text('primitive("Prod").\nverb("Prod", "prod"). levin("Prod", "19").\n')
+    report = linguistics([*files(*PUBLISHED), path])
+    assert of(report, "19").status is Status.ADDRESSED
+    assert of(report, "19").files == (f"{tmp_path.name}/prod.lp",)
+
+
+def test_facts_in_a_comment_do_not_count(tmp_path: Path) -> None:
+    path = tmp_path / "ghost.lp"
+    path.write_text('%* primitive("Ghost"). *%\n% verb("Ghost", "throw").\nprimitive("Real").\n')
+    (words,) = primitive_words([path])
+    assert (words.name, words.verbs) == ("Real", ())
+
+
+def test_a_primitive_stands_in_one_file(tmp_path: Path) -> None:
+    for name in ("a.lp", "b.lp"):
+        (tmp_path / name).write_text('primitive("Twice").\n')
+    with pytest.raises(RuleError, match="also stated by"):
+        primitive_words(sorted(tmp_path.glob("*.lp")))
+
+
+def test_what_was_observed_is_evidence() -> None:
+    book = Actionary.in_memory()
+    book.add(observe(slide_object(TALL_MAN).capture, rules="thesis"))
+    report = linguistics(files(*PUBLISHED), store=book.store)
+    slide = of(report, "11.2")
+    assert [(each.primitive, each.kind) for each in slide.proofs] == [("MoveObj", "observed")]
+    assert slide.segments == 1
+    assert report.coverage.segments == report.coverage.segments_named == 2
+    book.forget(report.observations[0])
+    assert not of(linguistics(files(*PUBLISHED), store=book.store), "11.2").proofs
+
+
+def test_a_purpose_that_was_stated_is_a_partial_answer() -> None:
+    book = Actionary.in_memory()
+    book.add(observe(drink_from_mug(TALL_MAN).capture, rules="thesis"))
+    found = verbs(linguistics(files(*PUBLISHED), store=book.store))
+    how, by = found["39.1", "drink"]
+    assert how is How.PURPOSE
+    assert "MoveObj" in by
+
+
+def test_a_shipped_case_is_evidence() -> None:
+    report = linguistics(files(*PUBLISHED), cases=[Case("Hit", "hit_on_drum")])
+    (proof,) = of(report, "18.1").proofs
+    assert (proof.primitive, proof.kind, proof.where) == ("Hit", "tested", "hit_on_drum")
+
+
+def test_members_of_an_imported_verbnet_are_told_beside() -> None:
+    book = Actionary.in_memory()
+    load_verbnet(book.store, [read_class(EXAMPLE)], wordnet())
+    report = linguistics(files(*PUBLISHED), store=book.store)
+    assert report.verbnet
+    found = {each.verb: each.counts for each in of(report, "18.1").verbs}
+    assert found == {"hit": True, "kick": True, "strike": True, "pick up": False}
+
+
+def test_a_verb_stands_to_the_rule_base_by_its_senses() -> None:
+    words = primitive_words(files(*PUBLISHED))
+    assert standing("strike", words).represented_by == ("Hit",)
+    assert standing("shove", words).general_only == ("MoveObj", "MoveObjTo")
+    assert standing("think", words).words.startswith("not represented")

@@ -1,0 +1,63 @@
+"""Every primitive and every preposition has cases that it must and that it must not fit."""
+
+import re
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+
+from capar_rules.engine import rule_file, solve
+from capar_rules.profiles import profile
+
+HERE = Path(__file__).parent
+LEAST = 3
+PRIMITIVES = sorted(
+    str(name) for (name,) in solve(profile().files, "#show primitive/1.").of("primitive")
+)
+PREPOSITIONS = sorted(
+    set(
+        re.findall(
+            r'^preposition\(Segment, "([a-z ]+)"',
+            rule_file("vocabulary/prepositions.lp").read_text(),
+            re.MULTILINE,
+        )
+    )
+)
+NAMED = re.compile(r'^(not )?(?:named|fits)\(.*,"(\w+)"\)$')
+RELATED = re.compile(r'^(not )?preposition\(seg\(\w+,\d+\),"?([a-z ]+)"?,\w+,\w+\)$')
+
+
+def _cases() -> tuple[dict[str, set[str]], dict[str, set[str]]]:
+    """By primitive or preposition, the cases in which it must hold, and those in which not."""
+    must: dict[str, set[str]] = defaultdict(set)
+    must_not: dict[str, set[str]] = defaultdict(set)
+    for path in HERE.glob("*/*.expected"):
+        for line in path.read_text().splitlines():
+            match = NAMED.match(line) or RELATED.match(line)
+            if match:
+                (must_not if match[1] else must)[match[2]].add(path.stem)
+    return must, must_not
+
+
+MUST, MUST_NOT = _cases()
+
+
+def test_the_vocabulary_is_that_of_the_profile() -> None:
+    assert {"Lift", "Lower", "Carry", "Pour", "Reach", "Rest"} <= set(PRIMITIVES)
+    assert {"on", "into", "out of", "around", "up", "down"} <= set(PREPOSITIONS)
+
+
+@pytest.mark.parametrize("name", [*PRIMITIVES, *PREPOSITIONS])
+def test_each_has_cases_for_and_against(name: str) -> None:
+    assert len(MUST[name]) >= LEAST, f"{name}: add cases in which it must hold"
+    assert len(MUST_NOT[name]) >= LEAST, f"{name}: add cases in which it must not hold"
+
+
+def test_no_case_names_what_there_is_not() -> None:
+    assert {*MUST, *MUST_NOT} <= {*PRIMITIVES, *PREPOSITIONS}
+
+
+def test_no_segment_of_a_case_bears_two_names() -> None:
+    for path in HERE.glob("vocabulary/*.expected"):
+        named = re.findall(r"^named\((seg\(\w+,\d+\)),", path.read_text(), re.MULTILINE)
+        assert len(named) == len(set(named)), path.stem
