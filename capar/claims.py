@@ -4,7 +4,7 @@ A claim reads like ``right_hand MoveObjTo(mug, head) before head looks away from
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -102,9 +102,7 @@ def _follows(wanted: list[str], segments: list[Segment]) -> bool:
         return not segments
     if wanted[0] == "...":
         return any(_follows(wanted[1:], segments[at:]) for at in range(len(segments) + 1))
-    return bool(
-        segments and _fits(segments[0], wanted[0]) and _follows(wanted[1:], segments[1:])
-    )
+    return bool(segments and _fits(segments[0], wanted[0]) and _follows(wanted[1:], segments[1:]))
 
 
 _STEP = re.compile(r"([A-Z]\w*)(?:\(([^()]*)\))?")
@@ -127,45 +125,65 @@ def _fits(segment: Segment, text: str) -> bool:
 
 def _event(text: str, seen: Observation) -> Iterator[Span]:
     """When an event is."""
-    rate = seen.rate_hz
-    looks = re.fullmatch(r"(\w+) looks (at|away from) (\w+)", text)
-    meets = re.fullmatch(r"(\w+) (touches|lets go of) (\w+)", text)
-    moves = re.fullmatch(r"(\w+) moves", text)
-    step = re.fullmatch(r"(\w+) ([A-Z]\w*(?:\([^()]*\))?)", text)
-    if looks:
-        for each in _facts(seen, LookingAt):
-            if (each.sensor, each.object) == (looks[1], looks[3]):
-                yield _when(each.first, each.last, rate, ending=looks[2] != "at")
-    elif meets:
-        pair = {meets[1], _known(meets[3], seen)}
-        for each in _facts(seen, Touching):
-            if {each.body, each.other} == pair:
-                yield _when(each.first, each.last, rate, ending=meets[2] != "touches")
-    elif moves:
-        _known(moves[1], seen)
-        for each in _facts(seen, Moving):
-            if each.object == moves[1]:
-                yield _when(each.first, each.last, rate, ending=False)
-    elif step:
-        for segment in _of(step[1], seen):
-            if _fits(segment, step[2]):
-                yield segment.start_s, segment.end_s
-    else:
-        raise ClaimError(f"{text!r} is no event; {HELP}")
+    for pattern, spans in _EVENTS:
+        found = re.fullmatch(pattern, text)
+        if found:
+            return spans(found, seen)
+    raise ClaimError(f"{text!r} is no event; {HELP}")
+
+
+def _looks(found: re.Match[str], seen: Observation) -> Iterator[Span]:
+    for each in _facts(seen, LookingAt):
+        if (each.sensor, each.object) == (found[1], found[3]):
+            yield _when(each.first, each.last, seen, ending=found[2] != "at")
+
+
+def _meets(found: re.Match[str], seen: Observation) -> Iterator[Span]:
+    pair = {_known(found[1], seen), _known(found[3], seen)}
+    spans = {
+        _when(each.first, each.last, seen, ending=found[2] != "touches")
+        for each in _facts(seen, Touching)
+        if {each.body, each.other} == pair
+    }
+    return iter(sorted(spans))
+
+
+def _moves(found: re.Match[str], seen: Observation) -> Iterator[Span]:
+    name = _known(found[1], seen)
+    for each in _facts(seen, Moving):
+        if each.object == name:
+            yield _when(each.first, each.last, seen, ending=False)
+
+
+def _step(found: re.Match[str], seen: Observation) -> Iterator[Span]:
+    for segment in _of(found[1], seen):
+        if _fits(segment, found[2]):
+            yield segment.start_s, segment.end_s
+
+
+_EVENTS: tuple[tuple[str, Callable[[re.Match[str], Observation], Iterator[Span]]], ...] = (
+    (r"(\w+) looks (at|away from) (\w+)", _looks),
+    (r"(\w+) (touches|lets go of) (\w+)", _meets),
+    (r"(\w+) moves", _moves),
+    (r"(\w+) ([A-Z]\w*(?:\([^()]*\))?)", _step),
+)
 
 
 def _facts(seen: Observation, kind: type[_Kind]) -> Iterator[_Kind]:
     return (each for each in seen.facts if isinstance(each, kind))
 
 
-def _when(first: int, last: int, rate: float, *, ending: bool) -> Span:
+def _when(first: int, last: int, seen: Observation, *, ending: bool) -> Span:
+    rate = seen.rate_hz
     return (last / rate, last / rate) if ending else (first / rate, last / rate)
 
 
 def _of(ee: str, seen: Observation) -> Sequence[Segment]:
     links = {each.ee: each.segments for each in seen.links}
     if ee not in links:
-        raise ClaimError(f"no end-effector {ee!r} acts in {seen.capture!r}; there are {sorted(links)}")
+        raise ClaimError(
+            f"no end-effector {ee!r} acts in {seen.capture!r}; there are {sorted(links)}"
+        )
     return links[ee]
 
 

@@ -51,7 +51,7 @@ def read_motion_test(path: Path) -> MotionTest:
         raise FileError(path, "it expects nothing.", _EXAMPLE)
     claims = [each.get("that") if isinstance(each, dict) else None for each in expected]
     if not all(isinstance(each, str) for each in claims):
-        raise FileError(path, "an [[expect]] has no that = \"...\".", _EXAMPLE)
+        raise FileError(path, 'an [[expect]] has no that = "...".', _EXAMPLE)
     rules = content.get("rules")
     return MotionTest(
         path,

@@ -31,7 +31,9 @@ class MotionFile(pytest.File):
         for capture in test.captures:
             for claim in test.claims:
                 name = f"{capture.name}: {claim}"
-                yield ClaimItem.from_parent(self, name=name, test=test, capture=capture, claim=claim)
+                yield ClaimItem.from_parent(
+                    self, name=name, test=test, capture=capture, claim=claim
+                )
 
 
 class ClaimItem(pytest.Item):

@@ -193,7 +193,11 @@ def _stored(store: Actionary) -> Iterator[tuple[str, tuple[Fact, ...]]]:
 
 
 def _anew(
-    files: Sequence[tuple[str, str]], capture: str, action: str, rules: Profile, places: Iterable[Path]
+    files: Sequence[tuple[str, str]],
+    capture: str,
+    action: str,
+    rules: Profile,
+    places: Iterable[Path],
 ) -> Observation:
     """The observation of the same files by other rules."""
     digests = sorted(digest for _, digest in files)

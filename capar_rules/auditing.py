@@ -1,4 +1,4 @@
-"""The rule base over every segment that can be: what no rule covers, what several do, what none needs."""
+"""The rule base over every segment that can be: uncovered, ambiguous and shadowed cases."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -58,7 +58,7 @@ class Audit:
 
     @property
     def clean(self) -> bool:
-        """Whether there is no ambiguity, nothing shadowed, and every uncovered case has a reason."""
+        """Whether nothing is ambiguous or shadowed, and every uncovered case has a reason."""
         reasoned = {features for features, _ in self.excused}
         return not (self.ambiguous or self.shadowed or set(self.uncovered) - reasoned)
 
@@ -80,9 +80,7 @@ def summarise(atoms: frozenset[Atom]) -> Audit:
     return Audit(
         possible=len(_rows(atoms, "possible")),
         uncovered=tuple(sorted(map(_features, _rows(atoms, "nameless")))),
-        excused=tuple(
-            sorted((_features(each), str(each[4])) for each in _rows(atoms, "excused"))
-        ),
+        excused=tuple(sorted((_features(each), str(each[4])) for each in _rows(atoms, "excused"))),
         ambiguous=_clashes(_rows(atoms, "clash")),
         shadowed=tuple(sorted(fitting - winning)),
         unreachable=tuple(sorted(primitives - fitting)),
@@ -91,7 +89,10 @@ def summarise(atoms: frozenset[Atom]) -> Audit:
 
 def given_in_audit() -> frozenset[Signature]:
     """The predicates that the audit's world states itself."""
-    return heads_of([*_own("space.lp"), *_own("scene.lp"), *_own("words.lp")]) | {("force_transfer", 0), ("gap", 4)}
+    return heads_of([*_own("space.lp"), *_own("scene.lp"), *_own("words.lp")]) | {
+        ("force_transfer", 0),
+        ("gap", 4),
+    }
 
 
 def evaluate(rules: Sequence[Statement], asked: Iterable[Signature]) -> frozenset[Atom]:
@@ -148,9 +149,7 @@ def _own(name: str) -> tuple[Statement, ...]:
     """The rules of one file of the audit, without what it includes."""
     path = rule_file("audit") / name
     return tuple(
-        each
-        for each in parse([path])
-        if Path(each.place.file).name == name and each.kind == "rule"
+        each for each in parse([path]) if Path(each.place.file).name == name and each.kind == "rule"
     )
 
 

@@ -1,13 +1,24 @@
-"""Rules that people write: which there are, new ones from what was seen, and adding and removing."""
+"""Rules that people write: which there are, new ones from what was seen, adding, removing."""
 
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from capar.model.errors import FileError, RuleError, UnknownNameError
-from capar.model.facts import Fact, Gap, Moving, ZeroCrossing
-from capar.model.facts import ForceTransfer, Frames, Link, RateMhz, Tag, Touching
+from capar.model.facts import (
+    Fact,
+    ForceTransfer,
+    Frames,
+    Gap,
+    Link,
+    Moving,
+    RateMhz,
+    Tag,
+    Touching,
+    ZeroCrossing,
+)
 from capar.model.par import FeatureSet
 from capar_rules.checking import check, require
 from capar_rules.examples import Example, lacking, read_examples, try_examples, written
@@ -60,7 +71,7 @@ def rules_of(base: Profile) -> tuple[RuleInfo, ...]:
     general: dict[str, list[str]] = {}
     for name, other in _pairs(statements, "specialises"):
         general.setdefault(name, []).append(other)
-    heads = {}
+    heads: dict[str, str] = {}
     for each in statements:
         if each.kind == "comment":
             heads.setdefault(each.place.file, each.text)
@@ -131,7 +142,7 @@ def telling(facts: Sequence[Fact]) -> tuple[Fact, ...]:
     return tuple(each for each in facts if isinstance(each, TELLING))
 
 
-def test_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) -> tuple[str, ...]:
+def try_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) -> tuple[str, ...]:
     """What the examples of a rule file do not show as they say; empty if all is well.
 
     Raises:
@@ -156,9 +167,7 @@ def test_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) -
     )
 
 
-def add_rule(
-    path: Path, *, folder: Path, base: str = DEFAULT, over: Sequence[str] = ()
-) -> Path:
+def add_rule(path: Path, *, folder: Path, base: str = DEFAULT, over: Sequence[str] = ()) -> Path:
     """Take a rule file among the user's rules, once it is checked and its examples hold.
 
     Args:
@@ -179,16 +188,14 @@ def add_rule(
         raise FileError(target, "exists already.", "Remove that rule first, or rename this file.")
     beside = rule_files(folder) if folder.is_dir() else ()
     folder.mkdir(parents=True, exist_ok=True)
-    draft = folder / f".{path.name}"
-    draft.write_text(_text(path) + _ordering(path, over), encoding="utf-8")
-    try:
+    with TemporaryDirectory(dir=folder, prefix=".draft") as place:
+        draft = Path(place) / path.name
+        draft.write_text(_text(path) + _ordering(path, over), encoding="utf-8")
         require(path, check(draft, profile=base, beside=beside))
-        failures = test_rule(draft, base=base, beside=beside)
+        failures = try_rule(draft, base=base, beside=beside)
         if failures:
             raise RuleError("its examples do not hold:\n" + "\n".join(failures))
         draft.replace(target)
-    finally:
-        draft.unlink(missing_ok=True)
     return target
 
 

@@ -24,11 +24,11 @@ def cycle_findings(own: Sequence[Statement], base: Sequence[Statement]) -> Itera
     for rule in own:
         for head, below, _ in _edges([rule]):
             if component.get(head) == component.get(below) and component.get(head) in negative:
-                path = " -> ".join(f"{name}/{arity}" for name, arity in _path(graph, below, head))
+                path = " -> ".join(name for name, _ in [head, *_path(graph, below, head)])
                 yield Finding(
                     rule.place, "negative-cycle",
-                    f"{head[0]}/{head[1]} rests on its own negation: {head[0]}/{head[1]} -> {path}; "
-                    "there would be several answers, or none.",
+                    f"{head[0]} rests on its own negation: {path}; there would be several "
+                    "answers, or none.",
                     "Rest it on measurements and features, which names do not change.",
                 )  # fmt: skip
                 break

@@ -154,7 +154,7 @@ def _plain(symbol: clingo.Symbol) -> str:
 
 def _records(number: int, rule: Statement) -> list[str]:
     """Rules that tell each instance of a rule, and each element of its aggregates."""
-    if rule.head_kind != "atom" or len(rule.heads) != 1 and ";" not in rule.heads[0].text:
+    if rule.head_kind != "atom" or (len(rule.heads) != 1 and ";" not in rule.heads[0].text):
         return []
     head = rule.heads[0].text
     body = "; ".join(each.text for each in rule.body)

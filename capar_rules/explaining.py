@@ -248,9 +248,10 @@ def _where(place: Place | None) -> str:
     return "" if place is None else f"{Path(place.file).name}:{place.line}"
 
 
+_KINDS: tuple[type[Fact], ...] = (*MEASURED, Tick)
 _FIELDS = {
     (each.predicate, len(fields(each))): tuple(field.name for field in fields(each))
-    for each in (*MEASURED, Tick)
+    for each in _KINDS
 }
 
 

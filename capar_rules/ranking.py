@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from capar.model.facts import Fact, Frames, Link, Moving, Pause, RateMhz, Touching, ZeroCrossing
+from capar_rules.refining import Edge, edges
 from capar_rules.spans import Stretches
 
 MARGIN_S = 1.0
@@ -169,11 +170,15 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
     }
     moves |= {each.other: scene.moving[each.other] for each in others if each.other not in moves}
     crossings = scene.crossings[ee]
+    refined: tuple[Edge, ...] = ()
     if crossings_only:
         marks = set(crossings)
     else:
+        held = (each for name in reach for each in moves[name])
+        refined = edges(own, held, scene.pauses[ee], rate_hz=scene.rate)
         marks = {frame for each in (*own, *others) for frame in (each.first, each.last)}
         marks |= {frame for name in reach for each in moves[name] for frame in _ends(each)}
+        marks |= {each.refined for each in refined}
         marks |= {
             pause
             for gap in _free(own)
@@ -195,6 +200,10 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
     yield LastTick(ee, len(ticks) - 1)
     yield from _within(ee, ticks, own, others)
     yield from _moves(ee, ticks, moves)
+    yield from (
+        each.kind(ee, each.object, each.frame, bisect_left(ticks, each.refined))
+        for each in refined
+    )
     yield from (
         FreeBetween(ee, bisect_left(ticks, gap[0]), bisect_left(ticks, gap[1]))
         for gap in (() if crossings_only else _free(own))

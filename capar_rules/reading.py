@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from capar.model.errors import RuleError
+from capar.model.facts import LARGEST
 from capar_rules.findings import Finding
 from capar_rules.syntax import Place, Statement, parse_text
 from capar_rules.trials import solver_findings
@@ -24,6 +25,7 @@ _STRING_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|%\*.*?\*%|%[^\n]*', re.DOT
 class Reading:
     """A rule file's statements, or what stands in the way of them."""
 
+    file: str
     text: str
     statements: tuple[Statement, ...]
     findings: tuple[Finding, ...]
@@ -40,13 +42,13 @@ def read_rules(path: Path, *, folders: Iterable[Path] = ()) -> Reading:
     if not findings:
         findings = list(_tokens(text, path, tuple(folders)))
     if findings:
-        return Reading(text, (), tuple(findings))
+        return Reading(str(path), text, (), tuple(findings))
     text = _INCLUDE.sub(lambda found: " " * len(found[0]), text)
     try:
         statements = parse_text(text)
     except RuleError as error:
-        return Reading(text, (), tuple(solver_findings(str(error), str(path))))
-    return Reading(text, tuple(_placed(each, str(path)) for each in statements), ())
+        return Reading(str(path), text, (), tuple(solver_findings(str(error), str(path))))
+    return Reading(str(path), text, tuple(_placed(each, str(path)) for each in statements), ())
 
 
 def _text(path: Path) -> tuple[str, list[Finding]]:
@@ -75,6 +77,14 @@ def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Findin
     bare = _STRING_OR_COMMENT.sub(_blank, text)
     if "\0" in text:
         yield _at(text, text.index("\0"), path, "encoding", "there is a zero byte.", "Remove it.")
+    if text.startswith("\ufeff"):
+        yield _at(text, 0, path, "encoding", "there is a byte-order mark.", "Save it without one.")
+    for found in re.finditer(r"\b\d{10,}\b", bare):
+        if int(found[0][:20]) > LARGEST:
+            yield _at(
+                text, found.start(), path, "number", f"{found[0][:20]} is too large for the rules.",
+                f"Stay within {LARGEST}: millimetres, frames and milliseconds do.",
+            )  # fmt: skip
     for found in re.finditer(r"#script\b", bare):
         yield _at(
             text, found.start(), path, "script", "#script runs code and is refused.",

@@ -14,15 +14,15 @@ from capar.model.errors import CaparError
 from capar_rules.cycles import cycle_findings
 from capar_rules.findings import Finding, errors
 from capar_rules.profiles import profile
-from capar_rules.reading import read_rules
+from capar_rules.reading import Reading, read_rules
 from capar_rules.statics import Known, known, static_findings
 from capar_rules.syntax import Place, parse
 from capar_rules.trials import safety_findings, world_findings
 
-CPU_S = 20
+CPU_S = 10
 """How long a check may compute [s]."""
 
-WALL_S = 60.0
+WALL_S = 40.0
 """How long it may take [s]."""
 
 MEMORY_BYTES = 1 << 30
@@ -52,17 +52,28 @@ def examine(path: Path, base: Known, beside: list[str]) -> Iterator[Finding]:
         return
     others = parse([Path(each) for each in beside])
     whole = known([*base.rules, *others])
-    for stage in (
-        lambda: static_findings(reading.statements, whole),
-        lambda: safety_findings(reading.text, str(path)),
-        lambda: cycle_findings(reading.statements, whole.rules),
-        lambda: world_findings(reading.statements, whole),
-    ):
-        for each in stage():
+    for stage in (_static, _safe, _acyclic, _in_worlds):
+        for each in stage(reading, whole):
             found.append(each)
             yield each
         if errors(tuple(found)):
             return
+
+
+def _static(reading: Reading, base: Known) -> Iterator[Finding]:
+    return static_findings(reading.statements, base)
+
+
+def _safe(reading: Reading, base: Known) -> Iterator[Finding]:
+    return safety_findings(reading.text, reading.file)
+
+
+def _acyclic(reading: Reading, base: Known) -> Iterator[Finding]:
+    return cycle_findings(reading.statements, base.rules)
+
+
+def _in_worlds(reading: Reading, base: Known) -> Iterator[Finding]:
+    return world_findings(reading.statements, base)
 
 
 def _guarded(path: Path, base: Known, beside: list[str]) -> list[Finding]:
@@ -137,8 +148,6 @@ def _exhausted(path: Path, status: int) -> Finding:
         Place(str(path), 1, 1), "unbounded", f"the check was ended: {why}.",
         "Bound every number and every recursion by a measurement.",
     )  # fmt: skip
-
-
 
 
 if __name__ == "__main__":

@@ -110,7 +110,7 @@ def _statements(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
 
 def _heads(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
     taken = base.heads | base.inputs
-    arities = {name: arity for name, arity in AUTHORED}
+    arities = dict(AUTHORED.keys())
     for each in own:
         for head in each.heads:
             if head.signature in AUTHORED:
@@ -183,6 +183,11 @@ def _primitives(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
                 )  # fmt: skip
             if name == "specialises":
                 yield from _ordered(head, arguments, mine | base.primitives)
+                if _circular(arguments, [*base.rules, *own]):
+                    yield Finding(
+                        head.place, "circular", f"{head.text} makes a circle: neither would ever "
+                        "be named.", "State only which is the more specific.",
+                    )  # fmt: skip
             if name == "feature_row":
                 yield from _row(head, arguments)
     if not mine:
@@ -190,6 +195,23 @@ def _primitives(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
             _first(own), "no-primitive", "the file introduces no primitive.",
             'State one, such as primitive("Lift").',
         )  # fmt: skip
+
+
+def _circular(arguments: Sequence[str], rules: Iterable[Statement]) -> bool:
+    """Whether what is said to be more general comes to specialise it."""
+    general: dict[str, set[str]] = {}
+    for each in rules:
+        for head in each.heads:
+            if head.signature == ("specialises", 2):
+                name, other = split_arguments(head.text)
+                general.setdefault(name, set()).add(other)
+    seen, waiting = set(), [arguments[1]]
+    while waiting:
+        name = waiting.pop()
+        if name not in seen:
+            seen.add(name)
+            waiting += sorted(general.get(name, ()))
+    return arguments[0] in seen
 
 
 def _ordered(head: Atom, arguments: Sequence[str], names: set[str]) -> Iterator[Finding]:

@@ -133,9 +133,7 @@ def _clashes(own: Sequence[Statement], audit: Audit) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _beyond(
-    rule: Statement, own: Sequence[Statement], base: Known
-) -> tuple[Signature, ...]:
+def _beyond(rule: Statement, own: Sequence[Statement], base: Known) -> tuple[Signature, ...]:
     """The measurements below a rule that the audit's world does not have."""
     below = {atom.signature for literal in rule.body for atom in literal.atoms}
     given = given_in_audit()

@@ -119,27 +119,40 @@ def _program(
     ticks: tuple[int, int],
     name: str,
 ) -> str:
-    changes = [each for each in parse([rule_file("audit") / "changes.lp"]) if each.kind != "comment"]
-    changes = [each for each in changes if each.place.file.endswith("changes.lp")]
+    """The rules over what might have been read, with the fewest changes from what was."""
+    changes = [
+        each
+        for each in parse([rule_file("audit") / "changes.lp"])
+        if each.kind != "comment" and each.place.file.endswith("changes.lp")
+    ]
     stated = heads_of([*changes, *words]) | {*SCENE, ("segment", 3), ("tick", 3), ("border", 2)}
     rules = [each for each in base if not {head.signature for head in each.heads} & stated]
-    kept = towards([*rules, *words], [("named", 2), *_counted(words)], given=stated - heads_of(words))
-    first, last = ticks
-    ee = segment.ee
-    term = f"seg({ee},{first})"
+    targets = [("named", 2), *_counted(words)]
+    kept = towards([*rules, *words], targets, given=stated - heads_of(words))
     lines = [_unfolded(each.text) for each in kept]
     lines += [each.text for each in (*changes, *physics())]
-    lines += [f"{each}." for each in actual if each.startswith(("link(", "tag(", "gap(", "lifted("))]
-    lines += [f"actual({each})." for each in actual]
-    lines += [f"{{ {each} }}." for each in actual if each.startswith(("lies_at(", "overlaps("))]
-    lines += [f"segment({term},{first},{last}).", f"border({ee},({first};{last}))."]
-    lines += [f"tick({ee},{first},{segment.first}).", f"tick({ee},{last},{segment.last})."]
-    lines += [f"candidate({each})." for each in _candidates(actual, segment)]
-    lines += [f"{each}." for each in map(str, facts) if each == "force_transfer"]
     lines += [rule for word in _counted(words) for rule in _counting(word)]
-    lines.append(f':- not named({term},"{name}").')
-    lines.append("#defined possesses/3.")
+    lines += [*_scene(actual, segment, ticks), "#defined possesses/3."]
+    lines += [f"{each}." for each in map(str, facts) if each == "force_transfer"]
+    lines.append(f':- not named(seg({segment.ee},{ticks[0]}),"{name}").')
     return "\n".join(lines)
+
+
+def _scene(actual: Sequence[str], segment: Segment, ticks: tuple[int, int]) -> list[str]:
+    """The segment as it was: what cannot have been otherwise, and what might."""
+    first, last = ticks
+    ee = segment.ee
+    fixed = tuple(f"{name}(" for name, _ in SCENE)
+    return [
+        *(f"{each}." for each in actual if each.startswith(fixed)),
+        *(f"actual({each})." for each in actual),
+        *(f"{{ {each} }}." for each in actual if each.startswith(("lies_at(", "overlaps("))),
+        *(f"candidate({each})." for each in _candidates(actual, segment)),
+        f"segment(seg({ee},{first}),{first},{last}).",
+        f"border({ee},({first};{last})).",
+        f"tick({ee},{first},{segment.first}).",
+        f"tick({ee},{last},{segment.last}).",
+    ]
 
 
 def _counting(word: Signature) -> list[str]:
@@ -186,9 +199,9 @@ def _alternative(
         predicate, *arguments = map(_text, term) if isinstance(term, tuple) else [str(term)]
         mood = "had" if bit == 1 else "had not"
         told = explainer.base.sentences.tell(predicate, arguments, clock, mood=mood)
-        inside = f"({','.join(arguments)})" if arguments else ""
-        atom = f"{predicate}{inside}"
-        changes.append(Change(bit == 1, atom, told or f"had it {'not ' * (bit != 1)}been so that {atom}"))
+        atom = f"{predicate}({','.join(arguments)})" if arguments else predicate
+        plainly = f"had it {'not ' * (bit != 1)}been so that {atom}"
+        changes.append(Change(bit == 1, atom, told or plainly))
     return Alternative(name, tuple(sorted(changes, key=lambda each: each.atom)))
 
 

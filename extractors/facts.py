@@ -9,6 +9,7 @@ from jaxtyping import Float, Int
 from capar.model.capture import Capture, Notice, Purpose, Sensor, ShapeSource, TagObject, TagType
 from capar.model.facts import (
     MEASURED,
+    Displaced,
     Fact,
     ForceTransfer,
     Frames,
@@ -27,7 +28,8 @@ from extractors.attention import Attention, attention
 from extractors.contact import Contact, contact_tolerance, contacts
 from extractors.gaps import long_gaps
 from extractors.handling import handling
-from extractors.object_motion import motion_floor, moving
+from extractors.motion_edges import motion_edges
+from extractors.object_motion import motion_floor, moving, stays
 from extractors.poses import Poses, poses
 from extractors.signals import speed
 from extractors.thresholds import Thresholds
@@ -157,14 +159,17 @@ def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
 def _moving(
     capture: Capture, where: Mapping[tuple[str, str], Poses], thresholds: Thresholds
 ) -> Iterator[Fact]:
+    """When each object moves, as its floor tells, and when that truly began and ended."""
     for each in capture.objects:
         if each.tag is TagType.MOBILE:
             pose = where["object", each.name]
             floor = motion_floor(
                 pose.noise, capture.rate_hz, own_m=each.motion_floor_m, thresholds=thresholds
             )
+            rests = stays(pose, floor, thresholds)
             for interval in moving(pose, floor, thresholds):
                 yield Moving(each.name, *interval)
+                yield Displaced(each.name, *motion_edges(pose, interval, rests, thresholds))
 
 
 def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:

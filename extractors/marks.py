@@ -4,7 +4,17 @@ from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
-from capar.model.facts import Fact, Flies, Leans, Lies, Moving, Resting, Reverses, Swings, Touching
+from capar.model.facts import (
+    Fact,
+    Flies,
+    Leans,
+    Moving,
+    Pause,
+    Resting,
+    Reverses,
+    Swings,
+    Touching,
+)
 
 Marks = Mapping[str, Sequence[int]]
 """Frames by body, ascending."""
@@ -44,10 +54,12 @@ def _instants(fact: Fact) -> tuple[str, tuple[int, ...]]:
     """What a fact is about, and the frames where it begins and ends."""
     if isinstance(fact, Moving | Leans | Flies):
         return fact.object, (fact.first, fact.last)
-    if isinstance(fact, Touching | Swings | Lies):
+    if isinstance(fact, Touching | Swings):
         return fact.body, (fact.first, fact.last)
     if isinstance(fact, Resting):
         return fact.ee, (fact.first, fact.last)
+    if isinstance(fact, Pause):
+        return fact.ee, (fact.frame,)
     if isinstance(fact, Reverses):
         return fact.object, (fact.frame,)
     return "", ()

@@ -108,3 +108,10 @@ class Thresholds:
 
     along_rad: float = 0.5236
     """Largest angle between motion along a body and its longest axis [rad]: thirty degrees."""
+
+    edge_m: float = 0.001
+    """From a place of rest a motion that is known begins at this distance [m]: the tenth part of
+    its floor, and still more than trackers of the day make of a thing that lies."""
+
+    edge_rad: float = 0.00873
+    """The same for its orientation [rad]: half a degree."""

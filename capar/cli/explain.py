@@ -46,9 +46,7 @@ def explain(
 
     base = named_profile(profile, added=user_rules(rules))
     seen = explained(read_capture(capture), rules=base)
-    chosen = (
-        (segment_named(seen.observation, segment),) if segment else seen.observation.segments
-    )
+    chosen = (segment_named(seen.observation, segment),) if segment else seen.observation.segments
     if why_not:
         for each in chosen:
             limit = 100 if every else 1

@@ -1,4 +1,4 @@
-"""The commands for rules that people write: list, show, new, check, test, add, remove, diff, audit."""
+"""The commands for rules that people write, from a first draft to their place in the rule base."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -82,8 +82,8 @@ def new(
     rules: Rules = None,
 ) -> None:
     """Write a rule file for NAME from a segment or a feature set, ready to be edited."""
-    from capar.rule_changes import rule_from_features, rule_from_segment
     from capar.model.errors import FileError, RuleError
+    from capar.rule_changes import rule_from_features, rule_from_segment
 
     words = {"definition": definition, "general": general, "verb": verb}
     if (source is None) == (features is None):
@@ -102,9 +102,7 @@ def new(
 
 
 @app.command()
-def check(
-    file: File, profile: Base = "extended", rules: Rules = None, json: Json = False
-) -> None:
+def check(file: File, profile: Base = "extended", rules: Rules = None, json: Json = False) -> None:
     """Say what is wrong with FILE, with line and column; nothing of it is run."""
     from capar_rules.authoring import user_rules
     from capar_rules.checking import check as checked
@@ -126,12 +124,12 @@ def check(
 @app.command()
 def test(file: File, profile: Base = "extended", rules: Rules = None) -> None:
     """Run the examples that FILE carries: what it must match, and what it must not."""
-    from capar_rules.authoring import test_rule, user_rules
+    from capar_rules.authoring import try_rule, user_rules
     from capar_rules.checking import check as checked
     from capar_rules.checking import require
 
     require(file, checked(file, profile=profile, beside=_others(file, user_rules(rules))))
-    failures = test_rule(file, base=profile, beside=user_rules(rules))
+    failures = try_rule(file, base=profile, beside=user_rules(rules))
     for each in failures:
         typer.echo(each)
     if failures:
@@ -211,7 +209,8 @@ def diff(
     from capar_rules.profiles import profile as named_profile
 
     before = _base(profile, rules)
-    require(file, checked(file, profile=profile, beside=_others(file, before.added)))
+    findings = checked(file, profile=profile, beside=_others(file, before.added))
+    require(file, [each for each in findings if each.code != "ambiguous"])
     after = named_profile(profile, added=(*_others(file, before.added), file))
     seen = captured_facts(on) if on else stored_facts(actionary)
     changes = renamed(seen, before=before, after=after)

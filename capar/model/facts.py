@@ -195,6 +195,16 @@ class Intended(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class Displaced(Fact):
+    """An object that moves is elsewhere than where it rested, to a hair's width."""
+
+    predicate = "displaced"
+    object: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Resting(Fact):
     """An end-effector is at a place where it rests, from the first to the last frame."""
 
@@ -383,6 +393,7 @@ MEASURED: tuple[type[Fact], ...] = (
     LookingAt,
     ForceTransfer,
     Intended,
+    Displaced,
     Resting,
     Place,
     Travelled,

@@ -20,7 +20,12 @@ class Border:
     """Why a segment begins or ends: the relation that began or ended there."""
 
     kind: str
-    """``first``, ``last``, ``begins``, ``ends``, ``starts_moving``, ``stops_moving`` or ``turns``."""
+    """What changes there.
+
+    ``first``, ``last``; of a contact ``begins``, ``ends``; of a body ``starts_moving``,
+    ``stops_moving``, ``turns``, ``comes_to_rest``, ``leaves_rest``, ``reverses``,
+    ``begins_swinging``, ``ends_swinging``, ``tips`` or ``rights``.
+    """
 
     body: str = ""
     other: str = ""

@@ -7,7 +7,7 @@ from capar.model.observation import Observation
 from kb.language.clauses import Clause, clauses
 from kb.language.contacts import Scene
 from kb.language.english import capital, the_agent, times
-from kb.language.hands import told_in_order
+from kb.language.hands import spoken_links, told_in_order
 from kb.language.phrasing import Phrasebook
 from kb.language.telling import Telling
 from kb.lexicon.links import PrimitiveWords
@@ -41,15 +41,15 @@ def describe(
             by the verb of a more general one.
     """
     book, scene = Phrasebook(words), Scene(observation)
+    links = spoken_links(observation.links)
     told = [
-        clauses(observation, link, book, scene, only_changes=detail == "summary")
-        for link in observation.links
+        clauses(observation, link, book, scene, only_changes=detail == "summary") for link in links
     ]
-    steps = told_in_order(observation.links, told)
+    steps = told_in_order(links, told)
     subject = the_agent(observation.agent.name)
     if not steps:
         return f"{capital(subject)} touched nothing."
-    telling = Telling(observation.links, timed=timed)
+    telling = Telling(links, timed=timed)
     sentences = [telling.sentence(*each) for each in _sentences(steps)]
     return " ".join(
         f"{_opening(index)}{subject} {sentence}." if index else f"{capital(subject)} {sentence}."

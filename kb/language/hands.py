@@ -6,6 +6,18 @@ from difflib import SequenceMatcher
 
 from capar.model.observation import ObservedLink
 from kb.language.clauses import Clause
+from kb.lexicon.tables import table
+
+
+def spoken_links(links: Sequence[ObservedLink]) -> tuple[ObservedLink, ...]:
+    """The links that a telling names: a finger's is left out where its hand's is there."""
+    wholes = {row["part"]: row["whole"] for row in table("body_parts")}
+    there = {(each.kind, each.side) for each in links}
+    return tuple(
+        each
+        for each in links
+        if (wholes.get(each.kind.rstrip("0123456789")), each.side) not in there
+    )
 
 
 def told_in_order(

@@ -1,11 +1,13 @@
 """One sentence out of clauses: pronouns for what was just named, hands, times, "while"."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from capar.model.observation import ObservedLink
 from kb.language.clauses import Clause
 from kb.language.english import joined, noun, the, times
 from kb.language.phrasing import in_past
+from kb.language.vocabulary import SIDES
 
 
 class Telling:
@@ -13,6 +15,7 @@ class Telling:
 
     def __init__(self, links: Sequence[ObservedLink], *, timed: bool) -> None:
         self._kinds = {link.ee: link.kind for link in links}
+        self._names = {link.ee: _spoken(link) for link in links}
         self._timed = timed
         self._topic = ""
         self._ees: tuple[str, ...] = ()
@@ -51,7 +54,8 @@ class Telling:
         hand = self._hands(steps[0].ees)
         self._ees = ()
         for step in steps:
-            parts.append(f"{self._verb_phrase(step)}{self._end(step)}")
+            own = replace(step, pattern="move away") if "{ee}" in step.pattern else step
+            parts.append(f"{self._verb_phrase(own)}{self._end(step)}")
         return f"{hand} {joined(parts)}"
 
     def _end(self, step: Clause) -> str:
@@ -82,10 +86,15 @@ class Telling:
         if len(ees) > 1:
             kind = self._kinds[ees[0]]
             return f"both {'feet' if kind == 'foot' else kind + 's'}"
-        return f"the {noun(ees[0])}"
+        return f"the {self._names[ees[0]]}"
 
 
 def _with_it(purpose: str) -> str:
     """The purpose as said of what is spoken of: ``pick it up``, ``drink``."""
     head, _, particle = purpose.partition(" ")
     return f"{head} it {particle}" if particle else purpose
+
+
+def _spoken(link: ObservedLink) -> str:
+    """A body part by its side, where it has one: ``left elbow``, whatever its sensor is called."""
+    return f"{link.side} {link.kind}" if link.side in SIDES else noun(link.ee)

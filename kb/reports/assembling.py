@@ -17,7 +17,7 @@ from kb.lexicon.links import (
     thesis_senses,
 )
 from kb.lexicon.tables import table
-from kb.lexicon.wordnet import wordnet
+from kb.lexicon.wordnet import Synset, wordnet
 from kb.reports.linguistics import (
     ClassReport,
     Coverage,
@@ -95,6 +95,7 @@ class _Parts:
         self.proofs = defaultdict(list)
         for number, primitive, kind, where in derived.of("proof"):
             self.proofs[number].append(Proof(primitive, kind, where))
+        self.words = {each.name: each for each in words}
         self.files = {each.name: each.file for each in words if each.file}
         self.seen = seen
         self.members = members
@@ -123,15 +124,24 @@ class _Parts:
     def _verb(self, number: str, verb: str, *, counts: bool) -> VerbReport:
         key = (number, verb)
         how = next((each for each, found in self.how.items() if key in found), How.MISSING)
-        senses = tuple(wordnet().of_key(each) for each in motion_senses(verb))
+        primitives = self.how[how][key] if how in self.how else ()
         return VerbReport(
             verb=verb,
             how=how,
-            primitives=self.how[how][key] if how in self.how else (),
+            primitives=primitives,
             lacks=_needs(number, verb, self.missing.get(key, ())),
-            senses=senses or tuple(synset for _, synset in wordnet().of_lemma(verb)[:1]),
+            senses=self._senses(verb, primitives if how is How.ADDRESSED else ()),
             counts=counts,
         )
+
+    def _senses(self, verb: str, primitives: Sequence[str]) -> tuple[Synset, ...]:
+        """The senses that the primitives have the verb in; without any, those as a motion."""
+        own = (link for name in primitives for link in sense_links(self.words[name]))
+        keys = dict.fromkeys(link.key for link in own if link.verb == verb)
+        found = tuple(
+            wordnet().of_key(each) for each in keys or motion_senses(verb) if each in wordnet()
+        )
+        return found or tuple(synset for _, synset in wordnet().of_lemma(verb)[:1])
 
 
 def _concerns(remark: str, number: str) -> bool:
