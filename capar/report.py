@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from capar.model.errors import FileError, RuleError
 from capar_rules.engine import rule_file, solve
+from capar_rules.examples import read_examples
 from kb.lexicon.evidence import Case, Seen, seen_in
 from kb.lexicon.facts import lexical_facts, verbnet_members
 from kb.lexicon.links import PrimitiveWords
@@ -23,6 +24,7 @@ MAIN = "lexical/main.lp"
 
 _COMMENT = re.compile(r"%\*.*?\*%|%[^\n]*", re.DOTALL)
 _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_NAMED = re.compile(r'^named\(.*,\s*"([^"]+)"\)', re.MULTILINE)
 _FACT = re.compile(
     rf"(?:^|\.)\s*(?P<predicate>[a-z]\w*)\((?P<arguments>\s*{_TEXT.pattern}"
     rf"(?:\s*,\s*{_TEXT.pattern})*\s*)\)\s*(?=\.)",
@@ -82,6 +84,36 @@ def _words(stated: dict[str, list[tuple[str, ...]]], name: str, file: str) -> Pr
         second("preposition"),
         file,
     )
+
+
+def cases_of(files: Sequence[Path], folder: Path | None = None) -> tuple[Case, ...]:
+    """Cases that show primitives: examples in the rule files, and expectations in a folder.
+
+    Args:
+        files: Rule files of primitives, which may carry examples of their own.
+        folder: A folder of rule cases, whose ``.expected`` files name segments.
+
+    Raises:
+        FileError: The folder is none.
+        RuleError: An example has a fault.
+    """
+    found = set[Case]()
+    for path in files:
+        stories = [
+            each.story
+            for each in read_examples(path.read_text(encoding="utf-8"), file=path)
+            if each.positive
+        ]
+        for words in primitive_words([path]):
+            found |= {Case(words.name, f"{words.file}: {story}") for story in stories}
+    if folder is not None:
+        if not folder.is_dir():
+            raise FileError(folder, "is no folder;", "name one that holds rule cases.")
+        for path in sorted(folder.rglob("*.expected")):
+            place = str(path.relative_to(folder).with_suffix(""))
+            names = _NAMED.findall(path.read_text(encoding="utf-8"))
+            found |= {Case(name, place) for name in names}
+    return tuple(sorted(found))
 
 
 def linguistics(

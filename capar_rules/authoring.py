@@ -23,8 +23,7 @@ from capar.model.par import FeatureSet
 from capar_rules.checking import check, require
 from capar_rules.examples import Example, lacking, read_examples, try_examples, written
 from capar_rules.profiles import DEFAULT, Profile, profile
-from capar_rules.statics import split_arguments
-from capar_rules.syntax import Statement, parse
+from capar_rules.syntax import Statement, parse, split_arguments
 from capar_rules.teaching import rule_files, taught
 
 TELLING = (Frames, RateMhz, Link, Tag, ZeroCrossing, Touching, Gap, Moving, ForceTransfer)

@@ -1,12 +1,11 @@
 """Rules that rest on their own negation, which would leave several answers or none."""
 
-import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from capar_rules.findings import Finding
-from capar_rules.statics import split_arguments
-from capar_rules.syntax import Atom, Signature, Statement
+from capar_rules.slicing import nodes, nodes_read
+from capar_rules.syntax import Signature, Statement
 
 Graph = Mapping[Signature, set[Signature]]
 
@@ -37,34 +36,15 @@ def cycle_findings(own: Sequence[Statement], base: Sequence[Statement]) -> Itera
 def _edges(rules: Iterable[Statement]) -> Iterator[tuple[Signature, Signature, bool]]:
     """Head, what it reads, and whether by its absence; an aggregate reads both ways."""
     rules = list(rules)
-    named = {node for rule in rules for head in rule.heads for node in _nodes(head)}
+    named = {node for rule in rules for head in rule.heads for node in nodes(head)}
     for rule in rules:
         for head in rule.heads:
             for literal in rule.body:
                 for atom in literal.atoms:
                     closed = literal.kind == "atom" and atom.sign == 0
-                    for node in _nodes(head):
-                        for below in _read(atom, named):
+                    for node in nodes(head):
+                        for below in nodes_read(atom, named):
                             yield node, below, not closed
-
-
-def _nodes(atom: Atom) -> list[Signature]:
-    """The predicate; fits is one for each name, as a name may well rest on another."""
-    if atom.signature == FITS:
-        names = _NAME.findall(split_arguments(atom.text)[1])
-        return [(f"fits {each}", 2) for each in names] or [FITS]
-    return [atom.signature]
-
-
-def _read(atom: Atom, named: set[Signature]) -> list[Signature]:
-    nodes = _nodes(atom)
-    if FITS in nodes:
-        return sorted({each for each in named if each[0].startswith("fits ")} | {FITS})
-    return [*nodes, FITS] if nodes[0][0].startswith("fits ") else nodes
-
-
-FITS = ("fits", 2)
-_NAME = re.compile(r'"(\w+)"')
 
 
 def _graph(rules: Iterable[Statement]) -> Graph:

@@ -9,15 +9,16 @@ from pathlib import Path
 from capar.model.errors import RuleError
 from capar.model.facts import MEASURED, Fact
 from capar.model.observation import Segment
+from capar.model.par import UNKNOWN
 from capar_rules.derivations import Derivations, Grounds, Recorder
 from capar_rules.engine import rule_file
 from capar_rules.profiles import Profile
 from capar_rules.ranking import Tick, rank
 from capar_rules.sentences import Clock, Sentences
-from capar_rules.syntax import Place, Statement, parse
+from capar_rules.syntax import Place, Statement, parse, parse_text
 from capar_rules.windows import Windows
 
-TARGETS = (("named", 2), ("parted_at", 2), ("nearest", 2), ("segment", 3), ("also", 2))
+ALWAYS = (("segment", 3), ("also", 2))
 
 
 @dataclass(frozen=True)
@@ -67,9 +68,32 @@ class Explanation:
 class RuleBase:
     """A profile made ready to explain by."""
 
-    recorder: Recorder
     sentences: Sentences
     statements: tuple[Statement, ...]
+
+    @cache  # noqa: B019 - rule bases are few and kept
+    def recorder(self, name: str) -> Recorder:
+        """What tells why a segment has a name, or, for ``Unknown``, why it has none."""
+        if name == UNKNOWN:
+            return Recorder(self.statements, targets=(("parted_at", 2), ("nearest", 2), *ALWAYS))
+        others = [each for each in self.statements if not _names(each) and not _overrules(each)]
+        return Recorder([*others, *_naming(self.statements, name)], targets=(("named", 2), *ALWAYS))
+
+
+def _names(statement: Statement) -> bool:
+    return any(head.signature == ("named", 2) for head in statement.heads)
+
+
+def _overrules(statement: Statement) -> bool:
+    return any(head.signature == ("overruled", 2) for head in statement.heads)
+
+
+def _naming(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
+    """The rule that names segments, for one name: whether others fit better is known by then."""
+    rule = f'named(Segment,"{name}") :- fits(Segment,"{name}"); not overruled(Segment,"{name}").'
+    for each in statements:
+        if _names(each):
+            yield replace(parse_text(rule)[0], place=each.place)
 
 
 def rule_base(profile: Profile) -> RuleBase:
@@ -80,8 +104,7 @@ def rule_base(profile: Profile) -> RuleBase:
 @cache
 def _rule_base(files: tuple[Path, ...], fingerprint: str) -> RuleBase:
     statements = parse((*files, rule_file("explaining.lp")))
-    recorder = Recorder(statements, targets=TARGETS)
-    return RuleBase(recorder, Sentences(statements), statements)
+    return RuleBase(Sentences(statements), statements)
 
 
 class Explainer:
@@ -114,7 +137,7 @@ class Explainer:
         ticks = self.ticks(segment)
         term = f"seg({segment.ee},{ticks[0]})"
         for facts in self.windows_of(segment.ee, ticks):
-            derived = self.base.recorder.solve(facts)
+            derived = self.base.recorder(segment.name).solve(facts)
             roots = list(_roots(derived, term, ticks, segment))
             if roots:
                 clock = self.clock(derived)
@@ -207,12 +230,18 @@ def _leading(reason: Reason) -> list[str]:
     for each in reason.walk():
         if each.leading:
             text, at, time = each.sentence.rpartition(" at ")
-            times = places.setdefault(text if at else each.sentence, [])
-            if at and time not in times:
+            timed = at and time[:1].isdigit()
+            times = places.setdefault(text if timed else each.sentence, [])
+            if timed and time not in times:
                 times.append(time)
-    ordered = [(text, sorted(times, key=lambda each: float(each.split()[0])))
-               for text, times in places.items()]  # fmt: skip
-    return [f"{text} at {' and '.join(times)}" if times else text for text, times in ordered]
+    return [
+        f"{text} at {' and '.join(sorted(times, key=_seconds))}" if times else text
+        for text, times in places.items()
+    ]
+
+
+def _seconds(time: str) -> float:
+    return float(time.removesuffix(" s"))
 
 
 def _listed(parts: Sequence[str]) -> str:

@@ -85,6 +85,11 @@ def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Findin
                 text, found.start(), path, "number", f"{found[0][:20]} is too large for the rules.",
                 f"Stay within {LARGEST}: millimetres, frames and milliseconds do.",
             )  # fmt: skip
+    for found in re.finditer(r"#program\b", bare):
+        yield _at(
+            text, found.start(), path, "refused-statement", "#program is refused: rules stand in "
+            "one program.", "Remove it.",
+        )  # fmt: skip
     for found in re.finditer(r"#script\b", bare):
         yield _at(
             text, found.start(), path, "script", "#script runs code and is refused.",

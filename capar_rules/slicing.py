@@ -1,9 +1,10 @@
 """The part of a rule base that some predicates rest on."""
 
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
-from capar_rules.syntax import Signature, Statement
+from capar_rules.syntax import Atom, Signature, Statement, split_arguments
 
 
 def towards(
@@ -22,19 +23,52 @@ def towards(
     heads: dict[Signature, list[Statement]] = defaultdict(list)
     for each in statements:
         for head in each.heads:
-            heads[head.signature].append(each)
-    stated = set(given)
+            for node in nodes(head):
+                heads[node].append(each)
+    stated, named = set(given), set(heads)
     wanted, waiting = set(targets), sorted(targets)
     while waiting:
         for rule in heads[waiting.pop()]:
-            below = {atom.signature for literal in rule.body for atom in literal.atoms} - stated
+            below = {
+                node
+                for literal in rule.body
+                for atom in literal.atoms
+                if atom.signature not in stated
+                for node in nodes_read(atom, named)
+            }
             waiting += sorted(below - wanted)
             wanted |= below
     return [
         each
         for each in statements
-        if each.kind == "definition" or any(head.signature in wanted for head in each.heads)
+        if each.kind == "definition"
+        or any(node in wanted for head in each.heads for node in nodes(head))
     ]
+
+
+FITS = ("fits", 2)
+_NAME = re.compile(r'"(\w+)"')
+
+
+def named_node(name: str) -> Signature:
+    """The node that stands for fitting one primitive."""
+    return f"fits {name}", 2
+
+
+def nodes(atom: Atom) -> list[Signature]:
+    """The predicate; fits is one for each name, as a name may well rest on another."""
+    if atom.signature == FITS:
+        names = _NAME.findall(split_arguments(atom.text)[1])
+        return [named_node(each) for each in names] or [FITS]
+    return [atom.signature]
+
+
+def nodes_read(atom: Atom, named: set[Signature]) -> list[Signature]:
+    """What an atom of a body reads: of fits, rules for any name stand for each."""
+    found = nodes(atom)
+    if FITS in found:
+        return sorted({each for each in named if each[0].startswith("fits ")} | {FITS})
+    return [*found, FITS] if found[0][0].startswith("fits ") else found
 
 
 def heads_of(statements: Iterable[Statement]) -> frozenset[Signature]:

@@ -7,7 +7,7 @@ from difflib import get_close_matches
 
 from capar_rules.findings import NOTE, Finding
 from capar_rules.slicing import heads_of
-from capar_rules.syntax import Atom, Place, Signature, Statement
+from capar_rules.syntax import Atom, Place, Signature, Statement, split_arguments
 
 AUTHORED: dict[Signature, str] = {
     ("primitive", 1): 'primitive("Lift")',
@@ -241,19 +241,6 @@ def _documentation(own: Sequence[Statement]) -> Iterator[Finding]:
             _first(own), "no-definition", "the file does not open with its definition in words.",
             "Begin it with a line such as %* Lift: a possessed object goes up. *%", NOTE,
         )  # fmt: skip
-
-
-def split_arguments(text: str) -> list[str]:
-    """The arguments of an atom as they are written."""
-    inside = text[text.index("(") + 1 : -1] if "(" in text else ""
-    parts, depth, quoted, start = [], 0, False, 0
-    for at, sign in enumerate(inside):
-        quoted ^= sign == '"' and inside[at - 1 : at] != "\\"
-        depth += (not quoted) * ((sign in "([") - (sign in ")]"))
-        if sign == "," and not depth and not quoted:
-            parts.append(inside[start:at].strip())
-            start = at + 1
-    return [*parts, inside[start:].strip()]
 
 
 def _names(rules: Iterable[Statement], predicate: str) -> Iterator[str]:

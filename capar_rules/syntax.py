@@ -98,6 +98,19 @@ def parse_text(text: str) -> tuple[Statement, ...]:
     return _parsed(lambda note, log: ast.parse_string(text, note, logger=log))
 
 
+def split_arguments(text: str) -> list[str]:
+    """The arguments of an atom as they are written."""
+    inside = text[text.index("(") + 1 : -1] if "(" in text else ""
+    parts, depth, quoted, start = [], 0, False, 0
+    for at, sign in enumerate(inside):
+        quoted ^= sign == '"' and inside[at - 1 : at] != "\\"
+        depth += (not quoted) * ((sign in "([") - (sign in ")]"))
+        if sign == "," and not depth and not quoted:
+            parts.append(inside[start:at].strip())
+            start = at + 1
+    return [*parts, inside[start:].strip()]
+
+
 def _parsed(run: Any) -> tuple[Statement, ...]:
     found: list[ast.AST] = []
     messages: list[str] = []

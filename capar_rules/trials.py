@@ -8,8 +8,8 @@ from capar_rules.auditing import ASKED, Audit, evaluate, given_in_audit, summari
 from capar_rules.findings import NOTE, Finding
 from capar_rules.searching import Atom, brave
 from capar_rules.slicing import heads_of, towards
-from capar_rules.statics import Known, split_arguments
-from capar_rules.syntax import Place, Signature, Statement, parse_text
+from capar_rules.statics import Known
+from capar_rules.syntax import Place, Signature, Statement, parse_text, split_arguments
 
 FIRED, IDLE = ("fired", 1), ("idle", 1)
 

@@ -12,8 +12,8 @@ from capar_rules.explaining import Explainer
 from capar_rules.searching import optima, worlds
 from capar_rules.sentences import Clock
 from capar_rules.slicing import heads_of, towards
-from capar_rules.statics import known, split_arguments
-from capar_rules.syntax import Signature, Statement, parse
+from capar_rules.statics import known
+from capar_rules.syntax import Signature, Statement, parse, split_arguments
 
 READ: tuple[Signature, ...] = (("reads", 5), ("holding", 4), ("moved", 2))
 SCENE: tuple[Signature, ...] = (("link", 3), ("tag", 2), ("gap", 4), ("lifted", 2))

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from capar.model.facts import Fact, Frames, Lies, RateMhz, Touching
-from capar_rules.ranking import LastTick, MovesDuring, Tick, Within
+from capar_rules.ranking import LastTick, MovesDuring, Shares, Tick, Within
 
 SETTLED_S = 0.2
 """Ticks further apart than this cannot merge [s]: there a window may begin or end."""
@@ -42,11 +42,12 @@ class Windows:
         if isinstance(fact, LastTick):
             return
         ee = str(getattr(fact, "ee"))  # noqa: B009 (every numbered fact has one)
-        if isinstance(fact, Within):
-            self.numbered[ee].add((fact.first, fact.last), fact)
+        first, last = getattr(fact, "first", None), getattr(fact, "last", None)
+        if first is not None and last is not None:
+            self.numbered[ee].add((first, last), fact)
         elif hasattr(fact, "tick"):
             self.numbered[ee].add((fact.tick, fact.tick), fact)
-        elif isinstance(fact, MovesDuring):
+        elif isinstance(fact, MovesDuring | Shares):
             self.numbered[ee].during[fact.object, fact.since].append(fact)
         else:
             self.always.append(fact)
@@ -101,7 +102,7 @@ class Windows:
             if isinstance(fact, Within):
                 yield replace(fact, first=max(fact.first, first), last=min(fact.last, last))
                 yield from index.during.get((fact.other, fact.since), ())
-            elif isinstance(fact, Tick) or getattr(fact, "tick") < last:  # noqa: B009
+            elif isinstance(fact, Tick) or getattr(fact, "tick", first) < last:
                 yield fact
 
 

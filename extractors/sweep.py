@@ -29,6 +29,9 @@ LONGEST, SHORTEST = 8192, 32
 PATIENCE = 4
 """Answers in turn that tell of no other pose before a distance is asked for, ten times dearer."""
 
+FEW = 1000
+"""Poses up to which distances cost less than the making of shells [1]."""
+
 DEPTHS = (0.0, 0.4, 0.75, 1.0)
 """Shares of the distance at whose shells a point of contact is sought, deepest first [1]."""
 
@@ -83,6 +86,8 @@ class _Sweep:
         self.asked, self.depth = 0, 0
         self.stand: dict[float, tuple[fcl.CollisionObject, np.ndarray]] = {}
         self.index = 0
+        corners = self.second.shape.vertices
+        self.tips = corners[[*corners.argmin(axis=0), *corners.argmax(axis=0)]]
         self.flat = self.turns.reshape(-1, 9)
         if self.first.radius < self.second.radius:
             back = np.swapaxes(self.turns, 1, 2)
@@ -95,15 +100,19 @@ class _Sweep:
     def run(self) -> Bool[np.ndarray, "poses"]:
         """Ask about each pose that no answer tells of."""
         index, touched, idle, patience = 0, False, 0, PATIENCE
+        few = len(self.known) <= FEW
         while index < len(self.known):
             self.index = index
             self.moved.setTransform(fcl.Transform(self.turns[index], self.places[index]))
-            point, slack = self._touch() if touched else self._room()
+            if few:
+                point, slack = self._distance()
+            else:
+                point, slack = self._touch() if touched else self._room()
             touched = point is not None
             self.known[index] = _TOUCHES if touched else _APART
             told, index = self._carry(index, point, slack)
             idle = 0 if told else idle + 1
-            if idle >= patience:
+            if idle >= patience and not few:
                 told, index = self._carry(index - 1, *self._distance())
                 idle, patience = 0, PATIENCE if told else 2 * patience
         return self.known == _TOUCHES
@@ -126,11 +135,22 @@ class _Sweep:
             distance = self.distance_m + ROOMS_M[level]
             exact = max(ROOM_EXACTNESS * distance, EXACTNESS_M)
             if self._meet(distance, exact) is None:
+                if not self._sticks_out(distance):
+                    return self._distance()
                 self.level = min(level + 1, len(ROOMS_M) - 1)
                 return None, ROOMS_M[level] - 2.0 * exact
         # What has just come near is shallow.
         self.level, self.depth, self.asked = 0, len(DEPTHS) - 1, 0
         return self._touch()
+
+    def _sticks_out(self, distance_m: float) -> bool:
+        """Whether some point of the second is beyond the first's shell for certain.
+
+        A shell is a surface: what lies between it and the first, wholly, does not cut it either.
+        """
+        turn, place = self.turns[self.index], self.places[self.index]
+        apart = np.linalg.norm(self.tips @ turn.T + place - self.first.centre, axis=1)
+        return bool(apart.max() > self.first.radius + distance_m)
 
     def _meet(self, distance_m: float, exactness_m: float) -> _Meeting | None:
         """Which triangle of the second meets the first's shell, if one does."""
@@ -160,8 +180,9 @@ class _Sweep:
         apart = fcl.distance(self.bare, self.moved, request, result)
         if apart > self.distance_m:
             return None, apart - self.distance_m - EXACTNESS_M
-        point = np.asarray(result.nearest_points[1])
-        return point, self.distance_m - max(apart, 0.0) - EXACTNESS_M
+        # Nearest points of surfaces that cut each other mean nothing, so they carry nowhere.
+        slack = self.distance_m - apart - EXACTNESS_M if apart > 0.0 else 0.0
+        return np.asarray(result.nearest_points[1]), slack
 
     def _carry(
         self, index: int, point: Float[np.ndarray, "3"] | None, slack_m: float

@@ -39,17 +39,21 @@ def linguistics(
         typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="A file, instead of standard output.")] = None,
+    cases: Annotated[
+        Path | None, typer.Option(help="Folder of rule cases that count as proof, as tests/rules.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
 ) -> None:
     """Which verbs and classes of verbs the system addresses, with what proves it."""
     from capar.cli._words import open_words
+    from capar.report import cases_of, primitive_files
     from capar.report import linguistics as report_of
-    from capar.report import primitive_files
     from capar_rules.teaching import rule_files
     from kb.reports.writing import write
 
+    files = primitive_files(rule_files(rules))
     with open_words(actionary) as store:
-        report = report_of(primitive_files(rule_files(rules)), store=store)
+        report = report_of(files, store=store, cases=cases_of(files, cases))
     text = write(report, Format.JSON.value if json else form.value)
     if out is None:
         typer.echo(text, nl=False)

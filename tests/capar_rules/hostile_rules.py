@@ -35,8 +35,7 @@ BY_HAND = {
     "endless": _HEAD + "p(0).\np(X + 1) :- p(X).\n",
     "endless_terms": _HEAD + "p(a).\np(f(X)) :- p(X).\n",
     "endless_text": _HEAD + "p((X, X)) :- p(X).\np(1).\n",
-    "hard": _HEAD
-    + "n(1..9).\n{ at(P, H) : n(H) } = 1 :- n(P).\n:- at(P, H), at(Q, H), P < Q.\n",
+    "hard": _HEAD + "n(1..9).\n{ at(P, H) : n(H) } = 1 :- n(P).\n:- at(P, H), at(Q, H), P < Q.\n",
     "choice": _HEAD + "{ p }.\n",
     "choice_of_names": _HEAD + '{ fits(S, "Bad") } :- segment(S, _, _).\n',
     "disjunction": _HEAD + "p ; q.\n",
@@ -47,7 +46,8 @@ BY_HAND = {
     "odd_loop": _HEAD + "p :- not p.\n",
     "loop_through_names": _HEAD + 'fits(S, "Bad") :- segment(S, _, _), not named(S, "Reach").\n',
     "loop_through_unknown": _HEAD + 'fits(S, "Bad") :- unknown(S).\n',
-    "loop_through_count": _HEAD + 'fits(S, "Bad") :- segment(S,_,_), 0 = #count { N : fits(S, N) }.\n',
+    "loop_through_count": _HEAD
+    + 'fits(S, "Bad") :- segment(S,_,_), 0 = #count { N : fits(S, N) }.\n',
     "external": _HEAD + "#external p.\n",
     "hides": _HEAD + "#show.\n",
     "shows": _HEAD + "#show segment/3.\n",

@@ -11,7 +11,18 @@ import numpy as np
 import pytest
 
 from capar.explanation import Explained, explained
-from capar.model.facts import Fact, Frames, Moving, Posture, Resting, Tag, Touching, ZeroCrossing
+from capar.model.facts import (
+    Fact,
+    Frames,
+    Moving,
+    Place,
+    Posture,
+    Resting,
+    Reverses,
+    Tag,
+    Touching,
+    ZeroCrossing,
+)
 from capar.model.observation import Segment
 from capar_rules.explaining import Explainer
 from capar_rules.profiles import profile
@@ -71,9 +82,7 @@ def near(frame: float, other: float) -> bool:
 
 def touched(known: Known, one: str, other: str, at: str) -> bool:
     frame = known.at(at)
-    return any(
-        each.first - 0.8 <= frame <= each.last + 0.8 for each in known.touching(one, other)
-    )
+    return any(each.first - 0.8 <= frame <= each.last + 0.8 for each in known.touching(one, other))
 
 
 def not_touched(known: Known, one: str, other: str, at: str) -> bool:
@@ -99,9 +108,7 @@ def stayed(known: Known, what: str, first: str, last: str) -> bool:
     """What motion there is lies in a merged border."""
     begin, end = known.at(first), known.at(last)
     reach = MERGE_S * known.seen.observation.rate_hz
-    return all(
-        min(each.last, end) - max(each.first, begin) <= reach for each in known.moving(what)
-    )
+    return all(min(each.last, end) - max(each.first, begin) <= reach for each in known.moving(what))
 
 
 def measured_contact(known: Known, one: str, other: str, first: str, last: str) -> bool:
@@ -162,6 +169,34 @@ def turned_from_rest(known: Known, what: str, at: str) -> bool:
     return any(near(frame, known.at(at)) for each in rests for frame in (each.first, each.last))
 
 
+def turned_back(known: Known, what: str, at: str) -> bool:
+    turns = [each for each in known.facts if isinstance(each, Reverses)]
+    return any(each.object == name(what) and near(each.frame, known.at(at)) for each in turns)
+
+
+def rose(known: Known, what: str) -> bool:
+    return way(known, what)[2] >= 45 and way(known, what)[2] >= np.hypot(*way(known, what)[:2]) - 5
+
+
+def sank(known: Known, what: str) -> bool:
+    return way(known, what)[2] <= -45
+
+
+def way(known: Known, what: str) -> tuple[int, int, int]:
+    """Displacement within the segment [mm]."""
+    where = {
+        each.frame: np.array([each.x, each.y, each.z])
+        for each in known.facts
+        if isinstance(each, Place) and each.body == name(what)
+    }
+    return tuple(where[known.segment.last] - where[known.segment.first])
+
+
+def at_end(known: Known, what: str, other: str, side: str) -> bool:
+    at = known.segment.start_s if side == "start" else known.segment.end_s
+    return touched(known, what, other, f"{at:.3f}")
+
+
 def leant(known: Known, what: str) -> bool:
     stands = {
         each.frame: each.lean
@@ -214,6 +249,7 @@ def no_support(known: Known, other: str) -> bool:
 
 S, N = r"(\d+\.\d\d) s", r"([\w ]+?)"
 SENTENCES: tuple[tuple[str, Callable[..., bool]], ...] = (
+    (rf"the {N} touched the {N} for the last time at {S}", ends),
     (rf"the {N} touched the {N} at {S}", touched),
     (rf"no contact of the {N} with the {N} counted at {S}", not_touched),
     (rf"the {N} moved(?: (\d+\.\d\d) m)? between {S} and {S}", moved),
@@ -222,13 +258,16 @@ SENTENCES: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"motion of the {N} was measured from {S} to {S}", measured_motion),
     (rf"the {N} possessed the {N}, as it moved in the contact that began at {S}", possessed),
     (rf"the {N} began to touch the {N} at {S}", begins),
-    (rf"the {N} touched the {N} for the last time at {S}", ends),
     (rf"the {N} started to move at {S}", starts),
     (rf"the {N} stopped at {S}", stops),
     (r"the ([\w ]+) is (mobile|fixed|self)", tagged),
     (rf"the {N} rested and touched nothing from {S} to {S}", rested),
     (rf"the {N} rested from {S} to {S}", rested),
     (rf"the {N} (?:came to rest|began to move) at {S}", turned_from_rest),
+    (rf"the {N} turned back at {S}", turned_back),
+    (rf"the {N} went up, more than aside", rose),
+    (rf"the {N} came down", sank),
+    (rf"the {N} (?:lay on|leant against) the {N} at the segment's (start|end)", at_end),
     (rf"the {N} leant otherwise at the end", leant),
     (rf"the segment lies between {S} and {S}", borders),
     (r"the relations are ?(\d*) at the start and ?(\d*) at the end, change of location is ?(\d*), "
@@ -286,9 +325,9 @@ def test_the_summary_names_the_segment_and_its_reasons(trial):
     _, seen, _ = trial
     for segment in seen.observation.segments:
         found = seen.explainer.explain(segment)
-        assert found.summary.startswith(f"{segment.name}, because the ") or found.summary.startswith(
-            f"{segment.name}, because no "
-        )
+        assert found.summary.startswith(
+            f"{segment.name}, because the "
+        ) or found.summary.startswith(f"{segment.name}, because no ")
         assert found.summary.endswith(".")
 
 

@@ -17,6 +17,7 @@ from extractors.intervals import intervals
 from extractors.proximity import Body, body, near, nearest
 from extractors.shells import EXACTNESS_M, shell
 from extractors.surfaces import surface
+from extractors.sweep import FEW, sweep
 
 EXACT_M = 0.00005
 
@@ -158,3 +159,20 @@ def test_a_bridged_contact_keeps_its_first_and_its_last_frame_and_spans_only_wha
     for first, last in intervals(found, np.arange(len(found) + 2.0), dropout_s=0, minimum_s=0):
         assert touching[first]
         assert touching[last]
+
+
+@pytest.mark.parametrize("size_m", [0.01, 0.05, 0.15])
+def test_many_poses_are_answered_as_few_are(size_m: float) -> None:
+    """A thing that fits between a body and a shell far around it is not taken to be apart."""
+    times = np.linspace(0.0, 40.0, 4 * FEW)
+    distance = 0.08 * (1.0 + np.sin(times)) + 0.15 + size_m / 2.0 - 0.002
+    way = np.stack([distance, 0.05 * np.sin(0.7 * times), 0.05 * np.cos(1.3 * times)], axis=1)
+    turns = Rotation.from_rotvec(np.outer(0.2 * times, (0.0, 0.0, 1.0))).as_matrix()
+    one, two = surface(box(0.3, 0.3, 0.3)), surface(box(size_m, size_m, size_m))
+    whole = sweep(one, two, turns, way, distance_m=0.005)
+    parts = [
+        sweep(one, two, turns[begin : begin + FEW], way[begin : begin + FEW], distance_m=0.005)
+        for begin in range(0, len(way), FEW)
+    ]
+    assert 0.0 < whole.mean() < 1.0
+    assert (whole != np.concatenate(parts)).sum() <= 4

@@ -7,7 +7,7 @@ from motions import TALL_MAN, drink_from_mug, slide_object
 
 from capar.model.errors import RuleError
 from capar.observe import observe
-from capar.report import linguistics, primitive_files, primitive_words, standing
+from capar.report import cases_of, linguistics, primitive_files, primitive_words, standing
 from kb.actionary import Actionary
 from kb.lexicon.evidence import Case
 from kb.lexicon.loading import load_verbnet
@@ -140,6 +140,20 @@ def test_a_shipped_case_is_evidence() -> None:
     report = linguistics(files(*PUBLISHED), cases=[Case("Hit", "hit_on_drum")])
     (proof,) = of(report, "18.1").proofs
     assert (proof.primitive, proof.kind, proof.where) == ("Hit", "tested", "hit_on_drum")
+
+
+def test_cases_are_found_in_rule_files_and_beside_them(tmp_path: Path) -> None:
+    rule = tmp_path / "nudge.lp"
+    rule.write_text(
+        'primitive("Nudge").\nverb("Nudge", "nudge").\n'
+        "%* Example: a little push.\nframes(0, 9).\nlink(right_hand, hand, right).\n"
+        "=> right_hand: Nudge\n*%\n"
+    )
+    (tmp_path / "pushed.expected").write_text('named(seg(right_hand,1),"Push")\nnot x("Pull")\n')
+    assert cases_of([rule], tmp_path) == (
+        Case("Nudge", f"{tmp_path.name}/nudge.lp: a little push."),
+        Case("Push", "pushed"),
+    )
 
 
 def test_members_of_an_imported_verbnet_are_told_beside() -> None:

@@ -1,0 +1,175 @@
+"""What is measured of handled bodies is what their closed forms say."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from motions import shapes
+from scipy.spatial.transform import Rotation
+
+from capar.model import geometry
+from capar.model.capture import Shape, Stream, TagObject, TagType
+from extractors.arrangement import above, below, beside, between, inside, sides
+from extractors.figures import Figure, figure
+from extractors.impulses import closing_speed, falls
+from extractors.leaning import leaning, spin, upright_axis
+from extractors.motion_edges import motion_edges
+from extractors.normals import contact_normal
+from extractors.object_motion import Floor, moving, stays
+from extractors.poses import poses
+from extractors.resting import resting
+from extractors.thresholds import Thresholds
+from extractors.turning_points import reversals, swings, turning_points
+
+LIMITS = Thresholds()
+RATE_HZ = 100.0
+TIMES = np.arange(400) / RATE_HZ
+BOX = shapes.box(0.1, 0.1, 0.1)
+TABLE = shapes.table(1.0, 1.0)
+
+
+def body(places: np.ndarray, *, turns: Rotation | None = None, shape: Shape | None = BOX) -> Figure:
+    """A body at these places [m]; one place stands for all frames."""
+    positions = np.broadcast_to(np.asarray(places, float), (len(TIMES), 3)).copy()
+    identity = np.tile([1.0, 0.0, 0.0, 0.0], (len(TIMES), 1))
+    orientations = identity if turns is None else geometry.quaternions(turns)
+    stream = Stream(TIMES, positions, geometry.continuous(orientations))
+    thing = TagObject("thing", TagType.MOBILE, stream, shape)
+    return figure(thing, poses(thing, LIMITS))
+
+
+def along_x(start: float, end: float) -> np.ndarray:
+    """From one place to another, evenly between the first and the third second."""
+    share = np.clip((TIMES - 1.0) / 2.0, 0.0, 1.0)[:, None]
+    return np.array([start, 0.0, 0.0]) + share * np.array([end - start, 0.0, 0.0])
+
+
+@given(turns=st.integers(1, 6), size=st.floats(0.1, 2.0))
+def test_a_wave_turns_at_its_extrema(turns: int, size: float) -> None:
+    phase = np.linspace(0.0, np.pi * (turns + 1), 1000) - np.pi / 2.0
+    found = turning_points(size * np.sin(phase), 0.9 * size)
+    expected = [(index + 1) * 999 / (turns + 1) for index in range(turns)]
+    assert found == pytest.approx(expected, abs=1.0)
+
+
+@given(st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=50))
+def test_turning_points_are_far_from_each_other(values: list[float]) -> None:
+    found = turning_points(np.array(values), 0.5)
+    heights = np.array(values)[found]
+    assert (np.abs(np.diff(heights)) >= 0.5).all()
+
+
+def test_height_reverses_only_after_a_real_way() -> None:
+    high, low = (np.zeros((len(TIMES), 3)) for _ in range(2))
+    high[:, 2] = 0.3 * np.sin(np.pi * TIMES / 4.0)
+    low[:, 2] = 0.04 * np.sin(np.pi * TIMES / 4.0)
+    whole = ((0, len(TIMES) - 1),)
+    assert reversals(body(high).where, whole, LIMITS) == pytest.approx((200,), abs=1)
+    assert reversals(body(low).where, whole, LIMITS) == ()
+
+
+def test_what_moves_to_and_fro_swings() -> None:
+    wave = np.zeros((len(TIMES), 3))
+    during = (TIMES > 1.0) & (TIMES < 3.0)
+    wave[during, 1] = 0.03 * np.sin(2.0 * np.pi * 2.0 * (TIMES[during] - 1.0))
+    whole = ((0, len(TIMES) - 1),)
+    ((first, last),) = swings(body(wave).where, whole, LIMITS)
+    assert (first, last) == pytest.approx((112, 287), abs=5)
+    slow = np.zeros((len(TIMES), 3))
+    slow[:, 1] = 0.03 * np.sin(2.0 * np.pi * 0.5 * TIMES)
+    assert swings(body(slow).where, whole, LIMITS) == ()
+
+
+def test_an_object_leans_beyond_thirty_degrees() -> None:
+    angle = np.interp(TIMES, [1.0, 2.0, 3.0], [0.0, np.radians(60.0), 0.0])
+    where = body(np.zeros(3), turns=Rotation.from_euler("y", angle[:, None])).where
+    up = upright_axis(where, stays(where, Floor(0.01, 0.09), LIMITS))
+    ((first, last),) = leaning(where, up, LIMITS)
+    assert (first, last) == pytest.approx((151, 249), abs=2)
+
+
+def test_turning_about_the_vertical_adds_up_beyond_a_whole_turn() -> None:
+    angle = 3.0 * np.pi * TIMES / TIMES[-1]
+    turned = geometry.quaternions(Rotation.from_euler("z", angle[:, None]))
+    assert spin(turned) == pytest.approx(angle, abs=1e-6)
+
+
+def test_what_is_dropped_falls_and_what_is_carried_does_not() -> None:
+    drop = np.zeros((len(TIMES), 3))
+    after = np.clip(TIMES - 1.0, 0.0, 0.6)
+    drop[:, 2] = 2.0 - 0.5 * 9.81 * after**2
+    spans = falls(body(drop), LIMITS)
+    assert [each for each in spans if each[0] < 110 and each[1] > 140]
+    assert falls(body(along_x(0.0, 1.0)), LIMITS) == ()
+
+
+def test_the_closing_speed_is_that_of_the_approach() -> None:
+    thing, wall = body(along_x(0.0, 1.0)), body(np.array([2.0, 0.0, 0.0]))
+    assert closing_speed(thing, wall, 200) == pytest.approx(0.5, abs=0.01)
+    assert closing_speed(thing, wall, 0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("place", "normal"),
+    [((0.0, 0.0, 0.0), (0, 0, 1)), ((0.549, 0.0, -0.08), (1, 0, 0)), ((0, 0, -0.14), (0, 0, -1))],
+)
+def test_a_contact_presses_along_the_side_where_bodies_meet(
+    place: tuple[float, float, float], normal: tuple[int, int, int]
+) -> None:
+    table = body(np.zeros(3), shape=TABLE)
+    found = contact_normal(body(np.array(place)), table, 100)
+    assert found is not None
+    assert found == pytest.approx(normal)
+
+
+def test_bodies_lie_inside_above_below_and_beside() -> None:
+    small, large = shapes.box(0.1, 0.1, 0.1), shapes.box(0.4, 0.4, 0.4)
+    other = body(np.zeros(3), shape=large)
+    places = {
+        inside: (0.0, 0.0, 0.1),
+        above: (0.0, 0.0, 0.5),
+        below: (0.0, 0.0, -0.2),
+        beside: (0.3, 0.0, 0.1),
+    }
+    for arrangement, place in places.items():
+        thing = body(np.array(place), shape=small)
+        held = [each for each in places if each(thing, other, LIMITS).all()]
+        assert held == [arrangement]
+
+
+def test_what_sticks_out_by_half_is_inside_and_what_stands_on_top_is_not() -> None:
+    other = body(np.zeros(3), shape=shapes.box(0.4, 0.4, 0.4))
+    assert inside(body(np.array([0.0, 0.0, 0.34])), other, LIMITS).all()
+    assert not inside(body(np.array([0.0, 0.0, 0.4])), other, LIMITS).any()
+
+
+def test_between_is_on_the_way_from_one_to_the_other() -> None:
+    one, other = body(np.array([-1.0, 0.0, 0.0])), body(np.array([1.0, 0.0, 0.0]))
+    held = between(body(along_x(-2.0, 2.0)), one, other)
+    assert np.flatnonzero(held)[[0, -1]] == pytest.approx((153, 247), abs=4)
+    assert not between(body(along_x(-2.0, 2.0) + np.array([0.0, 0.5, 0.0])), one, other).any()
+
+
+def test_who_goes_through_leaves_at_the_opposite_side() -> None:
+    thing, tunnel = body(along_x(-1.0, 1.0)), body(np.zeros(3), shape=shapes.box(0.4, 0.4, 0.4))
+    assert sides(thing, tunnel, np.array([150, 250])) == "opposite"
+    assert sides(thing, tunnel, np.array([150, 190])) == "other"
+
+
+def test_a_hand_rests_where_it_does_not_move() -> None:
+    spans = resting(body(along_x(0.0, 1.0)).where, LIMITS)
+    assert [each[0] for each in spans] == pytest.approx([0, 300], abs=10)
+    assert [each[1] for each in spans] == pytest.approx([100, 399], abs=10)
+
+
+def test_a_motion_begins_before_it_is_beyond_its_floor() -> None:
+    share = np.clip((TIMES - 1.0) / 2.0, 0.0, 1.0)[:, None]
+    places = (share**3 * (10.0 - 15.0 * share + 6.0 * share**2)) * np.array([0.5, 0.0, 0.0])
+    where = body(places).where
+    floor = Floor(LIMITS.motion_floor_m, LIMITS.motion_floor_rad)
+    ((first, last),) = moving(where, floor, LIMITS)
+    rests = stays(where, floor, LIMITS)
+    begin, end = motion_edges(where, (first, last), rests, LIMITS)
+    assert 100 <= begin < first
+    assert last < end <= 301
+    assert begin == pytest.approx(100 + 200 * (0.001 / 5.0) ** (1 / 3), abs=3)
