@@ -30,21 +30,21 @@ develop: $(VENV)/developing  ## An editable install with everything for developm
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -e .
+	$(VENV)/bin/python -m pip install --quiet --quiet --disable-pip-version-check -e .
 	touch $@
 
 $(VENV)/developing: $(VENV)/ready
-	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+	$(VENV)/bin/python -m pip install --quiet --quiet --disable-pip-version-check -e '.[dev]'
 	touch $@
 
 $(TESTED)/ready: pyproject.toml README.md $(SOURCES)
 	$(PYTHON) -m venv $(TESTED)
 	rm -rf .make/dist
-	$(TESTED)/bin/python -m pip install --quiet --disable-pip-version-check build
+	$(TESTED)/bin/python -m pip install --quiet --quiet --disable-pip-version-check build
 	$(TESTED)/bin/python -m build --wheel --outdir .make/dist . >.make/build.log 2>&1 || (cat .make/build.log; exit 1)
-	$(TESTED)/bin/python -m pip install --quiet --disable-pip-version-check \
+	$(TESTED)/bin/python -m pip install --quiet --quiet --disable-pip-version-check \
 		"$$(ls .make/dist/capar-*.whl)[dev]"
-	$(TESTED)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --force-reinstall \
+	$(TESTED)/bin/python -m pip install --quiet --quiet --disable-pip-version-check --no-deps --force-reinstall \
 		.make/dist/capar-*.whl
 	touch $@
 

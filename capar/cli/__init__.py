@@ -4,8 +4,8 @@ import os
 import sys
 from importlib import import_module
 from pkgutil import iter_modules
+from typing import Any
 
-import click
 import typer
 from typer.core import TyperGroup
 
@@ -16,12 +16,12 @@ from capar.model.errors import CaparError
 class Commands(TyperGroup):
     """Every module of this package as the command of its name, loaded on demand."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:
+    def list_commands(self, ctx: Any) -> list[str]:
         """Names of the commands, sorted."""
         modules = [each.name for each in iter_modules(__path__) if not each.name.startswith("_")]
         return sorted(name.removesuffix("_command").replace("_", "-") for name in modules)
 
-    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+    def get_command(self, ctx: Any, name: str) -> Any:
         """The command of that name, if there is one."""
         if name not in self.list_commands(ctx):
             return None
