@@ -190,10 +190,15 @@ def add_rule(path: Path, *, folder: Path, base: str = DEFAULT, over: Sequence[st
     with TemporaryDirectory(dir=folder, prefix=".draft") as place:
         draft = Path(place) / path.name
         draft.write_text(_text(path) + _ordering(path, over), encoding="utf-8")
-        require(path, check(draft, profile=base, beside=beside))
+        findings = check(draft, profile=base, beside=beside)
+        require(
+            path,
+            [replace(each, place=replace(each.place, file=str(path))) for each in findings],
+        )
         failures = try_rule(draft, base=base, beside=beside)
         if failures:
-            raise RuleError("its examples do not hold:\n" + "\n".join(failures))
+            told = "\n".join(failures).replace(str(draft), str(path))
+            raise RuleError(f"its examples do not hold:\n{told}")
         draft.replace(target)
     return target
 

@@ -64,7 +64,7 @@ class Explanation:
     reason: Reason
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RuleBase:
     """A profile made ready to explain by."""
 

@@ -201,8 +201,7 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
     yield from _within(ee, ticks, own, others)
     yield from _moves(ee, ticks, moves)
     yield from (
-        each.kind(ee, each.object, each.frame, bisect_left(ticks, each.refined))
-        for each in refined
+        each.kind(ee, each.object, each.frame, bisect_left(ticks, each.refined)) for each in refined
     )
     yield from (
         FreeBetween(ee, bisect_left(ticks, gap[0]), bisect_left(ticks, gap[1]))

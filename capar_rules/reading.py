@@ -79,6 +79,11 @@ def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Findin
         yield _at(text, text.index("\0"), path, "encoding", "there is a zero byte.", "Remove it.")
     if text.startswith("\ufeff"):
         yield _at(text, 0, path, "encoding", "there is a byte-order mark.", "Save it without one.")
+    for found in list(re.finditer(r"[^\x00-\x7f\ufeff]", bare))[:1]:
+        yield _at(
+            text, found.start(), path, "syntax", f"{found[0]!r} is no letter of rules.",
+            "Outside of texts in quotes and of comments, write letters a to z and digits.",
+        )  # fmt: skip
     for found in re.finditer(r"\b\d{10,}\b", bare):
         if int(found[0][:20]) > LARGEST:
             yield _at(

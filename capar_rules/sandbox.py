@@ -30,9 +30,9 @@ MEMORY_BYTES = 1 << 30
 
 
 def serve() -> None:
-    """Answer requests, one a line as JSON, until there are no more."""
+    """Answer requests, one a line as JSON, once all of them are there."""
     bases: dict[str, Known] = {}
-    for line in sys.stdin:
+    for line in sys.stdin.read().splitlines():
         request = json.loads(line)
         name = request["profile"]
         if name not in bases:
@@ -61,7 +61,7 @@ def examine(path: Path, base: Known, beside: list[str]) -> Iterator[Finding]:
 
 
 def _static(reading: Reading, base: Known) -> Iterator[Finding]:
-    return static_findings(reading.statements, base)
+    return static_findings(reading.statements, base, file=reading.file)
 
 
 def _safe(reading: Reading, base: Known) -> Iterator[Finding]:
@@ -94,6 +94,7 @@ def _guarded(path: Path, base: Known, beside: list[str]) -> list[Finding]:
 
 def _work(path: Path, base: Known, beside: list[str], writer: int) -> None:
     _limit()
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     try:
         for each in examine(path, base, beside):

@@ -84,7 +84,7 @@ class Stretches:
         whole = [(ticks[0], ticks[-1])]
         for body, times in {**reach, ee: whole}.items():
             for how, _, other, first, last in self._by_body.get(body, ()):
-                if any(begin <= last and first <= end for begin, end in _near(times, first)):
+                if _meets(times, first, last):
                     yield from _ranked(ee, (how, body, other, first, last), ticks)
 
 
@@ -110,9 +110,10 @@ def _stretches(fact: Fact) -> Iterable[Stretch]:
         yield "between", fact.body, fact.other, fact.first, fact.last
 
 
-def _near(times: Sequence[tuple[int, int]], first: int) -> Sequence[tuple[int, int]]:
-    """Of disjoint stretches in order, those that end at a frame or later."""
-    return times[max(bisect_right(times, (first, first)) - 1, 0) :]
+def _meets(times: Sequence[tuple[int, int]], first: int, last: int) -> bool:
+    """Whether one of disjoint stretches in order shares a frame with an interval."""
+    index = bisect_right(times, (last, 1 << 62)) - 1
+    return index >= 0 and times[index][1] >= first
 
 
 def _ranked(ee: str, stretch: Stretch, ticks: Sequence[int]) -> Iterable[Fact]:

@@ -55,6 +55,11 @@ class Known:
     rules: tuple[Statement, ...]
     heads: frozenset[Signature]
     inputs: frozenset[Signature]
+    """Predicates that may have no rule: measurements, and what a profile leaves out."""
+
+    measured: frozenset[Signature]
+    """Of those, the measurements."""
+
     primitives: frozenset[str]
     constants: frozenset[str]
 
@@ -65,17 +70,22 @@ def known(rules: Sequence[Statement]) -> Known:
         tuple(rules),
         heads_of(rules),
         frozenset(each.defines for each in rules if isinstance(each.defines, tuple)),
+        frozenset(
+            each.defines
+            for each in rules
+            if isinstance(each.defines, tuple) and each.place.file.endswith("inputs.lp")
+        ),
         frozenset(_names(rules, "primitive")),
         frozenset(each.defines for each in rules if isinstance(each.defines, str)),
     )
 
 
-def static_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
+def static_findings(own: Sequence[Statement], base: Known, *, file: str) -> Iterator[Finding]:
     """Every finding that needs no solver."""
     yield from _statements(own, base)
     yield from _heads(own, base)
     yield from _bodies(own, base)
-    yield from _primitives(own, base)
+    yield from _primitives(own, base, file)
     yield from _documentation(own)
 
 
@@ -158,7 +168,7 @@ def _unknown(atom: Atom, words: Iterable[Signature]) -> Finding:
     return Finding(atom.place, "unknown-predicate", f"there is no predicate {name}/{arity}.", hint)
 
 
-def _primitives(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
+def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Finding]:
     mine = set(_names(own, "primitive"))
     for each in own:
         for head in each.heads:
@@ -192,7 +202,7 @@ def _primitives(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
                 yield from _row(head, arguments)
     if not mine:
         yield Finding(
-            _first(own), "no-primitive", "the file introduces no primitive.",
+            Place(file, 1, 1), "no-primitive", "the file introduces no primitive.",
             'State one, such as primitive("Lift").',
         )  # fmt: skip
 
@@ -238,7 +248,7 @@ def _row(head: Atom, arguments: Sequence[str]) -> Iterator[Finding]:
 def _documentation(own: Sequence[Statement]) -> Iterator[Finding]:
     if own and not (own[0].kind == "comment" and re.match(r"%\*\s*\w+:\s+\S", own[0].text)):
         yield Finding(
-            _first(own), "no-definition", "the file does not open with its definition in words.",
+            own[0].place, "no-definition", "the file does not open with its definition in words.",
             "Begin it with a line such as %* Lift: a possessed object goes up. *%", NOTE,
         )  # fmt: skip
 
@@ -248,10 +258,6 @@ def _names(rules: Iterable[Statement], predicate: str) -> Iterator[str]:
         for head in each.heads:
             if head.signature == (predicate, 1):
                 yield split_arguments(head.text)[0].strip('"')
-
-
-def _first(own: Sequence[Statement]) -> Place:
-    return own[0].place if own else Place("", 1, 1)
 
 
 def _listed(signatures: Iterable[Signature]) -> str:

@@ -146,4 +146,4 @@ def _beyond(rule: Statement, own: Sequence[Statement], base: Known) -> tuple[Sig
         if each.kind == "rule"
     }
     defined = heads_of([*base.rules, *own])
-    return tuple(sorted((read & base.inputs) - given - defined))
+    return tuple(sorted((read & base.measured) - given - defined))

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from capar.cli._actionary import Wait
+
 if TYPE_CHECKING:
     from capar.model.capture import Capture
     from capar.model.observation import Observation
@@ -53,6 +55,16 @@ def observe(
     plot: Annotated[
         Path | None, typer.Option(help="Draw the observation to a .png, .svg or .pdf file.")
     ] = None,
+    actionary: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PATH|URL",
+            envvar="CAPAR_ACTIONARY",
+            help="Keep the observation in this Actionary: a folder, or a SPARQL server's address.",
+            show_default=False,
+        ),
+    ] = None,
+    wait: Wait = 0.0,
 ) -> None:
     """Say what was done in CAPTURE: segments of each link, and the complex PAR they make."""
     import sys
@@ -74,9 +86,22 @@ def observe(
         observation = observe_measured(trial, measurements, rules=base, name=name)
     if choice is OnUnknown.FAIL:
         _refuse(observation)
+    _print(observation, json=json, script=script, pars=pars)
     if plot:
         _draw(observation, trial, measurements, plot)
-    _print(observation, json=json, script=script, pars=pars)
+    if actionary:
+        _keep(observation, actionary, name=name, wait_s=wait)
+
+
+def _keep(observation: "Observation", place: str, *, name: str, wait_s: float) -> None:
+    from kb import Actionary
+
+    with Actionary.open(place, wait_s=wait_s) as store:
+        known = store.recognise(observation.complex_par)
+        added = store.add(observation, name=name or known or None)
+    what = "seen before" if known else "seen for the first time"
+    again = ", in place of the earlier observation of this capture" if added.replaced else ""
+    typer.echo(f"kept {added.name} in {place}: {added.action}, {what}{again}", err=True)
 
 
 def _print(observation: "Observation", *, json: bool, script: bool, pars: bool) -> None:

@@ -226,7 +226,7 @@ def _print_changes(changes: "tuple[Renamed, ...]") -> None:
             f"{each.capture}  {each.ee}/{each.index}  {each.start_s:.2f} to {each.end_s:.2f} s: "
             f"{each.before} -> {each.after}"
         )
-    typer.echo(f"{len(changes)} segments change")
+    typer.echo("1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change")
 
 
 @app.command()

@@ -1,0 +1,66 @@
+"""The audit: shipped rules are clean, and what is wrong with others is found."""
+
+from pathlib import Path
+
+import pytest
+
+from capar_rules.auditing import audit
+from capar_rules.profiles import profile
+
+
+@pytest.fixture(scope="module", params=["thesis", "extended"])
+def shipped(request):
+    return audit(profile(request.param))
+
+
+def test_the_shipped_rules_are_clean(shipped):
+    assert shipped.ambiguous == ()
+    assert shipped.shadowed == ()
+    assert shipped.unreachable == ()
+    assert shipped.clean
+
+
+def test_every_uncovered_case_has_one_reason(shipped):
+    assert shipped.uncovered
+    assert sorted({features for features, _ in shipped.excused}) == list(shipped.uncovered)
+    assert all(len(reason.split()) > 5 for _, reason in shipped.excused)
+
+
+def test_the_published_feature_sets_can_be(shipped):
+    """The seven of thesis Fig 4.15 are cases that the world allows and the rules cover."""
+    for features in (
+        ("0", "1", "0", "0"),
+        ("0", "1", "0", "1"),
+        ("1", "1", "0", "0"),
+        ("101", "101", "00", "00"),
+        ("101", "101", "10", "00"),
+        ("100", "101", "10", "00"),
+        ("1", "0", "0", "0"),
+    ):
+        assert features not in shipped.uncovered
+
+
+def test_two_names_without_order_are_ambiguous(tmp_path: Path):
+    rules = tmp_path / "grasp.lp"
+    rules.write_text('primitive("Grasp").\nfeature_row("Grasp", any, "1", "1", "0", "0").\n')
+    found = audit(profile("thesis", added=(rules,)))
+    (clash,) = found.ambiguous
+    assert (clash.first, clash.second) == ("Grasp", "Touch")
+    assert clash.features == (("1", "1", "0", "0"),)
+    assert not found.clean
+
+
+def test_a_name_that_never_wins_is_shadowed(tmp_path: Path):
+    rules = tmp_path / "grasp.lp"
+    rules.write_text(
+        'primitive("Grasp").\nfeature_row("Grasp", any, "1", "1", "0", "0").\n'
+        'specialises("Touch", "Grasp").\n'
+    )
+    assert audit(profile("thesis", added=(rules,))).shadowed == ("Grasp",)
+
+
+def test_what_no_body_can_do_is_never_fitted(tmp_path: Path):
+    """A thing that is possessed throughout cannot come to be touched within the segment."""
+    rules = tmp_path / "odd.lp"
+    rules.write_text('primitive("Odd").\nfeature_row("Odd", any, "101", "010", "00", "00").\n')
+    assert audit(profile("thesis", added=(rules,))).unreachable == ("Odd",)

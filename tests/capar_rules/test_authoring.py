@@ -1,0 +1,165 @@
+"""Rules that people write: drafted, tried on their examples, added, ordered and removed."""
+
+from pathlib import Path
+
+import motions
+import pytest
+
+from capar.model.errors import FileError, RuleError, UnknownNameError
+from capar.model.par import FeatureSet
+from capar_rules.authoring import (
+    add_rule,
+    new_rule,
+    remove_rule,
+    rule_of,
+    rules_of,
+    telling,
+    try_rule,
+    user_rules,
+)
+from capar_rules.examples import Example, read_examples, written
+from capar_rules.profiles import profile
+from capar_rules.reasoning import infer
+from extractors.facts import extract
+
+SLIDE = FeatureSet("1", "1", "1", "hand", "0")
+
+FACTS = """   frames(0, 300).  rate_mhz(100000).  link(hand, hand, right).
+   tag(box, mobile).  tag(table, fixed).
+   zero_crossing(hand, 0).  zero_crossing(hand, 100).  zero_crossing(hand, 200).
+   touching(hand, box, 100, 300).  touching(box, table, 0, 300).
+"""
+
+GRASP = f"""%* Grasp: the end-effector goes on touching what is mobile and still. *%
+primitive("Grasp").
+specialises("Grasp", "Touch").
+verb("Grasp", "grasp").
+fits(Segment, "Grasp") :-
+    fits(Segment, "Touch"),
+    object_at(Segment, 0, Object),
+    tag(Object, mobile).
+
+%* Example: a hand is laid on a box.
+{FACTS}   => hand: Reach, Grasp
+*%
+
+%* Counter-example: a hand is laid on a table.
+   frames(0, 300).  rate_mhz(100000).  link(hand, hand, right).  tag(table, fixed).
+   zero_crossing(hand, 0).  zero_crossing(hand, 100).  zero_crossing(hand, 200).
+   touching(hand, table, 100, 300).
+   => hand: Reach, Touch
+*%
+"""
+
+
+@pytest.fixture
+def grasp(tmp_path: Path) -> Path:
+    path = tmp_path / "grasp.lp"
+    path.write_text(GRASP)
+    return path
+
+
+def test_the_shipped_primitives_are_listed_with_their_definitions():
+    found = {each.name: each for each in rules_of(profile("thesis"))}
+    assert set(found) == {
+        "Hit", "MoveObj", "MoveObjTo", "Reach", "ResumePosture", "Touch", "TouchWith",
+    }  # fmt: skip
+    assert found["TouchWith"].general == ("Touch",)
+    assert found["Reach"].definition.startswith("the end-effector comes to touch")
+    assert {each.origin for each in found.values()} == {"core"}
+
+
+def test_a_primitive_that_there_is_not_is_refused_with_those_there_are():
+    with pytest.raises(UnknownNameError, match="Did you mean 'Reach'"):
+        rule_of(profile("thesis"), "Reech")
+
+
+def test_examples_are_read_as_they_are_written(grasp):
+    first, second = read_examples(GRASP)
+    assert (first.story, first.positive) == ("a hand is laid on a box.", True)
+    assert first.names == (("hand", ("Reach", "Grasp")),)
+    assert second.positive is False
+    assert read_examples(written(first))[0].facts == first.facts
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("%* Example: nothing.\n   => hand: Reach\n*%\n", "needs facts"),
+        ("%* Example: no end.\n   frames(0, 1).\n*%\n", "needs facts and a line such as"),
+        ("%* Example: odd.\n   frames(0, a).\n   => hand: Reach\n*%\n", "a is no int"),
+        ("%* Example: odd.\n   frames(0, 1).\n   => Reach\n*%\n", "expected END_EFFECTOR"),
+    ],
+)
+def test_an_example_that_cannot_be_read_says_why(text, message):
+    with pytest.raises(RuleError, match=message):
+        read_examples(text, file="x.lp")
+
+
+def test_examples_that_hold_are_silent_and_others_say_what_was_found(grasp):
+    assert try_rule(grasp, base="thesis") == ()
+    grasp.write_text(GRASP.replace("=> hand: Reach, Grasp", "=> hand: Grasp, Grasp"))
+    (failure,) = try_rule(grasp, base="thesis")
+    assert "expects hand: Grasp, Grasp; found Reach, Grasp" in failure
+
+
+def test_a_file_without_examples_lacks_one_of_each_kind(grasp):
+    grasp.write_text(GRASP.split("%* Example", maxsplit=1)[0])
+    lacking = try_rule(grasp, base="thesis")
+    assert [each.partition("lacks ")[2].split()[1] for each in lacking] == [
+        "Example", "Counter-example",
+    ]  # fmt: skip
+
+
+def test_a_feature_set_becomes_a_rule_that_names_it(tmp_path):
+    facts = telling(extract(motions.slide_object(motions.TALL_MAN).capture).facts)
+    rules = profile("thesis")
+    segment = infer(facts, profile=rules).links[0].segments[-1]
+    path = tmp_path / "shove.lp"
+    path.write_text(
+        new_rule(
+            "Shove", segment.features, definition="what the thesis calls MoveObj",
+            general=segment.name,
+            examples=[Example("A box slides.", True, facts, (("right_hand", ("Reach", "Shove")),),
+                              0)],
+        )
+    )  # fmt: skip
+    named = infer(facts, profile=profile("thesis", added=(path,))).links[0].segments[-1]
+    assert (named.name, named.general) == ("Shove", (segment.name,))
+    assert len(try_rule(path, base="thesis")) == 1
+
+
+def test_a_name_that_is_none_is_refused():
+    with pytest.raises(RuleError, match="read like MoveObjTo"):
+        new_rule("shove it", SLIDE)
+
+
+def test_an_added_rule_is_the_users_until_it_is_removed(grasp, tmp_path):
+    folder = tmp_path / "rules"
+    added = add_rule(grasp, folder=folder, base="thesis")
+    assert user_rules(folder) == (added,)
+    assert list(folder.iterdir()) == [added]
+    assert rule_of(profile("thesis", added=user_rules(folder)), "Grasp").origin == "user"
+    with pytest.raises(FileError, match="exists already"):
+        add_rule(grasp, folder=folder, base="thesis")
+    assert remove_rule("Grasp", folder=folder) == added
+    assert user_rules(folder) == ()
+    with pytest.raises(UnknownNameError, match="rule of the user's"):
+        remove_rule("Grasp", folder=folder)
+
+
+def test_an_ambiguity_is_refused_unless_it_is_ordered(grasp, tmp_path):
+    grasp.write_text(GRASP.replace('specialises("Grasp", "Touch").\n', ""))
+    folder = tmp_path / "rules"
+    with pytest.raises(RuleError, match="Grasp and Touch name the same segments"):
+        add_rule(grasp, folder=folder, base="thesis")
+    assert user_rules(folder) == ()
+    added = add_rule(grasp, folder=folder, base="thesis", over=["Touch"])
+    assert added.read_text().endswith('specialises("Grasp", "Touch").\n')
+
+
+def test_a_rule_whose_example_fails_is_not_added(grasp, tmp_path):
+    grasp.write_text(GRASP.replace("=> hand: Reach, Grasp", "=> hand: Grasp, Grasp"))
+    with pytest.raises(RuleError, match="examples do not hold"):
+        add_rule(grasp, folder=tmp_path / "rules", base="thesis")
+    assert user_rules(tmp_path / "rules") == ()

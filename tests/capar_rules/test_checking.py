@@ -1,0 +1,131 @@
+"""Rule files are checked before they count: every file gets an answer, and nothing of it runs."""
+
+import os
+import time
+from pathlib import Path
+
+import hostile_rules
+import pytest
+
+from capar_rules.checking import check, check_all
+from capar_rules.findings import NOTE, Finding, errors
+
+EXPECTED = {
+    "script_python": "script",
+    "script_lua": "script",
+    "script_later": "script",
+    "at_function": "external-function",
+    "include_passwd": "include",
+    "include_above": "include",
+    "include_device": "include",
+    "include_hidden": "include",
+    "choice": "choice-head",
+    "disjunction": "disjunction-head",
+    "constraint": "constraint-head",
+    "minimize": "refused-statement",
+    "external": "refused-statement",
+    "program_part": "refused-statement",
+    "even_loop": "negative-cycle",
+    "loop_through_names": "negative-cycle",
+    "const_taken": "taken-constant",
+    "redefines": "redefined-predicate",
+    "redefines_input": "redefined-predicate",
+    "renames_reach": "taken-name",
+    "speaks_for_others": "foreign-name",
+    "circle": "circular",
+    "unsafe": "unsafe-variable",
+    "unknown_word": "unknown-predicate",
+    "wrong_arity": "wrong-arity",
+    "wrong_bits": "wrong-bits",
+    "no_full_stop": "syntax",
+    "open_string": "syntax",
+    "empty": "no-primitive",
+    "zero_byte": "encoding",
+    "latin_1": "encoding",
+    "too_large": "too-large",
+    "deep_brackets": "too-deep",
+    "big_number": "number",
+    "endless": "unbounded",
+}
+"""What is wrong with some of the files made by hand."""
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory) -> dict[str, tuple[Finding, ...]]:
+    folder = tmp_path_factory.mktemp("hostile")
+    made = {name: content for name, content in hostile_rules.rule_files(10_000) if name in EXPECTED}
+    paths = []
+    for name, content in made.items():
+        path = folder / f"{name}.lp"
+        path.write_bytes(content)
+        paths.append(path)
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        found = check_all(paths, profile="thesis")
+    finally:
+        os.chdir(before)
+    assert not (folder / "HARMED").exists()
+    return dict(zip(made, found, strict=True))
+
+
+@pytest.mark.parametrize("name", sorted(EXPECTED))
+def test_what_is_wrong_is_named_with_its_place_and_remedy(answers, name):
+    found = errors(answers[name])
+    assert EXPECTED[name] in {each.code for each in found}
+    for each in found:
+        assert each.place.line >= 1
+        assert each.place.column >= 1
+        assert each.place.file.endswith(f"{name}.lp")
+        assert each.remedy.endswith((".", "...", ". *%"))
+        assert str(each).startswith(f"{each.place}: error: ")
+
+
+def test_mutants_get_an_answer_in_bounded_time(tmp_path):
+    count = len(hostile_rules.BY_HAND) + len(hostile_rules.BYTES)
+    paths = hostile_rules.write_all(tmp_path, count + 25)[count:]
+    start = time.monotonic()
+    found = check_all(paths, profile="thesis")
+    assert time.monotonic() - start < 120.0
+    assert len(found) == len(paths)
+    assert sum(bool(errors(each)) for each in found) >= 20
+
+
+def test_a_sound_file_passes(tmp_path):
+    path = tmp_path / "hoist.lp"
+    path.write_text(hostile_rules.SOUND)
+    assert errors(check(path)) == ()
+
+
+def test_a_rule_that_can_never_fire_and_one_that_always_does_are_found(tmp_path):
+    path = tmp_path / "bad.lp"
+    path.write_text(
+        '%* Bad: bad. *%\nprimitive("Bad").\n'
+        'fits(Segment, "Bad") :-\n    segment(Segment, From, _),\n    From < 0,\n    From > 0.\n'
+        'fits(Segment, "Bad") :- segment(Segment, _, _).\n'
+    )
+    found = {(each.code, each.place.line) for each in check(path, profile="thesis")}
+    assert {("never-fires", 3), ("always-fires", 7), ("ambiguous", 2)} <= found
+
+
+def test_a_rule_over_measurements_outside_the_world_is_not_judged_but_noted(tmp_path):
+    path = tmp_path / "gaze.lp"
+    path.write_text(
+        '%* Gaze: one touches what one looks at. *%\nprimitive("Gaze").\n'
+        'specialises("Gaze", "Touch").\n'
+        'fits(Segment, "Gaze") :-\n    fits(Segment, "Touch"),\n'
+        "    object_at(Segment, 0, Object),\n    looking_at(_, Object, _, _).\n"
+    )
+    found = check(path, profile="thesis")
+    assert [(each.code, each.level) for each in found] == [("not-judged", NOTE)]
+
+
+def test_the_nearest_names_are_offered(tmp_path):
+    path = tmp_path / "bad.lp"
+    path.write_text(
+        '%* Bad: bad. *%\nprimitive("Bad").\nspecialises("Bad", "Tuch").\n'
+        'fits(S, "Bad") :- posessed(S, _, _).\n'
+    )
+    remedies = {each.code: each.remedy for each in check(path, profile="thesis")}
+    assert "possessed" in remedies["unknown-predicate"]
+    assert remedies["unknown-primitive"] == "Did you mean Touch?"

@@ -1,0 +1,88 @@
+"""Counterfactuals: the fewest changes, all of them on demand, and each of them enough."""
+
+import motions
+import pytest
+
+from capar.explanation import Explained, explained
+from capar.model.errors import RuleError, UnknownNameError
+from capar.model.facts import Moving
+from capar_rules.profiles import profile
+from capar_rules.reasoning import infer
+from capar_rules.why_not import why_not
+from extractors.facts import extract
+
+
+@pytest.fixture(scope="module")
+def drink() -> Explained:
+    return explained(motions.drink_from_mug(motions.TALL_MAN).capture, rules=profile("thesis"))
+
+
+def segment(seen: Explained, name: str, at: int = 0):
+    return [each for each in seen.observation.segments if each.name == name][at]
+
+
+def sentences(seen: Explained, was: str, name: str, at: int = 0) -> list[str]:
+    found = why_not(seen.explainer, segment(seen, was, at), name, limit=10)
+    return [each.sentence for each in found]
+
+
+def test_one_change_of_motion_turns_a_move_into_a_touch(drink):
+    (only,) = sentences(drink, "MoveObj", "TouchWith")
+    assert only.startswith("It would be TouchWith had the mug stayed where it was between 2.3")
+
+
+def test_all_equally_small_answers_are_given_on_demand(drink):
+    found = sentences(drink, "MoveObjTo", "MoveObj")
+    assert len(found) == 2
+    assert any("had the mug touched the head at 1." in each for each in found)
+    assert any("had the mug touched the table at 2." in each for each in found)
+    one = why_not(drink.explainer, segment(drink, "MoveObjTo"), "MoveObj")
+    assert one[0].sentence in found
+
+
+def test_no_smaller_change_is_enough(drink):
+    """Every answer is of one size, and a name that differs in two features needs two changes."""
+    found = why_not(drink.explainer, segment(drink, "MoveObjTo"), "TouchWith", limit=10)
+    assert {len(each.changes) for each in found} == {2}
+    assert all(any("moved(mug" in change.atom for change in each.changes) for each in found)
+
+
+def test_made_so_in_the_facts_the_change_gives_the_name():
+    """What slides would be touched, had it not moved: without its motion the rules say so."""
+    capture = motions.slide_object(motions.TALL_MAN).capture
+    facts = extract(capture).facts
+    seen = explained(capture, rules=profile("thesis"))
+    (only,) = why_not(seen.explainer, segment(seen, "MoveObj"), "TouchWith", limit=10)
+    (change,) = only.changes
+    assert not change.holds
+    assert change.atom.startswith("moved(box,seg(right_hand,")
+    still = [each for each in facts if not isinstance(each, Moving)]
+    touched = infer(still, profile=profile("thesis")).links[0].segments
+    assert [each.name for each in touched] == ["Reach", "Touch"]
+
+
+def test_what_could_not_have_been_has_no_answer():
+    """No body of the agent's own is in the scene, so that nothing could be drunk."""
+    capture = motions.slide_object(motions.TALL_MAN).capture
+    seen = explained(capture, rules=profile())
+    moves = [each for each in seen.observation.segments if each.features.change_loc.startswith("1")]
+    assert why_not(seen.explainer, moves[0], "Drink", limit=5) == ()
+
+
+def test_a_course_is_explained_away_by_another_course():
+    capture = motions.pick_up_with_both_hands(motions.TALL_MAN).capture
+    seen = explained(capture, rules=profile())
+    lift = segment(seen, "Lift")
+    found = why_not(seen.explainer, lift, "Carry", limit=20)
+    assert found
+    for each in found:
+        assert "had the box not gone up" in each.sentence
+        assert "had the box gone aside, more than up or down" in each.sentence
+
+
+def test_a_name_that_there_is_not_or_that_it_has_is_refused(drink):
+    reach = segment(drink, "Reach")
+    with pytest.raises(UnknownNameError, match="no primitive 'Grab'"):
+        why_not(drink.explainer, reach, "Grab")
+    with pytest.raises(RuleError, match="is Reach already"):
+        why_not(drink.explainer, reach, "Reach")
