@@ -23,7 +23,8 @@ PERIOD = 400
 HANDS = ("right_hand", "left_hand", "right_foot", "left_foot")
 
 WALK = """
-before(Hand, Frame + 1, Frame) :- contact(Hand, Object, Frame), not contact(Hand, Object, Frame - 1).
+before(Hand, Frame + 1, Frame) :- contact(Hand, Object, Frame),
+    not contact(Hand, Object, Frame - 1).
 before(Hand, Frame + 1, Start) :- before(Hand, Frame, Start), frame(Frame), contact(Hand, _, Frame).
 #show before/3.
 """

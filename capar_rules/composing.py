@@ -12,9 +12,6 @@ from capar_rules.reasoning import Inference
 ALL = "all"
 """The end-effector of a step that is common to every link."""
 
-REST = "Rest"
-"""The name of a segment in which nothing is done, which is no step of an action."""
-
 
 def compose(inference: Inference, *, name: str, frames: int, duration_s: float) -> ComplexPar:
     """The complex PAR of everything observed (thesis 4.6.2).
@@ -68,15 +65,15 @@ def _steps(
 ) -> tuple[Step, ...]:
     """One step a segment, but for rest; the last before a common step waits for it."""
     own = [each for each in link.segments if (each.ee, each.index) not in inference.common]
-    steps = [_step(each, name, frames) for each in _waited(own)]
+    steps = [_step(each, name, frames) for each in _waited(own, inference)]
     if steps and steps[-1].begin + steps[-1].share != end:
         steps[-1] = _lasting(steps[-1], end - steps[-1].begin)
     return tuple(steps)
 
 
-def _waited(segments: Sequence[Segment]) -> list[Segment]:
+def _waited(segments: Sequence[Segment], inference: Inference) -> list[Segment]:
     """Segments without those of rest: it belongs to what it precedes, or, at the end, follows."""
-    active = [each for each in segments if each.name != REST]
+    active = [each for each in segments if (each.ee, each.index) not in inference.no_steps]
     if not active:
         return list(segments)
     edges = [segments[0].first, *(each.last for each in active[:-1]), segments[-1].last]

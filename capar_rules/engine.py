@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from hashlib import sha256
 from importlib import resources
 from pathlib import Path
@@ -124,8 +124,9 @@ def _shown(model: clingo.Model) -> Answer:
     return Answer(tuple((each.name, tuple(map(as_term, each.arguments))) for each in symbols))
 
 
+@lru_cache(maxsize=1 << 16)
 def as_term(symbol: clingo.Symbol) -> Term:
-    """A symbol of the solver as a plain value."""
+    """A symbol of the solver as a plain value; answers name the same segments again and again."""
     if symbol.type is clingo.SymbolType.Number:
         return symbol.number
     if symbol.type is clingo.SymbolType.String:

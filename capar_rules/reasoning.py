@@ -44,6 +44,9 @@ class Inference:
     common: frozenset[Key]
     """Segments that make up the one step common to all links."""
 
+    no_steps: frozenset[Key]
+    """Segments that are no step of the action, such as rest."""
+
     violations: tuple[str, ...]
 
 
@@ -91,7 +94,7 @@ class _Reading:
         return table
 
     def inference(self) -> Inference:
-        links, conditions, common = [], {}, set()
+        links, conditions, common, no_steps = [], {}, set(), set()
         for link in self.linked:
             segments = []
             for index, (first, last) in enumerate(self.spans[link.ee]):
@@ -100,9 +103,13 @@ class _Reading:
                 conditions[link.ee, index] = self._conditions(tick)
                 if tick in self.tables["common"]:
                     common.add((link.ee, index))
+                if tick in self.tables["no_step"]:
+                    no_steps.add((link.ee, index))
             links.append(ObservedLink(link.ee, link.kind, link.side, tuple(segments)))
         violations = tuple(str(each) for each in self._rows("violation"))
-        return Inference(tuple(links), conditions, frozenset(common), violations)
+        return Inference(
+            tuple(links), conditions, frozenset(common), frozenset(no_steps), violations
+        )
 
     def _segment(self, link: Link, index: int, first: int, last: int) -> Segment:
         tick = (link.ee, first)
@@ -175,6 +182,7 @@ _OF_SEGMENT = (
     "afterwards",
     "colliding",
     "common",
+    "no_step",
     "preposition",
 )
 

@@ -32,6 +32,7 @@ class Commands(TyperGroup):
             if error.name != f"{__name__}.{stem}":
                 raise
             module = import_module(f"{__name__}.{stem}_command")
+        module.app._add_completion = False  # the root's is for all
         command = typer.main.get_command(module.app)
         command.name = name
         return command

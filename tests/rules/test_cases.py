@@ -20,7 +20,16 @@ CONCEPTS = sorted(
     path.stem
     for path in rule_file(".").glob("*.lp")
     if path.stem
-    not in {"inputs", "thresholds", "bit_strings", "answers", "thesis", "extended", "derived", "explaining"}
+    not in {
+        "inputs",
+        "thresholds",
+        "bit_strings",
+        "answers",
+        "thesis",
+        "extended",
+        "derived",
+        "explaining",
+    }
 )
 
 

@@ -1,0 +1,78 @@
+"""What every fact is: a typed value that is an atom of the rules."""
+
+from dataclasses import astuple, dataclass, fields
+from functools import cache
+from typing import Any, ClassVar, Self, cast, get_type_hints
+
+import clingo
+
+from capar.model.capture import NAME
+from capar.model.errors import FactError
+
+LARGEST = 2**31 - 1
+"""The largest integer of the solver, which wraps silently beyond."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Fact:
+    """A relation with arguments; the predicate is a class's, the arguments are an instance's.
+
+    Frames are numbered from zero; intervals are closed, [first, last].
+    """
+
+    predicate: ClassVar[str]
+
+    def symbol(self) -> clingo.Symbol:
+        """The fact as the solver's own value.
+
+        Raises:
+            FactError: An integer that the solver cannot hold.
+        """
+        return clingo.Function(self.predicate, [_symbol(each) for each in astuple(self)])
+
+    @classmethod
+    def from_symbol(cls, symbol: clingo.Symbol) -> Self:
+        """The fact that a solver's value states.
+
+        Raises:
+            FactError: Another predicate, another number of arguments, or another type.
+        """
+        kinds: tuple[type, ...] = _kinds(cast(Any, cls))
+        if symbol.name != cls.predicate or len(symbol.arguments) != len(kinds):
+            raise FactError(f"{symbol} is no {cls.predicate}/{len(kinds)}")
+        return cls(
+            *(_value(each, kind) for each, kind in zip(symbol.arguments, kinds, strict=True))
+        )
+
+    def __str__(self) -> str:
+        """The fact as a line of a logic program, without its full stop."""
+        return str(self.symbol())
+
+
+def _symbol(value: Any) -> clingo.Symbol:
+    if isinstance(value, int):
+        if abs(value) > LARGEST:
+            raise FactError(f"{value} does not fit the solver's 32 bits")
+        return clingo.Number(value)
+    return clingo.Function(value) if NAME.fullmatch(value) else clingo.String(value)
+
+
+def _value(symbol: clingo.Symbol, kind: type) -> Any:
+    if symbol.type is clingo.SymbolType.Number and kind is int:
+        return symbol.number
+    if symbol.type is clingo.SymbolType.String and kind is str:
+        return symbol.string
+    if symbol.type is clingo.SymbolType.Function and kind is str and not symbol.arguments:
+        return symbol.name
+    raise FactError(f"{symbol} is no {kind.__name__}")
+
+
+@cache
+def _kinds(cls: Any) -> tuple[type, ...]:
+    hints = get_type_hints(cls)
+    return tuple(hints[each.name] for each in fields(cls))
+
+
+def program(facts: "tuple[Fact, ...]") -> str:
+    """The facts as a logic program, one a line, in their order."""
+    return "".join(f"{fact}.\n" for fact in facts)

@@ -1,0 +1,58 @@
+"""The commands of the README run, in their order, in one folder."""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text()
+COMMANDS = [
+    line.removeprefix("$ ")
+    for block in re.findall(r"```console\n(.*?)```", README, re.S)
+    for line in block.splitlines()
+    if line.startswith("$ ")
+]
+CAPAR = str(Path(sys.executable).parent / "capar")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the parts of a checkout that the README names."""
+    place = tmp_path_factory.mktemp("readme")
+    (place / "capar").mkdir()
+    (place / "capar" / "demo").symlink_to(ROOT / "capar" / "demo")
+    (place / "examples").symlink_to(ROOT / "examples")
+    (place / "mine").mkdir()
+    return place
+
+
+def test_the_readme_shows_commands() -> None:
+    assert len(COMMANDS) > 10
+
+
+@pytest.mark.xdist_group("readme")
+def test_every_command_of_the_readme_runs(folder: Path) -> None:
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("CAPAR_")}
+    for command in COMMANDS:
+        name, *arguments = shlex.split(command)
+        assert name == "capar"
+        done = subprocess.run(
+            [CAPAR, *arguments],
+            check=False,
+            cwd=folder,
+            env=environment,
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, f"{command}\n{done.stderr}"
+        assert done.stdout or done.stderr, command
+
+
+def test_what_the_readme_links_to_is_there() -> None:
+    for path in re.findall(r"\]\(([^)#:]+)\)", README):
+        assert (ROOT / path).exists(), path
