@@ -1,13 +1,12 @@
 """Segments as clauses: what each says, of which objects, with which hand, to which end."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
 
 from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import Ipar, Motion
 from kb.language.contacts import Scene
-from kb.language.english import words_of
+from kb.language.english import joined, words_of
 from kb.language.phrasing import Phrasebook
 from kb.lexicon.links import motion_senses
 from kb.lexicon.wordnet import wordnet
@@ -36,14 +35,22 @@ class Clause:
     count: int = 1
     """How often it was done on end."""
 
+    often: str = ""
+    """How often in other words: ``again``."""
+
     @property
     def signature(self) -> tuple[object, ...]:
         """What makes two clauses say the same but for hands and times."""
-        return self.pattern, self.objects, self.purpose, self.count
+        return self.pattern, self.objects, self.purpose, self.count, self.often
 
     def overlap_s(self, other: "Clause") -> float:
         """For how long both go on [s]."""
         return min(self.end_s, other.end_s) - max(self.start_s, other.start_s)
+
+
+def in_time(clause: Clause) -> tuple[float, float, tuple[str, ...]]:
+    """What clauses are told in the order of."""
+    return clause.start_s, clause.end_s, clause.ees
 
 
 def clauses(
@@ -72,13 +79,7 @@ def clauses(
             cases = _cases(segment, last, scene, ipar, held=held)
             found.append((segment, _clause(segment, before, book, cases, names)))
         before = segment
-    return _on_end(_with_purposes(found, names))
-
-
-def _on_end(told: Iterable[Clause]) -> tuple[Clause, ...]:
-    """The clauses, with those that say the same on end as one that says how often."""
-    runs = (list(same) for _, same in groupby(told, key=lambda each: each.signature))
-    return tuple(replace(run[0], end_s=run[-1].end_s, count=len(run)) for run in runs)
+    return _with_purposes(found, names)
 
 
 def _told_segments(link: ObservedLink, *, only_changes: bool) -> set[int]:
@@ -86,13 +87,20 @@ def _told_segments(link: ObservedLink, *, only_changes: bool) -> set[int]:
     if not only_changes:
         return {each.index for each in touching}
     changing = [each for each in touching if not each.known or _changes(each)]
-    chosen = changing or touching[1:2] or touching[:1]
+    chosen = changing or [each for each in touching if _alike(each, touching[:2][-1])]
     return {each.index for each in chosen}
 
 
+def _alike(one: Segment, other: Segment) -> bool:
+    """Whether the same is done to the same things."""
+    return (one.name, one.objects) == (other.name, other.objects)
+
+
 def _changes(segment: Segment) -> bool:
-    """Whether it moves or strikes something."""
-    return "1" in segment.features.change_loc + segment.features.force
+    """Whether it moves or strikes something; what moves while it is only reached does not count."""
+    features = segment.features
+    comes = "1" not in features.rel_start and "1" in features.rel_end and not segment.general
+    return "1" in features.force or ("1" in features.change_loc and not comes)
 
 
 def _same_dominant(before: Segment | None, segment: Segment) -> bool:
@@ -113,11 +121,17 @@ def _cases(
         cases.add("there")
     if scene.is_self(other):
         cases.add("self")
-    if scene.rests_on(thing, other):
+    if scene.rests_on(thing, other) and _stands_on(segment, thing, other):
         cases.add("on")
     if scene.was_there(segment, thing, other):
         cases.add("back")
     return cases
+
+
+def _stands_on(segment: Segment, thing: str, other: str) -> bool:
+    """Whether the thing is on the other where the rules tell prepositions; else it may be."""
+    said = {word for word, body, place in segment.prepositions if (body, place) == (thing, other)}
+    return not said or bool(said & {"on", "onto"})
 
 
 def _clause(
@@ -141,10 +155,16 @@ def _clause(
 
 
 def _unknown(segment: Segment) -> Clause:
-    places = " and ".join(f"{{{number}}}" for number in range(1, len(segment.objects) + 1))
-    near = f" (nearest to {' or '.join(segment.candidates)})" if segment.candidates else ""
+    """What can be said of features that no rule covers: whether things moved, and which."""
+    moved = [
+        number
+        for number, bit in enumerate(segment.features.change_loc, 1)
+        if bit == "1" and segment.possessed
+    ]
+    verb = "move" if moved else "handle"
+    things = joined([f"{{{each}}}" for each in moved or range(1, len(segment.objects) + 1)])
     return Clause(
-        pattern=f"do something with {places} that no rule names{near}",
+        pattern=f"{verb} {things} {{with}}in a way that no rule names",
         objects=segment.objects,
         ees=(segment.ee,),
         start_s=segment.start_s,

@@ -1,11 +1,13 @@
 """What happened in an observation, in plain English, from its segments and PARs alone."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 from capar.model.observation import Observation
 from kb.language.clauses import Clause, clauses
 from kb.language.contacts import Scene
+from kb.language.editing import counted, edited, repetition
 from kb.language.english import capital, the_agent, times
 from kb.language.hands import spoken_links, told_in_order
 from kb.language.phrasing import Phrasebook
@@ -42,43 +44,61 @@ def describe(
     """
     book, scene = Phrasebook(words), Scene(observation)
     links = spoken_links(observation.links)
+    summary = detail == "summary"
     told = [
-        clauses(observation, link, book, scene, only_changes=detail == "summary") for link in links
+        counted(clauses(observation, link, book, scene, only_changes=summary)) for link in links
     ]
     steps = told_in_order(links, told)
+    if not timed:
+        steps = edited(steps, summary=summary)
     subject = the_agent(observation.agent.name)
     if not steps:
         return f"{capital(subject)} touched nothing."
     telling = Telling(links, timed=timed)
-    sentences = [telling.sentence(*each) for each in _sentences(steps)]
-    return " ".join(
-        f"{_opening(index)}{subject} {sentence}." if index else f"{capital(subject)} {sentence}."
-        for index, sentence in enumerate(sentences)
-    )
+    out: list[str] = []
+    for index, part in enumerate(parts := _sentences(steps)):
+        opening = _opening(index, parts[index - 1], part) if index else ""
+        sentence = f"{opening}{subject} {telling.sentence(part.steps, part.often, part.end_s)}."
+        out.append(capital(sentence))
+    return " ".join(out)
 
 
-def _opening(index: int) -> str:
-    return f"{OPENINGS[(index - 1) % len(OPENINGS)]} "
+@dataclass(frozen=True)
+class _Part:
+    """What one sentence tells; what is repeated stands once, with how often and until when."""
+
+    steps: tuple[Clause, ...]
+    often: str = ""
+    end_s: float = 0.0
 
 
-def _sentences(steps: Sequence[Clause]) -> list[tuple[list[Clause], str, float]]:
-    """Clauses by sentence; what is repeated stands once, with how often and until when."""
-    out: list[tuple[list[Clause], str, float]] = []
+def _opening(index: int, before: _Part, part: _Part) -> str:
+    recurs = before.often and _said(part) == _said(before)[: len(part.steps)]
+    return "Once more, " if recurs else f"{OPENINGS[(index - 1) % len(OPENINGS)]} "
+
+
+def _said(part: _Part) -> list[tuple[object, ...]]:
+    return [(each.signature, each.ees) for each in part.steps]
+
+
+def _sentences(steps: Sequence[Clause]) -> list[_Part]:
+    """Clauses by sentence."""
+    out: list[_Part] = []
     current: list[Clause] = []
     at = 0
     while at < len(steps):
-        size, count = _repetition(steps, at)
+        size, count = repetition(steps, at, longest=LONGEST)
         if current and (count > 1 or _ends(current, steps[at])):
-            out.append((current, "", 0.0))
+            out.append(_Part(tuple(current)))
             current = []
         if count > 1:
-            end = steps[at + size * count - 1].end_s
-            out.append((list(steps[at : at + size]), times(count), end))
+            end_s = steps[at + size * count - 1].end_s
+            out.append(_Part(tuple(steps[at : at + size]), times(count), end_s))
             at += size * count
         else:
             current.append(steps[at])
             at += 1
-    return [*out, (current, "", 0.0)] if current else out
+    return [*out, _Part(tuple(current))] if current else out
 
 
 def _ends(current: Sequence[Clause], following: Clause) -> bool:
@@ -99,19 +119,3 @@ def _ends(current: Sequence[Clause], following: Clause) -> bool:
 
 def _frees(clause: Clause) -> bool:
     return clause.pattern.startswith(("let go", "take {ee}"))
-
-
-def _repetition(steps: Sequence[Clause], at: int) -> tuple[int, int]:
-    """The length of the block that is repeated from here, and how often it stands; else (1, 1)."""
-    best = (1, 1)
-    for size in range(1, LONGEST + 1):
-        block = [(each.signature, each.ees) for each in steps[at : at + size]]
-        count = 1
-        while block == [
-            (each.signature, each.ees)
-            for each in steps[at + size * count : at + size * (count + 1)]
-        ]:
-            count += 1
-        if count > 1 and size * count > best[0] * best[1]:
-            best = (size, count)
-    return best

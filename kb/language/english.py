@@ -67,6 +67,24 @@ def capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
+_SMALL = (
+    *("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
+    *("eleven", "twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen"),
+    *("eighteen", "nineteen"),
+)
+_TENS = ("twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
+
+
+def number(count: int) -> str:
+    """A number in words below a hundred, else in figures: ``twenty-one``."""
+    if count < len(_SMALL):
+        return _SMALL[count]
+    if count >= 100:
+        return str(count)
+    tens, ones = divmod(count, 10)
+    return _TENS[tens - 2] + (f"-{_SMALL[ones]}" if ones else "")
+
+
 def times(count: int) -> str:
-    """How often: ``twice``, ``3 times``."""
-    return {1: "once", 2: "twice"}.get(count, f"{count} times")
+    """How often: ``twice``, ``three times``."""
+    return {1: "once", 2: "twice"}.get(count, f"{number(count)} times")

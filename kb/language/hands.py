@@ -5,7 +5,7 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 
 from capar.model.observation import ObservedLink
-from kb.language.clauses import Clause
+from kb.language.clauses import Clause, in_time
 from kb.lexicon.tables import table
 
 
@@ -31,7 +31,7 @@ def told_in_order(
         merged += common
         rest[first], rest[second] = left, right
     every = [*merged, *(each for clauses in rest for each in clauses)]
-    return tuple(sorted(every, key=lambda each: (each.start_s, each.end_s, each.ees)))
+    return tuple(sorted(every, key=in_time))
 
 
 def _pairs(links: Sequence[ObservedLink]) -> list[tuple[int, int]]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
-from kb.language.english import past, words_of
+from kb.language.english import joined, past, words_of
 from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.tables import table
 
@@ -11,6 +11,9 @@ Cases = Collection[str]
 
 USUAL_PREPOSITION = "with"
 """Before the second object of a primitive whose rule file names none."""
+
+JOINT = "|"
+"""Between the verbs of a pattern that says several things of one object: ``raise|tilt {1}``."""
 
 
 class Phrasebook:
@@ -54,6 +57,6 @@ def built(verb: str, count: int, preposition: str) -> str:
 
 
 def in_past(pattern: str) -> str:
-    """The pattern with its verb in the past: ``reached for {1}``."""
+    """The pattern with its verbs in the past: ``reached for {1}``, ``raised and tilted {1}``."""
     verb, _, rest = pattern.partition(" ")
-    return f"{past(verb)} {rest}".strip()
+    return f"{joined([past(each) for each in verb.split(JOINT)])} {rest}".strip()

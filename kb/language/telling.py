@@ -31,7 +31,7 @@ class Telling:
         text = self._of_agent(main)
         for each in others:
             comma = "," if len(main) + len(each) > 2 else ""
-            text = f"{text}{comma} while {self._of_hand(each)}"
+            text = f"{text}{comma} while {self._of_hand(each, _shared_topic(main))}"
         if often and self._timed:
             text = f"{text} (the last until {until_s:.2f} s)"
         return f"{text}, {often} in all" if often else text
@@ -41,25 +41,37 @@ class Telling:
         self._topic = ""
         for step in steps:
             text = self._verb_phrase(step)
-            if step.ees != self._ees and "{ee}" not in step.pattern:
-                text = f"{text} with {self._hands(step.ees)}"
+            told = step.ees == self._ees or "{ee}" in step.pattern
+            hand = "" if told else self._with_hands(step)
+            if "{with}" in text:
+                text = text.replace("{with}", f"{hand} " if hand else "")
+            elif hand:
+                text = f"{text} {hand}"
             self._ees = step.ees
             parts.append(f"{text}{self._end(step)}")
         return joined(parts)
 
-    def _of_hand(self, steps: Sequence[Clause]) -> str:
-        """The clauses with their hand as the subject."""
+    def _with_hands(self, step: Clause) -> str:
+        """The hand as what is used, or where the tool is that was just named."""
+        *_, word, last = step.pattern.split(" ") if " with {" in step.pattern else ("", "")
+        tool = word == "with" and last.startswith("{")
+        return f"{'in' if tool else 'with'} {self._hands(step.ees)}"
+
+    def _of_hand(self, steps: Sequence[Clause], topic: str) -> str:
+        """The clauses with their hand as the subject, after something was spoken of."""
         parts = []
-        self._topic = ""
+        self._topic = topic
         hand = self._hands(steps[0].ees)
         self._ees = ()
         for step in steps:
             own = replace(step, pattern="move away") if "{ee}" in step.pattern else step
-            parts.append(f"{self._verb_phrase(own)}{self._end(step)}")
+            text = self._verb_phrase(own).replace("{with}", "")
+            parts.append(f"{text}{self._end(step)}")
         return f"{hand} {joined(parts)}"
 
     def _end(self, step: Clause) -> str:
         often = f" {times(step.count)}" if step.count > 1 else ""
+        often = f" {step.often}" if step.often else often
         purpose = f"{often} to {_with_it(step.purpose)}" if step.purpose else often
         return f"{purpose} ({step.start_s:.2f}–{step.end_s:.2f} s)" if self._timed else purpose
 
@@ -67,6 +79,8 @@ class Telling:
         pattern = in_past(step.pattern)
         if step.pattern == "let go of {1}" and step.objects[0] == self._topic:
             pattern = in_past("let go")
+        if pattern.endswith(" there") and step.objects[0] != self._topic:
+            pattern = f"{pattern.removesuffix('there')}in place"
         filled = pattern.replace("{ee}", self._moved_away(step))
         for number, name in enumerate(step.objects, 1):
             filled = filled.replace(f"{{{number}}}", self._mention(name, number))
@@ -87,6 +101,12 @@ class Telling:
             kind = self._kinds[ees[0]]
             return f"both {'feet' if kind == 'foot' else kind + 's'}"
         return f"the {self._names[ees[0]]}"
+
+
+def _shared_topic(steps: Sequence[Clause]) -> str:
+    """What all clauses are about, and no other thing beside it; empty if there is none."""
+    things = {each for step in steps for each in step.objects}
+    return things.pop() if len(things) == 1 else ""
 
 
 def _with_it(purpose: str) -> str:

@@ -1,0 +1,76 @@
+"""Time to explain a segment against the length of a capture, in milliseconds.
+
+Run by hand: ``python benchmarks/explaining.py [--json]``. The facts of the shipped capture are told
+again and again, one trial after the other; each segment of the
+last trial is explained, so that what came before it could matter.
+"""
+
+import argparse
+import json
+from dataclasses import replace
+from importlib import resources
+from statistics import median
+from time import perf_counter
+
+from capar.model.facts import Fact, Frames
+from capar_rules.explaining import Explainer
+from capar_rules.profiles import profile
+from capar_rules.reasoning import infer
+from extractors.facts import extract
+from extractors.readers.bundle import read_capture
+
+COPIES = (1, 10, 100)
+TIMED = ("first", "last", "frame")
+
+
+def repeated(facts: tuple[Fact, ...], copies: int) -> tuple[Fact, ...]:
+    """The same trial so many times, one after the other."""
+    length = next(each.last for each in facts if isinstance(each, Frames)) + 1
+    out: set[Fact] = {Frames(0, copies * length - 1)}
+    for fact in facts:
+        keys = [key for key in TIMED if hasattr(fact, key)]
+        if not isinstance(fact, Frames):
+            out |= {
+                replace(fact, **{key: getattr(fact, key) + copy * length for key in keys})
+                for copy in (range(copies) if keys else (0,))
+            }
+    return tuple(sorted(out, key=lambda each: (type(each).predicate, each)))
+
+
+def measure(facts: tuple[Fact, ...], copies: int) -> dict[str, float]:
+    """Milliseconds for each segment of the last copy."""
+    told = repeated(facts, copies)
+    rules = profile()
+    explainer = Explainer(told, profile=rules)
+    segments = infer(told, profile=rules).links[0].segments
+    last = segments[-len(segments) // copies :]
+    explainer.explain(last[0])
+    costs = []
+    for segment in last:
+        start = perf_counter()
+        explainer.explain(segment)
+        costs.append(1000.0 * (perf_counter() - start))
+    return {
+        "trials": copies,
+        "segments": len(segments),
+        "median_ms": median(costs),
+        "slowest_ms": max(costs),
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+    options = parser.parse_args()
+    with resources.as_file(resources.files("capar") / "demo" / "drink_from_mug") as bundle:
+        facts = extract(read_capture(bundle)).facts
+    rows = [measure(facts, copies) for copies in COPIES]
+    if options.json:
+        print(json.dumps(rows, indent=2))
+        return
+    for row in rows:
+        print("  ".join(f"{name} {value:,.4g}" for name, value in row.items()))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,37 @@
+"""The house keeps its rules: who imports whom, style, types, and what is shipped."""
+
+import subprocess
+import sys
+from importlib import resources
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+BIN = Path(sys.executable).parent
+PACKAGES = ("capar", "extractors", "capar_rules", "kb", "ontology")
+CHECKS = {
+    "imports go one way": ["lint-imports"],
+    "the code is formatted": ["ruff", "format", "--check", "."],
+    "the code is clean": ["ruff", "check", "."],
+    "types hold": ["mypy"],
+}
+
+
+@pytest.mark.parametrize("check", CHECKS)
+def test_the_house_rules_hold(check: str) -> None:
+    tool, *arguments = CHECKS[check]
+    done = subprocess.run(
+        [str(BIN / tool), *arguments], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_what_is_installed_holds_every_file_of_the_source(package: str) -> None:
+    """Rules, words, questions and schemas too, not only Python."""
+    installed = Path(str(resources.files(package)))
+    kept = {".py", ".lp", ".ttl", ".rq", ".json", ".tsv", ".toml", ".csv", ".obj", ".css", ".html"}
+    for path in (ROOT / package).rglob("*"):
+        if path.suffix in kept and "__pycache__" not in path.parts:
+            assert (installed / path.relative_to(ROOT / package)).exists(), path
