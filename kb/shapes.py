@@ -2,9 +2,10 @@
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import TypeAlias
 
 from pyoxigraph import BlankNode, Literal, NamedNode, Quad, Triple
 
@@ -19,6 +20,11 @@ UNIT_TOLERANCE = 1e-3
 """How far an NLT's quaternion may lie from unit length [1]."""
 
 Node = NamedNode | BlankNode | Literal
+Properties: TypeAlias = Mapping[NamedNode, Collection[Node]]
+"""What is said of a thing, by property."""
+
+NLTS = (CAPAR.eeNlt, CAPAR.goalNlt, CAPAR.vNlt)
+"""The properties whose values are NLTs."""
 
 
 @dataclass(frozen=True)
@@ -96,26 +102,38 @@ def _list(said: dict[object, dict[str, list[Node]]], node: Node) -> Iterable[str
         node = said[node][rdf + "rest"][0]
 
 
+@cache
+def _rules_of() -> Mapping[object, tuple[Rule, ...]]:
+    """What is asked of the things of each class."""
+    found: dict[object, tuple[Rule, ...]] = {}
+    for each in rules():
+        found[each.target] = (*found.get(each.target, ()), each)
+    return found
+
+
 def violations(triples: Iterable[Triple | Quad]) -> tuple[str, ...]:
     """What is wrong with statements by our shapes, a line each, sorted."""
     said: dict[object, dict[NamedNode, list[Node]]] = {}
-    things: dict[NamedNode, list[object]] = {}
     for each in triples:
         assert not isinstance(each.object, Triple)
         said.setdefault(each.subject, {}).setdefault(each.predicate, []).append(each.object)
-        if each.predicate == TYPE and isinstance(each.object, NamedNode):
-            things.setdefault(each.object, []).append(each.subject)
-    found = [
+    return _judged(said)
+
+
+def _judged(things: Mapping[object, Properties]) -> tuple[str, ...]:
+    asked = _rules_of()
+    found = {
         f"{_short(thing)}: {rule.message}"
-        for rule in rules()
-        for thing in things.get(rule.target, ())
-        if not _obeys(said[thing], rule)
-    ]
-    return tuple(sorted(set(found)))
+        for thing, said in things.items()
+        for kind in said.get(TYPE, ())
+        for rule in asked.get(kind, ())
+        if not _obeys(said, rule)
+    }
+    return tuple(sorted(found))
 
 
-def _obeys(said: dict[NamedNode, list[Node]], rule: Rule) -> bool:
-    values = said.get(rule.path, [])
+def _obeys(said: Properties, rule: Rule) -> bool:
+    values = said.get(rule.path, ())
     if not rule.least <= len(values) <= rule.most:
         return False
     return all(_fits(value, rule) for value in values) and (
@@ -173,7 +191,14 @@ def prove(name: str, statements: Statements) -> None:
     Raises:
         ShapeError: They do; it says where and how.
     """
-    found = (*violations(statements.quads), *nlt_problems(statements.quads))
+    nlts = [
+        f"{_short(thing)}: {problem}"
+        for thing, said in statements.things.items()
+        for each in NLTS
+        for value in said.get(each, ())
+        if (problem := nlt_problem(value.value))
+    ]
+    found = (*_judged(statements.things), *sorted(nlts))
     if found:
         raise ShapeError(f"observation {name!r}", found)
 

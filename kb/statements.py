@@ -17,40 +17,48 @@ TYPE = NamedNode(RDF + "type")
 LABEL = NamedNode(RDFS + "label")
 
 
+Things: TypeAlias = dict[NamedNode, dict[NamedNode, dict[Term, None]]]
+"""What is said of things: of each, by property, its values in order and each once."""
+
+
 class Statements:
     """What an observation says: of its own things, and of things that it shares with others."""
 
     def __init__(self, about: NamedNode) -> None:
         self.about = about
-        self._said: dict[Quad, None] = {}
-        self._mentioned: set[NamedNode] = set()
+        self.things: Things = {}
+        """Everything that was said, by thing."""
+
+        self._shared: set[NamedNode] = set()
 
     def say(self, subject: NamedNode, kinds: Iterable[NamedNode], said: Said) -> NamedNode:
         """State what a thing of the observation's own is; empty values say nothing."""
-        self._write(subject, kinds, said, self.about)
+        thing = self.things.setdefault(subject, {})
+        for kind in kinds:
+            thing.setdefault(TYPE, {})[kind] = None
+        for predicate, value in said.items():
+            if found := terms(value):
+                thing.setdefault(predicate, {}).update(dict.fromkeys(found))
         return subject
 
     def share(self, subject: NamedNode, kinds: Iterable[NamedNode], said: Said) -> NamedNode:
         """State what a shared thing is, whose name follows from all that is said of it."""
-        if subject not in self._mentioned:
-            self._mentioned.add(subject)
-            self._said[Quad(self.about, CAPAR.mentions, subject, self.about)] = None
-            self._write(subject, kinds, said, names.graph_of(subject))
+        if subject not in self._shared:
+            self._shared.add(subject)
+            self.things.setdefault(self.about, {}).setdefault(CAPAR.mentions, {})[subject] = None
+            self.say(subject, kinds, said)
         return subject
 
     @property
     def quads(self) -> list[Quad]:
         """Everything that was said, each statement in the graph where it stands."""
-        return list(self._said)
-
-    def _write(
-        self, subject: NamedNode, kinds: Iterable[NamedNode], said: Said, graph: NamedNode
-    ) -> None:
-        for kind in kinds:
-            self._said[Quad(subject, TYPE, kind, graph)] = None
-        for predicate, value in said.items():
-            for each in terms(value):
-                self._said[Quad(subject, predicate, each, graph)] = None
+        return [
+            Quad(thing, predicate, value, graph)
+            for thing, said in self.things.items()
+            for graph in (names.graph_of(thing) if thing in self._shared else self.about,)
+            for predicate, values in said.items()
+            for value in values
+        ]
 
 
 def terms(value: Value | Iterable[NamedNode]) -> list[Term]:

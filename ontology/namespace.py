@@ -122,6 +122,25 @@ class CAPAR(metaclass=Closed):
     conditionKind: NamedNode
     holds: NamedNode
     index: NamedNode
+    # borders.ttl
+    BorderKind: NamedNode
+    Placement: NamedNode
+    CaptureBegins: NamedNode
+    CaptureEnds: NamedNode
+    ContactBegins: NamedNode
+    ContactEnds: NamedNode
+    StartsMoving: NamedNode
+    StopsMoving: NamedNode
+    Turns: NamedNode
+    ComesToRest: NamedNode
+    LeavesRest: NamedNode
+    Reverses: NamedNode
+    BeginsSwinging: NamedNode
+    EndsSwinging: NamedNode
+    Tips: NamedNode
+    Rights: NamedNode
+    placement: NamedNode
+    preposition: NamedNode
     # complex.ttl
     ComplexPar: NamedNode
     ComplexStep: NamedNode

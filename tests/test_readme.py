@@ -50,7 +50,9 @@ def test_every_command_of_the_readme_runs(folder: Path) -> None:
             text=True,
         )
         assert done.returncode == 0, f"{command}\n{done.stderr}"
-        assert done.stdout or done.stderr, command
+    assert (folder / "drink.png").stat().st_size > 10_000
+    assert (folder / "mine" / "capture.toml").exists()
+    assert (folder / "known.trig").exists()
 
 
 def test_what_the_readme_links_to_is_there() -> None:

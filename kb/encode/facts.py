@@ -1,6 +1,7 @@
 """Facts as statements: each has its predicate as its class, and its arguments by name."""
 
 from dataclasses import fields
+from functools import cache
 from typing import TYPE_CHECKING
 
 from pyoxigraph import NamedNode
@@ -55,8 +56,13 @@ def facts(out: Statements, stated: "tuple[Fact, ...]", capture: NamedNode) -> li
     return [_fact(out, each, capture) for each in stated]
 
 
+@cache
+def _arguments(kind: "type[Fact]") -> tuple[str, ...]:
+    return tuple(each.name for each in fields(kind))
+
+
 def _fact(out: Statements, fact: "Fact", capture: NamedNode) -> NamedNode:
-    arguments = {each.name: getattr(fact, each.name) for each in fields(fact)}
+    arguments = {each: getattr(fact, each) for each in _arguments(type(fact))}
     kind = CLASSES.get(fact.predicate)
     said: dict[NamedNode, Value] = {}
     if kind:

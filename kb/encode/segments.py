@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from pyoxigraph import NamedNode
 
+from capar.model.errors import UnknownNameError
 from capar.model.par import UNKNOWN, FeatureSet
 from kb import names
 from kb.encode.scene import GENERATED
@@ -13,6 +14,24 @@ from ontology.vocabularies import TIME
 
 if TYPE_CHECKING:
     from capar.model.observation import Border, Observation, ObservedLink, Segment
+
+BORDER_KINDS = {
+    "first": CAPAR.CaptureBegins,
+    "last": CAPAR.CaptureEnds,
+    "begins": CAPAR.ContactBegins,
+    "ends": CAPAR.ContactEnds,
+    "starts_moving": CAPAR.StartsMoving,
+    "stops_moving": CAPAR.StopsMoving,
+    "turns": CAPAR.Turns,
+    "comes_to_rest": CAPAR.ComesToRest,
+    "leaves_rest": CAPAR.LeavesRest,
+    "reverses": CAPAR.Reverses,
+    "begins_swinging": CAPAR.BeginsSwinging,
+    "ends_swinging": CAPAR.EndsSwinging,
+    "tips": CAPAR.Tips,
+    "rights": CAPAR.Rights,
+}
+"""What may happen at a border, by the word that observations use for it."""
 
 MEETS = NamedNode(TIME + "intervalMeets")
 
@@ -96,6 +115,7 @@ def _segment(
         CAPAR.features: features(out, seen.features),
         CAPAR.beginsWith: _borders(out, node, "begin", seen.begins),
         CAPAR.endsWith: _borders(out, node, "end", seen.ends),
+        CAPAR.placement: _placements(out, node, seen.prepositions),
         CAPAR.purpose: seen.purpose,
         CAPAR.next: follows,
         MEETS: follows,
@@ -103,6 +123,30 @@ def _segment(
     }
     kinds = (CAPAR.Segment,) if seen.known else (CAPAR.Segment, CAPAR.UnknownSegment)
     return out.say(node, kinds, said)
+
+
+def border_kind(word: str) -> NamedNode:
+    """What happens at a border, by its word.
+
+    Raises:
+        UnknownNameError: Nothing of that name may happen there.
+    """
+    if word not in BORDER_KINDS:
+        raise UnknownNameError("kind of border", word, BORDER_KINDS)
+    return BORDER_KINDS[word]
+
+
+def _placements(
+    out: Statements, of: NamedNode, prepositions: tuple[tuple[str, str, str], ...]
+) -> list[NamedNode]:
+    return [
+        out.say(
+            names.part(of, "placement", index),
+            (CAPAR.Placement,),
+            {CAPAR.preposition: preposition, CAPAR.body: body, CAPAR.other: other},
+        )
+        for index, (preposition, body, other) in enumerate(prepositions)
+    ]
 
 
 def _borders(
@@ -114,7 +158,7 @@ def _borders(
             (CAPAR.Border,),
             {
                 CAPAR.index: index,
-                CAPAR.borderKind: each.kind,
+                CAPAR.borderKind: border_kind(each.kind),
                 CAPAR.body: each.body,
                 CAPAR.other: each.other,
             },

@@ -7,7 +7,7 @@ from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import Ipar, Motion
 from kb.language.contacts import Scene
 from kb.language.english import joined, words_of
-from kb.language.phrasing import Phrasebook
+from kb.language.phrasing import QUIET, Phrasebook
 from kb.lexicon.links import motion_senses
 from kb.lexicon.wordnet import wordnet
 
@@ -66,7 +66,7 @@ def clauses(
     With ``only_changes``, what changed nothing is left out too, unless nothing else happened.
     """
     ipars = {(each.ee, each.start_s): each for each in observation.ipars}
-    told = _told_segments(link, only_changes=only_changes)
+    told = _told_segments(link, book, only_changes=only_changes)
     names = {each.name for each in observation.segments}
     found: list[tuple[Segment, Clause]] = []
     held = False
@@ -82,11 +82,11 @@ def clauses(
     return _with_purposes(found, names)
 
 
-def _told_segments(link: ObservedLink, *, only_changes: bool) -> set[int]:
+def _told_segments(link: ObservedLink, book: Phrasebook, *, only_changes: bool) -> set[int]:
     touching = [each for each in link.segments if each.objects]
     if not only_changes:
         return {each.index for each in touching}
-    changing = [each for each in touching if not each.known or _changes(each)]
+    changing = [each for each in touching if not each.known or _changes(each, book)]
     chosen = changing or [each for each in touching if _alike(each, touching[:2][-1])]
     return {each.index for each in chosen}
 
@@ -96,11 +96,10 @@ def _alike(one: Segment, other: Segment) -> bool:
     return (one.name, one.objects) == (other.name, other.objects)
 
 
-def _changes(segment: Segment) -> bool:
-    """Whether it moves or strikes something; what moves while it is only reached does not count."""
-    features = segment.features
-    comes = "1" not in features.rel_start and "1" in features.rel_end and not segment.general
-    return "1" in features.force or ("1" in features.change_loc and not comes)
+def _changes(segment: Segment, book: Phrasebook) -> bool:
+    """Whether it moves or strikes something; coming and going do not, whatever moves meanwhile."""
+    moves = "1" in segment.features.change_loc + segment.features.force
+    return moves and book.pattern(segment.name, segment.general, (), 1) not in QUIET
 
 
 def _same_dominant(before: Segment | None, segment: Segment) -> bool:
@@ -144,25 +143,34 @@ def _clause(
     if not segment.known:
         return _unknown(segment)
     pattern = book.pattern(segment.name, segment.general, cases, len(segment.objects))
+    pattern = _deed(segment, before, cases, names) or pattern
+    objects = segment.objects
+    if _touches_several(segment) and "{2}" not in pattern:
+        objects = tuple(sorted(objects))
+        places = [f"{{{number}}}" for number in range(1, len(objects) + 1)]
+        pattern = pattern.replace("{1}", joined(places))
     return Clause(
-        pattern=_deed(segment, before, cases, names) or pattern,
-        objects=segment.objects,
+        pattern=pattern,
+        objects=objects,
         ees=(segment.ee,),
         start_s=segment.start_s,
         end_s=segment.end_s,
-        changes=_changes(segment),
+        changes=_changes(segment, book),
     )
 
 
+def _touches_several(segment: Segment) -> bool:
+    """Whether the end-effector touches all the objects at once, and possesses none."""
+    count = segment.features.count
+    ends = (segment.features.rel_start[:count], segment.features.rel_end[:count])
+    return count > 1 and not segment.possessed and "1" * count in ends
+
+
 def _unknown(segment: Segment) -> Clause:
-    """What can be said of features that no rule covers: whether things moved, and which."""
-    moved = [
-        number
-        for number, bit in enumerate(segment.features.change_loc, 1)
-        if bit == "1" and segment.possessed
-    ]
-    verb = "move" if moved else "handle"
-    things = joined([f"{{{each}}}" for each in moved or range(1, len(segment.objects) + 1)])
+    """What can be said of features that no rule covers: whether the hand moved a thing."""
+    moves = segment.possessed and segment.features.change_loc.startswith("1")
+    places = [f"{{{number}}}" for number in range(1, len(segment.objects) + 1)]
+    verb, things = ("move", "{1}") if moves else ("handle", joined(places))
     return Clause(
         pattern=f"{verb} {things} {{with}}in a way that no rule names",
         objects=segment.objects,

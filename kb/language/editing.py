@@ -2,18 +2,19 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from itertools import groupby
+from itertools import groupby, pairwise
 
 from kb.language.clauses import Clause, in_time
+from kb.language.english import times
 from kb.language.phrasing import JOINT
 
-OVER_AND_OVER = "time and again"
+OVER_AND_OVER = "again and again"
 """How often, where a summary does not count."""
 
 MOST_VERBS = 4
 """The most verbs that share their object."""
 
-RECALLED = 4
+RECALLED = 2
 """After how many other clauses one that says the same is no longer said to be done again."""
 
 
@@ -30,15 +31,27 @@ def edited(steps: Sequence[Clause], *, summary: bool) -> tuple[Clause, ...]:
         streams: dict[tuple[str, ...], list[Clause]] = {}
         for each in part:
             streams.setdefault(each.ees, []).append(each)
-        found = [clause for told in streams.values() for clause in _plain_runs(told, joint)]
+        found = [clause for told in streams.values() for clause in _stream(told, joint)]
         out += sorted(found, key=in_time)
     return _again(out)
+
+
+def _stream(told: Sequence[Clause], joint: Callable[[list[Clause]], list[Clause]]) -> list[Clause]:
+    return _plain_runs(_with_pauses(_leading_up(told)), joint)
 
 
 def counted(told: Iterable[Clause]) -> tuple[Clause, ...]:
     """The clauses, with those that say the same on end as one that says how often."""
     runs = (list(same) for _, same in groupby(told, key=lambda each: each.signature))
-    return tuple(_whole(run, count=len(run)) for run in runs)
+    return tuple(_whole(run, count=_times(run)) for run in runs)
+
+
+def _times(run: Sequence[Clause]) -> int:
+    """How often it was done: what goes on and changes nothing was done once."""
+    goes_on = [
+        not later.changes and later.start_s <= earlier.end_s for earlier, later in pairwise(run)
+    ]
+    return len(run) - sum(goes_on)
 
 
 def _whole(run: Sequence[Clause], *, count: int = 1, pattern: str = "") -> Clause:
@@ -50,6 +63,48 @@ def _whole(run: Sequence[Clause], *, count: int = 1, pattern: str = "") -> Claus
         changes=any(each.changes for each in run),
         count=count,
     )
+
+
+def _leading_up(told: Sequence[Clause]) -> list[Clause]:
+    """The clauses, without one that the next says more of: ``move it``, ``move it to the bowl``."""
+    out: list[Clause] = []
+    for clause in told:
+        if out and _more_of(clause, out[-1]) and out[-1].count == 1:
+            clause = replace(clause, start_s=out.pop().start_s)  # noqa: PLW2901 (the same deed)
+        out.append(clause)
+    return out
+
+
+def _more_of(clause: Clause, other: Clause) -> bool:
+    """Whether it says what the other says, and where to."""
+    longer = clause.pattern.startswith(f"{other.pattern} ")
+    return longer and clause.objects[:1] == other.objects[:1] and not other.purpose
+
+
+def _with_pauses(told: Sequence[Clause]) -> list[Clause]:
+    """The clauses, with a deed that was only paused as one that says how often it was done."""
+    out: list[Clause] = []
+    at = 0
+    while at < len(told):
+        end = at
+        while told[at].changes and _resumed(told[at], told[end + 1 : end + 3]):
+            end += 2
+        run = told[at : end + 1]
+        count = sum(each.count for each in run[::2])
+        pauses = "with a pause" if len(run) == 3 else "with pauses"
+        paused = replace(_whole(run), often=f"{times(count)} {pauses}")
+        out.append(paused if len(run) > 1 else told[at])
+        at = end + 1
+    return out
+
+
+def _resumed(deed: Clause, following: Sequence[Clause]) -> bool:
+    """Whether what follows is a pause with the thing in the hand, and then the deed again."""
+    if len(following) < 2:
+        return False
+    pause, resumed = following
+    held = pause.pattern.startswith("hold ") and pause.objects[:1] == deed.objects[:1]
+    return held and replace(resumed, count=1).signature == replace(deed, count=1).signature
 
 
 def _plain_runs(
@@ -65,7 +120,7 @@ def _plain_runs(
 def _plain(clause: Clause) -> bool:
     """Whether it says a single verb of a single thing: ``turn {1}``."""
     verb, _, rest = clause.pattern.partition(" ")
-    return bool(verb) and rest == "{1}" and not clause.purpose
+    return bool(verb) and rest == "{1}" and not clause.purpose and not clause.often
 
 
 def _verb(clause: Clause) -> str:
@@ -117,8 +172,8 @@ def _sharing(group: Sequence[Clause]) -> list[Clause]:
 
 def _summed_run(run: list[Clause]) -> list[Clause]:
     """Many clauses of one thing as one that names each verb once, in order."""
-    if len(run) < 3:
-        return run
+    if len(run) <= MOST_VERBS:
+        return _joined_run(run)
     verbs = list(dict.fromkeys(map(_verb, run)))
     often = "" if len(verbs) == sum(each.count for each in run) else OVER_AND_OVER
     return [replace(_whole(run, pattern=f"{JOINT.join(verbs)} {{1}}"), often=often)]
@@ -136,7 +191,9 @@ def _again(told: Sequence[Clause]) -> tuple[Clause, ...]:
 
 
 def _same_deed(one: Clause, other: Clause) -> bool:
-    return (one.pattern, one.objects) == (other.pattern, other.objects)
+    longer, shorter = sorted((one.pattern, other.pattern), key=len, reverse=True)
+    same = longer == shorter or longer.startswith(f"{shorter} ")
+    return same and one.objects[:1] == other.objects[:1]
 
 
 def repetition(steps: Sequence[Clause], at: int, *, longest: int) -> tuple[int, int]:

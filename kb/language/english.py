@@ -57,6 +57,8 @@ def name_of(words: str) -> str:
 
 def joined(parts: Sequence[str]) -> str:
     """Parts as a list in a sentence: ``a, b, and c``."""
+    if len(parts) == 2 and ", " in parts[0]:
+        return f"{parts[0]}, and {parts[1]}"
     if len(parts) <= 2:
         return " and ".join(parts)
     return f"{', '.join(parts[:-1])}, and {parts[-1]}"

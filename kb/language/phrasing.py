@@ -15,6 +15,9 @@ USUAL_PREPOSITION = "with"
 JOINT = "|"
 """Between the verbs of a pattern that says several things of one object: ``raise|tilt {1}``."""
 
+QUIET = frozenset({"reach for {1}", "let go of {1}", "take {ee} away"})
+"""Patterns that tell of the hand alone: what moves meanwhile is not moved by what they say."""
+
 
 class Phrasebook:
     """Patterns by primitive: shipped ones, and verbs of the rule files for all others."""

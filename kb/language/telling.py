@@ -1,5 +1,6 @@
 """One sentence out of clauses: pronouns for what was just named, hands, times, "while"."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -10,6 +11,10 @@ from kb.language.phrasing import in_past
 from kb.language.vocabulary import SIDES
 
 
+_ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
+"""Places of several objects that a verb has as one."""
+
+
 class Telling:
     """Says clauses; remembers the hand, and within a sentence what each hand has to do with."""
 
@@ -18,6 +23,7 @@ class Telling:
         self._names = {link.ee: _spoken(link) for link in links}
         self._timed = timed
         self._topic = ""
+        self._several: tuple[str, ...] = ()
         self._ees: tuple[str, ...] = ()
 
     def sentence(self, steps: Sequence[Clause], often: str, until_s: float) -> str:
@@ -38,7 +44,7 @@ class Telling:
 
     def _of_agent(self, steps: Sequence[Clause]) -> str:
         parts = []
-        self._topic = ""
+        self._topic, self._several = "", ()
         for step in steps:
             text = self._verb_phrase(step)
             told = step.ees == self._ees or "{ee}" in step.pattern
@@ -60,7 +66,7 @@ class Telling:
     def _of_hand(self, steps: Sequence[Clause], topic: str) -> str:
         """The clauses with their hand as the subject, after something was spoken of."""
         parts = []
-        self._topic = topic
+        self._topic, self._several = topic, ()
         hand = self._hands(steps[0].ees)
         self._ees = ()
         for step in steps:
@@ -81,11 +87,14 @@ class Telling:
             pattern = in_past("let go")
         if pattern.endswith(" there") and step.objects[0] != self._topic:
             pattern = f"{pattern.removesuffix('there')}in place"
+        if "{1}" in pattern and step.objects == self._several:
+            pattern = _ALL_PLACES.sub("them", pattern)
+        self._several = step.objects if _ALL_PLACES.search(pattern) else ()
         filled = pattern.replace("{ee}", self._moved_away(step))
         for number, name in enumerate(step.objects, 1):
             filled = filled.replace(f"{{{number}}}", self._mention(name, number))
         if step.objects:
-            self._topic = step.objects[0]
+            self._topic = "" if self._several else step.objects[0]
         return filled
 
     def _mention(self, name: str, number: int) -> str:
@@ -104,9 +113,9 @@ class Telling:
 
 
 def _shared_topic(steps: Sequence[Clause]) -> str:
-    """What all clauses are about, and no other thing beside it; empty if there is none."""
-    things = {each for step in steps for each in step.objects}
-    return things.pop() if len(things) == 1 else ""
+    """What every clause is about first; empty if that differs."""
+    things = {step.objects[:1] for step in steps}
+    return "".join(things.pop()) if len(things) == 1 else ""
 
 
 def _with_it(purpose: str) -> str:
