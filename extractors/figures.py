@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import trimesh
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
@@ -12,6 +13,10 @@ from extractors.poses import Poses, rotation_matrices
 
 DIRECTIONS = 64
 """Directions in which a body's outermost corners are taken [1]: 25 degrees lie between them."""
+
+
+AROUND = np.asarray(trimesh.creation.icosphere(subdivisions=2).vertices)
+"""Unit directions all around, evenly."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +61,11 @@ class Figure:
 
     @cached_property
     def planes(self) -> Float[np.ndarray, "planes 4"] | None:
-        """Its convex hull as outward normals and offsets from its middle; None without volume."""
+        """Its convex hull as outward normals and offsets from its middle; None without volume.
+
+        A hull of very many sides, as of a scan, is told by the planes that lean on it from
+        directions all around, which stand off it by no more than a hundredth of its size.
+        """
         if self.shape is None:
             return None
         points = np.asarray(self.shape.vertices) - self.shape.bounds.mean(axis=0)
@@ -64,7 +73,10 @@ class Figure:
             equations = ConvexHull(points).equations
         except (QhullError, ValueError):
             return None
-        return np.unique(equations.round(6), axis=0)
+        planes = np.unique(equations.round(6), axis=0)
+        if len(planes) <= len(AROUND):
+            return planes
+        return np.hstack([AROUND, -(points @ AROUND.T).max(axis=0)[:, None]])
 
     @cached_property
     def boxes(self) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:

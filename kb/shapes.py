@@ -5,7 +5,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from pyoxigraph import BlankNode, Literal, NamedNode, Quad, Triple
 
@@ -120,7 +120,7 @@ def violations(triples: Iterable[Triple | Quad]) -> tuple[str, ...]:
     return _judged(said)
 
 
-def _judged(things: Mapping[object, Properties]) -> tuple[str, ...]:
+def _judged(things: Mapping[Any, Properties]) -> tuple[str, ...]:
     asked = _rules_of()
     found = {
         f"{_short(thing)}: {rule.message}"

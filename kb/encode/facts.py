@@ -2,7 +2,7 @@
 
 from dataclasses import fields
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 from pyoxigraph import NamedNode
 
@@ -57,12 +57,12 @@ def facts(out: Statements, stated: "tuple[Fact, ...]", capture: NamedNode) -> li
 
 
 @cache
-def _arguments(kind: "type[Fact]") -> tuple[str, ...]:
+def _arguments(kind: Any) -> tuple[str, ...]:
     return tuple(each.name for each in fields(kind))
 
 
 def _fact(out: Statements, fact: "Fact", capture: NamedNode) -> NamedNode:
-    arguments = {each: getattr(fact, each) for each in _arguments(type(fact))}
+    arguments = {each: getattr(fact, each) for each in _arguments(cast(Any, type(fact)))}
     kind = CLASSES.get(fact.predicate)
     said: dict[NamedNode, Value] = {}
     if kind:

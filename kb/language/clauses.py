@@ -87,8 +87,14 @@ def _told_segments(link: ObservedLink, book: Phrasebook, *, only_changes: bool) 
     if not only_changes:
         return {each.index for each in touching}
     changing = [each for each in touching if not each.known or _changes(each, book)]
-    chosen = changing or [each for each in touching if _alike(each, touching[:2][-1])]
+    manual = [each for each in touching if not _quiet(each, book)] or touching
+    chosen = changing or [each for each in manual if _alike(each, manual[0])]
     return {each.index for each in chosen}
+
+
+def _quiet(segment: Segment, book: Phrasebook) -> bool:
+    """Whether it tells of the hand alone."""
+    return book.pattern(segment.name, segment.general, (), 1) in QUIET
 
 
 def _alike(one: Segment, other: Segment) -> bool:
@@ -99,7 +105,7 @@ def _alike(one: Segment, other: Segment) -> bool:
 def _changes(segment: Segment, book: Phrasebook) -> bool:
     """Whether it moves or strikes something; coming and going do not, whatever moves meanwhile."""
     moves = "1" in segment.features.change_loc + segment.features.force
-    return moves and book.pattern(segment.name, segment.general, (), 1) not in QUIET
+    return moves and not _quiet(segment, book)
 
 
 def _same_dominant(before: Segment | None, segment: Segment) -> bool:

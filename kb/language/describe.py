@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from capar.model.observation import Observation
+from capar.model.observation import Observation, ObservedLink
 from kb.language.clauses import Clause, clauses
 from kb.language.contacts import Scene
 from kb.language.editing import counted, edited, repetition
 from kb.language.english import capital, the_agent, times
 from kb.language.hands import spoken_links, told_in_order
-from kb.language.phrasing import Phrasebook
+from kb.language.phrasing import FREE, Phrasebook
 from kb.language.telling import Telling
 from kb.lexicon.links import PrimitiveWords
 
@@ -21,6 +21,9 @@ LONGEST = 6
 
 LONGEST_OF_TWO = 4
 """The most clauses of each hand in a sentence about two."""
+
+ENOUGH_OF_ONE = 3
+"""After so many clauses, what is done with another thing begins another sentence."""
 
 OPENINGS = ("Then", "Next,", "After that,")
 """How sentences after the first begin, in turn."""
@@ -48,19 +51,30 @@ def describe(
     told = [
         counted(clauses(observation, link, book, scene, only_changes=summary)) for link in links
     ]
+    if summary and any(each.changes for part in told for each in part):
+        told = [part if any(each.changes for each in part) else () for part in told]
     steps = told_in_order(links, told)
     if not timed:
         steps = edited(steps, summary=summary)
     subject = the_agent(observation.agent.name)
-    if not steps:
-        return f"{capital(subject)} touched nothing."
     telling = Telling(links, timed=timed)
+    if not steps:
+        return f"{capital(subject)} {telling.idle(_moved_freely(links, book))}."
     out: list[str] = []
     for index, part in enumerate(parts := _sentences(steps)):
         opening = _opening(index, parts[index - 1], part) if index else ""
         sentence = f"{opening}{subject} {telling.sentence(part.steps, part.often, part.end_s)}."
         out.append(capital(sentence))
     return " ".join(out)
+
+
+def _moved_freely(links: Sequence[ObservedLink], book: Phrasebook) -> list[str]:
+    """The end-effectors that moved by themselves."""
+    return [
+        link.ee
+        for link in links
+        if any(book.pattern(each.name, each.general, (), 0) == FREE for each in link.segments)
+    ]
 
 
 @dataclass(frozen=True)
@@ -104,7 +118,8 @@ def _sentences(steps: Sequence[Clause]) -> list[_Part]:
 def _ends(current: Sequence[Clause], following: Clause) -> bool:
     """Whether a sentence ends before a clause.
 
-    One hand's sentence ends when it is long or the hand has let go. What the other hand does at
+    One hand's sentence ends when it is long, when the hand has let go, and when it turns to
+    another thing after enough was told of the first. What the other hand does at
     the same time goes on in the same sentence; what it does later, or both do, in another.
     """
     own = [each for each in current if each.ees == following.ees]
@@ -113,8 +128,13 @@ def _ends(current: Sequence[Clause], following: Clause) -> bool:
         return True
     if any(set(each.ees) & set(following.ees) for each in other):
         return True
-    freed = not other and any(_frees(each) for each in own[-1:])
-    return freed or len(own) >= (LONGEST_OF_TWO if other else LONGEST)
+    if not other and own and (_frees(own[-1]) or _turns_away(own, following)):
+        return True
+    return len(own) >= (LONGEST_OF_TWO if other else LONGEST)
+
+
+def _turns_away(told: Sequence[Clause], following: Clause) -> bool:
+    return len(told) >= ENOUGH_OF_ONE and told[-1].objects[:1] != following.objects[:1]
 
 
 def _frees(clause: Clause) -> bool:

@@ -113,7 +113,8 @@ def _plain_runs(
     """The clauses, with each run of bare verbs over one thing joined."""
     out: list[Clause] = []
     for (plain, _), same in groupby(told, key=lambda each: (_plain(each), each.objects)):
-        out += joint(list(same)) if plain else same
+        run = list(same)
+        out += joint(run) if plain else run
     return out
 
 
@@ -191,9 +192,9 @@ def _again(told: Sequence[Clause]) -> tuple[Clause, ...]:
 
 
 def _same_deed(one: Clause, other: Clause) -> bool:
-    longer, shorter = sorted((one.pattern, other.pattern), key=len, reverse=True)
-    same = longer == shorter or longer.startswith(f"{shorter} ")
-    return same and one.objects[:1] == other.objects[:1]
+    if one.pattern == other.pattern:
+        return one.objects == other.objects
+    return _more_of(one, other) or _more_of(other, one)
 
 
 def repetition(steps: Sequence[Clause], at: int, *, longest: int) -> tuple[int, int]:

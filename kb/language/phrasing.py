@@ -18,6 +18,9 @@ JOINT = "|"
 QUIET = frozenset({"reach for {1}", "let go of {1}", "take {ee} away"})
 """Patterns that tell of the hand alone: what moves meanwhile is not moved by what they say."""
 
+FREE = "move {ee}"
+"""The pattern of what a hand does that is of no object."""
+
 
 class Phrasebook:
     """Patterns by primitive: shipped ones, and verbs of the rule files for all others."""

@@ -10,7 +10,6 @@ from kb.language.english import joined, noun, the, times
 from kb.language.phrasing import in_past
 from kb.language.vocabulary import SIDES
 
-
 _ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
 """Places of several objects that a verb has as one."""
 
@@ -35,12 +34,21 @@ class Telling:
             self._ees = ()
         main, *others = streams.values()
         text = self._of_agent(main)
-        for each in others:
-            comma = "," if len(main) + len(each) > 2 else ""
-            text = f"{text}{comma} while {self._of_hand(each, _shared_topic(main))}"
+        if others:
+            comma = "," if len(steps) > 2 else ""
+            meanwhile = [self._of_hand(each, _shared_topic(main)) for each in others]
+            text = f"{text}{comma} while {joined(meanwhile)}"
         if often and self._timed:
             text = f"{text} (the last until {until_s:.2f} s)"
         return f"{text}, {often} in all" if often else text
+
+    def idle(self, ees: Sequence[str]) -> str:
+        """That nothing was touched, and what was moved, as the rest of a sentence."""
+        kinds: dict[str, list[str]] = {}
+        for ee in ees:
+            kinds.setdefault(self._kinds[ee], []).append(ee)
+        moved = joined([self._hands(tuple(each)) for each in kinds.values()])
+        return f"moved {moved} and touched nothing" if moved else "touched nothing"
 
     def _of_agent(self, steps: Sequence[Clause]) -> str:
         parts = []
@@ -93,8 +101,8 @@ class Telling:
         filled = pattern.replace("{ee}", self._moved_away(step))
         for number, name in enumerate(step.objects, 1):
             filled = filled.replace(f"{{{number}}}", self._mention(name, number))
-        if step.objects:
-            self._topic = "" if self._several else step.objects[0]
+        named = "{1}" in step.pattern or step.objects[:1] == (self._topic,)
+        self._topic = step.objects[0] if named and not self._several else ""
         return filled
 
     def _mention(self, name: str, number: int) -> str:

@@ -59,3 +59,12 @@ def five_by_three() -> tuple[Observation, ...]:
         for performer in performers
         for name, trial in ACTIONS.items()
     )
+
+
+@pytest.fixture(scope="session")
+def extended_five_by_three() -> tuple[Observation, ...]:
+    """The same by the default rules; only the first performer's actions are given a name."""
+    first, *others = motions.PERFORMERS
+    named = [observe(trial(first).capture, name=name) for name, trial in ACTIONS.items()]
+    unnamed = [observe(trial(each).capture) for each in others for trial in ACTIONS.values()]
+    return (*named, *unnamed)

@@ -17,7 +17,7 @@ PERFORMERS = sorted(each.name for each in motions.PERFORMERS)
 ASKED_HERE = {
     "touching", "goal", "before", "follows", "grasped", "hand", "performers", "shared",
     "unknown", "unexplained", "instruments", "world", "allen", "observations", "actions",
-    "notices", "looked_at",
+    "notices", "looked_at", "where",
 }  # fmt: skip
 
 
@@ -222,6 +222,10 @@ def test_what_was_looked_at_is_what_the_locations_say(
         if place.action == "Reach" and place.v_nlt
     }
     assert {(row["observation"], row["seen"]) for row in rows} == expected
+
+
+def test_rules_without_prepositions_say_nowhere(known: Actionary) -> None:
+    assert known.ask("where") == []
 
 
 def test_a_wrong_parameter_says_which_exist() -> None:

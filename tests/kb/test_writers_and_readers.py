@@ -4,7 +4,6 @@ import json
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -76,14 +75,14 @@ def test_a_reader_reads_beside_a_writer_and_sees_more_when_refreshed(tmp_path: P
 def test_readers_go_on_while_a_writer_writes_much(tmp_path: Path) -> None:
     with Actionary.open(tmp_path / "a") as writer:
         writer.add(drink_from_mug())
-        begun, seen = time.monotonic(), 0
+        seen = 0
         for index in range(12):
             writer.add(replace(drink_from_mug(), capture=f"again_{index}"))
             with Actionary.open(tmp_path / "a", read_only=True) as reader:
                 found = reader.ask("performers", action="DrinkFromMug")
                 assert len(found) == index + 2
                 seen += 1
-        assert seen == 12 and time.monotonic() - begun < 60
+        assert seen == 12
 
 
 def test_reading_where_nothing_is_says_what_makes_one(tmp_path: Path) -> None:

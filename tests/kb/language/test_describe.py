@@ -93,8 +93,8 @@ def test_two_hands_that_do_the_same_are_told_once() -> None:
 
 def test_what_no_rule_names_is_said_to_be_so() -> None:
     assert describe(with_unknown()) == (
-        "The agent reached for the mug with the right hand and did something with it and the table "
-        "that no rule names (nearest to MoveObj or MoveObjTo)."
+        "The agent reached for the mug with the right hand and handled it and the table in a way "
+        "that no rule names."
     )
 
 
@@ -126,7 +126,7 @@ def test_what_is_repeated_is_told_once_with_how_often() -> None:
     seen = observation("Thrice", {"right_hand": pieces}, (MUG,), frames=361, rate_hz=RATE_HZ)
     assert describe(seen) == (
         "The agent reached for the mug with the right hand, touched it, and took the hand away, "
-        "3 times in all."
+        "three times in all."
     )
 
 

@@ -1,10 +1,12 @@
 """Forms of words: pasts from data and by rule, names as nouns, lists."""
 
+import re
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kb.language.english import joined, name_of, noun, past, the, the_agent, times, words_of
+from kb.language.english import joined, name_of, noun, number, past, the, the_agent, times, words_of
 
 
 @pytest.mark.parametrize(
@@ -29,7 +31,7 @@ def test_a_verb_has_its_past(verb: str, form: str) -> None:
 def test_names_are_said_as_nouns() -> None:
     assert (noun("blue_cup"), the("blue_cup"), the("Anna")) == ("blue cup", "the blue cup", "Anna")
     assert (the_agent("agent"), the_agent("subject0")) == ("the agent", "subject0")
-    assert [times(each) for each in (1, 2, 20)] == ["once", "twice", "20 times"]
+    assert [times(each) for each in (1, 2, 21)] == ["once", "twice", "twenty-one times"]
 
 
 @given(st.lists(st.from_regex(r"[a-z]{2,8}", fullmatch=True), min_size=1, max_size=4))
@@ -42,3 +44,16 @@ def test_lists_are_joined_as_in_a_sentence() -> None:
     assert joined(["a"]) == "a"
     assert joined(["a", "b"]) == "a and b"
     assert joined(["a", "b", "c"]) == "a, b, and c"
+    assert joined(["a, b, and c", "d"]) == "a, b, and c, and d"
+
+
+@given(st.integers(0, 99))
+def test_numbers_below_a_hundred_are_words_and_no_two_the_same(count: int) -> None:
+    assert re.fullmatch(r"[a-z]+(-[a-z]+)?", number(count))
+    assert all(number(count) != number(other) for other in range(100) if other != count)
+    assert [number(each) for each in (12, 20, 99, 100)] == [
+        "twelve",
+        "twenty",
+        "ninety-nine",
+        "100",
+    ]

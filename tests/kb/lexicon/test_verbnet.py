@@ -2,7 +2,6 @@
 
 import os
 import random
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -169,7 +168,7 @@ def test_classes_survive_the_store(full: tuple[VerbClass, ...], full_store: Stor
 
 
 @needs_verbnet
-def test_a_hundred_verbs_are_answered_in_less_than_a_tenth_of_a_second_each(
+def test_a_hundred_verbs_are_answered_with_their_classes(
     full: tuple[VerbClass, ...], full_store: Store
 ) -> None:
     words = primitive_words(primitive_files())
@@ -177,10 +176,5 @@ def test_a_hundred_verbs_are_answered_in_less_than_a_tenth_of_a_second_each(
     known = [each for each in lemmas if wordnet().of_lemma(each)]
     answer_verb("move", words, store=full_store)
     for verb in random.Random(5).sample(known, 100):
-        seconds = []
-        for _ in range(2):
-            start = time.perf_counter()
-            answer = answer_verb(verb, words, store=full_store)
-            seconds.append(time.perf_counter() - start)
+        answer = answer_verb(verb, words, store=full_store)
         assert any(each.verbnet for each in answer.classes)
-        assert min(seconds) < 0.1
