@@ -2,27 +2,36 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Literal
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from motions import (
     TALL_MAN,
     WOMAN,
     Trial,
     drink_from_mug,
     hit,
+    move_obj,
+    move_obj_to,
     pick_up_with_both_hands,
+    resume_posture,
     slide_object,
+    touch,
     touch_cycle,
     touch_from_rest,
+    touch_with,
 )
 from observations import MUG, RATE_HZ, TABLE, Piece, observation, with_unknown
 from observations import drink_from_mug as observed_drinking
 from observations import pick_up_with_both_hands as observed_picking_up
 
-from capar.model.facts import Touching
+from capar.model.facts import Moving, Touching
 from capar.model.par import FeatureSet
 from capar.observe import observe
 from kb.language.describe import describe
+from kb.language.english import past
 from kb.lexicon.links import PrimitiveWords
 
 ACTIONS = {
@@ -46,6 +55,23 @@ ACTIONS = {
         "held it there, and let go.",
     ),
     hit: ("hit the drum with the right hand and took the hand away.",) * 2,
+    move_obj: (
+        "moved the stamp along the table with the right hand.",
+        "pulled the stamp along the table with the right hand.",
+    ),
+    move_obj_to: (
+        "moved the stamp to the table with the right hand and held it there.",
+        "lowered the stamp with the right hand and held it there.",
+    ),
+    resume_posture: (
+        "took the right hand away.",
+        "touched the table with the right hand and took the hand away.",
+    ),
+    touch: ("touched the table with the right hand.",) * 2,
+    touch_with: (
+        "moved the stamp to the box with the right hand and held it there.",
+        "lowered the stamp with the right hand and held it there.",
+    ),
 }
 """What the thesis's rules and ours let one say of each test action."""
 
@@ -158,3 +184,84 @@ def test_a_users_primitive_is_told_by_its_own_verb_or_by_what_it_specialises() -
     start = "The agent reached for the mug with the right hand and "
     assert describe(seen, words=[PrimitiveWords("Nudge", ("nudge",))]) == f"{start}nudged it."
     assert describe(seen) == f"{start}moved it."
+
+
+MANY = ("Lift", "Raise", "Lower", "Tilt", "Shake", "Turn")
+
+
+def _handled(*names: str, detail: Literal["steps", "summary"] = "steps") -> str:
+    """What is told of a mug that is reached for and then handled so."""
+    own = FeatureSet("1", "1", "1", "hand", "0")
+    features = dict.fromkeys((*MANY, "MoveObj"), own)
+    pieces = [Piece("Reach", 50, ("mug",))]
+    for index, name in enumerate(names, 2):
+        pieces.append(Piece(name, 50 * index, ("mug",), features=features.get(name)))
+    facts = (Moving("mug", 60, 50 * len(names) + 50),)
+    seen = observation(
+        "Handling",
+        {"right_hand": tuple(pieces)},
+        (MUG,),
+        facts=facts,
+        frames=50 * len(names) + 51,
+        rate_hz=100.0,
+    )
+    told = describe(seen, detail=detail)
+    return told.removeprefix("The agent reached for the mug with the right hand")
+
+
+def test_verbs_of_one_thing_share_it() -> None:
+    assert _handled("Lift", "Raise", "Lower") == ", and lifted, raised, and lowered it."
+    assert _handled("Lift", "Raise") == ", lifted it, and raised it."
+
+
+def test_what_is_done_again_is_said_to_be() -> None:
+    assert _handled("Raise", "Lower", "Raise") == ", raised it, lowered it, and raised it again."
+
+
+def test_a_deed_that_was_only_paused_is_counted() -> None:
+    assert _handled("Shake", "Touch", "Shake") == " and shook it twice with a pause."
+    paused = _handled("Shake", "Touch", "Shake", "Touch", "Shake")
+    assert paused == " and shook it three times with pauses."
+
+
+def test_a_summary_of_much_handling_names_each_verb_once() -> None:
+    told = _handled("Raise", "Lower", "Raise", "Tilt", "Raise", "Lower", detail="summary")
+    assert told == (
+        "The agent raised, lowered, and tilted the mug with the right hand again and again."
+    )
+
+
+@given(st.lists(st.sampled_from(MANY), min_size=1, max_size=12))
+def test_no_verb_is_left_untold(names: list[str]) -> None:
+    told = _handled(*names) + _handled(*names, detail="summary")
+    for name in names:
+        assert past(name.lower()) in told
+
+
+def test_several_things_touched_at_once_are_them() -> None:
+    reached = FeatureSet("000", "110", "00", "hand", "00")
+    touched = FeatureSet("110", "110", "00", "hand", "00")
+    pieces = (
+        Piece("Reach", 50, ("mug", "bowl"), features=reached),
+        Piece("Touch", 90, ("bowl", "mug"), features=touched),
+        Piece("Touch", 120, ("bowl", "mug"), features=touched),
+    )
+    bowl = replace(MUG, name="bowl", kind="bowl")
+    seen = observation("Both", {"right_hand": pieces}, (MUG, bowl), frames=121, rate_hz=100.0)
+    assert describe(seen) == (
+        "The agent reached for the bowl and the mug with the right hand and touched them."
+    )
+
+
+def test_what_is_done_often_and_changes_nothing_is_counted_in_a_summary() -> None:
+    cycle = ("Reach", "Touch", "ResumePosture")
+    pieces = tuple(Piece(cycle[index % 3], (index + 1) * 40, ("mug",)) for index in range(9))
+    seen = observation("Thrice", {"right_hand": pieces}, (MUG,), frames=361, rate_hz=RATE_HZ)
+    told = describe(seen, detail="summary")
+    assert told == "The agent touched the mug with the right hand three times."
+
+
+def test_a_hand_that_moves_and_touches_nothing_is_told() -> None:
+    free = {ee: (Piece("PostureChange", 50, ()),) for ee in ("right_hand", "left_hand")}
+    seen = observation("Wave", free, (MUG,), frames=51, rate_hz=100.0)
+    assert describe(seen) == "The agent moved both hands and touched nothing."
