@@ -7,11 +7,18 @@ rule meets a border only with its neighbour, and grounding stays linear in the n
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from capar.model.facts import Fact, Frames, Link, Moving, Pause, RateMhz, Touching, ZeroCrossing
 from capar_rules.refining import Edge, edges
 from capar_rules.spans import Stretches
+from capar_rules.ticks import CrossingNear as CrossingNear
+from capar_rules.ticks import FreeBetween as FreeBetween
+from capar_rules.ticks import LastTick as LastTick
+from capar_rules.ticks import MovesBetween as MovesBetween
+from capar_rules.ticks import MovesDuring as MovesDuring
+from capar_rules.ticks import Shares as Shares
+from capar_rules.ticks import Tick as Tick
+from capar_rules.ticks import Within as Within
 
 MARGIN_S = 1.0
 """How far beyond a possession the contacts of its object are numbered [s]: merging sees less."""
@@ -21,90 +28,6 @@ CONFIRMING_S = 0.1
 
 TOGETHER_S = 0.15
 """Contacts that begin, or end, within this time do so together [s]: events that would merge."""
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Tick(Fact):
-    """A frame of a link at which something may change."""
-
-    predicate = "tick"
-    ee: str
-    tick: int
-    frame: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class LastTick(Fact):
-    """The number of a link's last tick."""
-
-    predicate = "last_tick"
-    ee: str
-    tick: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Within(Fact):
-    """The ticks of a link that lie inside a contact."""
-
-    predicate = "within"
-    ee: str
-    body: str
-    other: str
-    since: int
-    first: int
-    last: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class MovesBetween(Fact):
-    """An object moves between a tick of a link and the next one."""
-
-    predicate = "moves_between"
-    ee: str
-    object: str
-    tick: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class MovesDuring(Fact):
-    """An object moves at some time in a contact with an end-effector."""
-
-    predicate = "moves_during"
-    ee: str
-    object: str
-    since: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class FreeBetween(Fact):
-    """Two ticks of a link, the end of a contact and the next begin of one, with none between."""
-
-    predicate = "free_between"
-    ee: str
-    first: int
-    last: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class CrossingNear(Fact):
-    """The zero crossing nearest to a tick, where one is near."""
-
-    predicate = "crossing_near"
-    ee: str
-    tick: int
-    frame: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Shares(Fact):
-    """Another end-effector touched the object before this one did, or does so after it."""
-
-    predicate = "shares"
-    ee: str
-    object: str
-    since: int
-    other: str
-    when: str
 
 
 def rank(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:
