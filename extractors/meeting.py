@@ -34,7 +34,7 @@ def meeting_points(
 
 
 def _cross(
-    one: Float[np.ndarray, "*some 3"], two: Float[np.ndarray, "*some 3"]
-) -> Float[np.ndarray, "*some 3"]:
+    one: Float[np.ndarray, "*some 3"], two: Float[np.ndarray, "*others 3"]
+) -> Float[np.ndarray, "*broadcast 3"]:
     """The cross product; for few vectors, which come by the thousand, faster than the library's."""
     return one[..., _NEXT] * two[..., _LAST] - one[..., _LAST] * two[..., _NEXT]

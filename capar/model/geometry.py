@@ -10,7 +10,7 @@ UNIT_TOLERANCE = 0.01
 """How far a quaternion's norm may lie from one before it is an error [1]."""
 
 
-def rotations(quaternions: Float[np.ndarray, "frames 4"]) -> Rotation:
+def rotations(quaternions: Float[np.ndarray, "*frames 4"]) -> Rotation:
     """The rotations that unit quaternions (w x y z) stand for."""
     return Rotation.from_quat(quaternions, scalar_first=True)
 
@@ -21,7 +21,7 @@ def quaternions(rotation: Rotation) -> Float[np.ndarray, "*frames 4"]:
 
 
 def transforms(
-    positions: Float[np.ndarray, "frames 3"], orientations: Float[np.ndarray, "frames 4"]
+    positions: Float[np.ndarray, "*frames 3"], orientations: Float[np.ndarray, "*frames 4"]
 ) -> RigidTransform:
     """Poses as transforms that compose with ``*`` and act on points: ``T_world_body.apply(p)``."""
     return RigidTransform.from_components(positions, rotations(orientations))
@@ -56,9 +56,12 @@ def unit(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "fram
 
 
 def angle_between(
-    first: Float[np.ndarray, "frames 4"], second: Float[np.ndarray, "frames 4"]
+    first: Float[np.ndarray, "frames 4"], second: Float[np.ndarray, "#frames 4"]
 ) -> Float[np.ndarray, "frames"]:
-    """The angle of the rotation that takes one orientation to the other [rad], in [0, pi]."""
+    """The angle of the rotation that takes one orientation to the other [rad], in [0, pi].
+
+    The second may be a single orientation for all frames.
+    """
     dots = np.abs(np.einsum("...j,...j->...", first, second))
     return 2.0 * np.arccos(np.clip(dots, 0.0, 1.0))
 

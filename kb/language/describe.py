@@ -7,10 +7,11 @@ from typing import Literal
 from capar.model.observation import Observation, ObservedLink
 from kb.language.clauses import Clause, clauses
 from kb.language.contacts import Scene
-from kb.language.editing import counted, edited, repetition
+from kb.language.editing import edited
 from kb.language.english import capital, the_agent, times
 from kb.language.hands import spoken_links, told_in_order
 from kb.language.phrasing import FREE, Phrasebook
+from kb.language.repeating import counted, repetition
 from kb.language.telling import Telling
 from kb.lexicon.links import PrimitiveWords
 

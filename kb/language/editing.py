@@ -1,12 +1,12 @@
 """Clauses as a writer would leave them: repetition counted, verbs of one thing joined."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from itertools import groupby, pairwise
+from itertools import groupby
 
 from kb.language.clauses import Clause, in_time
-from kb.language.english import times
 from kb.language.phrasing import JOINT
+from kb.language.repeating import repetition, whole, with_pauses
 
 OVER_AND_OVER = "again and again"
 """How often, where a summary does not count."""
@@ -37,32 +37,7 @@ def edited(steps: Sequence[Clause], *, summary: bool) -> tuple[Clause, ...]:
 
 
 def _stream(told: Sequence[Clause], joint: Callable[[list[Clause]], list[Clause]]) -> list[Clause]:
-    return _plain_runs(_with_pauses(_leading_up(told)), joint)
-
-
-def counted(told: Iterable[Clause]) -> tuple[Clause, ...]:
-    """The clauses, with those that say the same on end as one that says how often."""
-    runs = (list(same) for _, same in groupby(told, key=lambda each: each.signature))
-    return tuple(_whole(run, count=_times(run)) for run in runs)
-
-
-def _times(run: Sequence[Clause]) -> int:
-    """How often it was done: what goes on and changes nothing was done once."""
-    goes_on = [
-        not later.changes and later.start_s <= earlier.end_s for earlier, later in pairwise(run)
-    ]
-    return len(run) - sum(goes_on)
-
-
-def _whole(run: Sequence[Clause], *, count: int = 1, pattern: str = "") -> Clause:
-    """One clause for all of a run, said as its first."""
-    return replace(
-        run[0],
-        pattern=pattern or run[0].pattern,
-        end_s=run[-1].end_s,
-        changes=any(each.changes for each in run),
-        count=count,
-    )
+    return _plain_runs(with_pauses(_leading_up(told)), joint)
 
 
 def _leading_up(told: Sequence[Clause]) -> list[Clause]:
@@ -79,32 +54,6 @@ def _more_of(clause: Clause, other: Clause) -> bool:
     """Whether it says what the other says, and where to."""
     longer = clause.pattern.startswith(f"{other.pattern} ")
     return longer and clause.objects[:1] == other.objects[:1] and not other.purpose
-
-
-def _with_pauses(told: Sequence[Clause]) -> list[Clause]:
-    """The clauses, with a deed that was only paused as one that says how often it was done."""
-    out: list[Clause] = []
-    at = 0
-    while at < len(told):
-        end = at
-        while told[at].changes and _resumed(told[at], told[end + 1 : end + 3]):
-            end += 2
-        run = told[at : end + 1]
-        count = sum(each.count for each in run[::2])
-        pauses = "with a pause" if len(run) == 3 else "with pauses"
-        paused = replace(_whole(run), often=f"{times(count)} {pauses}")
-        out.append(paused if len(run) > 1 else told[at])
-        at = end + 1
-    return out
-
-
-def _resumed(deed: Clause, following: Sequence[Clause]) -> bool:
-    """Whether what follows is a pause with the thing in the hand, and then the deed again."""
-    if len(following) < 2:
-        return False
-    pause, resumed = following
-    held = pause.pattern.startswith("hold ") and pause.objects[:1] == deed.objects[:1]
-    return held and replace(resumed, count=1).signature == replace(deed, count=1).signature
 
 
 def _plain_runs(
@@ -135,6 +84,8 @@ def _joined_run(run: list[Clause]) -> list[Clause]:
     at = 0
     while at < len(run):
         size, count = repetition(run, at, longest=MOST_VERBS)
+        if size > 1 and any(each.count > 1 for each in run[at : at + size]):
+            size, count = 1, 1
         block = run[at : at + size * count]
         if count > 1 or run[at].count > 1:
             out += [*_shared(loose), _repeated(block, size, count)]
@@ -149,7 +100,7 @@ def _repeated(block: Sequence[Clause], size: int, count: int) -> Clause:
     if count == 1:
         return block[0]
     verbs = JOINT.join(map(_verb, block[:size]))
-    return _whole(block, count=count, pattern=f"{verbs} {{1}}")
+    return whole(block, count=count, pattern=f"{verbs} {{1}}")
 
 
 def _shared(loose: Sequence[Clause]) -> list[Clause]:
@@ -168,7 +119,7 @@ def _shared(loose: Sequence[Clause]) -> list[Clause]:
 def _sharing(group: Sequence[Clause]) -> list[Clause]:
     if len(group) < 3:
         return list(group)
-    return [_whole(group, pattern=f"{JOINT.join(map(_verb, group))} {{1}}")]
+    return [whole(group, pattern=f"{JOINT.join(map(_verb, group))} {{1}}")]
 
 
 def _summed_run(run: list[Clause]) -> list[Clause]:
@@ -177,7 +128,7 @@ def _summed_run(run: list[Clause]) -> list[Clause]:
         return _joined_run(run)
     verbs = list(dict.fromkeys(map(_verb, run)))
     often = "" if len(verbs) == sum(each.count for each in run) else OVER_AND_OVER
-    return [replace(_whole(run, pattern=f"{JOINT.join(verbs)} {{1}}"), often=often)]
+    return [replace(whole(run, pattern=f"{JOINT.join(verbs)} {{1}}"), often=often)]
 
 
 def _again(told: Sequence[Clause]) -> tuple[Clause, ...]:
@@ -195,20 +146,3 @@ def _same_deed(one: Clause, other: Clause) -> bool:
     if one.pattern == other.pattern:
         return one.objects == other.objects
     return _more_of(one, other) or _more_of(other, one)
-
-
-def repetition(steps: Sequence[Clause], at: int, *, longest: int) -> tuple[int, int]:
-    """The length of the block that is repeated from here, and how often it stands; else (1, 1)."""
-    best = (1, 1)
-    for size in range(1, longest + 1):
-        block = _said(steps[at : at + size])
-        count = 1
-        while block == _said(steps[at + size * count : at + size * (count + 1)]):
-            count += 1
-        if count > 1 and size * count > best[0] * best[1]:
-            best = (size, count)
-    return best
-
-
-def _said(steps: Sequence[Clause]) -> list[tuple[object, ...]]:
-    return [(each.signature, each.ees) for each in steps]

@@ -163,7 +163,7 @@ def _needs(number: str, verb: str, lacking: Sequence[str]) -> tuple[str, ...]:
         for row in table("needs")
         if row["class"] == number and row["verb"] == verb
     }
-    return tuple(said.get(each, "a primitive with this verb") for each in lacking)
+    return tuple(said.get(each, "a primitive of this class with this verb") for each in lacking)
 
 
 def _senses(words: Sequence[PrimitiveWords]) -> Iterable[SenseRow]:

@@ -162,7 +162,7 @@ def _page(parts: Sequence[str], height: int) -> str:
             f'<rect x="{x}" y="{height - 32}" width="22" height="14" rx="2" class="{style}"/>'
         )
         marks.append(_text(x + 30, height - 20, words, "title"))
-        x += 60 + 7 * len(words)
+        x += 60 + 11 * len(words) // 2
     heads = [
         _text(LEFT, 22, "The thesis (section 6.1)", "column"),
         _text(LEFT + BOX + GUTTER, 22, "This system, by its rules", "column"),

@@ -1,5 +1,6 @@
 """The whole Actionary goes out and comes back in every format; literals keep every number."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,17 +9,33 @@ from hypothesis import strategies as st
 from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 
 from capar.model.errors import FileError, UnknownNameError
+from capar.model.observation import Border, Observation
 from capar.model.par import Nlt, PathPoint
 from kb import literals
 from kb.actionary import Actionary
+from kb.encode.segments import BORDER_KINDS
 from kb.errors import ShapeError
 from kb.exchange import FORMATS, bring_in, export, format_of, misplaced, read
 from kb.literals import LiteralError
 
+PREPOSITIONS = (("away from", "mug", "table"), ("on", "mug", "table"), ("up", "mug", "mug"))
+
+
+def with_every_border() -> Observation:
+    """One whose segments begin with everything that may happen, and say where the mug goes."""
+    made = with_unknown()
+    borders = tuple(Border(kind, "mug", "table") for kind in BORDER_KINDS)
+    (link,) = made.links
+    segments = tuple(
+        replace(each, begins=borders, prepositions=PREPOSITIONS) for each in link.segments
+    )
+    return replace(made, capture="Borders", links=(replace(link, segments=segments),))
+
 
 def full() -> Actionary:
     actionary = Actionary.in_memory()
-    for each in (drink_from_mug(), pick_up_with_both_hands(), with_unknown()):
+    made = (drink_from_mug(), pick_up_with_both_hands(), with_unknown(), with_every_border())
+    for each in made:
         actionary.add(each)
     actionary.define_kind("stein", broader="mug")
     actionary.add_feature_row("Swap", with_unknown().segments[1].features)
@@ -38,6 +55,32 @@ def test_everything_round_trips(name: str, actionary: Actionary) -> None:
 @pytest.mark.parametrize("name", FORMATS)
 def test_an_export_is_the_same_bytes_each_time(name: str) -> None:
     assert export(full().store, name) == export(full().store, name)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_borders_and_prepositions_are_read_back_as_they_were(name: str) -> None:
+    target = Actionary.in_memory()
+    bring_in(target.store, read(export(full().store, name, observation="Borders"), name))
+    rows = [tuple(row.values()) for row in target.ask("where")]
+    assert rows == [
+        ("Borders", "right_hand", index, action, *said)
+        for index, action in enumerate(("Reach", "Unknown"))
+        for said in PREPOSITIONS
+    ]
+    asked = (
+        "SELECT ?kind WHERE { ?s capar:index 0 ; capar:beginsWith ?b . "
+        "?b capar:index ?at ; capar:borderKind/capar:name ?kind } ORDER BY ?at"
+    )
+    found = [row["kind"] for row in target.query(asked).plain()]
+    assert found == list(BORDER_KINDS)
+
+
+def test_a_border_of_no_known_kind_is_refused_by_name() -> None:
+    made = with_every_border()
+    (link,) = made.links
+    odd = replace(link.segments[0], ends=(Border("explodes", "mug"),))
+    with pytest.raises(UnknownNameError, match=r"explodes.*begins_swinging"):
+        Actionary.in_memory().add(replace(made, links=(replace(link, segments=(odd,)),)))
 
 
 def test_rdflib_reads_the_turtle_as_an_isomorphic_graph() -> None:

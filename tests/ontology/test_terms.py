@@ -1,6 +1,7 @@
 """Every term has a label and a definition, and code and files know the same terms."""
 
 import ast
+import inspect
 import re
 from pathlib import Path
 
@@ -10,6 +11,9 @@ from pyoxigraph import Literal, NamedNode
 import kb
 import ontology
 from capar.model.errors import UnknownNameError
+from capar.model.observation import Border
+from kb.encode.segments import BORDER_KINDS
+from kb.shapes import rules
 from ontology import BASE, CAPAR, terms
 from ontology.files import closure, kinds, read, term_files
 from ontology.vocabularies import PREFIXES, RDF, RDFS
@@ -107,6 +111,22 @@ def test_every_term_in_the_table_of_the_thesis_exists() -> None:
 def test_every_figure_of_the_thesis_has_rows() -> None:
     for figure in ("4.1", "4.2", "4.3", "4.8", "4.9", "4.11", "4.12", "4.13", "4.14", "4.16"):
         assert re.search(rf"^\| [^|]*{re.escape(figure)}\b", README, re.MULTILINE), figure
+
+
+def test_what_may_happen_at_a_border_is_the_same_in_files_shapes_code_and_model() -> None:
+    kinds_of_border = {each.subject for each in STATED if each.object == CAPAR.BorderKind}
+    named = {
+        each.object.value: each.subject
+        for each in STATED
+        if each.predicate == CAPAR.name
+        and each.subject in kinds_of_border
+        and isinstance(each.object, Literal)
+    }
+    assert named == BORDER_KINDS
+    shape = next(each for each in rules() if each.path == CAPAR.borderKind)
+    assert shape.among == {str(each) for each in named.values()}
+    source = inspect.getsource(Border)
+    assert set(re.findall(r"``(\w+)``", source)) == set(named)
 
 
 def test_the_kinds_form_a_hierarchy_under_one_root() -> None:

@@ -205,12 +205,15 @@ def _handled(*names: str, detail: Literal["steps", "summary"] = "steps") -> str:
         frames=50 * len(names) + 51,
         rate_hz=100.0,
     )
+    right_hand = seen.links[0]
+    own_grip = tuple(replace(each, possessed=each.index > 0) for each in right_hand.segments)
+    seen = replace(seen, links=(replace(right_hand, segments=own_grip),))
     told = describe(seen, detail=detail)
     return told.removeprefix("The agent reached for the mug with the right hand")
 
 
 def test_verbs_of_one_thing_share_it() -> None:
-    assert _handled("Lift", "Raise", "Lower") == ", and lifted, raised, and lowered it."
+    assert _handled("Lift", "Raise", "Lower") == " and lifted, raised, and lowered it."
     assert _handled("Lift", "Raise") == ", lifted it, and raised it."
 
 
@@ -222,6 +225,12 @@ def test_a_deed_that_was_only_paused_is_counted() -> None:
     assert _handled("Shake", "Touch", "Shake") == " and shook it twice with a pause."
     paused = _handled("Shake", "Touch", "Shake", "Touch", "Shake")
     assert paused == " and shook it three times with pauses."
+
+
+def test_a_block_that_recurs_is_counted_only_where_its_verbs_are_not() -> None:
+    assert _handled("Tilt", "Lower", "Tilt", "Lower") == " and tilted and lowered it twice."
+    told = _handled("Tilt", "Tilt", "Lower", "Tilt", "Tilt", "Lower")
+    assert told == ", tilted it twice, lowered it, tilted it twice, and lowered it again."
 
 
 def test_a_summary_of_much_handling_names_each_verb_once() -> None:
