@@ -130,7 +130,7 @@ def _box(
 ) -> Float[np.ndarray, "rays"]:
     """Where rays enter the object's box [m]; infinite if they miss it."""
     low, high = seen.shape.bounds
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         one, two = (low - start) / ray, (high - start) / ray
     one, two = np.where(np.isnan(one), -np.inf, one), np.where(np.isnan(two), np.inf, two)
     enters = np.minimum(one, two).max(axis=1)
