@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from capar.model.facts import Fact, Frames, Link, RateMhz
 from capar.model.observation import Border, ObservedLink, Segment
@@ -84,7 +85,7 @@ class _Reading:
         for ee, tick, kind, body, other in self._rows("why"):
             self.why[str(ee), int(tick)].append(Border(str(kind), str(body), str(other)))
 
-    def _rows(self, predicate: str) -> Sequence[tuple]:  # type: ignore[type-arg]
+    def _rows(self, predicate: str) -> Sequence[tuple[Any, ...]]:
         return self.answer.of(predicate)
 
     def _table(self, predicate: str) -> dict[Key, list[tuple[Term, ...]]]:
