@@ -20,7 +20,8 @@ RELATIONS = ("begins before", "ends before", "before", "after", "while")
 HELP = (
     "a claim is EVENT; no EVENT; EVENT before EVENT (or after, while, begins before, ends before); "
     "EVENT lasts 0.5 to 2 s; or END_EFFECTOR: Name, Name, ... with its whole sequence. An event is "
-    "END_EFFECTOR Name(object, _); BODY touches BODY; BODY lets go of BODY; OBJECT moves; "
+    "END_EFFECTOR Name(object, _); both hands do Name(object, _); BODY touches BODY; "
+    "BODY lets go of BODY; OBJECT moves; "
     "HEAD looks at OBJECT; HEAD looks away from OBJECT"
 )
 
@@ -161,10 +162,25 @@ def _step(found: re.Match[str], seen: Observation) -> Iterator[Span]:
             yield segment.start_s, segment.end_s
 
 
+def _together(found: re.Match[str], seen: Observation) -> Iterator[Span]:
+    """When several end-effectors do a step as one action."""
+    who = [found[1].strip()] if found[1].startswith("both ") else found[1].split(" and ")
+    if len(who) > 1:
+        for ee in who:
+            _of(ee, seen)
+    segments = {(each.ee, each.index): each for each in seen.segments}
+    for joint in seen.joint:
+        parts = [segments[each] for each in zip(joint.ees, joint.segments, strict=True)]
+        acting = [seen.who(joint)] if len(who) == 1 else joint.ees
+        if sorted(acting) == sorted(who) and all(_fits(each, found[2]) for each in parts):
+            yield joint.start_s, joint.end_s
+
+
 _EVENTS: tuple[tuple[str, Callable[[re.Match[str], Observation], Iterator[Span]]], ...] = (
     (r"(\w+) looks (at|away from) (\w+)", _looks),
     (r"(\w+) (touches|lets go of) (\w+)", _meets),
     (r"(\w+) moves", _moves),
+    (r"(both (?:hands|feet)|\w+(?: and \w+)+) do ([A-Z]\w*(?:\([^()]*\))?)", _together),
     (r"(\w+) ([A-Z]\w*(?:\([^()]*\))?)", _step),
 )
 

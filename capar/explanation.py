@@ -31,7 +31,7 @@ def explained(capture: Capture, *, rules: Profile) -> Explained:
     measurements = extract(capture)
     observation = observe_measured(capture, measurements, rules=rules)
     explainer = Explainer(
-        measurements.facts, profile=rules, distance_m=distances(capture, measurements)
+        observation.facts, profile=rules, distance_m=distances(capture, measurements)
     )
     return Explained(observation, explainer)
 

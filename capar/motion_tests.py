@@ -10,8 +10,8 @@ from capar.claims import ClaimError, Verdict, judge
 from capar.model.errors import FileError
 from capar.model.observation import Observation
 from capar.observe import observe
-from capar_rules.authoring import user_rules
 from capar_rules.profiles import DEFAULT, profile
+from capar_rules.teaching import user_rules
 
 SUFFIX = ".motion.toml"
 
@@ -62,15 +62,23 @@ def read_motion_test(path: Path) -> MotionTest:
     )
 
 
-def run_motion_test(test: MotionTest) -> Iterator[Verdict]:
+def run_motion_test(
+    test: MotionTest, *, rules: Path | None = None, actionary: str | None = None
+) -> Iterator[Verdict]:
     """Judge every claim of every capture.
+
+    Args:
+        test: The claims and captures.
+        rules: Folder of the project's rules, where the test names none itself.
+        actionary: An Actionary whose rules count too; None for CAPAR_ACTIONARY's.
 
     Raises:
         FileError: A claim cannot be read.
         CaparError: A capture cannot be read.
     """
+    files = user_rules(test.rules or rules, actionary=actionary)
     for capture in test.captures:
-        seen = _observed(capture, test.profile, user_rules(test.rules))
+        seen = _observed(capture, test.profile, files)
         for claim in test.claims:
             try:
                 yield judge(claim, seen)

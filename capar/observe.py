@@ -1,13 +1,14 @@
 """The pipeline from a capture to an observation: measure, reason, represent."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from capar import __version__
 from capar.model.capture import Capture, Notice, TagObject
-from capar.model.facts import Fact
+from capar.model.facts import Doubted, Fact
 from capar.model.observation import Observation, ObservedObject, Segment
 from capar.model.par import ConstraintLocation, Motion, Style
 from capar_rules.composing import compose
@@ -15,6 +16,7 @@ from capar_rules.profiles import DEFAULT, Profile, profile
 from capar_rules.ranking import rank
 from capar_rules.reasoning import Inference, Key, infer
 from capar_rules.representing import Measured, ipars, upars
+from capar_rules.steadying import steady
 from extractors.facts import Measurements, extract
 from extractors.locations import locate
 from extractors.motion_kind import motion_kind
@@ -58,7 +60,8 @@ def observe_measured(
     base = profile(rules) if isinstance(rules, str) else rules
     limits = thresholds or Thresholds()
     action = name or capture.name
-    inference = infer(measurements.facts, profile=base)
+    facts = steady(measurements.facts) if base.steady else measurements.facts
+    inference = infer(facts, profile=base)
     measured = dict(_measured(capture, measurements, inference, limits))
     frames = len(capture.times) - 1
     duration_s = float(capture.times[-1])
@@ -74,24 +77,34 @@ def observe_measured(
         frames=frames + 1,
         objects=tuple(_observed(each) for each in capture.objects),
         links=inference.links,
-        facts=measurements.facts,
+        facts=facts,
         upars=upars(inference, measured, name=action),
         ipars=ipars(inference, measured, agent=agent, name=action),
         complex_par=compose(inference, name=action, frames=frames, duration_s=duration_s),
         locations=tuple(_locations(capture, measurements, inference)),
         styles=tuple(_styles(capture, measurements, inference, limits)),
         sources=capture.sources,
-        notices=(*measurements.notices, *_violations(inference)),
+        notices=(
+            *measurements.notices,
+            *_doubts(facts, capture.rate_hz),
+            *_violations(inference),
+        ),
+        joint=inference.joint,
+        others=capture.others,
     )
 
 
 def facts_program(
     capture: Capture, *, rules: Profile | str = DEFAULT, thresholds: Thresholds | None = None
 ) -> tuple[Measurements, tuple[Fact, ...]]:
-    """What was measured, and the numbered borders that the rules of a profile read beside it."""
+    """What was measured, with its flicker resolved, and the borders that the rules read beside it.
+
+    Flicker is resolved, and borders are numbered, as the profile has it.
+    """
     base = profile(rules) if isinstance(rules, str) else rules
     measurements = extract(capture, thresholds=thresholds)
-    return measurements, rank(measurements.facts, crossings_only=base.crossings_only)
+    facts = steady(measurements.facts) if base.steady else measurements.facts
+    return replace(measurements, facts=facts), rank(facts, crossings_only=base.crossings_only)
 
 
 def _segments(inference: Inference) -> Iterable[Segment]:
@@ -197,3 +210,15 @@ def _observed(each: TagObject) -> ObservedObject:
 
 def _violations(inference: Inference) -> Iterable[Notice]:
     return (Notice("rule-violation", each) for each in inference.violations)
+
+
+def _doubts(facts: Iterable[Fact], rate_hz: float) -> Iterable[Notice]:
+    for each in facts:
+        if isinstance(each, Doubted):
+            what = each.body if each.body == each.other else f"{each.body} with {each.other}"
+            length_s = (each.last - each.first + 1) / rate_hz
+            yield Notice(
+                "flicker",
+                f"{what}: {length_s:.2f} s at {each.first / rate_hz:.2f} s taken for "
+                f"{each.taken}, not as measured: so the fewest changes explain it",
+            )

@@ -16,7 +16,7 @@ from capar_rules.examples import Example, try_examples
 from capar_rules.profiles import Profile
 from capar_rules.reasoning import infer
 from extractors.facts import extract
-from extractors.readers.bundle import read_capture
+from extractors.readers.bundle import read_capture, takes
 from kb.actionary import Actionary
 from kb.lookup.changes import facts, replace_all, source_files
 
@@ -192,6 +192,17 @@ def _stored(store: Actionary) -> Iterator[tuple[str, tuple[Fact, ...]]]:
         yield each.name, facts(store.store, each.name)
 
 
+def _trials(path: Path, name: str) -> Iterator[Capture]:
+    """The captures that a file describes and that may bear a name: of its takes, or the one."""
+    known = takes(path)
+    # A capture is called after its take, so that the others need not be read.
+    named = sorted((each for each in known if each in name), key=lambda each: (-len(each), each))
+    for place in [f"{path}:{each}" for each in named] if known else [path]:
+        trial = read_capture(place)
+        if trial.name == name:
+            yield trial
+
+
 def _anew(
     files: Sequence[tuple[str, str]],
     capture: str,
@@ -202,11 +213,11 @@ def _anew(
     """The observation of the same files by other rules."""
     digests = sorted(digest for _, digest in files)
     for place in places:
-        for path in sorted(place.rglob("capture.toml")):
-            if sha256(path.read_bytes()).hexdigest() in digests:
-                trial = read_capture(path)
-                if sorted(each.sha256 for each in trial.sources) == digests:
-                    return observe(trial, rules=rules, name=action)
+        for path in sorted(place.rglob("*.toml")):
+            if path.is_file() and sha256(path.read_bytes()).hexdigest() in digests:
+                for trial in _trials(path, capture):
+                    if sorted(each.sha256 for each in trial.sources) == digests:
+                        return observe(trial, rules=rules, name=action)
     searched = ", ".join(map(str, places))
     raise FileError(
         files[0][0] if files else capture,

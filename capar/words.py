@@ -1,7 +1,6 @@
 """The pipelines from captures to language: tellings, fitting verbs, and what can be said."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from capar.model.errors import CaparError, UnknownNameError
@@ -16,6 +15,7 @@ from kb.lexicon.verbnet import VerbClass
 from ontology import CAPAR
 
 if TYPE_CHECKING:
+    from capar_rules.profiles import Profile
     from kb.store import Store
 
 CONTACT_CLASSES = (
@@ -37,25 +37,12 @@ CONTACT_CLASSES = (
 """Levin's chapters whose verbs say what a body does to things and to itself."""
 
 
-def observed(capture: str, *, profile: str, rules: Path | None) -> Observation:
-    """A capture as it is observed with the user's rules.
-
-    Raises:
-        CaparError: The capture or the rules have a fault.
-    """
-    from capar.observe import observe
-    from capar_rules.profiles import profile as named_profile
-    from capar_rules.teaching import rule_files
-
-    return observe(capture, rules=named_profile(profile, added=rule_files(rules)))
-
-
 def verbs_for(
     segment: str,
     words: Sequence[PrimitiveWords],
     *,
     store: "Store | None" = None,
-    rules: Path | None = None,
+    rules: "Profile | str" = "extended",
 ) -> tuple[Fit, ...]:
     """The verbs that fit a segment, best first.
 
@@ -63,7 +50,7 @@ def verbs_for(
         segment: ``CAPTURE:END_EFFECTOR:INDEX``.
         words: The primitives' words.
         store: Where VerbNet is, if it was imported.
-        rules: The folder of the user's rules.
+        rules: The rule profile to observe with, or its name.
 
     Raises:
         CaparError: There is no such segment.
@@ -72,7 +59,9 @@ def verbs_for(
     capture, _, ee = capture.rpartition(":")
     if not capture or not index.isdigit():
         raise CaparError(f"{segment!r} names no segment; write CAPTURE:END_EFFECTOR:INDEX")
-    found = _segment(observed(capture, profile="extended", rules=rules), ee, int(index))
+    from capar.observe import observe
+
+    found = _segment(observe(capture, rules=rules), ee, int(index))
     seen = SegmentSeen(found.name, found.general, found.features)
     return fitting(seen, words, _classes(store) if store else ())
 

@@ -24,7 +24,8 @@ from capar_rules.checking import check, require
 from capar_rules.examples import Example, lacking, read_examples, try_examples, written
 from capar_rules.profiles import DEFAULT, Profile, profile
 from capar_rules.syntax import Statement, parse, split_arguments
-from capar_rules.teaching import rule_files, taught
+from capar_rules.teaching import actionary_rules, make_folder, taught
+from capar_rules.teaching import user_rules as user_rules
 
 TELLING = (Frames, RateMhz, Link, Tag, ZeroCrossing, Touching, Gap, Moving, ForceTransfer)
 """The facts that an example tells: contacts and motions, without places and courses."""
@@ -36,7 +37,7 @@ class RuleInfo:
 
     name: str
     origin: str
-    """``core`` if it ships, ``user`` if it is the user's."""
+    """``core`` if it ships, ``user`` if it is beside the Actionary, ``project`` otherwise."""
 
     file: str
     definition: str
@@ -44,28 +45,19 @@ class RuleInfo:
     general: tuple[str, ...]
 
 
-def user_rules(*folders: Path | None) -> tuple[Path, ...]:
-    """The rule files of the user's folders, each folder's sorted by name.
+def rules_of(base: Profile, *, actionary: str | Path | None = None) -> tuple[RuleInfo, ...]:
+    """Every primitive of a rule base, by name.
 
     Args:
-        folders: Folders of rules; None, or none at all, is ``CAPAR_RULES``, else ``./rules``.
-
-    Raises:
-        FileError: A folder was named that is none.
+        base: The rule base.
+        actionary: The Actionary whose rules are the user's own; None for ``CAPAR_ACTIONARY``'s.
     """
-    files = [file for folder in folders or (None,) for file in rule_files(folder)]
-    return tuple(dict.fromkeys(files))
-
-
-def actionary_rules(place: str | Path) -> Path:
-    """The folder of rules beside an Actionary."""
-    return Path(place) / "rules"
-
-
-def rules_of(base: Profile) -> tuple[RuleInfo, ...]:
-    """Every primitive of a rule base, by name."""
     statements = parse(base.files)
-    added = {str(each) for each in base.added}
+    mine = actionary_rules(actionary)
+    origins = {
+        str(each): "user" if mine and each.resolve().parent == mine.resolve() else "project"
+        for each in base.added
+    }
     verbs = dict(_pairs(statements, "verb"))
     general: dict[str, list[str]] = {}
     for name, other in _pairs(statements, "specialises"):
@@ -77,7 +69,7 @@ def rules_of(base: Profile) -> tuple[RuleInfo, ...]:
     found = [
         RuleInfo(
             split_arguments(each.heads[0].text)[0].strip('"'),
-            "user" if each.place.file in added else "core",
+            origins.get(each.place.file, "core"),
             each.place.file,
             _definition(heads.get(each.place.file, "")),
             "",
@@ -94,13 +86,13 @@ def rules_of(base: Profile) -> tuple[RuleInfo, ...]:
     )
 
 
-def rule_of(base: Profile, name: str) -> RuleInfo:
+def rule_of(base: Profile, name: str, *, actionary: str | Path | None = None) -> RuleInfo:
     """One primitive of a rule base.
 
     Raises:
         UnknownNameError: There is none of that name.
     """
-    known = {each.name: each for each in rules_of(base)}
+    known = {each.name: each for each in rules_of(base, actionary=actionary)}
     if name not in known:
         raise UnknownNameError("primitive", name, known)
     return known[name]
@@ -148,7 +140,7 @@ def try_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) ->
         RuleError: An example cannot be read, or the rules have a fault.
     """
     examples = read_examples(_text(path), file=path)
-    names = [name for name, _ in _introduced(path)]
+    names = introduced(path)
     failures = []
     rules = profile(base, added=(*(each for each in beside if each != path), path))
     for outcome in try_examples(examples, profile=rules):
@@ -166,14 +158,22 @@ def try_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) ->
     )
 
 
-def add_rule(path: Path, *, folder: Path, base: str = DEFAULT, over: Sequence[str] = ()) -> Path:
+def add_rule(
+    path: Path,
+    *,
+    folder: Path,
+    base: str = DEFAULT,
+    over: Sequence[str] = (),
+    beside: Sequence[Path] | None = None,
+) -> Path:
     """Take a rule file among the user's rules, once it is checked and its examples hold.
 
     Args:
         path: The file.
-        folder: The folder of the user's rules.
+        folder: The folder of rules that it goes to.
         base: The profile that it joins.
         over: Primitives that it is to be more specific than, which orders what is ambiguous.
+        beside: Every rule file that counts already; None for those of the folder.
 
     Returns:
         Where it now is.
@@ -185,17 +185,23 @@ def add_rule(path: Path, *, folder: Path, base: str = DEFAULT, over: Sequence[st
     target = folder / path.name
     if target.exists():
         raise FileError(target, "exists already.", "Remove that rule first, or rename this file.")
-    beside = rule_files(folder) if folder.is_dir() else ()
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
+    others = user_rules(folder) if beside is None else tuple(beside)
+    others = tuple(each for each in others if each.resolve() != path.resolve())
     with TemporaryDirectory(dir=folder, prefix=".draft") as place:
         draft = Path(place) / path.name
         draft.write_text(_text(path) + _ordering(path, over), encoding="utf-8")
-        findings = check(draft, profile=base, beside=beside)
+        findings = check(draft, profile=base, beside=others)
         require(
             path,
-            [replace(each, place=replace(each.place, file=str(path))) for each in findings],
+            [
+                replace(each, place=replace(each.place, file=str(path)))
+                if each.place.file == str(draft)
+                else each
+                for each in findings
+            ],
         )
-        failures = try_rule(draft, base=base, beside=beside)
+        failures = try_rule(draft, base=base, beside=others)
         if failures:
             told = "\n".join(failures).replace(str(draft), str(path))
             raise RuleError(f"its examples do not hold:\n{told}")
@@ -203,27 +209,35 @@ def add_rule(path: Path, *, folder: Path, base: str = DEFAULT, over: Sequence[st
     return target
 
 
-def remove_rule(name: str, *, folder: Path, base: str = DEFAULT) -> Path:
-    """Take a primitive out of the user's rules.
+def remove_rule(name: str, *, files: Sequence[Path]) -> Path:
+    """Take a primitive out of rule files that people wrote.
+
+    Args:
+        name: The primitive.
+        files: The files to look through.
+
+    Returns:
+        The first file that introduces it, which is gone.
 
     Raises:
-        UnknownNameError: No file of the user's introduces it.
+        UnknownNameError: None of them introduces it.
     """
-    info = {each: path for path in rule_files(folder) for each, _ in _introduced(path)}
+    info = {each: path for path in reversed(files) for each in introduced(path)}
     if name not in info:
-        raise UnknownNameError("rule of the user's", name, info, where=str(folder))
+        folders = ", ".join(sorted({str(each.parent) for each in files}))
+        raise UnknownNameError("rule of the user's", name, info, where=folders)
     info[name].unlink()
     return info[name]
 
 
 def _ordering(path: Path, over: Sequence[str]) -> str:
-    names = [name for name, _ in _introduced(path)] if over else []
+    names = introduced(path) if over else []
     return "".join(f'specialises("{name}", "{other}").\n' for name in names for other in over)
 
 
-def _introduced(path: Path) -> list[tuple[str, str]]:
-    text = _text(path)
-    return [(each, str(path)) for each in re.findall(r'^\s*primitive\("(\w+)"\)', text, re.M)]
+def introduced(path: Path) -> list[str]:
+    """The primitives that a rule file states, in their order."""
+    return re.findall(r'^\s*primitive\("(\w+)"\)', _text(path), re.MULTILINE)
 
 
 def _pairs(statements: Sequence[Statement], predicate: str) -> Iterator[tuple[str, str]]:
@@ -244,3 +258,5 @@ def _text(path: Path) -> str:
         return path.read_text(encoding="utf-8")
     except OSError as error:
         raise FileError(path, f"cannot be read: {error.strerror}.", "Name a rule file.") from None
+    except UnicodeDecodeError:
+        raise FileError(path, "is no UTF-8 text.", "Save it as UTF-8.") from None

@@ -33,6 +33,11 @@ def cycle_findings(own: Sequence[Statement], base: Sequence[Statement]) -> Itera
                 break
 
 
+def components(rules: Sequence[Statement]) -> dict[Signature, int]:
+    """For each predicate that rules define or read, the number of the circle that it is in."""
+    return _components(_graph(rules))
+
+
 def _edges(rules: Iterable[Statement]) -> Iterator[tuple[Signature, Signature, bool]]:
     """Head, what it reads, and whether by its absence; an aggregate reads both ways."""
     rules = list(rules)

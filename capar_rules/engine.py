@@ -47,8 +47,28 @@ def solve(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     Raises:
         RuleError: The solver has a remark of any kind, or there is no answer, or more than one.
     """
-    text = facts if isinstance(facts, str) else program(tuple(facts))
-    return _answer(_grounded(files, text))
+    return _answer(_grounded(files, _text(facts), "--models=2"))
+
+
+def best(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
+    """The best answer of rule files that choose and weigh, as their weak constraints have it.
+
+    Rules that weigh say themselves which of equals is better; should equals remain, the solver,
+    one thread without chance over facts in their order, takes the same one each time.
+
+    Raises:
+        RuleError: The solver has a remark of any kind, or there is no answer.
+    """
+    control = _grounded(files, _text(facts), "--opt-strategy=usc,stratify")
+    found: list[Answer] = []
+    control.solve(on_model=lambda model: found.append(_shown(model)))
+    if not found:
+        raise RuleError(_CONTRADICTION)
+    return found[-1]
+
+
+def _text(facts: str | Iterable[Fact]) -> str:
+    return facts if isinstance(facts, str) else program(tuple(facts))
 
 
 def text_of(term: Term) -> str:
@@ -83,7 +103,10 @@ def _includes(text: str) -> list[str]:
     return [line.split('"')[1] for line in lines if line.startswith("#include ")]
 
 
-def _grounded(files: Iterable[Path], text: str) -> clingo.Control:
+_CONTRADICTION = "the rules contradict each other over these facts: they have no answer"
+
+
+def _grounded(files: Iterable[Path], text: str, option: str) -> clingo.Control:
     messages: list[str] = []
 
     def note(code: clingo.MessageCode, message: str) -> None:
@@ -91,7 +114,7 @@ def _grounded(files: Iterable[Path], text: str) -> clingo.Control:
         if code is not clingo.MessageCode.FileIncluded:
             messages.append(message.strip())
 
-    control = clingo.Control(["--models=2"], logger=note, message_limit=100)
+    control = clingo.Control([option], logger=note, message_limit=100)
     try:
         for path in files:
             control.load(str(path))
@@ -108,7 +131,7 @@ def _answer(control: clingo.Control) -> Answer:
     answers: list[Answer] = []
     control.solve(on_model=lambda model: answers.append(_shown(model)))
     if not answers:
-        raise RuleError("the rules contradict each other over these facts: they have no answer")
+        raise RuleError(_CONTRADICTION)
     if len(answers) > 1:
         first, second = (set(each.atoms) for each in answers)
         name, arguments = sorted(first ^ second, key=str)[0]

@@ -2,23 +2,27 @@
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
 from capar.model.errors import RuleError
-from capar.model.facts import MEASURED, Fact
+from capar.model.facts import Fact
 from capar.model.observation import Segment
 from capar.model.par import UNKNOWN
 from capar_rules.derivations import Derivations, Grounds, Recorder
 from capar_rules.engine import rule_file
+from capar_rules.instants import frames_of
 from capar_rules.profiles import Profile
-from capar_rules.ranking import Tick, rank
+from capar_rules.ranking import rank
 from capar_rules.sentences import Clock, Sentences
 from capar_rules.syntax import Place, Statement, parse, parse_text
 from capar_rules.windows import Windows
 
 ALWAYS = (("segment", 3), ("also", 2))
+
+BESIDE = ("joins_in(", "looks(")
+"""How what begins that is told beside a name, and is no reason for it."""
 
 
 @dataclass(frozen=True)
@@ -187,7 +191,7 @@ class Explainer:
             self.base.sentences.tell(*told, clock, mood=mood),
             grounds.atom,
             _where(grounds.rule),
-            None if grounds.absent else _frames(*told, clock),
+            None if grounds.absent else frames_of(*told, clock),
             template is not None and template.leading,
             tuple(self._reason(each, clock, done) for each in grounds.because),
         )
@@ -227,7 +231,7 @@ def _explanation(segment: Segment, reasons: Sequence[Reason]) -> Explanation:
 def _leading(reason: Reason) -> list[str]:
     """The telling sentences, each once; of the same at several times, one."""
     places: dict[str, list[str]] = {}
-    for each in reason.walk():
+    for each in _deciding(reason):
         if each.leading:
             text, at, time = each.sentence.rpartition(" at ")
             timed = at and time[:1].isdigit()
@@ -238,6 +242,14 @@ def _leading(reason: Reason) -> list[str]:
         f"{text} at {' and '.join(sorted(times, key=_seconds))}" if times else text
         for text, times in places.items()
     ]
+
+
+def _deciding(reason: Reason) -> Iterator[Reason]:
+    """This node and those below it on which the name rests, without what is told beside it."""
+    if not reason.atom.startswith(BESIDE):
+        yield reason
+        for each in reason.because:
+            yield from _deciding(each)
 
 
 def _seconds(time: str) -> float:
@@ -275,25 +287,3 @@ def _nearest(reason: Reason) -> list[Reason]:
 
 def _where(place: Place | None) -> str:
     return "" if place is None else f"{Path(place.file).name}:{place.line}"
-
-
-_KINDS: tuple[type[Fact], ...] = (*MEASURED, Tick)
-_FIELDS = {
-    (each.predicate, len(fields(each))): tuple(field.name for field in fields(each))
-    for each in _KINDS
-}
-
-
-def _frames(predicate: str, arguments: Sequence[str], clock: Clock) -> tuple[int, int] | None:
-    """When a measurement holds; or the instant of a tick, or the span of a segment."""
-    names = _FIELDS.get((predicate, len(arguments)), ())
-    named = dict(zip(names, arguments, strict=False))
-    if "first" in named:
-        return int(named["first"]), int(named.get("last", named["first"]))
-    if "frame" in named:
-        return int(named["frame"]), int(named["frame"])
-    for each in arguments:
-        span = clock.span(each)
-        if span is not None:
-            return span
-    return None

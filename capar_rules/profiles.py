@@ -18,6 +18,9 @@ class Profile:
     added: tuple[Path, ...] = ()
     """Rule files of the user's, beside those that ship."""
 
+    steady: bool = False
+    """Whether flicker is resolved before anything is derived, to the fewest changes."""
+
     @property
     def files(self) -> tuple[Path, ...]:
         """Every file to load: the main one includes the rest of what ships."""
@@ -26,19 +29,34 @@ class Profile:
     @property
     def fingerprint(self) -> str:
         """SHA-256 of the rule base."""
-        return fingerprint(self.files)
+        flicker = (rule_file("flicker.lp"),) if self.steady else ()
+        return fingerprint((*self.files, *flicker))
 
 
 DEFAULT = "extended"
 _CROSSINGS_ONLY = {"extended": False, "thesis": True}
 
 
-def profile(name: str = DEFAULT, *, added: tuple[Path, ...] = ()) -> Profile:
-    """The profile of that name, with rule files added to it.
+def profile(
+    name: str = DEFAULT, *, added: tuple[Path, ...] = (), steady: bool | None = None
+) -> Profile:
+    """The profile of that name, with rule files added to it, each judged by its text first.
+
+    Args:
+        name: Of the profile.
+        added: Rule files of the user's.
+        steady: Whether to resolve flicker; None for what is usual in the profile: ``extended``
+            does, and ``thesis`` takes contacts as they were measured.
 
     Raises:
         UnknownNameError: There is none.
+        RuleError: An added file has a fault; nothing of it was run.
     """
     if name not in _CROSSINGS_ONLY:
         raise UnknownNameError("profile", name, _CROSSINGS_ONLY)
-    return Profile(name, _CROSSINGS_ONLY[name], added)
+    if added:
+        from capar_rules.admitting import admit
+
+        admit(added, profile=name)
+    crossings_only = _CROSSINGS_ONLY[name]
+    return Profile(name, crossings_only, added, not crossings_only if steady is None else steady)

@@ -8,12 +8,25 @@ from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
-from capar.model.facts import Fact, Frames, Link, Moving, Pause, RateMhz, Touching, ZeroCrossing
+from capar.model.facts import (
+    Fact,
+    Frames,
+    Link,
+    Moving,
+    Pause,
+    RateMhz,
+    Resting,
+    Touching,
+    ZeroCrossing,
+)
+from capar_rules.idling import undisturbed
 from capar_rules.refining import Edge, edges
+from capar_rules.sharing import by_object, overlapping, shared
 from capar_rules.spans import Stretches
 from capar_rules.ticks import CrossingNear as CrossingNear
 from capar_rules.ticks import FreeBetween as FreeBetween
 from capar_rules.ticks import LastTick as LastTick
+from capar_rules.ticks import Meanwhile as Meanwhile
 from capar_rules.ticks import MovesBetween as MovesBetween
 from capar_rules.ticks import MovesDuring as MovesDuring
 from capar_rules.ticks import Shares as Shares
@@ -25,9 +38,6 @@ MARGIN_S = 1.0
 
 CONFIRMING_S = 0.1
 """How near a zero crossing confirms a border [s]."""
-
-TOGETHER_S = 0.15
-"""Contacts that begin, or end, within this time do so together [s]: events that would merge."""
 
 
 def rank(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:
@@ -55,6 +65,7 @@ class _Scene:
         self.moving: dict[str, list[Moving]] = defaultdict(list)
         self.crossings: dict[str, list[int]] = defaultdict(list)
         self.pauses: dict[str, list[int]] = defaultdict(list)
+        self.rests: dict[str, list[Resting]] = defaultdict(list)
         for fact in facts:
             if isinstance(fact, Touching):
                 self.touching[fact.body].append(fact)
@@ -64,6 +75,8 @@ class _Scene:
                 self.crossings[fact.ee].append(fact.frame)
             elif isinstance(fact, Pause):
                 self.pauses[fact.ee].append(fact.frame)
+            elif isinstance(fact, Resting):
+                self.rests[fact.ee].append(fact)
             elif isinstance(fact, Link):
                 self.links.append(fact)
             elif isinstance(fact, Frames):
@@ -72,6 +85,7 @@ class _Scene:
                 self.rate = fact.rate / 1000.0
         for touches in self.touching.values():
             touches.sort(key=lambda each: each.first)
+        self.by_object = {each.ee: by_object(self.touching[each.ee]) for each in self.links}
         for moves in self.moving.values():
             moves.sort(key=lambda each: each.first)
         for frames in (*self.crossings.values(), *self.pauses.values()):
@@ -139,7 +153,11 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
     )
     if not crossings_only:
         yield from scene.stretches.ranked(ee, ticks, reach)
-        yield from _shared(scene, ee, ticks, own)
+        yield from undisturbed(ee, ticks, scene.rests[ee], own)
+        others_too = [scene.by_object[each.ee] for each in scene.links if each.ee != ee]
+        pairs = overlapping(own, others_too)
+        yield from shared(ee, ticks, pairs, rate_hz=scene.rate)
+        yield from _within(ee, ticks, (), sorted({each for _, each in pairs}))
     yield from _confirmed(ee, ticks, crossings, CONFIRMING_S * scene.rate)
 
 
@@ -184,27 +202,6 @@ def _within(
         first, last = bisect_left(ticks, each.first), bisect_right(ticks, each.last) - 1
         if first <= last:
             yield Within(ee, each.body, each.other, each.first, first, last)
-
-
-def _shared(scene: _Scene, ee: str, ticks: list[int], own: Sequence[Touching]) -> Iterable[Fact]:
-    """Contacts of other end-effectors with what this one touches, while it touches it."""
-    margin = TOGETHER_S * scene.rate
-    others: dict[str, list[Touching]] = defaultdict(list)
-    for link in scene.links:
-        for each in scene.touching[link.ee] if link.ee != ee else ():
-            others[each.other].append(each)
-    found = set()
-    for touch in own:
-        for each in others[touch.other]:
-            if each.first > touch.last or each.last < touch.first:
-                continue
-            found.add(each)
-            begins, ends = each.first - touch.first, each.last - touch.last
-            if begins < -margin and ends < -margin:
-                yield Shares(ee, touch.other, touch.first, each.body, "before")
-            if begins > margin and ends > margin:
-                yield Shares(ee, touch.other, touch.first, each.body, "after")
-    yield from _within(ee, ticks, (), sorted(found))
 
 
 def _moves(ee: str, ticks: list[int], moves: dict[str, list[Moving]]) -> Iterable[Fact]:

@@ -9,10 +9,8 @@ from capar.model.errors import RuleError
 from capar.model.facts import LARGEST
 from capar_rules.findings import Finding
 from capar_rules.syntax import Place, Statement, parse_text
+from capar_rules.teaching import LARGEST_BYTES
 from capar_rules.trials import solver_findings
-
-LARGEST_BYTES = 256 * 1024
-"""A rule file is a definition that a person reads; none is larger [bytes]."""
 
 DEEPEST = 100
 """Brackets nest no deeper."""
@@ -29,6 +27,8 @@ class Reading:
     text: str
     statements: tuple[Statement, ...]
     findings: tuple[Finding, ...]
+    included: tuple[Path, ...] = ()
+    """Rule files that it includes."""
 
 
 def read_rules(path: Path, *, folders: Iterable[Path] = ()) -> Reading:
@@ -43,12 +43,16 @@ def read_rules(path: Path, *, folders: Iterable[Path] = ()) -> Reading:
         findings = list(_tokens(text, path, tuple(folders)))
     if findings:
         return Reading(str(path), text, (), tuple(findings))
-    text = _INCLUDE.sub(lambda found: " " * len(found[0]), text)
+    included = []
+    for found in _includes(text):
+        included.append(path.parent / found[2])
+        text = text[: found.start()] + _blank(found) + text[found.end() :]
     try:
         statements = parse_text(text)
     except RuleError as error:
         return Reading(str(path), text, (), tuple(solver_findings(str(error), str(path))))
-    return Reading(str(path), text, tuple(_placed(each, str(path)) for each in statements), ())
+    placed = tuple(_placed(each, str(path)) for each in statements)
+    return Reading(str(path), text, placed, (), tuple(included))
 
 
 def _text(path: Path) -> tuple[str, list[Finding]]:
@@ -79,7 +83,7 @@ def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Findin
         yield _at(text, text.index("\0"), path, "encoding", "there is a zero byte.", "Remove it.")
     if text.startswith("\ufeff"):
         yield _at(text, 0, path, "encoding", "there is a byte-order mark.", "Save it without one.")
-    for found in list(re.finditer(r"[^\x00-\x7f\ufeff]", bare))[:1]:
+    for found in list(re.finditer(r"(?!\A)[^\x00-\x7f]|\A[^\x00-\x7f\ufeff]", bare))[:1]:
         yield _at(
             text, found.start(), path, "syntax", f"{found[0]!r} is no letter of rules.",
             "Outside of texts in quotes and of comments, write letters a to z and digits.",
@@ -100,11 +104,11 @@ def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Findin
             text, found.start(), path, "script", "#script runs code and is refused.",
             "Remove it; rules are logic alone.",
         )  # fmt: skip
-    for found in _INCLUDE.finditer(_COMMENT.sub(_blank, text)):
+    for found in _includes(text):
         name = found[2] or found[3] or ""
         target = (path.parent / name).resolve()
         inside = any(target.parent == each.resolve() for each in folders) and name.endswith(".lp")
-        if not inside or not target.is_file():
+        if found[2] is None or not inside or not target.is_file():
             yield _at(
                 text, found.start(), path, "include",
                 f"#include of {name!r} reaches outside the rule folders and is refused.",
@@ -121,7 +125,13 @@ def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Findin
         )  # fmt: skip
 
 
-_COMMENT = re.compile(r"%\*.*?\*%|%[^\n]*", re.DOTALL)
+def _includes(text: str) -> list[re.Match[str]]:
+    """Every #include that stands in no comment; a % in a text in quotes begins none."""
+    return list(_INCLUDE.finditer(_STRING_OR_COMMENT.sub(_blank_comment, text)))
+
+
+def _blank_comment(found: re.Match[str]) -> str:
+    return found[0] if found[0].startswith('"') else _blank(found)
 
 
 def _blank(found: re.Match[str]) -> str:

@@ -1,14 +1,15 @@
 """Facts to segments: asks the rules once, and reads their answer as values."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from capar.model.facts import Fact, Frames, Link, RateMhz
-from capar.model.observation import Border, ObservedLink, Segment
+from capar.model.facts import Fact, Frames, Link, OfAgent, RateMhz
+from capar.model.observation import Border, JointAction, ObservedLink, Segment
 from capar.model.par import UNKNOWN, FeatureSet
 from capar_rules.engine import Answer, Term, solve
+from capar_rules.joining import joint_actions
 from capar_rules.profiles import Profile
 from capar_rules.ranking import Tick, rank
 
@@ -49,6 +50,8 @@ class Inference:
     """Segments that are no step of the action, such as rest."""
 
     violations: tuple[str, ...]
+    joint: tuple[JointAction, ...] = ()
+    """What several end-effectors do as one action, in order of time."""
 
 
 def infer(facts: Sequence[Fact], *, profile: Profile) -> Inference:
@@ -68,6 +71,7 @@ class _Reading:
     def __init__(self, facts: Sequence[Fact], ranked: Sequence[Fact], answer: Answer) -> None:
         self.answer = answer
         self.linked = [each for each in facts if isinstance(each, Link)]
+        self.agents = {each.body: each.agent for each in facts if isinstance(each, OfAgent)}
         self.rate = next(each.rate for each in facts if isinstance(each, RateMhz)) / 1000.0
         self.end = next(each.last for each in facts if isinstance(each, Frames))
         self.frame = {(each.ee, each.tick): each.frame for each in ranked if isinstance(each, Tick)}
@@ -106,11 +110,25 @@ class _Reading:
                     common.add((link.ee, index))
                 if tick in self.tables["no_step"]:
                     no_steps.add((link.ee, index))
-            links.append(ObservedLink(link.ee, link.kind, link.side, tuple(segments)))
+            agent = self.agents.get(link.ee, "")
+            links.append(ObservedLink(link.ee, link.kind, link.side, tuple(segments), agent))
         violations = tuple(str(each) for each in self._rows("violation"))
         return Inference(
-            tuple(links), conditions, frozenset(common), frozenset(no_steps), violations
+            tuple(links),
+            conditions,
+            frozenset(common),
+            frozenset(no_steps),
+            violations,
+            joint_actions(self.answer, self._numbered(links), rate_hz=self.rate),
         )
+
+    def _numbered(self, links: Iterable[ObservedLink]) -> dict[Key, Segment]:
+        """Segments by end-effector and the tick at which they begin."""
+        return {
+            (link.ee, first): segment
+            for link in links
+            for (first, _), segment in zip(self.spans[link.ee], link.segments, strict=True)
+        }
 
     def _segment(self, link: Link, index: int, first: int, last: int) -> Segment:
         tick = (link.ee, first)
@@ -130,7 +148,7 @@ class _Reading:
             start_s=frames[0] / self.rate,
             end_s=frames[1] / self.rate,
             name=names[0] if names else UNKNOWN,
-            general=tuple(name for _, name in general),
+            general=tuple(dict.fromkeys(name for _, name in general)),
             candidates=tuple(names[1:]) if names else nearest,
             level=LEVELS[level] if not names else "",
             objects=objects,
@@ -142,6 +160,9 @@ class _Reading:
             prepositions=tuple(
                 (str(name), str(body), str(other))
                 for name, body, other in sorted(self.tables["preposition"][tick])
+            ),
+            looks=tuple(
+                (str(seen), str(when)) for seen, when in sorted(self.tables["looks"][tick])
             ),
         )
 
@@ -185,6 +206,7 @@ _OF_SEGMENT = (
     "common",
     "no_step",
     "preposition",
+    "looks",
 )
 
 

@@ -48,13 +48,21 @@ def upars(inference: Inference, measured: Mapping[Key, Measured], *, name: str) 
 def ipars(
     inference: Inference, measured: Mapping[Key, Measured], *, agent: str, name: str
 ) -> tuple[Ipar, ...]:
-    """One IPAR a segment, links in order."""
+    """One IPAR a segment, links in order.
+
+    Args:
+        inference: Segments and their conditions.
+        measured: What was measured of each segment.
+        agent: Who acts, where a link does not say whose it is.
+        name: What the whole action is called.
+    """
+    agents = {link.ee: link.agent or agent for link in inference.links}
     return tuple(
         _ipar(
             segment,
             inference.conditions[segment.ee, segment.index],
             measured[segment.ee, segment.index],
-            agent,
+            agents[segment.ee],
             name,
         )
         for segment in _segments(inference)

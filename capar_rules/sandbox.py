@@ -1,5 +1,6 @@
 """A process that checks rule files, each in a child with bounds on time and memory."""
 
+import faulthandler
 import json
 import os
 import resource
@@ -7,16 +8,18 @@ import select
 import signal
 import sys
 import time
-from collections.abc import Iterator
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 from capar.model.errors import CaparError
-from capar_rules.cycles import cycle_findings
 from capar_rules.findings import Finding, errors
-from capar_rules.profiles import profile
-from capar_rules.reading import Reading, read_rules
-from capar_rules.statics import Known, known, static_findings
-from capar_rules.syntax import Place, parse
+from capar_rules.judging import Told, base_of, judge_one, read_together, whole
+from capar_rules.reading import Reading
+from capar_rules.statics import Known
+from capar_rules.syntax import Place
 from capar_rules.trials import safety_findings, world_findings
 
 CPU_S = 10
@@ -25,84 +28,93 @@ CPU_S = 10
 WALL_S = 40.0
 """How long it may take [s]."""
 
+DONE = "done"
+"""What a child says last, once it has told everything."""
+
 MEMORY_BYTES = 1 << 30
 """How much it may hold beyond what the process began with [bytes]."""
 
 
 def serve() -> None:
     """Answer requests, one a line as JSON, once all of them are there."""
-    bases: dict[str, Known] = {}
     for line in sys.stdin.read().splitlines():
         request = json.loads(line)
-        name = request["profile"]
-        if name not in bases:
-            bases[name] = known(parse(profile(name).files))
-        findings = _guarded(Path(request["path"]), bases[name], list(request["beside"]))
+        path, beside = Path(request["path"]), [Path(each) for each in request["beside"]]
+        base = base_of(request["profile"])
+        findings = guarded(path, partial(examine, path, base, beside))
         sys.stdout.write(json.dumps([each.as_json() for each in findings]) + "\n")
         sys.stdout.flush()
 
 
-def examine(path: Path, base: Known, beside: list[str]) -> Iterator[Finding]:
+def examine(path: Path, base: Known, beside: Sequence[Path]) -> Iterator[Told]:
     """All findings of one file; the solver is asked only where the text gives no error."""
-    found: list[Finding] = []
-    reading = read_rules(path, folders=[Path(each).parent for each in (*beside, str(path))])
-    found += reading.findings
-    yield from reading.findings
-    if errors(tuple(found)):
-        return
-    others = parse([Path(each) for each in beside])
-    whole = known([*base.rules, *others])
-    for stage in (_static, _safe, _acyclic, _in_worlds):
-        for each in stage(reading, whole):
-            found.append(each)
+    readings = []
+    for each in read_together([path, *beside]):
+        if isinstance(each, Path):
             yield each
-        if errors(tuple(found)):
-            return
+        else:
+            readings.append(each)
+            yield from each.findings
+    if any(errors(each.findings) for each in readings):
+        return
+    yield path
+    others = {each.resolve() for each in beside}
+    for each in readings:
+        if Path(each.file).resolve() not in others:
+            words = whole(base, (other for other in readings if other is not each))
+            found = tuple(judge_one(each, words))
+            yield from found
+            if errors(found):
+                return
+    yield from _solved(readings[0], whole(base, readings[1:]))
 
 
-def _static(reading: Reading, base: Known) -> Iterator[Finding]:
-    return static_findings(reading.statements, base, file=reading.file)
+def _solved(reading: Reading, base: Known) -> Iterator[Finding]:
+    """What only the solver can say of a file whose text gives no error."""
+    found = tuple(safety_findings(reading.text, reading.file))
+    yield from found
+    if not errors(found):
+        yield from world_findings(reading.statements, base)
 
 
-def _safe(reading: Reading, base: Known) -> Iterator[Finding]:
-    return safety_findings(reading.text, reading.file)
+def guarded(path: Path, judge: Callable[[], Iterator[Told]]) -> list[Finding]:
+    """The findings that a child process states before it ends or is ended.
 
-
-def _acyclic(reading: Reading, base: Known) -> Iterator[Finding]:
-    return cycle_findings(reading.statements, base.rules)
-
-
-def _in_worlds(reading: Reading, base: Known) -> Iterator[Finding]:
-    return world_findings(reading.statements, base)
-
-
-def _guarded(path: Path, base: Known, beside: list[str]) -> list[Finding]:
-    """The findings that a child process states before it ends or is ended."""
+    Args:
+        path: The file that is judged first.
+        judge: Tells findings, and each further file that it comes to.
+    """
     reader, writer = os.pipe()
-    child = os.fork()
+    with warnings.catch_warnings():
+        # The child asks nothing of the threads that numerical libraries may have begun.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        child = os.fork()
     if child == 0:
         os.close(reader)
-        _work(path, base, beside, writer)
+        _work(path, judge, writer)
     os.close(writer)
     text, status = _collect(reader, child)
-    lines = text.splitlines()
+    lines = text.split("\n")[:-1]
     findings = [Finding.from_json(json.loads(each)) for each in lines if each.startswith("{")]
-    if "done" not in lines:
-        findings.append(_exhausted(path, status))
+    if DONE not in lines:
+        reached = [json.loads(each) for each in lines if each.startswith('"')]
+        findings.append(_exhausted(Path([str(path), *reached][-1]), status))
     return findings
 
 
-def _work(path: Path, base: Known, beside: list[str], writer: int) -> None:
-    _limit()
-    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+def _work(path: Path, judge: Callable[[], Iterator[Told]], writer: int) -> None:
     try:
-        for each in examine(path, base, beside):
-            os.write(writer, (json.dumps(each.as_json()) + "\n").encode())
-        os.write(writer, b"done\n")
+        faulthandler.disable()  # a file that breaks the parser is told as a finding, by the parent
+        _limit()
+        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        for each in judge():
+            told = str(each) if isinstance(each, Path) else each.as_json()
+            os.write(writer, (json.dumps(told) + "\n").encode())
+        os.write(writer, f"{DONE}\n".encode())
     except CaparError as error:
         finding = Finding(Place(str(path), 1, 1), "refused", str(error)[:300], "Rewrite it.")
-        os.write(writer, (json.dumps(finding.as_json()) + "\ndone\n").encode())
+        os.write(writer, (json.dumps(finding.as_json()) + f"\n{DONE}\n").encode())
     except (MemoryError, RecursionError):
         os._exit(3)
     finally:
@@ -110,11 +122,16 @@ def _work(path: Path, base: Known, beside: list[str], writer: int) -> None:
 
 
 def _limit() -> None:
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU_S, CPU_S + 1))
-    used = _virtual_bytes()
-    resource.setrlimit(resource.RLIMIT_AS, (used + MEMORY_BYTES,) * 2)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    bounds = {
+        resource.RLIMIT_CPU: (CPU_S, CPU_S + 1),
+        resource.RLIMIT_AS: (_virtual_bytes() + MEMORY_BYTES,) * 2,
+        resource.RLIMIT_FSIZE: (0, 0),
+        resource.RLIMIT_CORE: (0, 0),
+    }
+    for kind, (soft, hard) in bounds.items():
+        # Not every system knows every bound; an administrator's may be lower already.
+        with suppress(ValueError, OSError):
+            resource.setrlimit(kind, (soft, hard))
 
 
 def _virtual_bytes() -> int:

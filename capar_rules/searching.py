@@ -43,7 +43,16 @@ def optima(text: str, shown: Iterable[Signature], *, limit: int = 1) -> list[fro
     return sorted(set(found), key=lambda each: sorted(map(str, each)))
 
 
-def _grounded(text: str, options: Sequence[str]) -> clingo.Control:
+def understand(text: str) -> None:
+    """Have the solver read a program, and judge whether it could ground it; it grounds nothing.
+
+    Raises:
+        RuleError: The program has a fault, such as a variable that nothing binds.
+    """
+    _grounded(text, (), part="nothing")
+
+
+def _grounded(text: str, options: Sequence[str], *, part: str = "base") -> clingo.Control:
     messages: list[str] = []
 
     def note(code: clingo.MessageCode, message: str) -> None:
@@ -53,7 +62,7 @@ def _grounded(text: str, options: Sequence[str]) -> clingo.Control:
     control = clingo.Control(list(options), logger=note)
     try:
         control.add("base", [], text)
-        control.ground([("base", [])])
+        control.ground([(part, [])])
     except RuntimeError as error:
         raise RuleError("\n".join(messages) or str(error)) from None
     return control

@@ -6,15 +6,21 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from capar.model.facts import (
+    Bears,
     Between,
     Fact,
     Flies,
     Leans,
     Lies,
+    Link,
+    LookingAt,
+    OfAgent,
     Passage,
     Resting,
     Reverses,
+    Rolls,
     Swings,
+    Touching,
 )
 
 Stretch = tuple[str, str, str, int, int]
@@ -48,16 +54,27 @@ class Encloses(Fact):
 
 
 class Stretches:
-    """Every stretch by the body that it is about, in order of time."""
+    """Every stretch by the body that it is about, in order of time; looks also by what is seen."""
 
-    def __init__(self, facts: Iterable[Fact]) -> None:
+    def __init__(self, facts: Sequence[Fact]) -> None:
         self._by_body: dict[str, list[Stretch]] = defaultdict(list)
+        self._seen: dict[str, list[Stretch]] = defaultdict(list)
+        self._touches: dict[str, set[str]] = defaultdict(set)
+        self._agents = {fact.body: fact.agent for fact in facts if isinstance(fact, OfAgent)}
+        acting = {fact.ee for fact in facts if isinstance(fact, Link)}
         passed = {}
         spans = {}
         for fact in facts:
             for each in _stretches(fact):
                 self._by_body[each[1]].append(each)
-            if isinstance(fact, Lies):
+            if isinstance(fact, Touching):
+                self._touches[fact.body].add(fact.other)
+            elif isinstance(fact, LookingAt):
+                look = (LOOKS, fact.sensor, fact.object, fact.first, fact.last)
+                self._seen[fact.object].append(look)
+                if fact.sensor in acting:
+                    self._by_body[fact.sensor].append(look)
+            elif isinstance(fact, Lies):
                 spans[fact.body, fact.how, fact.other, fact.first] = fact.last
             elif isinstance(fact, Passage):
                 passed[fact.body, fact.how, fact.other, fact.first] = fact.sides
@@ -80,15 +97,28 @@ class Stretches:
     def ranked(
         self, ee: str, ticks: Sequence[int], reach: dict[str, list[tuple[int, int]]]
     ) -> Iterable[Fact]:
-        """The stretches of an end-effector, and of what it handles while it does."""
+        """The stretches of an end-effector and of what it handles, and looks of its agent.
+
+        What is handled may be looked at long before, and so may that which it then touches.
+        """
         whole = [(ticks[0], ticks[-1])]
         for body, times in {**reach, ee: whole}.items():
             for how, _, other, first, last in self._by_body.get(body, ()):
                 if _meets(times, first, last):
                     yield from _ranked(ee, (how, body, other, first, last), ticks)
+        concerned = {*reach, *(other for name in reach for other in self._touches.get(name, ()))}
+        for name in sorted(concerned):
+            for look in self._seen.get(name, ()):
+                if look[1] != ee and self._agents.get(look[1]) == self._agents.get(ee):
+                    yield from _ranked(ee, look, ticks)
 
 
-BORDERS = frozenset({"resting", "reverses", "swings", "leans", "flies"})
+LOOKS = "looks"
+"""That a sensor looks at an object."""
+
+BORDERS = frozenset(
+    {"resting", "reverses", "swings", "leans", "flies", "bears_whole", "bears_none", LOOKS}
+)
 """Stretches at whose ends there may be a border."""
 
 
@@ -101,6 +131,10 @@ def _stretches(fact: Fact) -> Iterable[Stretch]:
         yield "leans", fact.object, fact.object, fact.first, fact.last
     elif isinstance(fact, Flies):
         yield "flies", fact.object, fact.object, fact.first, fact.last
+    elif isinstance(fact, Rolls):
+        yield "rolls", fact.object, fact.object, fact.first, fact.last
+    elif isinstance(fact, Bears):
+        yield f"bears_{fact.share}", fact.foot, fact.foot, fact.first, fact.last
     elif isinstance(fact, Reverses):
         yield "reverses", fact.object, fact.object, fact.frame, fact.frame
     elif isinstance(fact, Lies):

@@ -1,7 +1,7 @@
 """Checks that read a rule file and never run it: what it may hold, and what it speaks of."""
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -60,7 +60,9 @@ class Known:
     measured: frozenset[Signature]
     """Of those, the measurements."""
 
-    primitives: frozenset[str]
+    primitives: Mapping[str, str]
+    """Names of primitives, each with the file that introduces it."""
+
     constants: frozenset[str]
 
 
@@ -75,7 +77,7 @@ def known(rules: Sequence[Statement]) -> Known:
             for each in rules
             if isinstance(each.defines, tuple) and each.place.file.endswith("inputs.lp")
         ),
-        frozenset(_names(rules, "primitive")),
+        dict(_named(rules, "primitive")),
         frozenset(each.defines for each in rules if isinstance(each.defines, str)),
     )
 
@@ -169,15 +171,17 @@ def _unknown(atom: Atom, words: Iterable[Signature]) -> Finding:
 
 
 def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Finding]:
-    mine = set(_names(own, "primitive"))
+    mine = {name for name, _ in _named(own, "primitive")}
     for each in own:
         for head in each.heads:
             arguments = split_arguments(head.text)
             name = head.signature[0]
-            if name == "primitive" and arguments[0].strip('"') in base.primitives:
+            taken = base.primitives.get(arguments[0].strip('"')) if name == "primitive" else None
+            if taken:
                 yield Finding(
-                    head.place, "taken-name", f"there is a primitive {arguments[0]} already.",
-                    "Choose another name.",
+                    head.place, "taken-name",
+                    f"there is a primitive {arguments[0]} already, in {taken}.",
+                    "Choose another name, or take one of the two files away.",
                 )  # fmt: skip
             at = {"fits": 1, "feature_row": 0, "specialises": 0, "verb": 0}.get(name)
             if at is None or (name, len(arguments)) not in AUTHORED:
@@ -192,7 +196,7 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
                     f'state primitive("Name") first.',
                 )  # fmt: skip
             if name == "specialises":
-                yield from _ordered(head, arguments, mine | base.primitives)
+                yield from _ordered(head, arguments, mine | set(base.primitives))
                 if _circular(arguments, [*base.rules, *own]):
                     yield Finding(
                         head.place, "circular", f"{head.text} makes a circle: neither would ever "
@@ -253,11 +257,12 @@ def _documentation(own: Sequence[Statement]) -> Iterator[Finding]:
         )  # fmt: skip
 
 
-def _names(rules: Iterable[Statement], predicate: str) -> Iterator[str]:
+def _named(rules: Iterable[Statement], predicate: str) -> Iterator[tuple[str, str]]:
+    """What facts of a predicate of one argument name, each with the file that says so."""
     for each in rules:
         for head in each.heads:
             if head.signature == (predicate, 1):
-                yield split_arguments(head.text)[0].strip('"')
+                yield split_arguments(head.text)[0].strip('"'), each.place.file
 
 
 def _listed(signatures: Iterable[Signature]) -> str:

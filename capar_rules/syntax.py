@@ -129,13 +129,15 @@ def _parsed(run: Any) -> tuple[Statement, ...]:
 def _statement(node: ast.AST) -> Statement:
     place, text = _place(node), str(node)
     external = tuple(_external(node)) if "@" in text else ()
-    if node.ast_type is ast.ASTType.Rule:
+    statement = node.ast_type
+    if statement is ast.ASTType.Rule:
         if _ANONYMOUS.search(text):
             node = _Named().visit(node)
+            text = str(node)
         kind, heads = _head(node.head)
         body = tuple(_literal(each) for each in node.body)
-        return Statement("rule", place, str(node), kind, heads, body, external)
-    word = node.ast_type.name.lower()
+        return Statement("rule", place, text, kind, heads, body, external)
+    word = statement.name.lower()
     defines: Signature | str = ""
     if word == "defined":
         defines = (node.name, node.arity)
@@ -174,11 +176,12 @@ _HEADS = {
 
 def _head(node: ast.AST) -> tuple[str, tuple[Atom, ...]]:
     kind = _HEADS.get(node.ast_type, "atom")
-    if kind == "atom" and node.atom.ast_type is ast.ASTType.BooleanConstant:
+    if kind != "atom":
+        return kind, tuple(_atoms(node, 0))
+    atom, sign = node.atom, int(node.sign)
+    if atom.ast_type is not ast.ASTType.SymbolicAtom:
         return "constraint", ()
-    if kind == "atom" and node.atom.ast_type is not ast.ASTType.SymbolicAtom:
-        return "constraint", ()
-    return kind, tuple(_atoms(node, 0))
+    return kind, tuple(_symbolic(atom, sign))
 
 
 def _literal(node: ast.AST) -> Literal:
@@ -186,12 +189,13 @@ def _literal(node: ast.AST) -> Literal:
     if node.ast_type is ast.ASTType.ConditionalLiteral:
         return Literal("conditional", 0, text, place, tuple(_atoms(node, 0)))
     atom, sign = node.atom, int(node.sign)
-    if atom.ast_type is ast.ASTType.SymbolicAtom:
-        return Literal("atom", sign, text, place, tuple(_atoms(atom, sign)))
-    if atom.ast_type in (ast.ASTType.BodyAggregate, ast.ASTType.Aggregate):
+    kind = atom.ast_type
+    if kind is ast.ASTType.SymbolicAtom:
+        return Literal("atom", sign, text, place, tuple(_symbolic(atom, sign)))
+    if kind in (ast.ASTType.BodyAggregate, ast.ASTType.Aggregate):
         elements = tuple(tuple(map(_literal, each.condition)) for each in atom.elements)
         return Literal("aggregate", sign, text, place, tuple(_atoms(atom, sign)), elements)
-    if atom.ast_type is ast.ASTType.TheoryAtom:
+    if kind is ast.ASTType.TheoryAtom:
         return Literal("theory", sign, text, place, ())
     return Literal("comparison", sign, text, place, ())
 
@@ -201,20 +205,26 @@ _LEAVES = (ast.ASTType.SymbolicTerm, ast.ASTType.Variable, ast.ASTType.BooleanCo
 
 def _atoms(node: ast.AST, sign: int) -> Iterator[Atom]:
     """Every atom below a node; the sign is the strongest negation on the way."""
-    if node.ast_type in _LEAVES:
+    kind = node.ast_type
+    if kind in _LEAVES:
         return
-    if node.ast_type is ast.ASTType.Literal:
+    if kind is ast.ASTType.Literal:
         sign = max(sign, int(node.sign))
-    if node.ast_type is ast.ASTType.SymbolicAtom:
-        symbol = node.symbol
-        while symbol.ast_type is ast.ASTType.UnaryOperation:
-            symbol = symbol.argument
-        for each in symbol.arguments if symbol.ast_type is ast.ASTType.Pool else [symbol]:
-            signature = (each.name, len(each.arguments))
-            yield Atom(signature, str(node), sign, _place(node))
+    if kind is ast.ASTType.SymbolicAtom:
+        yield from _symbolic(node, sign)
         return
     for child in _children(node):
         yield from _atoms(child, sign)
+
+
+def _symbolic(node: ast.AST, sign: int) -> Iterator[Atom]:
+    """An atom, or each of a pool of them."""
+    symbol = node.symbol
+    place = _place(symbol)
+    while (kind := symbol.ast_type) is ast.ASTType.UnaryOperation:
+        symbol = symbol.argument
+    for each in symbol.arguments if kind is ast.ASTType.Pool else [symbol]:
+        yield Atom((each.name, len(each.arguments)), str(node), sign, place)
 
 
 def _external(node: ast.AST) -> Iterator[Place]:
@@ -234,8 +244,9 @@ def _children(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def _place(node: ast.AST) -> Place:
-    begin = getattr(node, "location", None)
-    if begin is None:
+    location = getattr(node, "location", None)
+    if location is None:
         inner = next(_children(node), None)
         return Place("", 0, 0) if inner is None else _place(inner)
-    return Place(begin.begin.filename, begin.begin.line, begin.begin.column)
+    begin = location.begin
+    return Place(begin.filename, begin.line, begin.column)

@@ -11,17 +11,50 @@ from capar.model.par import FeatureSet
 ACTION_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
 """What a primitive may be called: ``MoveObjTo``."""
 
+LARGEST_BYTES = 256 * 1024
+"""A rule file is a definition that a person reads; none is larger [bytes]."""
+
 RULES_VARIABLE = "CAPAR_RULES"
-"""Environment variable that names the folder of a user's rule files."""
+"""Environment variable that names the folder of a project's rule files."""
+
+ACTIONARY_VARIABLE = "CAPAR_ACTIONARY"
+"""Environment variable that names an Actionary, with the user's rule files beside it."""
+
+FOLDER = "rules"
+"""What the folder of rule files is called: in a project's folder, and in an Actionary's."""
 
 
 def rules_folder(named: Path | None = None) -> Path:
-    """Where the user's rule files are: the folder named, else ``CAPAR_RULES``, else ./rules."""
-    return named or Path(os.environ.get(RULES_VARIABLE, "rules"))
+    """Where the project's rule files are: the folder named, else ``CAPAR_RULES``, else ./rules."""
+    return named or Path(os.environ.get(RULES_VARIABLE) or FOLDER)
+
+
+def actionary_rules(actionary: str | Path | None = None) -> Path | None:
+    """The folder of the user's rules beside an Actionary.
+
+    Args:
+        actionary: Its folder or address; None for the one that ``CAPAR_ACTIONARY`` names.
+
+    Returns:
+        None where no Actionary is named, or a server keeps it: then there is no such folder.
+    """
+    place = str(actionary or os.environ.get(ACTIONARY_VARIABLE) or "")
+    return None if not place or "://" in place else Path(place) / FOLDER
+
+
+def new_rules_folder(named: Path | None = None, *, actionary: str | Path | None = None) -> Path:
+    """Where a new rule of the user's goes.
+
+    That is the folder named, else ``CAPAR_RULES``, else beside the Actionary that is named or that
+    ``CAPAR_ACTIONARY`` names, else ./rules.
+    """
+    if named is None and not os.environ.get(RULES_VARIABLE):
+        return actionary_rules(actionary) or Path(FOLDER)
+    return rules_folder(named)
 
 
 def rule_files(folder: Path | None = None) -> tuple[Path, ...]:
-    """The user's rule files, sorted by name.
+    """The project's rule files, sorted by name.
 
     Raises:
         FileError: A folder was named that is none.
@@ -30,6 +63,37 @@ def rule_files(folder: Path | None = None) -> tuple[Path, ...]:
     if folder is not None and not place.is_dir():
         raise FileError(place, "is no folder of rule files.", "Name one that holds .lp files.")
     return tuple(sorted(place.glob("*.lp"))) if place.is_dir() else ()
+
+
+def user_rules(
+    project: Path | None = None, *, actionary: str | Path | None = None
+) -> tuple[Path, ...]:
+    """The rule files that people wrote: the project's, then those beside the Actionary.
+
+    All of them count alike, whatever their order. A file that stands in both folders with the same
+    content counts once; two that introduce one primitive differently are refused when they are
+    judged.
+
+    Args:
+        project: Their folder; None for ``CAPAR_RULES``, else ``./rules``.
+        actionary: The Actionary; None for the one that ``CAPAR_ACTIONARY`` names, if any.
+
+    Raises:
+        FileError: A folder was named that is none.
+    """
+    beside = actionary_rules(actionary)
+    mine = rule_files(beside) if beside and beside.is_dir() else ()
+    found: dict[object, Path] = {}
+    for each in (*rule_files(project), *mine):
+        found.setdefault(_content(each), each)
+    return tuple(found.values())
+
+
+def _content(path: Path) -> object:
+    """What makes two files one: the same content under the same name."""
+    if not path.is_file() or path.stat().st_size > LARGEST_BYTES:
+        return path
+    return path.name, path.read_bytes()
 
 
 def taught(name: str, features: FeatureSet, *, verb: str = "") -> str:
@@ -61,12 +125,26 @@ def teach(names: Iterable[tuple[str, FeatureSet]], *, folder: Path) -> tuple[Pat
     for path, _ in texts:
         if path.exists():
             raise FileError(path, "exists already.", "Choose another name, or remove that rule.")
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     for path, text in texts:
         draft = path.with_suffix(".tmp")
         draft.write_text(text)
         draft.replace(path)
     return tuple(path for path, _ in texts)
+
+
+def make_folder(folder: Path) -> Path:
+    """A folder for rule files, made if it is not there.
+
+    Raises:
+        FileError: It cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        message = f"cannot hold rule files: {error.strerror}."
+        raise FileError(folder, message, "Name another folder with --rules.") from None
+    return folder
 
 
 def _path(folder: Path, name: str) -> Path:

@@ -87,3 +87,29 @@ class Shares(Fact):
     since: int
     other: str
     when: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Meanwhile(Fact):
+    """While this end-effector touches an object, another one's contact with it begins or ends.
+
+    Between this tick and the next; the other's contact is named by its first frame.
+    """
+
+    predicate = "meanwhile"
+    ee: str
+    tick: int
+    kind: str
+    other: str
+    object: str
+    since: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Undisturbed(Fact):
+    """The ticks of a stretch in which an end-effector rests and touches nothing."""
+
+    predicate = "undisturbed"
+    ee: str
+    first: int
+    last: int

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from capar.model.errors import RuleError
 from capar_rules.auditing import ASKED, Audit, evaluate, given_in_audit, summarise
 from capar_rules.findings import NOTE, Finding
-from capar_rules.searching import Atom, brave
+from capar_rules.searching import Atom, brave, understand
 from capar_rules.slicing import heads_of, towards
 from capar_rules.statics import Known
 from capar_rules.syntax import Place, Signature, Statement, parse_text, split_arguments
@@ -21,6 +21,14 @@ def safety_findings(text: str, file: str) -> Iterator[Finding]:
     """What the solver refuses of a file by itself: unsafe variables above all."""
     try:
         brave(text, ())
+    except RuleError as error:
+        yield from solver_findings(str(error), file)
+
+
+def unsafe_findings(text: str, file: str) -> Iterator[Finding]:
+    """The same without grounding anything: it costs no more than reading the file."""
+    try:
+        understand(text)
     except RuleError as error:
         yield from solver_findings(str(error), file)
 

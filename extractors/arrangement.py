@@ -19,26 +19,36 @@ def inside(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
 
     The share is that of the body's outermost points, those halfway to its middle, and its middle.
     """
-    out = np.zeros(len(body.middles), dtype=bool)
+    points = np.concatenate([body.corners, 0.5 * body.corners, np.zeros((1, 3))])
+    return _share(points, body, other, depth_m=0.0) >= thresholds.inside_share
+
+
+def dips(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+    """One end of it is in the other's hull, deeper than bodies that touch cut each other."""
+    return _share(body.corners, body, other, depth_m=_give(thresholds)) > 0.0
+
+
+def _share(
+    points: Float[np.ndarray, "points 3"], body: Figure, other: Figure, *, depth_m: float
+) -> Float[np.ndarray, "frames"]:
+    """Share of a body's points, from its middle, that lie so deep in the other's hull."""
+    out = np.zeros(len(body.middles))
     planes = other.planes
-    if planes is None:
-        return out
     frames = np.flatnonzero(_overlaps(body, other, 0.0))
-    if frames.size:
-        points = np.concatenate([body.corners, 0.5 * body.corners, np.zeros((1, 3))])
+    if planes is not None and frames.size:
         world = points @ np.swapaxes(body.turns[frames], 1, 2) + body.middles[frames, None]
         local = (world - other.middles[frames, None]) @ other.turns[frames]
         within = np.ones(local.shape[:2], dtype=bool)
         for plane in planes:
-            within &= local @ plane[:3] + plane[3] <= 0.0
-        out[frames] = within.mean(axis=1) >= thresholds.inside_share
+            within &= local @ plane[:3] + plane[3] <= -depth_m
+        out[frames] = within.mean(axis=1)
     return out
 
 
 def above(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
     """It is higher than the other's top, within 45 degrees of the vertical from its shadow."""
     low, high = body.boxes[0][:, 2], other.boxes[1][:, 2]
-    aside = _aside(body.middles, *other.boxes)
+    aside = beyond_shadow(body.middles, *other.boxes)
     rise = body.middles[:, 2] - high
     with np.errstate(invalid="ignore"):
         return np.asarray((low >= high - _give(thresholds)) & (rise > 0.0) & (aside <= rise))
@@ -47,7 +57,7 @@ def above(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
 def below(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
     """It is lower than the other's bottom, under its shadow."""
     high, low = body.boxes[1][:, 2], other.boxes[0][:, 2]
-    aside = _aside(body.middles, *other.boxes)
+    aside = beyond_shadow(body.middles, *other.boxes)
     with np.errstate(invalid="ignore"):
         return np.asarray((high <= low + _give(thresholds)) & (aside <= 0.0))
 
@@ -57,7 +67,7 @@ def beside(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
     low, high = body.boxes
     bottom, top = other.boxes
     heights = (low[:, 2] <= top[:, 2]) & (high[:, 2] >= bottom[:, 2])
-    aside = _aside(body.middles, bottom, top)
+    aside = beyond_shadow(body.middles, bottom, top)
     near = _overlaps(body, other, thresholds.near_m)
     with np.errstate(invalid="ignore"):
         return np.asarray(heights & near & (aside > 0.0))
@@ -113,6 +123,7 @@ def sides(body: Figure, other: Figure, frames: Int[np.ndarray, "two"]) -> str:
 
 ARRANGEMENTS: dict[str, Callable[[Figure, Figure, Thresholds], Holds]] = {
     "inside": inside,
+    "dips": dips,
     "above": above,
     "below": below,
     "beside": beside,
@@ -131,7 +142,7 @@ def _overlaps(body: Figure, other: Figure, reach_m: float) -> Holds:
         return np.asarray(gap(body, other) <= reach_m)
 
 
-def _aside(
+def beyond_shadow(
     point: Float[np.ndarray, "frames 3"],
     low: Float[np.ndarray, "frames 3"],
     high: Float[np.ndarray, "frames 3"],

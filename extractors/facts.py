@@ -1,7 +1,7 @@
 """All measurements of a capture, as ground facts and the arrays that later stages need."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -18,6 +18,7 @@ from capar.model.facts import (
     Link,
     LookingAt,
     Moving,
+    OfAgent,
     Pause,
     RateMhz,
     Tag,
@@ -25,6 +26,7 @@ from capar.model.facts import (
     ZeroCrossing,
 )
 from extractors.attention import Attention, attention
+from extractors.bearing import TRUNK
 from extractors.contact import Contact, contact_tolerance, contacts
 from extractors.gaps import long_gaps
 from extractors.handling import handling
@@ -68,7 +70,7 @@ class Measurements:
     """By sensor, acting or attending."""
 
     attention: Mapping[str, Attention]
-    """By attending sensor."""
+    """By sensor that attends, and by head that acts."""
 
     poses: Mapping[tuple[str, str], Poses]
     """By ``("sensor", name)`` and ``("object", name)``."""
@@ -88,8 +90,10 @@ def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measur
     noises = {each.name: where["sensor", each.name].noise.position_m for each in capture.sensors}
     tolerance = contact_tolerance(capture, noises, limits)
     tracks = {each.name: _track(where["sensor", each.name], limits) for each in capture.sensors}
-    looks = {each.name: attention(capture, each, where, limits) for each in capture.attending}
-    touches = contacts(capture, where, tolerance_m=tolerance, thresholds=limits)
+    looks = {each.name: attention(capture, each, where, limits) for each in _seeing(capture)}
+    touches = contacts(
+        capture, where, tolerance_m=tolerance, thresholds=_of_contact(capture, limits)
+    )
     facts = [
         *_scene(capture),
         *(
@@ -115,6 +119,28 @@ def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measur
     return Measurements(_ordered(facts), notices, tolerance, tracks, looks, where)
 
 
+HEAD = "head"
+"""The general type of an end-effector that carries the eyes, whether it attends or acts."""
+
+
+def _seeing(capture: Capture) -> tuple[Sensor, ...]:
+    """Every sensor with a line of sight: heads, and what attends and is no trunk."""
+    attending = {each.name for each in capture.attending if each.end_effector not in TRUNK}
+    return tuple(
+        each for each in capture.sensors if each.name in attending or each.end_effector == HEAD
+    )
+
+
+def _of_contact(capture: Capture, thresholds: Thresholds) -> Thresholds:
+    """The thresholds of contact, where the capture states its own."""
+    dropout, minimum = capture.contact_dropout_s, capture.contact_minimum_s
+    return replace(
+        thresholds,
+        dropout_s=thresholds.dropout_s if dropout is None else dropout,
+        contact_minimum_s=thresholds.contact_minimum_s if minimum is None else minimum,
+    )
+
+
 def _track(where: Poses, thresholds: Thresholds) -> Track:
     stream = where.smooth
     pace = speed(stream.positions, stream.times)
@@ -131,6 +157,11 @@ def _scene(capture: Capture) -> Iterator[Fact]:
         yield Link(sensor.name, sensor.end_effector, sensor.side)
     for each in capture.objects:
         yield Tag(each.name, each.tag.value)
+    if capture.others:
+        own = [each for each in capture.objects if each.tag is TagType.SELF]
+        bodies: tuple[Sensor | TagObject, ...] = (*capture.acting, *_seeing(capture), *own)
+        for body in bodies:
+            yield OfAgent(body.name, capture.agent_of(body))
     if capture.force_transfer:
         yield ForceTransfer()
     for rank, purpose in enumerate(capture.purposes):

@@ -18,12 +18,15 @@ from capar.model.facts import (
     Passage,
     Resting,
     Reverses,
+    Rolls,
     Swings,
     Touching,
     Upward,
 )
 from extractors.arrangement import ARRANGEMENTS, Holds, between, gap, sides
+from extractors.bearing import bearing
 from extractors.figures import Figure, figure
+from extractors.grips import shifts
 from extractors.impulses import closing_speed, falls
 from extractors.intervals import Interval, intervals
 from extractors.leaning import leaning, upright_axis
@@ -33,11 +36,15 @@ from extractors.object_motion import motion_floor, stays
 from extractors.places import distances, places
 from extractors.poses import Poses
 from extractors.resting import resting
+from extractors.rolling import rolling
 from extractors.thresholds import Thresholds
 from extractors.turning_points import reversals, swings
 
 PASSED = ("inside", "above")
 """Arrangements that a body may pass through."""
+
+SHIFTS = "shifts"
+"""That an end-effector goes to another place on what it touches."""
 
 NEAR = "near"
 """That it is within reach of another for a while and does not touch it."""
@@ -72,6 +79,7 @@ def handling(
         out += (Resting(name, *each) for each in resting(hand.where, thresholds))
     for each in mobile:
         out += _motion(each, things[each.name], seen, capture.rate_hz, thresholds)
+    out += bearing(capture, where, touches, thresholds)
     borders = marks([*seen, *out], acting, len(capture.times) - 1)
     figures = [*hands.values(), *(things[each.name] for each in mobile if each.name not in hands)]
     for one in figures:
@@ -83,6 +91,11 @@ def handling(
                 out += distances(one, other, frames)
                 out += _arranged(one, other, touches, thresholds)
         out += _between(one, [each for each in things.values() if each is not one], thresholds)
+    for touch in touches:
+        if touch.body in hands and touch.other in floors and touch.body != touch.other:
+            touching = (touch.first, touch.last)
+            spans = shifts(hands[touch.body], things[touch.other], touching, thresholds)
+            out += (Lies(touch.body, SHIFTS, touch.other, *span) for span in spans)
     out += _contacts({**things, **hands}, touches)
     return tuple(out)
 
@@ -99,8 +112,11 @@ def _motion(
     yield from (Reverses(each.name, frame) for frame in reversals(pose, moves, thresholds))
     yield from (Swings(each.name, *span) for span in swings(pose, moves, thresholds))
     upright = _upright(one, each.motion_floor_m, rate_hz, thresholds)
-    yield from (Leans(each.name, *span) for span in leaning(pose, upright, thresholds))
+    length_m = float(one.shape.size.max()) if one.shape else 0.0
+    leans = leaning(pose, upright, thresholds, length_m=length_m)
+    yield from (Leans(each.name, *span) for span in leans)
     yield from (Flies(each.name, *span) for span in falls(one, thresholds))
+    yield from (Rolls(each.name, *span) for span in rolling(one, thresholds))
 
 
 def _upright(

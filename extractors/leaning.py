@@ -1,7 +1,7 @@
 """When an object leans: its upright axis is far from the vertical."""
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
 from extractors.intervals import Interval, intervals
@@ -11,27 +11,51 @@ from extractors.thresholds import Thresholds
 
 
 def leaning(
-    where: Poses, upright: Float[np.ndarray, "3"], thresholds: Thresholds
+    where: Poses,
+    upright: Float[np.ndarray, "3"],
+    thresholds: Thresholds,
+    *,
+    length_m: float = 0.0,
 ) -> tuple[Interval, ...]:
-    """Closed intervals of frames in which an object leans.
+    """Closed intervals of frames in which an object leans, from when it began to lean over.
+
+    It leans while its axis is far from the vertical, and already, and still, while it turns
+    thither and back faster than a body at rest does, and turns rather than travels: its middle
+    goes no faster than its turning moves one end about the other.
 
     Args:
         where: The object's poses.
         upright: The axis that points up while it stands, in its own frame.
         thresholds: The angle, and least durations.
+        length_m: The object's greatest length [m]; a point's turning moves nothing.
     """
     stream = where.smooth
     angle = lean(stream.orientations, upright)
+    pace = np.gradient(angle, stream.times)
+    speed = np.linalg.norm(np.gradient(stream.positions, stream.times, axis=0), axis=1)
     with np.errstate(invalid="ignore"):
         far = angle > thresholds.lean_rad
-    return tuple(
-        intervals(
-            far,
-            stream.times,
-            dropout_s=thresholds.dropout_s,
-            minimum_s=thresholds.contact_minimum_s,
-        )
-    )
+        turns = (np.abs(pace) >= thresholds.rest_speed_radps) & (speed <= np.abs(pace) * length_m)
+        over, back = turns & (pace > 0.0), turns & (pace < 0.0)
+    found: list[Interval] = []
+    for first, last in intervals(
+        far,
+        stream.times,
+        dropout_s=thresholds.dropout_s,
+        minimum_s=thresholds.contact_minimum_s,
+    ):
+        begin = first - _run(over[:first][::-1])
+        end = last + _run(back[last + 1 :])
+        if found and begin <= found[-1][1]:
+            begin = found[-1][1] + 1
+        found.append((begin, end))
+    return tuple(found)
+
+
+def _run(holds: Bool[np.ndarray, "frames"]) -> int:
+    """For how many frames from the first on it holds."""
+    gaps = np.flatnonzero(~holds)
+    return int(gaps[0]) if gaps.size else len(holds)
 
 
 def upright_axis(where: Poses, rests: tuple[Stay, ...]) -> Float[np.ndarray, "3"]:

@@ -5,9 +5,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
 from capar.model.facts import (
+    Bears,
     Fact,
     Flies,
     Leans,
+    LookingAt,
     Moving,
     Pause,
     Resting,
@@ -50,19 +52,28 @@ def marks(facts: Iterable[Fact], acting: Iterable[str], last_frame: int) -> Mark
     return {name: tuple(sorted(out[name])) for name in sorted(out)}
 
 
+_ABOUT: Mapping[type[Fact], str] = {
+    Bears: "foot",
+    Flies: "object",
+    Leans: "object",
+    LookingAt: "sensor",
+    Moving: "object",
+    Pause: "ee",
+    Resting: "ee",
+    Reverses: "object",
+    Swings: "body",
+    Touching: "body",
+}
+"""The field of each kind of fact that names the body which it is about."""
+
+
 def _instants(fact: Fact) -> tuple[str, tuple[int, ...]]:
     """What a fact is about, and the frames where it begins and ends."""
-    if isinstance(fact, Moving | Leans | Flies):
-        return fact.object, (fact.first, fact.last)
-    if isinstance(fact, Touching | Swings):
-        return fact.body, (fact.first, fact.last)
-    if isinstance(fact, Resting):
-        return fact.ee, (fact.first, fact.last)
-    if isinstance(fact, Pause):
-        return fact.ee, (fact.frame,)
-    if isinstance(fact, Reverses):
-        return fact.object, (fact.frame,)
-    return "", ()
+    body = _ABOUT.get(type(fact))
+    if body is None:
+        return "", ()
+    fields = ("frame",) if isinstance(fact, Pause | Reverses) else ("first", "last")
+    return getattr(fact, body), tuple(getattr(fact, each) for each in fields)
 
 
 def _around(ordered: Sequence[int], first: int, last: int) -> Sequence[int]:

@@ -1,6 +1,7 @@
 """When an object is away from each place where it rests (thesis 4.4.1)."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -77,7 +78,9 @@ def stays(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Stay, ...
 def moving(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Interval, ...]:
     """Closed intervals of frames in which the object is at none of the places where it rests.
 
-    Frames in which it was lost count as motion only if it lies elsewhere afterwards.
+    An absence from a place counts if it lasts, or if the next place is beyond the floor from it:
+    what rests here and then there has moved in between, however quickly. Frames in which it was
+    lost count as motion only if it lies elsewhere afterwards.
     """
     stream = where.smooth
     rests = stays(where, floor, thresholds)
@@ -85,9 +88,32 @@ def moving(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Interval
     for first, last in geometry.gaps(stream.lost):
         if first > 0 and last < len(stream.times) - 1 and _moved(stream, first, last, floor):
             away[first : last + 1] = True
-    return tuple(
+    changes = _changes(rests, floor)
+    lasting = set(
         intervals(away, stream.times, dropout_s=0.0, minimum_s=thresholds.moving_minimum_s)
     )
+    return tuple(
+        each
+        for each in geometry.gaps(away)
+        if each in lasting or any(_meet(each, change) for change in changes)
+    )
+
+
+def _changes(rests: tuple[Stay, ...], floor: Floor) -> list[Interval]:
+    """The frames between two places of rest that are farther apart than the floor."""
+    out: list[Interval] = []
+    for one, two in pairwise(rests):
+        apart = float(np.linalg.norm(two.position - one.position))
+        angle = float(geometry.angle_between(two.orientation[None], one.orientation[None])[0])
+        if apart > floor.position_m or angle > floor.rotation_rad:
+            left, come = one.interval[1], two.interval[0]
+            if come > left + 1:
+                out.append((left + 1, come - 1))
+    return out
+
+
+def _meet(one: Interval, other: Interval) -> bool:
+    return one[0] <= other[1] and other[0] <= one[1]
 
 
 def slow(

@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from capar.model import geometry
 from capar.model.facts import Apart, Fact, Place, Posture, Travelled, Wound
+from extractors.arrangement import beyond_shadow
 from extractors.figures import Figure
 from extractors.leaning import lean, spin
 
@@ -40,7 +41,7 @@ def distances(figure: Figure, other: Figure, frames: tuple[int, ...]) -> Iterato
     """Distance of two bodies' middles, and the angle by which one has gone about the other."""
     offset = figure.middles - other.middles
     apart = np.linalg.norm(offset, axis=1)
-    wound = _wound(offset)
+    wound = _wound(offset, beyond_shadow(figure.middles, *other.boxes) > 0.0)
     for frame in frames:
         if not np.isnan(apart[frame]):
             yield Apart(figure.name, other.name, frame, round(1000.0 * float(apart[frame])))
@@ -58,8 +59,14 @@ def _sum(steps: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "frames"]:
     return np.concatenate(([0.0], np.cumsum(np.nan_to_num(steps))))
 
 
-def _wound(offset: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
-    """Unwrapped azimuth of a body about another [rad]; where it is lost nothing is added."""
+def _wound(
+    offset: Float[np.ndarray, "frames 3"], outside: Bool[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames"]:
+    """Unwrapped azimuth of a body about another [rad].
+
+    Nothing is added where it is lost, nor above or below the other, where it goes about nothing.
+    """
     azimuth = np.arctan2(offset[:, 1], offset[:, 0])
     steps = np.nan_to_num(np.diff(azimuth))
-    return _sum((steps + np.pi) % (2.0 * np.pi) - np.pi)
+    turns = (steps + np.pi) % (2.0 * np.pi) - np.pi
+    return _sum(np.where(outside[1:] & outside[:-1], turns, 0.0))

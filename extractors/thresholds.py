@@ -94,11 +94,42 @@ class Thresholds:
     lean_rad: float = 0.5236
     """Angle from the vertical beyond which an object leans [rad]: thirty degrees."""
 
+    slip_share: float = 0.3
+    """A body rolls while the point below its middle is slower than this share of its middle's
+    speed [1]: were it one, the body would slide; people's hands make round things slip a little."""
+
+    roll_rad: float = 0.7854
+    """A smaller turn is no rolling [rad]: 45 degrees. The middle of a thing that is tipped over
+    its edge is near enough above the edge for 35 degrees that it slips no more than that."""
+
     fall_share: float = 0.3
     """A body falls freely while its acceleration is within this share of gravity's [1]."""
 
     fall_minimum_s: float = 0.06
     """A shorter fall is none [s]: it falls less than two centimetres meanwhile."""
+
+    touch_load_share: float = 0.2
+    """A foot that bears less than this share of the weight merely touches [1]: what physiotherapy
+    calls touch-down weight bearing; if both are down the other one bears all the rest."""
+
+    feet_apart_m: float = 0.1
+    """Feet nearer than this share the weight as nobody knows [m]: the width of a foot, within
+    which the middle of the body is not known better than to a fifth."""
+
+    off_feet_m: float = 0.3
+    """A body whose middle is further from its feet than this is borne by something else too, or
+    falls [m]: the length of a large foot."""
+
+    level_m: float = 0.03
+    """Feet that rest within this height of the lowest rest stand on one level [m]: the sole of a
+    foot and the noise of a tracker are that thick."""
+
+    steep: float = 0.7071
+    """Cosine of 45 degrees: what is flatter bears from below [1]."""
+
+    hand_width_m: float = 0.1
+    """A hand's width [m], as in the rules: a hand that has shifted farther on an object grasps it
+    elsewhere."""
 
     near_m: float = 0.15
     """Bodies whose boxes are nearer than this are beside each other [m]: a hand's length."""

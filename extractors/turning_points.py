@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import Float, Int
 
+from capar.model.capture import Stream
 from extractors.intervals import Interval
 from extractors.poses import Poses
 from extractors.thresholds import Thresholds
@@ -51,7 +52,8 @@ def swings(
     """Closed intervals of frames in which a body moves to and fro along an axis of the world.
 
     To and fro is a chain of turning points, each soon after the one before; several axes that
-    swing at a time are one swinging.
+    swing at a time are one swinging. It begins and ends with the motion itself, if that is soon
+    before or after and no further than one stroke.
     """
     stream = where.smooth
     chains: list[Interval] = []
@@ -59,7 +61,8 @@ def swings(
         part = stream.positions[first : last + 1]
         for axis in range(3) if not np.isnan(part).any() else ():
             turns = first + turning_points(part[:, axis], thresholds.swing_m)
-            chains += _chains(turns, stream.times, thresholds)
+            for chain in _chains(turns, stream.times, thresholds):
+                chains.append(_whole(chain, (first, last), stream, axis, thresholds))
     out: list[Interval] = []
     for first, last in sorted(chains):
         if out and first <= out[-1][1]:
@@ -71,9 +74,31 @@ def swings(
 
 def _chains(
     turns: Int[np.ndarray, "turns"], times: Float[np.ndarray, "frames"], thresholds: Thresholds
-) -> list[Interval]:
+) -> list[Int[np.ndarray, "turns"]]:
     if not len(turns):
         return []
     breaks = np.flatnonzero(np.diff(times[turns]) > thresholds.swing_s) + 1
     groups = np.split(turns, breaks)
-    return [(int(each[0]), int(each[-1])) for each in groups if len(each) >= thresholds.swing_turns]
+    return [each for each in groups if len(each) >= thresholds.swing_turns]
+
+
+def _whole(
+    turns: Int[np.ndarray, "turns"],
+    moving: Interval,
+    stream: Stream,
+    axis: int,
+    thresholds: Thresholds,
+) -> Interval:
+    """Between its first and last turning point, or the rest that is no more than a stroke away."""
+    stroke = np.abs(np.diff(stream.positions[turns, axis])).max()
+
+    def near(edge: int, turn: int) -> bool:
+        way = np.linalg.norm(stream.positions[edge] - stream.positions[turn])
+        soon = abs(stream.times[edge] - stream.times[turn]) <= thresholds.swing_s
+        return bool(soon and way <= stroke)
+
+    first, last = int(turns[0]), int(turns[-1])
+    return (
+        moving[0] if near(moving[0], first) else first,
+        moving[1] if near(moving[1], last) else last,
+    )

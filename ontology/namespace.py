@@ -139,15 +139,20 @@ class CAPAR(metaclass=Closed):
     EndsSwinging: NamedNode
     Tips: NamedNode
     Rights: NamedNode
+    BeginsLooking: NamedNode
+    EndsLooking: NamedNode
+    ShiftsWeight: NamedNode
     placement: NamedNode
     preposition: NamedNode
     # complex.ttl
     ComplexPar: NamedNode
     ComplexStep: NamedNode
     Step: NamedNode
+    JointAction: NamedNode
     complexStep: NamedNode
     enacts: NamedNode
     step: NamedNode
+    jointAction: NamedNode
     realises: NamedNode
     effectors: NamedNode
     segmentNumbers: NamedNode

@@ -18,6 +18,7 @@ from capar.model.facts import (
 )
 from capar.model.observation import (
     Border,
+    JointAction,
     Observation,
     ObservedLink,
     ObservedObject,
@@ -82,6 +83,7 @@ def observation(
     agent: Agent | None = None,
     profile: str = "extended",
     notices: tuple[Notice, ...] = (),
+    joint: tuple[JointAction, ...] = (),
 ) -> Observation:
     """The observation that has these segments, with the PARs that follow from them."""
     performer = agent or Agent()
@@ -111,6 +113,7 @@ def observation(
         styles=tuple(style(each) for each in segments),
         sources=(Source(f"{name}.csv", "csv", "a" * 64),),
         notices=notices,
+        joint=joint,
     )
 
 
@@ -414,6 +417,18 @@ def pick_up_with_both_hands() -> Observation:
         frames=361,
         rate_hz=100.0,
         profile="thesis",
+        joint=(
+            JointAction(
+                "MoveObj",
+                ("box", "table"),
+                ("left_hand", "right_hand"),
+                (2, 2),
+                140,
+                260,
+                1.4,
+                2.6,
+            ),
+        ),
     )
 
 

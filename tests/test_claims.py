@@ -63,11 +63,51 @@ def test_false_claims_do_not_and_say_what_was_found(drink, claim):
     assert verdict.found
 
 
+@pytest.fixture(scope="module")
+def lift() -> Observation:
+    return observe(motions.pick_up_with_both_hands(motions.TALL_MAN).capture)
+
+
+TRUE_OF_BOTH = (
+    "both hands do Lift(box)",
+    "both hands do MoveObj(box)",
+    "left_hand and right_hand do Lift(box)",
+    "right_hand and left_hand do Lower(box, table)",
+    "both hands do Lift(box) before both hands do Lower(box, _)",
+    "both hands do Touch(box) while left_hand touches box",
+    "both hands do Lift lasts 0.3 to 1 s",
+    "no both hands do Reach(box)",
+    "no both feet do Lift(box)",
+)
+FALSE_OF_BOTH = (
+    "both hands do Reach(box)",
+    "both hands do Lift(table)",
+    "both hands do Lower(box) before both hands do Lift(box)",
+    "no both hands do Lift(box)",
+)
+
+
+@pytest.mark.parametrize("claim", TRUE_OF_BOTH)
+def test_what_both_hands_do_can_be_claimed(lift, claim):
+    assert judge(claim, lift).holds, judge(claim, lift).found
+
+
+@pytest.mark.parametrize("claim", FALSE_OF_BOTH)
+def test_what_both_hands_do_not_do_is_no_true_claim(lift, claim):
+    assert not judge(claim, lift).holds
+
+
+@pytest.mark.parametrize("claim", ["both hands do MoveObj(mug)", "both hands do Reach(mug)"])
+def test_one_hand_alone_is_not_both(drink, claim):
+    assert not judge(claim, drink).holds
+
+
 @pytest.mark.parametrize(
     ("claim", "message"),
     [
         ("right hand takes the mug", "is no event"),
         ("left_hand Reach", "no end-effector 'left_hand' acts"),
+        ("left_hand and right_hand do Lift(mug)", "no end-effector 'left_hand' acts"),
         ("mug touches cup", "no body 'cup'"),
         ("right_hand: reach", "is no step"),
     ],

@@ -37,6 +37,8 @@ ROWS: tuple[Act, ...] = (
     motions.move_obj_to,
     motions.resume_posture,
     motions.touch,
+    motions.roll_object,
+    motions.stand_on_one_leg,
 )
 
 act = pytest.mark.parametrize("act", (*PUBLISHED, *ROWS), ids=lambda each: each.__name__)

@@ -49,6 +49,24 @@ def test_a_box_is_reached_held_moved_to_a_shelf_and_left(recordings: Path) -> No
     assert sum(each.code == "assumed-support" for each in observation.notices) == 2
 
 
+def test_one_watched_hand_alone_is_not_both(recordings: Path) -> None:
+    """The crate is lifted with two hands, of which one carries markers: nothing is made up."""
+    assert observe(EXAMPLES / "pyomeca_box_lift").joint == ()
+
+
+def test_a_large_table_is_lifted_and_put_down_with_both_hands(recordings: Path) -> None:
+    """Both hands hold it from its first motion to its last, as it goes up and comes down."""
+    observation = observe(EXAMPLES / "omomo_intermimic" / "hands.toml:sub2_largetable_008")
+    (moving,) = [each for each in observation.facts if isinstance(each, Moving)]
+    joint = [each for each in observation.joint if each.first < moving.last > moving.first]
+    assert {observation.who(each) for each in joint} == {"both hands"}
+    assert all(one.last == two.first for one, two in pairwise(joint))
+    assert joint[0].first <= moving.first + 2
+    assert joint[-1].last >= moving.last - 2
+    names = [each.name for each in joint]
+    assert names.index("Lift") < names.index("Lower")
+
+
 def test_a_soft_pillow_is_touched_at_each_descent_and_never_moves(recordings: Path) -> None:
     """Twenty minima of the hand's height deeper than 5 cm, and one more descent at the very end."""
     capture = read_capture(EXAMPLES / "hand_embodiment_pillow")

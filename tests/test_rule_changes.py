@@ -86,6 +86,30 @@ def test_nothing_is_renamed_when_the_files_have_changed(kept):
         assert store.observations()[0].rules == profile("thesis").fingerprint
 
 
+def test_takes_of_a_bundle_are_found_again(tmp_path):
+    bundle = tmp_path / "captures" / "both"
+    shutil.copytree(DEMO, bundle)
+    for take in ("take1", "take10"):
+        shutil.copy(bundle / "motion.csv", bundle / f"{take}.csv")
+    (bundle / "take1.csv").open("a").write("\n")
+    table = (bundle / "capture.toml").read_text().replace("motion.csv", "{take}.csv")
+    (bundle / "mine.toml").write_text(f'takes = ["take1", "take10"]\n{table}')
+    (bundle / "capture.toml").unlink()
+    (tmp_path / "lift.lp").write_text(LIFT)
+    place = str(tmp_path / "actionary")
+    with Actionary.open(place) as store:
+        for take in ("take1", "take10"):
+            store.add(observe(f"{bundle}/mine.toml:{take}", rules="thesis"))
+    before, after = profile("thesis"), profile("thesis", added=(tmp_path / "lift.lp",))
+    changed = reclassified(place, before=before, after=after, captures=[tmp_path / "captures"])
+    assert [(each.capture, each.after) for each in changed] == [
+        ("drink_from_mug_tall_man_take1", "Lift"),
+        ("drink_from_mug_tall_man_take10", "Lift"),
+    ]
+    with Actionary.open(place, read_only=True) as store:
+        assert {each.rules for each in store.observations()} == {after.fingerprint}
+
+
 def test_the_commands_say_the_same(kept):
     options = ["--profile", "thesis", "--actionary", str(kept / "actionary")]
     rules = ["--rules", str(kept / "rules")]

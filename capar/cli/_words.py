@@ -12,21 +12,23 @@ if TYPE_CHECKING:
     from kb.store import Store
 
 
-def rule_words(rules: Path | None) -> "tuple[PrimitiveWords, ...]":
-    """What the primitives that ship, and the user's own, are called."""
+def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[PrimitiveWords, ...]":
+    """What the primitives that ship, and those that people wrote, are called."""
+    from capar.cli._rules import rule_base
     from capar.report import primitive_files, primitive_words
-    from capar_rules.teaching import rule_files
 
-    return primitive_words(primitive_files(rule_files(rules)))
+    return primitive_words(primitive_files(rule_base("extended", rules, actionary).added))
 
 
 @contextmanager
 def open_words(where: str | None) -> "Iterator[Store | None]":
     """The store of an Actionary to read; None where none is named and none stands here."""
+    from kb.embedded import DATA_FOLDER
     from kb.store import is_address, open_store, place
 
     target = place(where)
-    if where is None and not is_address(target) and not Path(target).is_dir():
+    # The folder of an Actionary may hold rules before it holds anything that was observed.
+    if where is None and not is_address(target) and not (Path(target) / DATA_FOLDER).is_dir():
         yield None
         return
     store = open_store(target, read_only=not is_address(target))

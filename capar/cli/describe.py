@@ -1,10 +1,11 @@
 """A capture in; what happened out, in plain English."""
 
 from enum import StrEnum
-from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from capar.cli._rules import Beside, Rules, rule_base
 
 app = typer.Typer()
 
@@ -29,19 +30,18 @@ def describe(
     profile: Annotated[
         str, typer.Option(help="The rules to reason with: extended, or thesis to the letter.")
     ] = "extended",
-    rules: Annotated[
-        Path | None,
-        typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
-    ] = None,
+    rules: Rules = None,
+    actionary: Beside = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Say in plain English what was done in CAPTURE."""
     from capar.cli._words import print_json, rule_words
-    from capar.words import observed
+    from capar.observe import observe
     from kb.language.describe import describe as told
 
-    observation = observed(capture, profile=profile, rules=rules)
-    text = told(observation, detail=detail.value, timed=timed, words=rule_words(rules))
+    observation = observe(capture, rules=rule_base(profile, rules, actionary))
+    words = rule_words(rules, actionary)
+    text = told(observation, detail=detail.value, timed=timed, words=words)
     if json:
         print_json({"capture": observation.capture, "description": text})
     else:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from capar.cli._rules import Beside, Rules, Steady, rule_base
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
@@ -31,6 +32,9 @@ def evaluate(
     frames_of: Annotated[
         str, typer.Option(help="File of the capture whose frames the labels count.")
     ] = "",
+    rules: Rules = None,
+    actionary: Beside = None,
+    steady: Steady = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Observe each CAPTURE and compare its segments with the LABELS file after it, pooled.
@@ -50,7 +54,8 @@ def evaluate(
     from capar.evaluation.mapping import read_mapping
 
     cases = [(place, Path(labels)) for place, labels in zip(pairs[::2], pairs[1::2], strict=True)]
-    found = evaluate_pairs(cases, read_mapping(mapping), rules=profile, frames_of=frames_of)
+    base = rule_base(profile, rules, actionary, steady=steady)
+    found = evaluate_pairs(cases, read_mapping(mapping), rules=base, frames_of=frames_of)
     result = report(found)
     if as_json:
         typer.echo(json.dumps(result, indent=2, ensure_ascii=False))

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from capar.cli._rules import Beside, Rules, Steady, rule_base
+
 if TYPE_CHECKING:
     from capar_rules.explaining import Explanation, Reason
     from capar_rules.why_not import Alternative
@@ -30,21 +32,18 @@ def explain(
         bool, typer.Option("--all", help="With --why-not: every answer that is as small.")
     ] = False,
     profile: Annotated[str, typer.Option(help="The rules: extended or thesis.")] = "extended",
-    rules: Annotated[
-        Path | None,
-        typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
-    ] = None,
+    rules: Rules = None,
+    actionary: Beside = None,
+    steady: Steady = None,
     json: Annotated[bool, typer.Option("--json", help="Print the whole tree as JSON.")] = False,
     svg: Annotated[Path | None, typer.Option(help="Draw the tree to this file.")] = None,
 ) -> None:
     """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
     from capar.explanation import explained, segment_named
-    from capar_rules.authoring import user_rules
-    from capar_rules.profiles import profile as named_profile
     from capar_rules.why_not import why_not as alternatives
     from extractors.readers.bundle import read_capture
 
-    base = named_profile(profile, added=user_rules(rules))
+    base = rule_base(profile, rules, actionary, steady=steady)
     seen = explained(read_capture(capture), rules=base)
     chosen = (segment_named(seen.observation, segment),) if segment else seen.observation.segments
     if why_not:

@@ -4,6 +4,8 @@ from typing import Annotated
 
 import typer
 
+from capar.cli._rules import Beside, Rules, Steady, rule_base
+
 app = typer.Typer()
 
 
@@ -24,18 +26,21 @@ def facts(
         bool,
         typer.Option(
             "--derive",
-            help="Add contact(Body, Other, Frame) and moved(Object, Segment) by the rules.",
+            help="Add contact(Body, Other, Frame), moved(Object, Segment) and "
+            "regrasps(Segment, Object) by the rules.",
         ),
     ] = False,
+    rules: Rules = None,
+    actionary: Beside = None,
+    steady: Steady = None,
 ) -> None:
     """Print the ground facts of CAPTURE as an ASP program, for clingo with the rule files."""
     from capar.model.facts import program
     from capar.observe import facts_program
     from capar_rules.engine import rule_file, solve, text_of
-    from capar_rules.profiles import profile as named_profile
     from extractors.readers.bundle import read_capture
 
-    base = named_profile(profile)
+    base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
     measurements, borders = facts_program(trial, rules=base)
     typer.echo(f"% {trial.name}: what was measured.\n{program(measurements.facts)}", nl=False)
@@ -43,12 +48,12 @@ def facts(
         typer.echo(
             f"% Borders, numbered for the profile {base.name}.\n{program(borders)}", nl=False
         )
-        typer.echo(f"% Rules: {base.files[0]}")
+        typer.echo(f"% Rules: {' '.join(map(str, base.files))}")
     if derive:
         answer = solve((*base.files, rule_file("derived.lp")), (*measurements.facts, *borders))
         lines = "".join(
             f"{text_of((name, *arguments))}.\n"
-            for name in ("contact", "moved")
+            for name in ("contact", "moved", "regrasps")
             for arguments in answer.of(name)
         )
         typer.echo(f"% Derived.\n{lines}", nl=False)

@@ -5,13 +5,12 @@ from typing import Annotated
 
 import typer
 
+from capar.cli._rules import Rules, opened
+
 app = typer.Typer(no_args_is_help=True, help="Words in an Actionary: WordNet, Levin, VerbNet.")
 
 Where = Annotated[
     str | None, typer.Option(help="Folder or address; else CAPAR_ACTIONARY, else ./actionary.")
-]
-Rules = Annotated[
-    Path | None, typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules.")
 ]
 
 
@@ -22,8 +21,9 @@ def load(actionary: Where = None, rules: Rules = None) -> None:
     from kb.actionary import Actionary
     from kb.lexicon.loading import load_words
 
+    words = rule_words(rules, opened(actionary))
     with Actionary.open(actionary) as book:
-        loaded = load_words(book.store, rule_words(rules))
+        loaded = load_words(book.store, words)
     typer.echo("The words are loaded." if loaded else "The words were there already.")
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from capar.cli._actionary import Wait
+from capar.cli._rules import Rules, Steady, rule_base
 
 if TYPE_CHECKING:
     from capar.model.capture import Capture
@@ -41,10 +42,8 @@ def observe(
             "keep it as Unknown (the default elsewhere), or fail."
         ),
     ] = None,
-    rules: Annotated[
-        Path | None,
-        typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
-    ] = None,
+    rules: Rules = None,
+    steady: Steady = None,
     json: Annotated[bool, typer.Option("--json", help="Print the observation as JSON.")] = False,
     script: Annotated[
         bool, typer.Option("--script", help="Print the complex PAR as the thesis's Python script.")
@@ -60,7 +59,8 @@ def observe(
         typer.Option(
             metavar="PATH|URL",
             envvar="CAPAR_ACTIONARY",
-            help="Keep the observation in this Actionary: a folder, or a SPARQL server's address.",
+            help="Keep the observation in this Actionary: a folder, or a SPARQL server's address. "
+            "Rules in that folder count too.",
             show_default=False,
         ),
     ] = None,
@@ -70,19 +70,19 @@ def observe(
     import sys
 
     from capar.observe import observe_measured
-    from capar_rules.profiles import profile as named_profile
-    from capar_rules.teaching import rule_files, rules_folder
+    from capar_rules.teaching import new_rules_folder
     from extractors.facts import extract
     from extractors.readers.bundle import read_capture
 
-    base = named_profile(profile, added=rule_files(rules))
+    base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
     measurements = extract(trial)
     observation = observe_measured(trial, measurements, rules=base, name=name)
     terminal = sys.stdin.isatty() and sys.stderr.isatty()
     choice = on_unknown or (OnUnknown.ASK if terminal and not json else OnUnknown.KEEP)
-    if choice is OnUnknown.ASK and _teach(observation, rules_folder(rules)):
-        base = named_profile(profile, added=rule_files(rules))
+    folder = new_rules_folder(rules, actionary=actionary)
+    if choice is OnUnknown.ASK and _teach(observation, folder):
+        base = rule_base(profile, rules, actionary, steady=steady)
         observation = observe_measured(trial, measurements, rules=base, name=name)
     if choice is OnUnknown.FAIL:
         _refuse(observation)
@@ -130,6 +130,7 @@ def _tables(observation: "Observation") -> None:
 
     from capar.workbench.tables import (
         aligned,
+        joint_lines,
         segment_rows,
         segments_table,
         step_rows,
@@ -146,6 +147,8 @@ def _tables(observation: "Observation") -> None:
     else:
         for rows in (segment_rows(observation), step_rows(observation.complex_par)):
             typer.echo("\n".join(aligned(rows)) + "\n")
+    for line in joint_lines(observation):
+        typer.echo(line)
     for segment in observation.segments:
         if not segment.known:
             typer.echo(unknown_note(segment))

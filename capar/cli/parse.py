@@ -1,9 +1,10 @@
 """Controlled English in; an instruction or a question out."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from capar.cli._rules import Rules, opened
 
 app = typer.Typer()
 
@@ -17,10 +18,7 @@ def parse(
     actionary: Annotated[
         str | None, typer.Option(help="Folder or address; else CAPAR_ACTIONARY, else ./actionary.")
     ] = None,
-    rules: Annotated[
-        Path | None,
-        typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
-    ] = None,
+    rules: Rules = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Read an instruction, or a question such as 'who moved the mug to the table?'.
@@ -33,8 +31,9 @@ def parse(
     from kb.language import Question
     from kb.language import parse as read
 
+    words = rule_words(rules, opened(actionary))
     with open_words(actionary) as store:
-        value = read(sentence, vocabulary(rule_words(rules), store))
+        value = read(sentence, vocabulary(words, store))
         if not isinstance(value, Question):
             if json:
                 print_json(value)

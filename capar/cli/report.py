@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from capar.cli._rules import Rules, opened, rule_base
+
 app = typer.Typer(no_args_is_help=True, help="Reports over the rule base and an Actionary.")
 
 
@@ -34,10 +36,7 @@ def linguistics(
     form: Annotated[
         Format, typer.Option("--format", help="How to write it; svg is the drawing alone.")
     ] = Format.TEXT,
-    rules: Annotated[
-        Path | None,
-        typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
-    ] = None,
+    rules: Rules = None,
     out: Annotated[Path | None, typer.Option(help="A file, instead of standard output.")] = None,
     cases: Annotated[
         Path | None, typer.Option(help="Folder of rule cases that count as proof, as tests/rules.")
@@ -48,10 +47,9 @@ def linguistics(
     from capar.cli._words import open_words
     from capar.report import cases_of, primitive_files
     from capar.report import linguistics as report_of
-    from capar_rules.teaching import rule_files
     from kb.reports.writing import write
 
-    files = primitive_files(rule_files(rules))
+    files = primitive_files(rule_base("extended", rules, opened(actionary)).added)
     with open_words(actionary) as store:
         report = report_of(files, store=store, cases=cases_of(files, cases))
     text = write(report, Format.JSON.value if json else form.value)

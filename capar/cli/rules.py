@@ -1,22 +1,16 @@
 """The commands for rules that people write, from a first draft to their place in the rule base."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from capar.cli._actionary import Place
-
-if TYPE_CHECKING:
-    from capar.rule_changes import Renamed
-    from capar_rules.profiles import Profile
+from capar.cli._rule_tables import print_audit, print_changes, print_json
+from capar.cli._rules import Rules, opened, rule_base
 
 app = typer.Typer(no_args_is_help=True)
 
-Rules = Annotated[
-    Path | None,
-    typer.Option("--rules", help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
-]
 Base = Annotated[str, typer.Option("--profile", help="The rules: extended or thesis.")]
 File = Annotated[Path, typer.Argument(help="A rule file.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
@@ -27,23 +21,31 @@ def _root() -> None:
     """Write primitives as rules: checked before they count, their effect shown before they do."""
 
 
-def _base(profile: str, rules: Path | None) -> "Profile":
-    from capar_rules.authoring import user_rules
-    from capar_rules.profiles import profile as named_profile
+def _others(file: Path, rules: Path | None, actionary: str | None) -> tuple[Path, ...]:
+    """The rule files that people wrote, without this one."""
+    from capar_rules.teaching import user_rules
 
-    return named_profile(profile, added=user_rules(rules))
+    files = user_rules(rules, actionary=opened(actionary))
+    return tuple(each for each in files if each.resolve() != file.resolve())
 
 
 @app.command("list")
-def list_rules(profile: Base = "extended", rules: Rules = None, json: Json = False) -> None:
-    """List every primitive, what it specialises, and what it is."""
+def list_rules(
+    profile: Base = "extended", rules: Rules = None, actionary: Place = None, json: Json = False
+) -> None:
+    """List every primitive: where it comes from, what it specialises, and what it is.
+
+    Rules that ship are core, those in the Actionary's folder rules are user, and those in a folder
+    that --rules or CAPAR_RULES names, or else in ./rules, are project.
+    """
     from dataclasses import asdict
 
     from capar_rules.authoring import rules_of
 
-    found = rules_of(_base(profile, rules))
+    place = opened(actionary)
+    found = rules_of(rule_base(profile, rules, place), actionary=place)
     if json:
-        _json([asdict(each) for each in found])
+        print_json([asdict(each) for each in found])
         return
     for each in found:
         general = f" < {', '.join(each.general)}" if each.general else ""
@@ -55,11 +57,12 @@ def show(
     name: Annotated[str, typer.Argument(help="A primitive.")],
     profile: Base = "extended",
     rules: Rules = None,
+    actionary: Place = None,
 ) -> None:
     """Print the rule file of a primitive."""
     from capar_rules.authoring import rule_of
 
-    info = rule_of(_base(profile, rules), name)
+    info = rule_of(rule_base(profile, rules, opened(actionary)), name)
     typer.echo(Path(info.file).read_text(encoding="utf-8"), nl=False)
 
 
@@ -80,6 +83,7 @@ def new(
     out: Annotated[Path | None, typer.Option(help="The file to write; else it is printed.")] = None,
     profile: Base = "extended",
     rules: Rules = None,
+    actionary: Place = None,
 ) -> None:
     """Write a rule file for NAME from a segment or a feature set, ready to be edited."""
     from capar.model.errors import FileError, RuleError
@@ -89,7 +93,8 @@ def new(
     if (source is None) == (features is None):
         raise RuleError("say either --from CAPTURE:SEGMENT or --features START,END,CHANGE,FORCE")
     if source is not None:
-        text = rule_from_segment(name, source, rules=_base(profile, rules), **words)
+        base = rule_base(profile, rules, opened(actionary))
+        text = rule_from_segment(name, source, rules=base, **words)
     else:
         text = rule_from_features(name, features or "", **words)
     if out is None:
@@ -102,16 +107,20 @@ def new(
 
 
 @app.command()
-def check(file: File, profile: Base = "extended", rules: Rules = None, json: Json = False) -> None:
+def check(
+    file: File,
+    profile: Base = "extended",
+    rules: Rules = None,
+    actionary: Place = None,
+    json: Json = False,
+) -> None:
     """Say what is wrong with FILE, with line and column; nothing of it is run."""
-    from capar_rules.authoring import user_rules
     from capar_rules.checking import check as checked
     from capar_rules.findings import errors
 
-    beside = [each for each in user_rules(rules) if each.resolve() != file.resolve()]
-    findings = checked(file, profile=profile, beside=beside)
+    findings = checked(file, profile=profile, beside=_others(file, rules, actionary))
     if json:
-        _json([each.as_json() for each in findings])
+        print_json([each.as_json() for each in findings])
     else:
         for each in findings:
             typer.echo(str(each))
@@ -122,23 +131,24 @@ def check(file: File, profile: Base = "extended", rules: Rules = None, json: Jso
 
 
 @app.command()
-def test(file: File, profile: Base = "extended", rules: Rules = None) -> None:
+def test(
+    file: File, profile: Base = "extended", rules: Rules = None, actionary: Place = None
+) -> None:
     """Run the examples that FILE carries: what it must match, and what it must not."""
-    from capar_rules.authoring import try_rule, user_rules
+    from capar_rules.admitting import admit
+    from capar_rules.authoring import try_rule
     from capar_rules.checking import check as checked
     from capar_rules.checking import require
 
-    require(file, checked(file, profile=profile, beside=_others(file, user_rules(rules))))
-    failures = try_rule(file, base=profile, beside=user_rules(rules))
+    beside = _others(file, rules, actionary)
+    admit(beside, profile=profile)
+    require(file, checked(file, profile=profile, beside=beside))
+    failures = try_rule(file, base=profile, beside=beside)
     for each in failures:
         typer.echo(each)
     if failures:
         raise typer.Exit(1)
     typer.echo(f"{file}: its examples hold")
-
-
-def _others(file: Path, files: tuple[Path, ...]) -> list[Path]:
-    return [each for each in files if each.resolve() != file.resolve()]
 
 
 @app.command()
@@ -159,33 +169,48 @@ def add(
     rules: Rules = None,
     actionary: Place = None,
 ) -> None:
-    """Take FILE among your rules, once it is checked, unambiguous, and its examples hold."""
+    """Take FILE among your rules, once it is checked, unambiguous, and its examples hold.
+
+    It goes to the folder that --rules or CAPAR_RULES names, else to the folder rules of the
+    Actionary that --actionary or CAPAR_ACTIONARY names, else to ./rules.
+    """
     from capar.rule_changes import reclassified
     from capar_rules.authoring import add_rule
-    from capar_rules.teaching import rules_folder
+    from capar_rules.teaching import make_folder, new_rules_folder
 
-    before = _base(profile, rules if rules and rules.is_dir() else None)
-    added = add_rule(file, folder=rules_folder(rules), base=profile, over=over or ())
+    folder = make_folder(new_rules_folder(rules, actionary=actionary))
+    place = opened(actionary)
+    before = rule_base(profile, rules, place)
+    beside = _others(file, rules, actionary)
+    added = add_rule(file, folder=folder, base=profile, over=over or (), beside=beside)
     typer.echo(f"added {added}")
     if reclassify:
         changed = reclassified(
             actionary,
             before=before,
-            after=_base(profile, added.parent),
+            after=rule_base(profile, rules, place),
             captures=captures or [Path()],
         )
-        _print_changes(changed)
+        print_changes(changed)
 
 
 @app.command()
 def remove(
-    name: Annotated[str, typer.Argument(help="A primitive of yours.")], rules: Rules = None
+    name: Annotated[str, typer.Argument(help="A primitive of yours.")],
+    rules: Rules = None,
+    actionary: Place = None,
 ) -> None:
-    """Take a primitive out of your rules."""
-    from capar_rules.authoring import remove_rule
-    from capar_rules.teaching import rules_folder
+    """Take a primitive out of your rules: first your project's, then those of the Actionary.
 
-    typer.echo(f"removed {remove_rule(name, folder=rules_folder(rules))}")
+    With --rules alone or --actionary alone, only that folder is looked through.
+    """
+    from capar_rules.authoring import remove_rule
+    from capar_rules.teaching import actionary_rules, rule_files
+
+    mine = actionary_rules(opened(actionary))
+    project = rule_files(rules) if rules or not actionary else ()
+    beside = rule_files(mine) if mine and mine.is_dir() and (actionary or not rules) else ()
+    typer.echo(f"removed {remove_rule(name, files=(*project, *beside))}")
 
 
 @app.command()
@@ -208,63 +233,32 @@ def diff(
     from capar_rules.checking import require
     from capar_rules.profiles import profile as named_profile
 
-    before = _base(profile, rules)
-    findings = checked(file, profile=profile, beside=_others(file, before.added))
+    before = rule_base(profile, rules, opened(actionary))
+    beside = _others(file, rules, actionary)
+    findings = checked(file, profile=profile, beside=beside)
     require(file, [each for each in findings if each.code != "ambiguous"])
-    after = named_profile(profile, added=(*_others(file, before.added), file))
+    after = named_profile(profile, added=(*beside, file))
     seen = captured_facts(on) if on else stored_facts(actionary)
     changes = renamed(seen, before=before, after=after)
     if json:
-        _json([asdict(each) for each in changes])
+        print_json([asdict(each) for each in changes])
     else:
-        _print_changes(changes)
-
-
-def _print_changes(changes: "tuple[Renamed, ...]") -> None:
-    for each in changes:
-        typer.echo(
-            f"{each.capture}  {each.ee}/{each.index}  {each.start_s:.2f} to {each.end_s:.2f} s: "
-            f"{each.before} -> {each.after}"
-        )
-    typer.echo("1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change")
+        print_changes(changes)
 
 
 @app.command()
-def audit(profile: Base = "extended", rules: Rules = None, json: Json = False) -> None:
+def audit(
+    profile: Base = "extended", rules: Rules = None, actionary: Place = None, json: Json = False
+) -> None:
     """Audit the whole rule base over every segment that there can be."""
     from dataclasses import asdict
 
     from capar_rules.auditing import audit as audited
 
-    found = audited(_base(profile, rules))
+    found = audited(rule_base(profile, rules, opened(actionary)))
     if json:
-        _json({**asdict(found), "clean": found.clean})
+        print_json({**asdict(found), "clean": found.clean})
     else:
-        _print_audit(found)
+        print_audit(found)
     if not found.clean:
         raise typer.Exit(1)
-
-
-def _print_audit(found: object) -> None:
-    from capar_rules.auditing import Audit
-
-    assert isinstance(found, Audit)
-    reasons = dict(found.excused)
-    typer.echo(f"{found.possible} feature sets can be; {len(found.uncovered)} have no name")
-    for each in found.uncovered:
-        shown = " ".join(part or "-" for part in each)
-        typer.echo(f"  {shown}: {reasons.get(each, 'NO REASON GIVEN')}")
-    for clash in found.ambiguous:
-        where = " ".join(part or "-" for part in clash.features[0])
-        typer.echo(f"ambiguous: {clash.first} and {clash.second}, first at {where}")
-    for name in found.shadowed:
-        typer.echo(f"shadowed: {name}")
-    for name in found.unreachable:
-        typer.echo(f"never fits in the audit's world: {name}")
-    typer.echo("the rules are clean" if found.clean else "the rules are not clean")
-
-
-def _json(content: object) -> None:
-    import json
-
-    typer.echo(json.dumps(content, indent=2))

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from capar.cli._rules import Beside, Rules
+
 app = typer.Typer()
 
 
@@ -13,11 +15,16 @@ def test(
     files: Annotated[
         list[Path], typer.Argument(help="Files of claims, *.motion.toml, or folders of them.")
     ],
+    rules: Rules = None,
+    actionary: Beside = None,
     json: Annotated[
         bool, typer.Option("--json", help="Print suites, cases and failures as JSON.")
     ] = False,
 ) -> None:
-    """Check claims about captures; exit with 1 if one does not hold."""
+    """Check claims about captures; exit with 1 if one does not hold.
+
+    A file that names a folder of rules itself is judged with those.
+    """
     from capar.motion_tests import SUFFIX, failures, read_motion_test, run_motion_test
 
     paths = [
@@ -28,7 +35,8 @@ def test(
     suites = []
     failed = 0
     for path in paths:
-        verdicts = list(run_motion_test(read_motion_test(path)))
+        claimed = read_motion_test(path)
+        verdicts = list(run_motion_test(claimed, rules=rules, actionary=actionary))
         failed += len(failures(verdicts))
         suites.append((path, verdicts))
     if json:

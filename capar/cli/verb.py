@@ -1,9 +1,10 @@
 """What a verb means to the system, and which verbs fit a segment."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from capar.cli._rules import Rules, opened, rule_base
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -31,10 +32,7 @@ def verb(
     actionary: Annotated[
         str | None, typer.Option(help="Folder or address; else CAPAR_ACTIONARY, else ./actionary.")
     ] = None,
-    rules: Annotated[
-        Path | None,
-        typer.Option(help="Folder of your own rule files; else CAPAR_RULES, else ./rules."),
-    ] = None,
+    rules: Rules = None,
     most: Annotated[int, typer.Option(help="How many verbs of a segment to show.", min=1)] = 15,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
@@ -44,12 +42,14 @@ def verb(
 
     if bool(lemma) == bool(segment):
         raise CaparError("name a verb, or a segment with --for CAPTURE:END_EFFECTOR:INDEX")
-    words = rule_words(rules)
+    place = opened(actionary)
+    words = rule_words(rules, place)
     with open_words(actionary) as store:
         if segment:
             from capar.words import verbs_for
 
-            _print_fits(verbs_for(segment, words, store=store, rules=rules)[:most], json=json)
+            base = rule_base("extended", rules, place)
+            _print_fits(verbs_for(segment, words, store=store, rules=base)[:most], json=json)
         elif kinds:
             from kb.lexicon.verbs import keys_of_primitives
             from kb.lexicon.verbs import kinds as kinds_of

@@ -26,7 +26,7 @@ from capar.model.observation import Observation
 from capar.model.par import UNKNOWN
 from capar.observe import observe
 from capar_rules.engine import solve
-from capar_rules.profiles import DEFAULT, profile
+from capar_rules.profiles import DEFAULT, Profile, profile
 from extractors.readers.bundle import frame_times, read_capture
 
 
@@ -60,7 +60,7 @@ def evaluate(
     pairs: Sequence[tuple[str, Path]],
     mapping: LabelMapping,
     *,
-    rules: str = DEFAULT,
+    rules: Profile | str = DEFAULT,
     frames_of: str = "",
 ) -> Evaluation:
     """Observe captures and compare them with their label files.
@@ -68,16 +68,17 @@ def evaluate(
     Args:
         pairs: Captures, each with its label file.
         mapping: From names of segments to labels.
-        rules: The rule profile to observe with.
+        rules: The rule profile to observe with, or its name.
         frames_of: The capture's file whose frames the labels count, where it has several.
 
     Raises:
         CaparError: A capture, a label file or the mapping has a fault.
     """
-    cases = [_case(place, path, rules, frames_of) for place, path in pairs]
+    base = profile(rules) if isinstance(rules, str) else rules
+    cases = [_case(place, path, base, frames_of) for place, path in pairs]
     check_names(
         mapping,
-        names=known_names([each.observation for each in cases]),
+        names=known_names([each.observation for each in cases], base),
         objects={thing.name for each in cases for thing in each.observation.objects},
         labels={name for each in cases for name in each.labels.names},
     )
@@ -111,10 +112,12 @@ def compare(cases: Sequence[Case], mapping: LabelMapping) -> Evaluation:
     )
 
 
-def known_names(observations: Sequence[Observation]) -> set[str]:
-    """Every name that a segment can bear: of the rules that ship, and of those seen here."""
-    rules = solve(profile(DEFAULT).files, "#show primitive/1.")
-    names = {str(name) for (name,) in rules.of("primitive")} | {UNKNOWN}
+def known_names(observations: Sequence[Observation], base: Profile | None = None) -> set[str]:
+    """Every name that a segment can bear: of the rules that ship, of a base's, and those seen."""
+    names = {UNKNOWN}
+    for rules in (profile(DEFAULT), *([base] if base else ())):
+        found = solve(rules.files, "#show primitive/1.")
+        names |= {str(name) for (name,) in found.of("primitive")}
     for segment in (each for one in observations for each in one.segments):
         names |= {segment.name, *segment.general, *segment.candidates}
     return names
@@ -156,7 +159,7 @@ def report(evaluation: Evaluation) -> dict[str, Any]:
     }
 
 
-def _case(place: str, path: Path, rules: str, frames_of: str) -> Case:
+def _case(place: str, path: Path, rules: Profile, frames_of: str) -> Case:
     labels = read_labels(path)
     if labels.in_frames:
         labels = in_seconds(labels, frame_times(place, file=frames_of))

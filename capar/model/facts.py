@@ -9,6 +9,7 @@ from capar.model.atoms import Fact as Fact
 from capar.model.atoms import program as program
 from capar.model.errors import FactError
 from capar.model.handling import Apart as Apart
+from capar.model.handling import Bears as Bears
 from capar.model.handling import Between as Between
 from capar.model.handling import Closing as Closing
 from capar.model.handling import Displaced as Displaced
@@ -20,6 +21,7 @@ from capar.model.handling import Place as Place
 from capar.model.handling import Posture as Posture
 from capar.model.handling import Resting as Resting
 from capar.model.handling import Reverses as Reverses
+from capar.model.handling import Rolls as Rolls
 from capar.model.handling import Swings as Swings
 from capar.model.handling import Travelled as Travelled
 from capar.model.handling import Upward as Upward
@@ -60,6 +62,15 @@ class Tag(Fact):
     predicate = "tag"
     object: str
     type: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class OfAgent(Fact):
+    """Whose an end-effector or a body part is; stated where several agents perform."""
+
+    predicate = "of_agent"
+    body: str
+    agent: str
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -142,11 +153,29 @@ class Intended(Fact):
     purpose: str
 
 
+@dataclass(frozen=True, slots=True, order=True)
+class Doubted(Fact):
+    """A stretch that the rules do not take as it was measured: it is a flicker.
+
+    It is taken for contact, ``touching``, or for none, ``apart``. Of one body, which stands twice,
+    it is taken for an object's motion, ``moving``, or for none, ``still``; for an end-effector's
+    rest, ``resting``, or for none, ``going``.
+    """
+
+    predicate = "doubted"
+    body: str
+    other: str
+    first: int
+    last: int
+    taken: str
+
+
 MEASURED: tuple[type[Fact], ...] = (
     Frames,
     RateMhz,
     Link,
     Tag,
+    OfAgent,
     ZeroCrossing,
     Pause,
     Touching,
@@ -168,11 +197,16 @@ MEASURED: tuple[type[Fact], ...] = (
     Swings,
     Leans,
     Flies,
+    Rolls,
+    Bears,
     Lies,
     Between,
     Passage,
 )
 """Every kind of fact that extractors state, in the order in which they are written."""
+
+STATED: tuple[type[Fact], ...] = (*MEASURED, Doubted)
+"""Every kind of fact that an observation rests on: what was measured, and what was doubted."""
 
 
 def read_fact(text: str) -> Fact:
@@ -186,8 +220,8 @@ def read_fact(text: str) -> Fact:
     except (RuntimeError, TypeError, AttributeError):
         raise FactError(f"expected an atom such as tag(mug,mobile), found {text!r}") from None
     if symbol.type is clingo.SymbolType.Function and symbol.positive:
-        for kind in MEASURED:
+        for kind in STATED:
             if kind.predicate == symbol.name:
                 return kind.from_symbol(symbol)
-    known = ", ".join(each.predicate for each in MEASURED)
+    known = ", ".join(each.predicate for each in STATED)
     raise FactError(f"{text!r} is no measured fact; their predicates are {known}")

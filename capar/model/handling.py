@@ -153,8 +153,33 @@ class Flies(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class Rolls(Fact):
+    """An object goes and turns about a level axis without slipping below its middle."""
+
+    predicate = "rolls"
+    object: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Bears(Fact):
+    """A foot that is down bears the whole weight of the body, part of it, or none."""
+
+    predicate = "bears"
+    foot: str
+    share: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Lies(Fact):
-    """How a body lies to another: inside, above, below, beside or along it, or merely near."""
+    """How a body lies to another.
+
+    It is inside it, or dips into it with one end; it is above, below, beside or along it, or
+    merely near. An end-effector that touches it ``shifts`` from one place on it to another.
+    """
 
     predicate = "lies"
     body: str

@@ -14,6 +14,9 @@ from capar.model.par import (
     Upar,
 )
 
+BOTH = {"hand": "hands", "foot": "feet"}
+"""End-effectors of which a body has two, and what both are called."""
+
 
 @dataclass(frozen=True, slots=True, order=True)
 class Border:
@@ -24,7 +27,8 @@ class Border:
 
     ``first``, ``last``; of a contact ``begins``, ``ends``; of a body ``starts_moving``,
     ``stops_moving``, ``turns``, ``comes_to_rest``, ``leaves_rest``, ``reverses``,
-    ``begins_swinging``, ``ends_swinging``, ``tips`` or ``rights``.
+    ``begins_swinging``, ``ends_swinging``, ``tips``, ``rights``, ``begins_looking``,
+    ``ends_looking`` or ``shifts_weight``.
     """
 
     body: str = ""
@@ -72,6 +76,13 @@ class Segment:
     prepositions: tuple[tuple[str, str, str], ...] = ()
     """Where its body is or goes: preposition, body, and the other body; sorted."""
 
+    looks: tuple[tuple[str, str], ...] = ()
+    """Which of its objects the performer looks at, and when; sorted.
+
+    ``throughout``, at its ``start`` or ``end``, ``meanwhile`` and at neither, or ``before``: in
+    the segment that comes before it.
+    """
+
     @property
     def known(self) -> bool:
         """Whether a rule named it."""
@@ -86,6 +97,34 @@ class ObservedLink:
     kind: str
     side: str
     segments: tuple[Segment, ...]
+    agent: str = ""
+    """Whose it is, where several agents perform; else empty."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointAction:
+    """What several end-effectors do with one object as one action: the part that all share."""
+
+    name: str
+    """The most specific name that fits every segment in it."""
+
+    objects: tuple[str, ...]
+    """What all their segments are about; the object that all of them possess first."""
+
+    ees: tuple[str, ...]
+    """Who takes part, sorted."""
+
+    segments: tuple[int, ...]
+    """The index of each one's segment, in that order."""
+
+    first: int
+    """Frame from which all of them do it."""
+
+    last: int
+    """Frame to which they do."""
+
+    start_s: float
+    end_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,8 +172,31 @@ class Observation:
     styles: tuple[Style, ...]
     sources: tuple[Source, ...]
     notices: tuple[Notice, ...]
+    joint: tuple[JointAction, ...] = ()
+    """What several end-effectors did with one object as one action, in order of time."""
+
+    others: tuple[Agent, ...] = ()
+    """Who else performed, where several agents did."""
 
     @property
     def segments(self) -> tuple[Segment, ...]:
         """Every segment, links in order."""
         return tuple(each for link in self.links for each in link.segments)
+
+    def performer(self, ee: str) -> str:
+        """Name of the agent whose end-effector that is."""
+        return next((each.agent for each in self.links if each.ee == ee), "") or self.agent.name
+
+    def who(self, joint: JointAction) -> str:
+        """Who takes part in a joint action: ``both hands``, or each end-effector by its name."""
+        own = [each for each in self.links if each.ee in joint.ees]
+        pair = sorted((each.kind, each.side) for each in own)
+        for kind, several in BOTH.items():
+            if (
+                len(joint.ees) == 2
+                and len({each.agent for each in own}) == 1
+                and pair == [(kind, "left"), (kind, "right")]
+            ):
+                return f"both {several}"
+        *some, last = (each.replace("_", " ") for each in joint.ees)
+        return f"{', '.join(some)} and {last}"

@@ -48,11 +48,12 @@ class Row:
 
 
 def rows(observation: Observation, speeds: Speeds) -> tuple[Row, ...]:
-    """Every row, from the top: each link with its contacts and speed, then objects, then gaze."""
+    """Every row, from the top: each link, what several do as one action, objects, and gaze."""
     clock = frame_clock(observation, speeds)
     out: list[Row] = []
     for link in observation.links:
         out += _link_rows(observation, link, speeds, clock)
+    out += _joint_rows(observation, clock)
     return (*out, *_object_rows(observation, clock), *_gaze_rows(observation, clock))
 
 
@@ -122,6 +123,16 @@ def _link_rows(
     if link.ee in speeds:
         out.append(Row(Kind.CURVE, "speed", curve=speeds[link.ee], borders=borders))
     return out
+
+
+def _joint_rows(observation: Observation, clock: Callable[[int], float]) -> list[Row]:
+    """For those who act together: what they do as one action."""
+    rows = []
+    for who in _in_order(map(observation.who, observation.joint)):
+        joint = [each for each in observation.joint if observation.who(each) == who]
+        spans = tuple(Span(clock(each.first), clock(each.last), each.name) for each in joint)
+        rows.append(Row(Kind.SEGMENTS, who, spans))
+    return rows
 
 
 def _object_rows(observation: Observation, clock: Callable[[int], float]) -> list[Row]:

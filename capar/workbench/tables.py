@@ -3,7 +3,7 @@
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
-from capar.model.observation import Observation, Segment
+from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import ComplexPar, FeatureSet, Step
 
 if TYPE_CHECKING:
@@ -25,7 +25,10 @@ LEVELS = {
 
 def segment_rows(observation: Observation) -> tuple[tuple[str, ...], ...]:
     """A heading and a row for each segment, links in order."""
-    return (SEGMENT_COLUMNS, *(_segment_row(each) for each in observation.segments))
+    return (
+        SEGMENT_COLUMNS,
+        *(_segment_row(link, each) for link in observation.links for each in link.segments),
+    )
 
 
 def step_rows(par: ComplexPar) -> tuple[tuple[str, ...], ...]:
@@ -42,7 +45,7 @@ def segments_table(observation: Observation) -> "Table":
     for link in observation.links:
         for segment in link.segments:
             style = None if segment.known else "yellow"
-            table.add_row(*map(_escaped, _segment_row(segment)), style=style)
+            table.add_row(*map(_escaped, _segment_row(link, segment)), style=style)
         table.add_section()
     return table
 
@@ -58,6 +61,15 @@ def steps_table(par: ComplexPar) -> "Table":
     if par.common:
         table.add_row(*map(_escaped, _step_row(par.common, par.duration_s)))
     return table
+
+
+def joint_lines(observation: Observation) -> tuple[str, ...]:
+    """What several end-effectors did as one action: ``both hands: Lift(box) 1.55-2.40 s``."""
+    return tuple(
+        f"{observation.who(each)}: {each.name}({', '.join(each.objects)}) "
+        f"{each.start_s:.2f}-{each.end_s:.2f} s"
+        for each in observation.joint
+    )
 
 
 def aligned(
@@ -87,14 +99,14 @@ def unknown_note(segment: Segment) -> str:
     return note + (f"; near {', '.join(segment.candidates)}" if segment.candidates else "")
 
 
-def _segment_row(segment: Segment) -> tuple[str, ...]:
+def _segment_row(link: ObservedLink, segment: Segment) -> tuple[str, ...]:
     name = segment.name
     if not segment.known:
         name = f"{name} ({unknown_note(segment)})"
     elif segment.candidates:
         name = f"{name} (or {', '.join(segment.candidates)})"
     return (
-        segment.ee,
+        f"{link.ee} ({link.agent})" if link.agent else link.ee,
         f"{segment.start_s:.3f}",
         f"{segment.end_s:.3f}",
         name,

@@ -16,11 +16,19 @@ from capar.model.par import (
     Step,
     Upar,
 )
-from capar.workbench.tables import aligned, segment_rows, segments_table, step_rows, steps_table
+from capar.workbench.tables import (
+    aligned,
+    joint_lines,
+    segment_rows,
+    segments_table,
+    step_rows,
+    steps_table,
+)
 
 __all__ = [
     "call",
     "condition",
+    "joint_lines",
     "observation_text",
     "par_text",
     "preparation",
@@ -93,9 +101,10 @@ def _complex(par: ComplexPar) -> str:
 
 
 def observation_text(observation: Observation) -> str:
-    """The segments, the complex PAR and every UPAR and IPAR of an observation."""
+    """The segments, joint actions, the complex PAR and every UPAR and IPAR of an observation."""
     parts = [
         "\n".join(aligned(segment_rows(observation), right={1, 2})) + "\n",
+        *filter(None, ["".join(f"{each}\n" for each in joint_lines(observation))]),
         par_text(observation.complex_par),
         *map(par_text, observation.upars),
         *map(par_text, observation.ipars),

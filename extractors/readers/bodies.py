@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from itertools import pairwise
 
 import numpy as np
@@ -56,7 +57,7 @@ def find_body(table: Table, files: Files) -> Body:
 
 def _carried(table: Table, files: Files, offset: RigidTransform) -> Body:
     """What is recorded only through what it carries: the poses of several bodies, one at a time."""
-    names = table.texts("body")
+    names = [name for each in table.texts("body") for name in _fitting(each, files)]
     streams = [files[_file_of(table, files, "body", each)].bodies[each] for each in names]
     order = np.argsort([each.times[0] for each in streams])
     for earlier, later in pairwise(order):
@@ -70,6 +71,12 @@ def _carried(table: Table, files: Files, offset: RigidTransform) -> Body:
         np.concatenate([each.orientations for each in parts]),
     )
     return Body(offset_by(whole, offset), Frame())
+
+
+def _fitting(pattern: str, files: Files) -> list[str]:
+    """The bodies that a pattern with ``*`` fits; what fits none stands for itself."""
+    known = sorted({name for file in files.values() for name in file.bodies})
+    return [each for each in known if fnmatchcase(each, pattern)] or [pattern]
 
 
 def offset_by(stream: Stream, offset: RigidTransform) -> Stream:

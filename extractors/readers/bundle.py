@@ -49,17 +49,23 @@ def read_capture(place: str | Path) -> Capture:
     notices = [*(each for file in files.values() for each in file.notices), *group.notices]
     sources = [source_of(table.file, "capture.toml"), *(f.source for f in files.values())]
     sources[0] = replace(sources[0], path=table.file.name)
+    agent, *others = _agents(table)
+    _prove_agents(table, (agent, *others))
+    contact = _contact(table)
     capture = Capture(
         name=_name(table, take),
         sensors=group.sensors,
         objects=group.objects,
-        agent=_agent(table),
-        contact_tolerance_m=_tolerance(table),
+        agent=agent,
+        contact_tolerance_m=contact.get("tolerance_m"),
+        contact_dropout_s=contact.get("dropout_s"),
+        contact_minimum_s=contact.get("minimum_s"),
         pivot_contacts=_pivots(table, group),
         purposes=_purposes(table),
         force_transfer=table.flag("force_transfer"),
         sources=(*sources, *_once(group.sources)),
         notices=(*notices, *_gap_notices(group.sensors, group.objects)),
+        others=tuple(others),
     )
     table.close()
     return capture
@@ -162,10 +168,15 @@ def _declared(table: Table, files: Mapping[str, WorldRecording]) -> Declared:
     return declared(table, files, rate_hz=rate, span_s=(ends[0], ends[1]))
 
 
-def _agent(table: Table) -> Agent:
-    agent = table.table("agent")
-    if agent is None:
-        return Agent()
+def _agents(table: Table) -> tuple[Agent, ...]:
+    """Who performs: one under ``[agent]``, several each under ``[[agent]]``."""
+    if isinstance(table.raw("agent"), list):
+        return tuple(map(_agent, table.tables("agent"))) or (Agent(),)
+    one = table.table("agent")
+    return (_agent(one) if one is not None else Agent(),)
+
+
+def _agent(agent: Table) -> Agent:
     measures = agent.table("measures")
     values = {key: measures.number(key) for key in measures.given()} if measures else {}
     out = Agent(agent.text("name", "agent"), agent.text("kind", "person"), values)
@@ -173,15 +184,29 @@ def _agent(table: Table) -> Agent:
     return out
 
 
-def _tolerance(table: Table) -> float | None:
+def _prove_agents(table: Table, agents: tuple[Agent, ...]) -> None:
+    """Whom a sensor or an object names is there; a mistake is told with its line."""
+    known = [each.name for each in agents]
+    for each in (*table.tables("sensor"), *table.tables("object")):
+        if each.text("agent", "") not in ("", *known):
+            raise UnknownNameError("agent", each.text("agent"), known, where=each.where("agent"))
+
+
+def _contact(table: Table) -> dict[str, float]:
+    """When bodies count as touching, as far as the capture says."""
     contact = table.table("contact")
     if contact is None:
-        return None
-    value = contact.number("tolerance_m")
+        return {}
+    found = {key: contact.number(key) for key in _CONTACT if key in contact}
     contact.close()
-    if not 0.0 <= value < 1.0:
-        raise contact.error("tolerance_m", f"a tolerance of {value:g} m; it lies in [0, 1).")
-    return value
+    for key, value in found.items():
+        if not 0.0 <= value < 1.0:
+            raise contact.error(key, f"{key} = {value:g}; it lies in [0, 1).")
+    return found
+
+
+_CONTACT = ("tolerance_m", "dropout_s", "minimum_s")
+"""What may stand under ``[contact]``."""
 
 
 def _pivots(table: Table, group: Declared) -> tuple[PivotContact, ...]:
@@ -194,7 +219,7 @@ def _pivots(table: Table, group: Declared) -> tuple[PivotContact, ...]:
         pair = PivotContact(each.text("first"), each.text("second"), each.number("distance_m"))
         each.close()
         out.append(pair)
-    return tuple(out)
+    return (*out, *group.pivot_contacts)
 
 
 def _purposes(table: Table) -> tuple[Purpose, ...]:

@@ -7,9 +7,20 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.capture import Notice, Role, Sensor, Shape, Source, Stream, TagObject, TagType
+from capar.model.capture import (
+    Notice,
+    PivotContact,
+    Role,
+    Sensor,
+    Shape,
+    Source,
+    Stream,
+    TagObject,
+    TagType,
+)
 from extractors.readers.bodies import Body, find_body
 from extractors.readers.bulk import Bulk, bulk_sensors
+from extractors.readers.bulk_objects import bulk_objects
 from extractors.readers.clock import resampled, shared_clock
 from extractors.readers.shapes import Frame, assumed, read_pose, read_shape
 from extractors.readers.support import under_object
@@ -35,6 +46,8 @@ class Declared:
 
     notices: tuple[Notice, ...]
     sources: tuple[Source, ...]
+    pivot_contacts: tuple[PivotContact, ...] = ()
+    """Those that many objects declared at once share."""
 
 
 @dataclass
@@ -71,6 +84,8 @@ def declared(
     for each in table.tables("sensors_from"):
         sensors += [_Pending(each, b.body, b.shape, b) for b in bulk_sensors(each, files, sources)]
     objects = [_pending(each, files, sources) for each in table.tables("object")]
+    many = [bulk_objects(each, files) for each in table.tables("objects_from")]
+    objects += [_pending(each, files, sources) for group in many for each in group.tables]
     if not sensors:
         raise table.error("", "declares no sensor.", "Add [[sensor]] with a name and a body.")
     streams = [each.body.stream for each in (*sensors, *objects) if each.body]
@@ -79,8 +94,12 @@ def declared(
         sensors=tuple(_sensor(each, times, start) for each in sensors),
         objects=_objects(objects, times, start),
         start_s=start,
-        notices=tuple(n for each in (*sensors, *objects) if each.body for n in each.body.notices),
+        notices=(
+            *(n for each in (*sensors, *objects) if each.body for n in each.body.notices),
+            *(notice for group in many for notice in group.notices),
+        ),
         sources=tuple(sources),
+        pivot_contacts=tuple(pair for group in many for pair in group.pivot_contacts),
     )
 
 
@@ -126,6 +145,7 @@ def _sensor(pending: _Pending, times: Float[np.ndarray, "frames"], start: float)
         role=ROLES[table.choice("role", ROLES, default.value)],
         gaze=(gaze[0], gaze[1], gaze[2]),
         eye=(eye[0], eye[1], eye[2]),
+        agent=table.text("agent", ""),
     )
     table.close()
     return sensor
@@ -174,6 +194,7 @@ def _object(
         deformable=table.flag("deformable"),
         motion_floor_m=_length(table, "motion_floor_m"),
         mass_kg=_length(table, "mass_kg"),
+        agent=table.text("agent", ""),
     )
     table.close()
     return out

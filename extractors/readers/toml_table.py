@@ -103,6 +103,10 @@ class Table:
             for index, each in enumerate(values)
         ]
 
+    def derived(self, data: Mapping[str, Any], key: str) -> "Table":
+        """A table of other values that speaks of a place in this one."""
+        return Table(data, self.file, self._lines, self._inside(key))
+
     def given(self) -> list[str]:
         """The keys that are given, in their order."""
         return list(self._data)

@@ -71,9 +71,14 @@ def _location(
     return out.say(names.part(out.about, "location", index), (CAPAR.ConstraintLocation,), said)
 
 
-def styles(out: Statements, observation: "Observation", agent: NamedNode) -> list[NamedNode]:
-    """Every style of the performer that was seen."""
-    return [_style(out, index, each, agent) for index, each in enumerate(observation.styles)]
+def styles(
+    out: Statements, observation: "Observation", agents: dict[str, NamedNode]
+) -> list[NamedNode]:
+    """Every style that was seen, of whoever performed."""
+    return [
+        _style(out, index, each, agents[observation.performer(each.ee)])
+        for index, each in enumerate(observation.styles)
+    ]
 
 
 def _style(out: Statements, index: int, value: Style, agent: NamedNode) -> NamedNode:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from pyoxigraph import NamedNode
 
 from kb import names
-from kb.encode import complex_pars, facts, measures, pars, scene, segments
+from kb.encode import complex_pars, facts, joint, measures, pars, scene, segments
 from kb.statements import LABEL, Said, Statements
 from ontology import CAPAR
 
@@ -26,9 +26,12 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
     """
     out = Statements(names.observation(observation.capture))
     capture = scene.capture(out, observation)
-    performer = scene.performer(out, observation)
-    agent = names.shared("agent", observation.agent.name)
-    links = scene.links(out, observation)
+    agents = scene.agents(out, observation)
+    agent = agents[observation.agent.name]
+    performer = scene.performer(out, observation.agent, agent)
+    for number, each in enumerate(observation.others, start=1):
+        scene.performer(out, each, agents[each.name], number=number)
+    links = scene.links(out, observation, agents)
     objects = scene.objects(out, observation)
     called = name or observation.complex_par.name or observation.capture
     complex_pars.complex_par(out, observation, called)
@@ -37,13 +40,13 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
         (CAPAR.RuleBase,),
         {LABEL: f"rules {observation.rules[:12]}", CAPAR.sha256: observation.rules},
     )
-    for each in observation.upars:
-        pars.upar(out, each)
+    for upar in observation.upars:
+        pars.upar(out, upar)
     said: Said = {
         LABEL: observation.capture,
         CAPAR.capture: capture,
         scene.USED: [capture, rules],
-        scene.ASSOCIATED: agent,
+        scene.ASSOCIATED: list(agents.values()),
         scene.OF_INTEREST: list(objects.values()),
         CAPAR.ruleBase: rules,
         CAPAR.profile: observation.profile,
@@ -54,12 +57,13 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
         CAPAR.object: list(objects.values()),
         CAPAR.link: list(links.values()),
         CAPAR.segment: segments.segments(out, observation, links, objects),
+        CAPAR.jointAction: joint.joint_actions(out, observation, objects),
         CAPAR.fact: facts.facts(out, observation.facts, capture),
         CAPAR.location: measures.locations(out, observation, objects),
-        CAPAR.style: measures.styles(out, observation, agent),
+        CAPAR.style: measures.styles(out, observation, agents),
         CAPAR.notice: _notices(out, observation),
     }
-    pars.ipars(out, observation, agent, objects)
+    pars.ipars(out, observation, agents, objects)
     out.say(out.about, (CAPAR.Observation,), said)
     return out
 

@@ -84,7 +84,10 @@ def upar(out: Statements, value: Upar) -> NamedNode:
 
 
 def ipars(
-    out: Statements, observation: "Observation", agent: NamedNode, objects: dict[str, NamedNode]
+    out: Statements,
+    observation: "Observation",
+    agents: dict[str, NamedNode],
+    objects: dict[str, NamedNode],
 ) -> list[NamedNode]:
     """One instantiated action for each segment, links in order."""
     known = {
@@ -93,6 +96,7 @@ def ipars(
     out_nodes = []
     for value, segment in zip(observation.ipars, observation.segments, strict=True):
         of = known.get((value.upar, value.core.constraint.features))
+        agent = agents.get(value.agent, agents[observation.agent.name])
         out_nodes.append(_ipar(out, value, segment, of, agent=agent, objects=objects))
     return out_nodes
 

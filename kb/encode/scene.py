@@ -11,6 +11,7 @@ from ontology import CAPAR
 from ontology.vocabularies import PREFIXES, PROV
 
 if TYPE_CHECKING:
+    from capar.model.capture import Agent
     from capar.model.observation import Observation, ObservedObject
 
 TAGS = {"self": CAPAR.Self, "fixed": CAPAR.Fixed, "mobile": CAPAR.Mobile}
@@ -26,7 +27,8 @@ def identity(observation: "Observation") -> str:
     """A digest by which the same capture is known again, whatever rules read it."""
     sources = sorted(each.sha256 for each in observation.sources)
     scene = (observation.agent.name, observation.frames, observation.rate_hz, sources)
-    return hashlib.sha256(repr(scene).encode()).hexdigest()
+    others = tuple(each.name for each in observation.others)
+    return hashlib.sha256(repr((*scene, *others)).encode()).hexdigest()
 
 
 def kind_of(seen: "ObservedObject") -> str:
@@ -74,15 +76,22 @@ def capture(out: Statements, observation: "Observation") -> NamedNode:
     return out.say(names.part(out.about, "capture"), (CAPAR.Capture,), said)
 
 
-def performer(out: Statements, observation: "Observation") -> NamedNode:
-    """The agent in this capture, with its kind and its measures there."""
-    agent = observation.agent
-    who = out.share(
-        names.shared("agent", agent.name),
-        (CAPAR.Agent,),
-        {LABEL: agent.name, CAPAR.name: agent.name},
-    )
-    node = names.part(out.about, "performer")
+def agents(out: Statements, observation: "Observation") -> dict[str, NamedNode]:
+    """Everyone who performed, by name, the first one first."""
+    return {
+        each.name: out.share(
+            names.shared("agent", each.name),
+            (CAPAR.Agent,),
+            {LABEL: each.name, CAPAR.name: each.name},
+        )
+        for each in (observation.agent, *observation.others)
+    }
+
+
+def performer(out: Statements, agent: "Agent", who: NamedNode, *, number: int = 0) -> NamedNode:
+    """An agent in this capture, with its kind and its measures there."""
+    words = (number,) if number else ()
+    node = names.part(out.about, "performer", *words)
     measures = [
         out.say(
             names.part(node, "measure", name),
@@ -123,13 +132,20 @@ def _object(out: Statements, seen: "ObservedObject") -> NamedNode:
     return out.say(node, (CAPAR.TagObject,), said)
 
 
-def links(out: Statements, observation: "Observation") -> dict[str, NamedNode]:
+def links(
+    out: Statements, observation: "Observation", agents: dict[str, NamedNode]
+) -> dict[str, NamedNode]:
     """Every acting link by its end-effector."""
     return {
         each.ee: out.say(
             names.part(out.about, "link", each.ee),
             (CAPAR.Link,),
-            {CAPAR.ee: each.ee, CAPAR.effectorType: each.kind, CAPAR.side: each.side},
+            {
+                CAPAR.ee: each.ee,
+                CAPAR.effectorType: each.kind,
+                CAPAR.side: each.side,
+                CAPAR.agent: agents[observation.performer(each.ee)],
+            },
         )
         for each in observation.links
     }

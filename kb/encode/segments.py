@@ -30,6 +30,9 @@ BORDER_KINDS = {
     "ends_swinging": CAPAR.EndsSwinging,
     "tips": CAPAR.Tips,
     "rights": CAPAR.Rights,
+    "begins_looking": CAPAR.BeginsLooking,
+    "ends_looking": CAPAR.EndsLooking,
+    "shifts_weight": CAPAR.ShiftsWeight,
 }
 """What may happen at a border, by the word that observations use for it."""
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from capar.model.facts import Moving, Touching
+from capar.model.facts import Link, Moving, Touching
 from capar.model.observation import Observation, Segment
 
 
@@ -11,6 +11,7 @@ class Scene:
 
     def __init__(self, observation: Observation) -> None:
         effectors = {link.ee for link in observation.links}
+        effectors |= {each.ee for each in observation.facts if isinstance(each, Link)}
         touching = [each for each in observation.facts if isinstance(each, Touching)]
         self._hands = [each for each in touching if each.body in effectors]
         self._pairs = [each for each in touching if each.body not in effectors]

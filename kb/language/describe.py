@@ -1,9 +1,10 @@
 """What happened in an observation, in plain English, from its segments and PARs alone."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
+from capar.model.capture import Agent
 from capar.model.observation import Observation, ObservedLink
 from kb.language.clauses import Clause, clauses
 from kb.language.contacts import Scene
@@ -37,7 +38,7 @@ def describe(
     timed: bool = False,
     words: Sequence[PrimitiveWords] = (),
 ) -> str:
-    """Say what was done.
+    """Say what was done; where several agents performed, by one after the other.
 
     Args:
         observation: What was understood of a capture.
@@ -46,6 +47,13 @@ def describe(
         words: What the primitives of the rule base are called; those that are not there are said
             by the verb of a more general one.
     """
+    if observation.others:
+        stories = [_of(observation, each) for each in (observation.agent, *observation.others)]
+        return " ".join(
+            describe(each, detail=detail, timed=timed, words=words)
+            for each in stories
+            if each.links
+        )
     book, scene = Phrasebook(words), Scene(observation)
     links = spoken_links(observation.links)
     summary = detail == "summary"
@@ -67,6 +75,12 @@ def describe(
         sentence = f"{opening}{subject} {telling.sentence(part.steps, part.often, part.end_s)}."
         out.append(capital(sentence))
     return " ".join(out)
+
+
+def _of(observation: Observation, agent: Agent) -> Observation:
+    """What one of several agents did."""
+    own = tuple(each for each in observation.links if observation.performer(each.ee) == agent.name)
+    return replace(observation, agent=agent, links=own, others=())
 
 
 def _moved_freely(links: Sequence[ObservedLink], book: Phrasebook) -> list[str]:

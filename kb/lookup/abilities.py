@@ -27,7 +27,8 @@ WHERE {{
   }}
   UNION
   {{
-    ?seen {CAPAR.agent} ?who ; {CAPAR.segment}/{CAPAR.action}/{CAPAR.name} ?action .
+    ?link {CAPAR.agent} ?who .
+    ?segment {CAPAR.ofLink} ?link ; {CAPAR.action}/{CAPAR.name} ?action .
     BIND(false AS ?declared)
   }}
   ?who {CAPAR.name} @name@ .

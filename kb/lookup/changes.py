@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from pyoxigraph import Literal, NamedNode
 
-from capar.model.facts import MEASURED, Fact
+from capar.model.facts import STATED, Fact
 from kb import names, writing
 from kb.encode import encode
 from kb.encode.facts import CLASSES, PROPERTIES
@@ -35,7 +35,7 @@ def facts(store: Store, name: str) -> tuple[Fact, ...]:
         else:
             said[str(fact)][str(key)] = value.value if isinstance(value, Literal) else str(value)
     found = [_fact(kinds[node], said[node]) for node in said]
-    rank = {kind: index for index, kind in enumerate(MEASURED)}
+    rank = {kind: index for index, kind in enumerate(STATED)}
     return tuple(sorted(found, key=lambda each: (rank[type(each)], each)))
 
 
@@ -55,7 +55,7 @@ def source_files(store: Store, name: str) -> tuple[tuple[str, str], ...]:
 
 
 _BY_CLASS = {str(node): predicate for predicate, node in CLASSES.items()}
-_BY_PREDICATE = {each.predicate: each for each in MEASURED}
+_BY_PREDICATE = {each.predicate: each for each in STATED}
 
 
 def _fact(kind: str, said: dict[str, str]) -> Fact:

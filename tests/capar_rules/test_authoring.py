@@ -139,13 +139,15 @@ def test_an_added_rule_is_the_users_until_it_is_removed(grasp, tmp_path):
     added = add_rule(grasp, folder=folder, base="thesis")
     assert user_rules(folder) == (added,)
     assert list(folder.iterdir()) == [added]
-    assert rule_of(profile("thesis", added=user_rules(folder)), "Grasp").origin == "user"
+    base = profile("thesis", added=user_rules(folder))
+    assert rule_of(base, "Grasp").origin == "project"
+    assert rule_of(base, "Grasp", actionary=tmp_path).origin == "user"
     with pytest.raises(FileError, match="exists already"):
         add_rule(grasp, folder=folder, base="thesis")
-    assert remove_rule("Grasp", folder=folder) == added
+    assert remove_rule("Grasp", files=user_rules(folder)) == added
     assert user_rules(folder) == ()
     with pytest.raises(UnknownNameError, match="rule of the user's"):
-        remove_rule("Grasp", folder=folder)
+        remove_rule("Grasp", files=user_rules(folder))
 
 
 def test_an_ambiguity_is_refused_unless_it_is_ordered(grasp, tmp_path):

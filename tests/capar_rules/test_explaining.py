@@ -7,16 +7,19 @@ from dataclasses import dataclass, replace
 import motions
 import numpy as np
 import pytest
+from motions.rolling import CAN
 
 from capar.explanation import Explained, explained
 from capar.model.facts import (
     Fact,
     Frames,
+    LookingAt,
     Moving,
     Place,
     Posture,
     Resting,
     Reverses,
+    Rolls,
     Tag,
     Touching,
     ZeroCrossing,
@@ -35,6 +38,7 @@ CAPTURES = {
     for motion in (
         motions.drink_from_mug,
         motions.pick_up_with_both_hands,
+        motions.roll_object,
         motions.slide_object,
         motions.touch_cycle,
         motions.touch_from_rest,
@@ -267,6 +271,79 @@ def no_support(known: Known, other: str) -> bool:
     return started_later or "1" in known.segment.features.change_loc
 
 
+def held_by(known: Known, one: str) -> bool:
+    """The other end-effector touches the object for a while within the segment."""
+    return any(
+        min(each.last, known.segment.last) > max(each.first, known.segment.first)
+        for each in known.touching(one, known.segment.objects[0])
+    )
+
+
+def changes(known: Known, side: str) -> bool:
+    """The object's motion begins, ends or turns, or a contact of it does, near the border."""
+    border = known.segment.first if side == "begin" else known.segment.last
+    what, reach = known.segment.objects[0], MERGE_S * known.seen.observation.rate_hz
+    frames = {frame for each in known.moving(what) for frame in (each.first, each.last)}
+    frames |= {
+        frame
+        for each in known.facts
+        if isinstance(each, Touching) and each.body == what
+        for frame in (each.first, each.last)
+    }
+    frames |= {
+        each.frame for each in known.facts if isinstance(each, Reverses) and each.object == what
+    }
+    return any(abs(each - border) <= reach for each in frames)
+
+
+def measured_look(known: Known, who: str, what: str, first: str, last: str) -> bool:
+    return any(
+        (each.sensor, each.object) == (name(who), name(what))
+        and near(each.first, known.at(first))
+        and near(each.last, known.at(last))
+        for each in known.facts
+        if isinstance(each, LookingAt)
+    )
+
+
+def looked(known: Known, what: str, when: str) -> bool:
+    spans = [
+        (each.first, each.last)
+        for each in known.facts
+        if isinstance(each, LookingAt) and each.object == name(what)
+    ]
+    one = known.segment
+    start, end = (
+        [each for each in spans if each[0] <= frame <= each[1]] for frame in (one.first, one.last)
+    )
+    if when == "throughout":
+        return bool(set(start) & set(end))
+    if when == "in between":
+        return any(one.first < each[0] and each[1] < one.last for each in spans)
+    if when == "before the segment":
+        mine = [each for each in known.seen.observation.segments if each.ee == one.ee]
+        earlier = mine[one.index - 1]
+        return not start and any(each[0] < one.first and each[1] >= earlier.first for each in spans)
+    return bool(start if when == "when the segment began" else end)
+
+
+def rolled(known: Known, what: str) -> bool:
+    """The can's turn about its axis is its way over its radius."""
+    stream = known.capture.tag_object(name(what)).stream
+    ends = [known.segment.first, known.segment.last]
+    way = np.linalg.norm(np.diff(stream.positions[ends], axis=0))
+    turn = 2.0 * np.arccos(abs(float(np.prod(stream.orientations[ends], axis=0).sum())))
+    return abs(turn - way / CAN[0]) < 0.05
+
+
+def measured_rolling(known: Known, what: str, first: str, last: str) -> bool:
+    return any(
+        near(each.first, known.at(first)) and near(each.last, known.at(last))
+        for each in known.facts
+        if isinstance(each, Rolls) and each.object == name(what)
+    )
+
+
 S, N = r"(\d+\.\d\d) s", r"([\w ]+?)"
 SENTENCES: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"the {N} touched the {N} for the last time at {S}", ends),
@@ -276,6 +353,11 @@ SENTENCES: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"the {N} stayed where it was between {S} and {S}", stayed),
     (rf"contact of the {N} with the {N} was measured from {S} to {S}", measured_contact),
     (rf"motion of the {N} was measured from {S} to {S}", measured_motion),
+    (rf"rolling of the {N} was measured from {S} to {S}", measured_rolling),
+    (rf"the {N} turned as it went, without slipping", rolled),
+    (rf"the {N} looked at the {N} from {S} to {S}", measured_look),
+    (rf"the {N} was looked at (throughout|when the segment (?:began|ended)|in between|"
+     r"before the segment)", looked),
     (rf"the {N} possessed the {N}, as it moved in the contact that began at {S}", possessed),
     (rf"the {N} began to touch the {N} at {S}", begins),
     (rf"the {N} started to move at {S}", starts),
@@ -294,6 +376,8 @@ SENTENCES: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"the segment lies between {S} and {S}", borders),
     (r"the relations are ?(\d*) at the start and ?(\d*) at the end, change of location is ?(\d*), "
      r"force is ?(\d*)", features),
+    (r"it is one action with what the ([\w ]+) does to the same object", held_by),
+    (r"both segments (begin|end) with the same change of the object", changes),
     (r"it is (\w+)", named),
     (r"its features are those of (\w+)", named),
     (r"nothing that fits is more specific than (\w+)", named),
@@ -336,7 +420,8 @@ def form(sentence: str) -> tuple[Callable[..., bool], tuple[str, ...]]:
 
 def test_every_leaf_with_a_time_is_linked_to_its_frames(trial):
     _, seen, facts = trial
-    frames = {(each.first, each.last) for each in facts if isinstance(each, Touching | Moving)}
+    stretches = Touching | Moving | Rolls
+    frames = {(each.first, each.last) for each in facts if isinstance(each, stretches)}
     for segment in seen.observation.segments:
         for reason in seen.explainer.explain(segment).reason.told().walk():
             if "was measured from" in reason.sentence:

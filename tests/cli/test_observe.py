@@ -71,6 +71,26 @@ def test_the_tables_show_segments_and_steps(
     assert Path("out.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_what_both_hands_do_as_one_action_is_told(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    trial = motions.pick_up_with_both_hands(motions.TALL_MAN)
+    monkeypatch.setattr("extractors.readers.bundle.read_capture", lambda place: trial.capture)
+    assert run(monkeypatch, "observe", "x") == 0
+    lines = [each for each in capsys.readouterr().out.splitlines() if each.startswith("both")]
+    told = [each.partition(") ")[0] for each in lines]
+    assert told == [
+        "both hands: Touch(box",
+        "both hands: Lift(box",
+        "both hands: Lower(box, table",
+        "both hands: TouchWith(box, table",
+    ]
+    _, taken, down, *_ = trial.truth.borders_s["right_hand"]
+    lift = lines[1].partition(") ")[2].removesuffix(" s").split("-")
+    assert abs(float(lift[0]) - taken) < 0.1
+    assert float(lift[1]) < down
+
+
 def test_json_keeps_to_the_published_schema_and_reads_back(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -129,3 +149,17 @@ def test_what_is_not_there_is_a_users_mistake(
     assert run(monkeypatch, "observe", "nowhere") == 2
     assert run(monkeypatch, "observe", DEMO, "--profile", "theses") == 2
     assert "Did you mean 'thesis'?" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("lifted")
+def test_a_name_that_is_asked_for_goes_beside_the_actionary_that_is_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = ("observe", "x", "--profile", "thesis", "--on-unknown", "ask", "--actionary", "known")
+    assert run(monkeypatch, *asked, typed="Ferry\n") == 0
+    assert "wrote known/rules/ferry.lp" in capsys.readouterr().err
+    assert not Path("rules").exists()
+    assert run(monkeypatch, *asked[:4]) == 0
+    assert "Ferry" not in capsys.readouterr().out
+    assert run(monkeypatch, *asked[:4], "--actionary", "known") == 0
+    assert "Ferry" in capsys.readouterr().out

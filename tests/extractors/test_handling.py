@@ -9,13 +9,15 @@ from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
-from extractors.arrangement import above, below, beside, between, inside, sides
+from capar.model.facts import Wound
+from extractors.arrangement import above, below, beside, between, dips, inside, sides
 from extractors.figures import Figure, figure
 from extractors.impulses import closing_speed, falls
-from extractors.leaning import leaning, spin, upright_axis
+from extractors.leaning import leaning, spin
 from extractors.motion_edges import motion_edges
 from extractors.normals import contact_normal
 from extractors.object_motion import Floor, moving, stays
+from extractors.places import distances
 from extractors.poses import poses
 from extractors.resting import resting
 from extractors.thresholds import Thresholds
@@ -80,12 +82,40 @@ def test_what_moves_to_and_fro_swings() -> None:
     assert swings(body(slow).where, whole, LIMITS) == ()
 
 
-def test_an_object_leans_beyond_thirty_degrees() -> None:
-    angle = np.interp(TIMES, [1.0, 2.0, 3.0], [0.0, np.radians(60.0), 0.0])
-    where = body(np.zeros(3), turns=Rotation.from_euler("y", angle[:, None])).where
-    up = upright_axis(where, stays(where, Floor(0.01, 0.09), LIMITS))
-    ((first, last),) = leaning(where, up, LIMITS)
-    assert (first, last) == pytest.approx((151, 249), abs=2)
+def test_motion_to_and_fro_begins_and_ends_with_the_motion_that_is_soon_before_and_after() -> None:
+    wave = np.zeros((len(TIMES), 3))
+    during = (TIMES > 1.0) & (TIMES < 3.0)
+    wave[during, 1] = 0.03 * np.sin(2.0 * np.pi * 2.0 * (TIMES[during] - 1.0))
+    assert swings(body(wave).where, ((100, 300),), LIMITS) == ((100, 300),)
+    wave[:, 0] = 0.5 * np.clip((TIMES - 0.9) / 0.2, 0.0, 1.0)
+    ((first, last),) = swings(body(wave).where, ((80, 300),), LIMITS)
+    assert first == pytest.approx(112, abs=5), "what was carried further than a stroke is no swing"
+    assert last == 300
+
+
+def leant(angle: np.ndarray, *, speed_mps: float = 0.0) -> tuple[int, int]:
+    """When a body leans that is tipped by these angles as it travels."""
+    way = np.outer(TIMES * speed_mps, [1.0, 0.0, 0.0])
+    where = body(way, turns=Rotation.from_euler("y", angle[:, None])).where
+    ((first, last),) = leaning(where, np.array([0.0, 0.0, 1.0]), LIMITS, length_m=0.2)
+    return first, last
+
+
+OVER_AND_BACK = np.interp(TIMES, [0.2, 1.2, 2.2], [0.0, np.radians(60.0), 0.0])
+
+
+def test_an_object_leans_from_when_it_begins_to_lean_over_until_it_is_upright() -> None:
+    assert leant(OVER_AND_BACK) == pytest.approx((20, 220), abs=6)
+
+
+def test_what_leans_over_as_slowly_as_things_at_rest_turn_leans_beyond_thirty_degrees() -> None:
+    slowly = 0.9 * LIMITS.rest_speed_radps * np.clip(TIMES - 0.2, 0.0, 3.5)
+    beyond = 20 + 100 * LIMITS.lean_rad / (0.9 * LIMITS.rest_speed_radps)
+    assert leant(slowly) == pytest.approx((beyond, len(TIMES) - 1), abs=2)
+
+
+def test_what_leans_over_as_it_is_carried_leans_beyond_thirty_degrees() -> None:
+    assert leant(OVER_AND_BACK, speed_mps=1.0) == pytest.approx((20 + 50, 220 - 50), abs=2)
 
 
 def test_turning_about_the_vertical_adds_up_beyond_a_whole_turn() -> None:
@@ -173,3 +203,22 @@ def test_a_motion_begins_before_it_is_beyond_its_floor() -> None:
     assert 100 <= begin < first
     assert last < end <= 301
     assert begin == pytest.approx(100 + 200 * (0.001 / 5.0) ** (1 / 3), abs=3)
+
+
+def test_a_rod_that_stands_in_a_bowl_dips_into_it_and_one_beside_or_above_it_does_not() -> None:
+    bowl, rod = body(np.zeros(3), shape=shapes.bowl(0.1, 0.08)), shapes.box(0.01, 0.01, 0.3)
+    places = {(0.0, 0.0, 0.01): True, (0.15, 0.0, 0.01): False, (0.0, 0.0, 0.09): False}
+    for place, within in places.items():
+        there = body(np.array(place), shape=rod)
+        assert dips(there, bowl, LIMITS).all() == within
+        assert not inside(there, bowl, LIMITS).any()
+
+
+def test_what_turns_above_a_thing_goes_about_nothing() -> None:
+    thing = body(np.zeros(3), shape=shapes.box(0.2, 0.2, 0.2))
+    round_ = np.stack([np.cos(TIMES), np.sin(TIMES), 0.0 * TIMES], axis=1)
+    whole = tuple(range(0, len(TIMES), 100))
+    for radius, expected in ((0.5, 3000), (0.05, 0)):
+        going = distances(body(radius * round_ + np.array([0.0, 0.0, 0.3])), thing, whole)
+        wound = [each.milliradians for each in going if isinstance(each, Wound)]
+        assert wound[-1] - wound[0] == pytest.approx(expected, abs=15)

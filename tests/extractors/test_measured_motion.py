@@ -106,6 +106,15 @@ def test_a_carried_thing_moves_once_between_its_places(
     assert 1.7 < last < 2.05
 
 
+@pytest.mark.parametrize(("back", "count"), [(0.0, 1), (1.0, 0)])
+def test_what_rests_elsewhere_has_moved_however_quickly(back: float, count: int) -> None:
+    """Thirty millimetres in two hundredths of a second, for good or there and back."""
+    times = np.arange(0.0, 3.0, 0.01)
+    share = np.clip((times - 1.5) / 0.02, 0.0, 1.0)
+    share -= back * np.clip((times - 1.52) / 0.02, 0.0, 1.0)
+    assert len(motions(stream(np.outer(share, [0.03, 0.0, 0.0])))) == count
+
+
 def test_the_end_of_a_landing_belongs_to_the_stay() -> None:
     plain = reach(100.0)
     ((first, last),) = motions(plain)

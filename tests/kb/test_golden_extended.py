@@ -24,7 +24,7 @@ FIRST = next(iter(motions.PERFORMERS)).name
 ASKED_HERE = {
     "touching", "goal", "before", "follows", "grasped", "hand", "performers", "shared",
     "unknown", "unexplained", "instruments", "world", "allen", "observations", "actions",
-    "notices", "looked_at", "where",
+    "notices", "looked_at", "where", "both_hands",
 }  # fmt: skip
 SEQUENCES = {
     "DrinkFromMug": ("Reach", "MoveObjTo", "Drink", "MoveObjTo", "TouchWith", "ResumePosture"),
@@ -286,3 +286,25 @@ def test_both_hands_lift_at_once(known: Actionary) -> None:
     assert Counter(str(row["first"]).split()[-1] for row in equal) == dict.fromkeys(
         SEQUENCES["PickUpWithBothHands"], len(PERFORMERS)
     )
+
+
+def test_what_was_done_with_both_hands(
+    known: Actionary, extended_five_by_three: tuple[Observation, ...]
+) -> None:
+    """Every performer holds, lifts, lowers and holds the box with both hands, and nothing else."""
+    rows = known.ask("both_hands")
+    done: dict[str, list[str]] = {}
+    for row in rows:
+        done.setdefault(str(row["observation"]), []).append(str(row["action"]))
+    seen = [each for each in extended_five_by_three if each.joint]
+    assert sorted(done) == sorted(each.capture for each in seen)
+    assert list(done.values()) == [["Touch", "Lift", "Lower", "TouchWith"]] * 3
+    assert {row["ees"] for row in rows} == {"left_hand right_hand"}
+    assert {row["objects"] for row in rows} == {"box", "box table"}
+    assert known.ask("both_hands", object="box") == rows
+    assert known.ask("both_hands", object="mug") == []
+    (capture,) = [each for each in seen if FIRST in each.capture]
+    lifts = known.ask("both_hands", action="Lift")
+    mine = next(row for row in lifts if row["observation"] == capture.capture)
+    (lift,) = [each for each in capture.joint if each.name == "Lift"]
+    assert (mine["begins"], mine["ends"]) == (lift.start_s, lift.end_s)

@@ -17,7 +17,7 @@ PERFORMERS = sorted(each.name for each in motions.PERFORMERS)
 ASKED_HERE = {
     "touching", "goal", "before", "follows", "grasped", "hand", "performers", "shared",
     "unknown", "unexplained", "instruments", "world", "allen", "observations", "actions",
-    "notices", "looked_at", "where",
+    "notices", "looked_at", "where", "both_hands",
 }  # fmt: skip
 
 
@@ -241,3 +241,7 @@ def test_a_wrong_parameter_says_which_exist() -> None:
 
 def test_a_value_that_looks_like_sparql_is_a_text(known: Actionary) -> None:
     assert known.ask("touching", object='" } SERVICE <http://127.0.0.1/> { ?s ?p ?o } #') == []
+
+
+def test_the_thesis_knows_no_action_of_both_hands(known: Actionary) -> None:
+    assert known.ask("both_hands") == []

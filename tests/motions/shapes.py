@@ -47,6 +47,24 @@ def box(length: float, width: float, height: float) -> Shape:
 
 
 @cache
+def ball(radius: float) -> Shape:
+    """A ball, its origin in its middle."""
+    return shape(trimesh.creation.icosphere(subdivisions=3, radius=radius), "ball")
+
+
+@cache
+def bowl(radius: float, height: float) -> Shape:
+    """An open bowl with upright walls; its origin under its middle."""
+    outer = trimesh.creation.cylinder(
+        radius=radius, sections=48, segment=np.array([[0, 0, 0], [0, 0, height]])
+    )
+    cavity = trimesh.creation.cylinder(
+        radius=radius - 0.005, sections=48, segment=np.array([[0, 0, 0.006], [0, 0, 0.5]])
+    )
+    return shape(trimesh.boolean.difference([outer, cavity]), "bowl")
+
+
+@cache
 def table(length: float, width: float) -> Shape:
     """A table's top of 4 cm, whose origin lies in the middle of its upper face."""
     mesh = trimesh.creation.box(extents=(length, width, 0.04))
@@ -61,6 +79,16 @@ def drum() -> Shape:
         radius=0.18, sections=48, segment=np.array([[0, 0, -0.25], [0, 0, 0]])
     )
     return shape(mesh, "drum of radius 0.18 m")
+
+
+@cache
+def roller(radius: float, length: float) -> Shape:
+    """A can that lies along y, its origin in its middle."""
+    half = length / 2.0
+    mesh = trimesh.creation.cylinder(
+        radius=radius, sections=96, segment=np.array([[0, -half, 0], [0, half, 0]])
+    )
+    return shape(mesh, f"can of radius {radius:g} m, lying")
 
 
 @cache

@@ -13,6 +13,7 @@ from capar.model.facts import read_fact
 from capar_rules.engine import rule_file, solve, text_of
 from capar_rules.profiles import profile
 from capar_rules.ranking import rank
+from capar_rules.steadying import steady
 
 HERE = Path(__file__).parent
 CASES = sorted(HERE.glob("*/*.lp"))
@@ -66,6 +67,8 @@ def _answer(case: Path) -> set[str]:
     text = case.read_text()
     rules = profile("thesis" if "% profile: thesis" in text else "extended")
     facts = tuple(read_fact(text_of((name, *args))) for name, args in solve([], text).atoms)
+    if rules.steady:
+        facts = steady(facts)
     ranked = rank(facts, crossings_only=rules.crossings_only)
     whole = HERE / "everything.lp"
     answer = solve((*rules.files, whole), (*facts, *ranked))

@@ -23,6 +23,18 @@ def test_a_link_without_a_speed_has_no_curve() -> None:
     assert Kind.CURVE not in {each.kind for each in rows(drink_from_mug(), {})}
 
 
+def test_what_both_hands_do_as_one_action_has_a_row_of_its_own() -> None:
+    (row,) = [each for each in rows(pick_up_with_both_hands(), {}) if each.label == "both hands"]
+    assert row.kind is Kind.SEGMENTS
+    (span,) = row.spans
+    assert (span.start_s, span.end_s, span.label) == (
+        pytest.approx(1.4),
+        pytest.approx(2.6),
+        "MoveObj",
+    )
+    assert "both hands" not in [each.label for each in rows(drink_from_mug(), {})]
+
+
 def test_assumed_supports_and_stand_ins_are_marked() -> None:
     labels = [each.label for each in rows(drink_from_mug(), {})]
     assert "mug touches table*" in labels

@@ -12,6 +12,7 @@ from rich.table import Table
 
 from capar.workbench.tables import aligned
 from capar.workbench.text import (
+    joint_lines,
     observation_text,
     par_text,
     segment_rows,
@@ -86,6 +87,21 @@ def test_every_segment_stands_in_the_table_with_its_times_and_features() -> None
         assert ", ".join(segment.objects) in line
         assert f"{segment.features.rel_start} > {segment.features.rel_end}" in line
         assert segment.purpose in line
+
+
+def test_what_both_hands_do_as_one_action_is_told_in_a_line() -> None:
+    seen = pick_up_with_both_hands()
+    line = "both hands: MoveObj(box, table) 1.40-2.60 s"
+    assert joint_lines(seen) == (line,)
+    assert line in observation_text(seen).splitlines()
+    assert joint_lines(drink_from_mug()) == ()
+
+
+def test_those_who_are_not_the_two_hands_of_one_are_called_by_name() -> None:
+    seen = pick_up_with_both_hands()
+    (joint,) = seen.joint
+    three = replace(joint, ees=("left_foot", "left_hand", "right_hand"), segments=(0, 2, 2))
+    assert seen.who(three) == "left foot, left hand and right hand"
 
 
 def test_an_unknown_segment_says_where_it_parted_and_what_is_near() -> None:

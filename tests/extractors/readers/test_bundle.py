@@ -234,3 +234,20 @@ shape = { capsules = "children", radius_m = 0.02 }
     assert hand is not None and tip is not None
     assert np.allclose(hand.size, [0.14, 0.04, 0.04], atol=2e-3)
     assert np.allclose(tip.size, [0.04, 0.04, 0.04], atol=2e-3)
+
+
+def test_a_capture_may_say_itself_when_bodies_touch(tmp_path: Path) -> None:
+    assert read_capture(bundle(tmp_path)).contact_minimum_s is None
+    text = BASE + "[contact]\ntolerance_m = 0.02\ndropout_s = 0.0\nminimum_s = 0.01\n"
+    capture = read_capture(bundle(tmp_path, text))
+    assert capture.contact_tolerance_m == 0.02
+    assert (capture.contact_dropout_s, capture.contact_minimum_s) == (0.0, 0.01)
+
+
+@pytest.mark.parametrize("wrong", ["minimum_s = 50", "dropout_s = -0.1", "dropout_ms = 3"])
+def test_what_it_says_wrongly_of_contact_is_told_with_its_line(wrong: str, tmp_path: Path) -> None:
+    text = f"{BASE}[contact]\n{wrong}\n"
+    with pytest.raises(
+        CaparError, match=f"capture.toml:{line_of(text, wrong)}.*{wrong.split(maxsplit=1)[0]}"
+    ):
+        read_capture(bundle(tmp_path, text))

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from capar.observe import observe
 from capar.report import primitive_files, primitive_words
-from capar.words import observed
 from kb.language.describe import describe
 
 DATA = Path(os.environ.get("CAPAR_DATA", Path(__file__).parents[4] / "shared/data"))
@@ -40,7 +40,7 @@ def test_a_recording_is_told_as_we_read_it(
 ) -> None:
     monkeypatch.setenv("CAPAR_DATA", str(DATA))
     capture = groceries(tmp_path) if take.startswith("boxed_vr") else str(EXAMPLES / take)
-    seen = observed(capture, profile="extended", rules=None)
+    seen = observe(capture)
     words = primitive_words(primitive_files())
     steps, summary = describe(seen, words=words), describe(seen, detail="summary", words=words)
     told = f"{steps}\n\n{summary}\n"

@@ -1,0 +1,72 @@
+"""What is put into a box goes into it, and what is put beside it, or was there before, does not."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from measured_bodies import box, pick_and_place
+from motion_files import recordings_folder
+
+from capar.evaluation.containers import halved, landings
+from capar.model.capture import ShapeSource
+from extractors.readers.bundle import read_capture, takes
+
+SCENES = Path(__file__).parents[2] / "examples" / "boxed_vr" / "scenes.toml"
+
+
+def test_two_halves_fill_the_box_that_they_part() -> None:
+    capture, names = halved(pick_and_place(), "table")
+    halves = [capture.tag_object(name) for name in names]
+    sizes = [each.shape.size for each in halves if each.shape]
+    assert np.allclose(sizes, [[1.0, 0.6, 0.04]] * 2)
+    bounds = [each.shape.bounds for each in halves if each.shape]
+    assert np.allclose(bounds[0][1, 1], bounds[1][0, 1])
+    assert np.allclose([bounds[0][0], bounds[1][1]], box(1.0, 1.2, 0.04).bounds)
+    assert all(each.assumed for each in halves)
+
+
+def test_what_stands_on_a_table_went_into_nothing() -> None:
+    assert [(each.told, each.true) for each in landings(pick_and_place(), ["table"])] == [
+        (False, False)
+    ]
+
+
+@pytest.mark.parametrize(("take", "goes", "stays"), [("p78_s1", 10, 0), ("p76_s1", 10, 2)])
+def test_groceries_go_into_the_box_where_they_are_found_in_the_end(
+    take: str, goes: int, stays: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the second scene one lies in the box from the beginning, and one ends above its rim."""
+    monkeypatch.setenv("CAPAR_DATA", str(recordings_folder()))
+    capture = read_capture(f"{SCENES}:{take}")
+    carton = capture.tag_object("carton")
+    assert carton.shape is not None
+    assert carton.shape.source is ShapeSource.ASSUMED
+    assert "the lowest point of the lowest of" in carton.assumed
+    found = landings(capture, ["carton"])
+    assert sum(each.true for each in found) == goes
+    assert sum(not each.true for each in found) == stays
+    assert all(each.told == each.true for each in found)
+
+
+def test_what_is_put_into_one_half_of_the_box_is_not_put_into_the_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Told otherwise may be what stands across the middle: at most one object in ten."""
+    monkeypatch.setenv("CAPAR_DATA", str(recordings_folder()))
+    capture, halves = halved(read_capture(f"{SCENES}:p78_s1"), "carton")
+    found = landings(capture, halves)
+    wrong = [each for each in found if each.told != each.true]
+    assert len(found) == 20
+    assert sum(each.true for each in found) == 10
+    assert len(wrong) <= 1
+    assert not [each for each in wrong if each.told]
+
+
+def test_objects_without_a_mesh_are_counted_and_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CAPAR_DATA", str(recordings_folder()))
+    assert len(takes(SCENES)) == 16
+    capture = read_capture(f"{SCENES}:p1_s1")
+    (notice,) = [each for each in capture.notices if each.code == "objects-left-out"]
+    assert notice.message.startswith("7 of 23 objects have no shape and are left out: ")
+    assert sum(each.tag == "mobile" for each in capture.objects) == 16
+    assert not [each for each in capture.objects if each.shape is None]

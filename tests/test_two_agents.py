@@ -1,0 +1,188 @@
+"""Two people hand over a mug: who gives, who takes, and whose action each PAR is."""
+
+import json
+import sys
+from pathlib import Path
+
+import jsonschema
+import motions
+import pytest
+from motions.handing import GIVER, GIVING, STEPS, TAKER, TAKING
+from write_demo import write_tables
+
+from capar.cli import main
+from capar.explanation import explained
+from capar.model.errors import CaptureError, UnknownNameError
+from capar.model.json_form import from_json, published_schema, to_json
+from capar.model.observation import Observation
+from capar.observe import observe
+from capar_rules.profiles import profile
+from extractors.readers.bundle import read_capture
+from kb.actionary import Actionary
+from kb.checking import check
+from kb.language.describe import describe
+
+BUNDLE = """\
+name = "handing_over"
+unit = "m"
+up = "z"
+
+[files]
+motion = "motion.csv"
+
+[[agent]]
+name = "woman"
+kind = "woman"
+measures = { stature = 1.63, mass = 61.0 }
+
+[[agent]]
+name = "tall_man"
+kind = "man"
+
+[[sensor]]
+name = "right_hand"
+end_effector = "hand"
+side = "right"
+body = "right_hand"
+shape = { mesh = "right_hand.obj" }
+
+[[sensor]]
+name = "guest_hand"
+agent = "tall_man"
+end_effector = "hand"
+side = "right"
+body = "guest_hand"
+shape = { mesh = "guest_hand.obj" }
+
+[[object]]
+name = "mug"
+tag = "mobile"
+body = "mug"
+shape = { mesh = "mug.obj" }
+
+[[object]]
+name = "table"
+tag = "fixed"
+position = [0.4, 0.0, 0.92]
+shape = { mesh = "table.obj" }
+"""
+
+
+def bundle(folder: Path, text: str = BUNDLE) -> Path:
+    write_tables(motions.hand_over().capture, folder)
+    (folder / "capture.toml").write_text(text, encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return bundle(tmp_path_factory.mktemp("handing_over"))
+
+
+@pytest.fixture(scope="module")
+def seen(folder: Path) -> Observation:
+    return observe(folder)
+
+
+def names(observation: Observation, ee: str) -> tuple[str, ...]:
+    """What it does, but for rest before and after."""
+    (link,) = [each for each in observation.links if each.ee == ee]
+    return tuple(each.name for each in link.segments if each.name != "Rest")
+
+
+def test_a_bundle_says_who_performs_and_whose_each_hand_is(folder: Path) -> None:
+    capture = read_capture(folder)
+    assert [each.name for each in capture.agents] == ["woman", "tall_man"]
+    assert capture.agent.measures == {"stature": 1.63, "mass": 61.0}
+    hands = {each.name: capture.agent_of(each) for each in capture.sensors}
+    assert hands == {GIVING: "woman", TAKING: "tall_man"}
+
+
+@pytest.mark.parametrize("ee", [GIVING, TAKING])
+def test_one_gives_and_the_other_accepts(seen: Observation, ee: str) -> None:
+    assert names(seen, ee) == STEPS[ee]
+
+
+def test_every_par_names_the_agent_who_acted(seen: Observation) -> None:
+    who = {GIVING: GIVER.name, TAKING: TAKER.name}
+    assert {(each.ee, each.agent) for each in seen.ipars} == set(who.items())
+    assert all(each.core.manner == each.agent for each in seen.ipars)
+    (given,) = [each for each in seen.ipars if each.upar == "HandOver"]
+    (taken,) = [each for each in seen.ipars if each.upar == "Accept"]
+    assert (given.agent, given.objects) == (GIVER.name, ("mug",))
+    assert (taken.agent, taken.objects) == (TAKER.name, ("mug",))
+    assert taken.start_s < given.start_s
+
+
+def test_what_is_passed_on_is_no_action_of_both(seen: Observation) -> None:
+    assert seen.joint == ()
+
+
+def test_between_the_hands_of_one_it_is_giving_and_receiving() -> None:
+    own = observe(motions.hand_over(taker=GIVER.agent).capture)
+    assert names(own, GIVING) == (*STEPS[GIVING][:-1], "Give")
+    assert names(own, TAKING) == ("Receive", *STEPS[TAKING][1:])
+    assert {each.agent for each in own.ipars} == {GIVER.name}
+    assert own.others == ()
+
+
+def test_the_observation_comes_back_from_json(seen: Observation) -> None:
+    text = to_json(seen)
+    jsonschema.validate(json.loads(text), json.loads(published_schema("observation")))
+    assert from_json(text) == seen
+
+
+def test_the_reason_says_that_it_was_another_agent(folder: Path) -> None:
+    both = explained(read_capture(folder), rules=profile())
+    for name, reason in (
+        ("HandOver", "it was another agent who had taken it"),
+        ("Accept", "it was another agent who had it"),
+    ):
+        (segment,) = [each for each in both.observation.segments if each.name == name]
+        assert reason in both.explainer.explain(segment).summary
+
+
+def test_the_actionary_knows_who_did_what(seen: Observation) -> None:
+    with Actionary.in_memory() as store:
+        store.add(seen)
+        assert check(store.store, full=True) == ()
+        for action, who in (("HandOver", GIVER.name), ("Accept", TAKER.name)):
+            assert [row["performer"] for row in store.ask("performers", action=action)] == [who]
+        assert {(each.upar, each.agent) for each in store.ipars(seen.capture)} == {
+            (each.upar, each.agent) for each in seen.ipars
+        }
+        styles = store.styles(agent=TAKER.name)
+        assert {each.style.ee for each in styles} == {TAKING}
+
+
+def test_the_table_says_whose_hand_it_is(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["capar", "observe", str(folder), "--pars"])
+    with pytest.raises(SystemExit):
+        main()
+    printed = capsys.readouterr().out
+    assert "guest_hand (tall_man)" in printed
+    assert "IPAR HandOver(woman, mug)" in printed
+    assert "IPAR Accept(tall_man, mug)" in printed
+
+
+def test_what_each_did_is_told_of_each(seen: Observation) -> None:
+    told = describe(seen)
+    assert told.startswith("The woman reached for the mug with the right hand")
+    hers, his = told.split(" The tall man ")
+    assert hers.endswith("and handed it to someone.")
+    assert his.startswith("accepted")
+
+
+def test_an_agent_who_is_not_there_is_a_mistake_with_its_line(tmp_path: Path) -> None:
+    text = BUNDLE.replace('agent = "tall_man"', 'agent = "tall_men"')
+    with pytest.raises(UnknownNameError, match=r"capture.toml:26.*tall_men") as error:
+        read_capture(bundle(tmp_path, text))
+    assert "tall_man" in str(error.value)
+
+
+def test_two_agents_of_one_name_are_a_mistake(tmp_path: Path) -> None:
+    text = BUNDLE.replace('name = "woman"', 'name = "tall_man"')
+    with pytest.raises(CaptureError, match="two agents are called 'tall_man'"):
+        read_capture(bundle(tmp_path, text))
