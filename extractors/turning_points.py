@@ -1,8 +1,11 @@
 """Where motion turns back: extrema of height, and motion to and fro."""
 
+from collections.abc import Iterator
+
 import numpy as np
 from jaxtyping import Float, Int
 
+from capar.model import geometry
 from capar.model.capture import Stream
 from extractors.intervals import Interval
 from extractors.poses import Poses
@@ -38,11 +41,9 @@ def reversals(
     """Frames at which the height of a moving body has an extremum after and before a real way."""
     height = where.smooth.positions[:, 2]
     found: list[int] = []
-    for first, last in moving:
-        part = height[first : last + 1]
-        if not np.isnan(part).any():
-            turns = turning_points(part, thresholds.reversal_m)
-            found += [first + int(each) for each in turns]
+    for first, last in _known(where.smooth, moving):
+        turns = turning_points(height[first : last + 1], thresholds.reversal_m)
+        found += [first + int(each) for each in turns]
     return tuple(found)
 
 
@@ -57,9 +58,9 @@ def swings(
     """
     stream = where.smooth
     chains: list[Interval] = []
-    for first, last in moving:
+    for first, last in _known(stream, moving):
         part = stream.positions[first : last + 1]
-        for axis in range(3) if not np.isnan(part).any() else ():
+        for axis in range(3):
             turns = first + turning_points(part[:, axis], thresholds.swing_m)
             for chain in _chains(turns, stream.times, thresholds):
                 chains.append(_whole(chain, (first, last), stream, axis, thresholds))
@@ -70,6 +71,13 @@ def swings(
         else:
             out.append((first, last))
     return tuple(out)
+
+
+def _known(stream: Stream, moving: tuple[Interval, ...]) -> Iterator[Interval]:
+    """The parts of the motions in which the body was not lost."""
+    for first, last in moving:
+        for begin, end in geometry.gaps(~stream.lost[first : last + 1]):
+            yield first + begin, first + end
 
 
 def _chains(

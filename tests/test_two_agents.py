@@ -162,7 +162,7 @@ def test_the_table_says_whose_hand_it_is(
     with pytest.raises(SystemExit):
         main()
     printed = capsys.readouterr().out
-    assert "guest_hand (tall_man)" in printed
+    assert "guest_hand/0 (tall_man)" in printed
     assert "IPAR HandOver(woman, mug)" in printed
     assert "IPAR Accept(tall_man, mug)" in printed
 

@@ -1,7 +1,7 @@
 """Carries that a recorder has timed, held against when motion alone says they begin and end."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -75,8 +75,9 @@ def measure(name: str, recorded: Stream, thresholds: Thresholds | None = None) -
     floor = motion_floor(where.noise, RATE_HZ, own_m=None, thresholds=limits)
     found = moving(where, floor, limits)
     if not found:
-        nothing = End(float("nan"), Miss.CREEPS, float("nan"))
-        return Carry(name, nothing, nothing)
+        ends = (_end(recorded, finish, 0, limits), _end(recorded, begin, -1, limits))
+        onset, offset = (replace(each, error_s=float("nan")) for each in ends)
+        return Carry(name, onset, offset)
     rests = stays(where, floor, limits)
     first = motion_edges(where, found[0], rests, limits)[0]
     last = motion_edges(where, found[-1], rests, limits)[1]

@@ -9,7 +9,7 @@ from capar.model.par import ComplexPar, FeatureSet, Step
 if TYPE_CHECKING:
     from rich.table import Table
 
-SEGMENT_COLUMNS = ("link", "start [s]", "end [s]", "name", "objects", "features", "purpose")
+SEGMENT_COLUMNS = ("segment", "start [s]", "end [s]", "name", "objects", "features", "purpose")
 STEP_COLUMNS = ("link", "step", "objects", "purpose", "begin", "share", "duration [s]")
 FEATURE_NOTE = "features: relations at start > at end, changes of location, force"
 LEVELS = {
@@ -105,8 +105,9 @@ def _segment_row(link: ObservedLink, segment: Segment) -> tuple[str, ...]:
         name = f"{name} ({unknown_note(segment)})"
     elif segment.candidates:
         name = f"{name} (or {', '.join(segment.candidates)})"
+    place = f"{link.ee}/{segment.index}"
     return (
-        f"{link.ee} ({link.agent})" if link.agent else link.ee,
+        f"{place} ({link.agent})" if link.agent else place,
         f"{segment.start_s:.3f}",
         f"{segment.end_s:.3f}",
         name,

@@ -93,6 +93,18 @@ def test_motion_to_and_fro_begins_and_ends_with_the_motion_that_is_soon_before_a
     assert last == 300
 
 
+def test_what_is_lost_for_a_while_turns_back_and_swings_before_and_after() -> None:
+    wave = np.zeros((len(TIMES), 3))
+    wave[:, 2] = 0.06 * np.sin(2.0 * np.pi * 2.0 * TIMES)
+    whole = ((0, len(TIMES) - 1),)
+    wave[190:230] = np.nan
+    turns = np.array(reversals(body(wave).where, whole, LIMITS))
+    assert turns.min() < 50
+    assert turns.max() > 350
+    spans = swings(body(wave).where, whole, LIMITS)
+    assert [each[1] < 190 or each[0] >= 230 for each in spans] == [True, True]
+
+
 def leant(angle: np.ndarray, *, speed_mps: float = 0.0) -> tuple[int, int]:
     """When a body leans that is tipped by these angles as it travels."""
     way = np.outer(TIMES * speed_mps, [1.0, 0.0, 0.0])
