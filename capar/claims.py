@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
-from capar.model.errors import CaparError
+from capar.claim_names import ClaimError as ClaimError
+from capar.claim_names import Names, names_of, parts
 from capar.model.facts import Fact, LookingAt, Moving, Touching
 from capar.model.observation import Observation, Segment
 
@@ -28,9 +29,7 @@ HELP = (
 
 _Kind = TypeVar("_Kind", bound=Fact)
 
-
-class ClaimError(CaparError):
-    """A claim that cannot be read, or that speaks of what is not there."""
+_NUMBER = r"\d+(?:\.\d*)?|\.\d+"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,26 +40,46 @@ class Verdict:
     capture: str
     holds: bool
     found: str
+    mistake: str = ""
+    """Why it could not be judged at all; else empty."""
 
 
-def judge(claim: str, observation: Observation) -> Verdict:
+@dataclass(frozen=True, slots=True)
+class _Scene:
+    """What was observed, and the names that may be spoken of."""
+
+    seen: Observation
+    names: Names
+
+
+def judge(claim: str, observation: Observation, *, names: Names | None = None) -> Verdict:
     """Check a claim against an observed capture.
 
+    Args:
+        claim: In words; ``HELP`` says in which.
+        observation: The capture, observed.
+        names: What may be spoken of; None for what the observation itself shows.
+
     Raises:
-        ClaimError: The claim cannot be read.
+        ClaimError: The claim cannot be read, or names what there is not.
     """
-    holds, found = _judged(claim.strip(), observation)
+    scene = _Scene(observation, names or names_of(observation))
+    holds, found = _judged(claim.strip(), scene)
     return Verdict(claim, observation.capture, holds, found)
 
 
-def _judged(claim: str, seen: Observation) -> tuple[bool, str]:
+def _judged(claim: str, seen: _Scene) -> tuple[bool, str]:
     sequence = re.fullmatch(r"(\w+):\s*(.+)", claim)
     if sequence:
         return _sequence(sequence[1], sequence[2], seen)
-    lasting = re.fullmatch(r"(.+) lasts ([\d.]+) to ([\d.]+) s", claim)
+    lasting = re.fullmatch(rf"(.+) lasts ({_NUMBER}) to ({_NUMBER}) s", claim)
     if lasting:
         spans = list(_event(lasting[1], seen))
         low, high = float(lasting[2]), float(lasting[3])
+        if low > high:
+            raise ClaimError(
+                f"nothing lasts {lasting[2]} to {lasting[3]} s; the shorter time first"
+            )
         times = [last - first for first, last in spans]
         return bool(times) and all(low <= each <= high for each in times), _told(spans)
     if claim.startswith("no "):
@@ -74,7 +93,7 @@ def _judged(claim: str, seen: Observation) -> tuple[bool, str]:
     return bool(spans), _told(spans)
 
 
-def _related(first: str, relation: str, second: str, seen: Observation) -> tuple[bool, str]:
+def _related(first: str, relation: str, second: str, seen: _Scene) -> tuple[bool, str]:
     one, other = list(_event(first, seen)), list(_event(second, seen))
     holds = any(_stand(each, relation, every) for each in one for every in other)
     return holds, f"{first}: {_told(one)}; {second}: {_told(other)}"
@@ -90,10 +109,13 @@ def _stand(one: Span, relation: str, other: Span) -> bool:
     }[relation]
 
 
-def _sequence(ee: str, names: str, seen: Observation) -> tuple[bool, str]:
+def _sequence(ee: str, names: str, seen: _Scene) -> tuple[bool, str]:
     """The whole sequence of an end-effector; ... stands for any steps."""
     segments = _of(ee, seen)
     wanted = [each.strip() for each in re.split(r",\s*(?![^()]*\))", names)]
+    for each in wanted:
+        if each != "...":
+            seen.names.step(each)
     found = ", ".join(each.name for each in segments)
     return _follows(wanted, list(segments)), f"{ee}: {found}"
 
@@ -106,25 +128,19 @@ def _follows(wanted: list[str], segments: list[Segment]) -> bool:
     return bool(segments and _fits(segments[0], wanted[0]) and _follows(wanted[1:], segments[1:]))
 
 
-_STEP = re.compile(r"([A-Z]\w*)(?:\(([^()]*)\))?")
-
-
 def _fits(segment: Segment, text: str) -> bool:
     """Whether a segment is of that name, or of one that specialises it, with those objects."""
-    step = _STEP.fullmatch(text)
-    if step is None:
-        raise ClaimError(f"{text!r} is no step such as MoveObjTo(mug, head)")
-    if step[1] not in (segment.name, *segment.general):
+    name, objects = parts(text)
+    if name not in (segment.name, *segment.general):
         return False
-    if step[2] is None:
+    if objects is None:
         return True
-    objects = [each.strip() for each in step[2].split(",") if each.strip()]
     return len(objects) <= len(segment.objects) and all(
         each in ("_", found) for each, found in zip(objects, segment.objects, strict=False)
     )
 
 
-def _event(text: str, seen: Observation) -> Iterator[Span]:
+def _event(text: str, seen: _Scene) -> Iterator[Span]:
     """When an event is."""
     for pattern, spans in _EVENTS:
         found = re.fullmatch(pattern, text)
@@ -133,14 +149,17 @@ def _event(text: str, seen: Observation) -> Iterator[Span]:
     raise ClaimError(f"{text!r} is no event; {HELP}")
 
 
-def _looks(found: re.Match[str], seen: Observation) -> Iterator[Span]:
+def _looks(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
+    pair = seen.names.sensor(found[1]), seen.names.object(found[3])
     for each in _facts(seen, LookingAt):
-        if (each.sensor, each.object) == (found[1], found[3]):
+        if (each.sensor, each.object) == pair:
             yield _when(each.first, each.last, seen, ending=found[2] != "at")
 
 
-def _meets(found: re.Match[str], seen: Observation) -> Iterator[Span]:
-    pair = {_known(found[1], seen), _known(found[3], seen)}
+def _meets(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
+    pair = {seen.names.body(found[1]), seen.names.body(found[3])}
+    if len(pair) == 1:
+        raise ClaimError(f"{found[0]!r}: nothing touches itself")
     spans = {
         _when(each.first, each.last, seen, ending=found[2] != "touches")
         for each in _facts(seen, Touching)
@@ -149,34 +168,36 @@ def _meets(found: re.Match[str], seen: Observation) -> Iterator[Span]:
     return iter(sorted(spans))
 
 
-def _moves(found: re.Match[str], seen: Observation) -> Iterator[Span]:
-    name = _known(found[1], seen)
+def _moves(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
+    name = seen.names.object(found[1])
     for each in _facts(seen, Moving):
         if each.object == name:
             yield _when(each.first, each.last, seen, ending=False)
 
 
-def _step(found: re.Match[str], seen: Observation) -> Iterator[Span]:
-    for segment in _of(found[1], seen):
-        if _fits(segment, found[2]):
+def _step(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
+    segments, step = _of(found[1], seen), seen.names.step(found[2])
+    for segment in segments:
+        if _fits(segment, step):
             yield segment.start_s, segment.end_s
 
 
-def _together(found: re.Match[str], seen: Observation) -> Iterator[Span]:
+def _together(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
     """When several end-effectors do a step as one action."""
-    who = [found[1].strip()] if found[1].startswith("both ") else found[1].split(" and ")
-    if len(who) > 1:
-        for ee in who:
-            _of(ee, seen)
-    segments = {(each.ee, each.index): each for each in seen.segments}
-    for joint in seen.joint:
-        parts = [segments[each] for each in zip(joint.ees, joint.segments, strict=True)]
-        acting = [seen.who(joint)] if len(who) == 1 else joint.ees
-        if sorted(acting) == sorted(who) and all(_fits(each, found[2]) for each in parts):
+    both = found[1].startswith("both ")
+    who = [seen.names.pair(found[1])] if both else [*map(seen.names.ee, found[1].split(" and "))]
+    if len(set(who)) < len(who):
+        raise ClaimError(f"{found[0]!r} names an end-effector twice")
+    step = seen.names.step(found[2])
+    segments = {(each.ee, each.index): each for each in seen.seen.segments}
+    for joint in seen.seen.joint:
+        own = [segments[each] for each in zip(joint.ees, joint.segments, strict=True)]
+        acting = [seen.seen.who(joint)] if both else joint.ees
+        if sorted(acting) == sorted(who) and all(_fits(each, step) for each in own):
             yield joint.start_s, joint.end_s
 
 
-_EVENTS: tuple[tuple[str, Callable[[re.Match[str], Observation], Iterator[Span]]], ...] = (
+_EVENTS: tuple[tuple[str, Callable[[re.Match[str], _Scene], Iterator[Span]]], ...] = (
     (r"(\w+) looks (at|away from) (\w+)", _looks),
     (r"(\w+) (touches|lets go of) (\w+)", _meets),
     (r"(\w+) moves", _moves),
@@ -185,29 +206,18 @@ _EVENTS: tuple[tuple[str, Callable[[re.Match[str], Observation], Iterator[Span]]
 )
 
 
-def _facts(seen: Observation, kind: type[_Kind]) -> Iterator[_Kind]:
-    return (each for each in seen.facts if isinstance(each, kind))
+def _facts(seen: _Scene, kind: type[_Kind]) -> Iterator[_Kind]:
+    return (each for each in seen.seen.facts if isinstance(each, kind))
 
 
-def _when(first: int, last: int, seen: Observation, *, ending: bool) -> Span:
-    rate = seen.rate_hz
+def _when(first: int, last: int, seen: _Scene, *, ending: bool) -> Span:
+    rate = seen.seen.rate_hz
     return (last / rate, last / rate) if ending else (first / rate, last / rate)
 
 
-def _of(ee: str, seen: Observation) -> Sequence[Segment]:
-    links = {each.ee: each.segments for each in seen.links}
-    if ee not in links:
-        raise ClaimError(
-            f"no end-effector {ee!r} acts in {seen.capture!r}; there are {sorted(links)}"
-        )
-    return links[ee]
-
-
-def _known(name: str, seen: Observation) -> str:
-    names = {each.name for each in seen.objects} | {each.ee for each in seen.links}
-    if name not in names:
-        raise ClaimError(f"no body {name!r} in {seen.capture!r}; there are {sorted(names)}")
-    return name
+def _of(ee: str, seen: _Scene) -> Sequence[Segment]:
+    seen.names.ee(ee)
+    return next(each.segments for each in seen.seen.links if each.ee == ee)
 
 
 def _told(spans: Sequence[Span]) -> str:

@@ -1,5 +1,6 @@
 """The pipeline from a capture to reasons: observe it, then say why, and why not."""
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -12,6 +13,8 @@ from capar.observe import observe_measured
 from capar_rules.explaining import Explainer
 from capar_rules.profiles import Profile
 from extractors.facts import Measurements, extract
+
+_SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +37,20 @@ def explained(capture: Capture, *, rules: Profile) -> Explained:
         observation.facts, profile=rules, distance_m=distances(capture, measurements)
     )
     return Explained(observation, explainer)
+
+
+def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
+    """The segments that an atom speaks of, as a user names them: ``right_hand/3``.
+
+    Rules name a segment by the tick where it begins, which is no index.
+    """
+    known = {(each.ee, each.first): f"{each.ee}/{each.index}" for each in seen.observation.segments}
+    found = []
+    for ee, tick in _SEGMENT.findall(atom):
+        frames = seen.explainer.windows.frames.get(ee, [])
+        name = known.get((ee, frames[int(tick)])) if int(tick) < len(frames) else None
+        found += [name] if name else []
+    return tuple(dict.fromkeys(found))
 
 
 def distances(capture: Capture, measurements: Measurements) -> Callable[[str, int, int], float]:

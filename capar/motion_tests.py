@@ -3,15 +3,19 @@
 import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from functools import cache
+from glob import glob
 from pathlib import Path
 
-from capar.claims import ClaimError, Verdict, judge
-from capar.model.errors import FileError
+from capar.claim_names import Names, names_of
+from capar.claims import Verdict, judge
+from capar.model.errors import CaparError, FileError
 from capar.model.observation import Observation
 from capar.observe import observe
-from capar_rules.profiles import DEFAULT, profile
+from capar_rules.profiles import DEFAULT, Profile, profile
 from capar_rules.teaching import user_rules
+from extractors.readers.bundle import read_capture, takes
 
 SUFFIX = ".motion.toml"
 
@@ -26,7 +30,9 @@ class MotionTest:
     """Claims, and the captures that they are made of."""
 
     path: Path
-    captures: tuple[Path, ...]
+    captures: tuple[str, ...]
+    """Folders, or files, each with ``:TAKE`` where one of several takes is meant."""
+
     claims: tuple[str, ...]
     profile: str
     rules: Path | None
@@ -55,7 +61,7 @@ def read_motion_test(path: Path) -> MotionTest:
     rules = content.get("rules")
     return MotionTest(
         path,
-        tuple(_captures(path, patterns)),
+        tuple(dict.fromkeys(_captures(path, patterns))),
         tuple(str(each) for each in claims),
         str(content.get("profile", DEFAULT)),
         path.parent / str(rules) if rules else None,
@@ -65,7 +71,7 @@ def read_motion_test(path: Path) -> MotionTest:
 def run_motion_test(
     test: MotionTest, *, rules: Path | None = None, actionary: str | None = None
 ) -> Iterator[Verdict]:
-    """Judge every claim of every capture.
+    """Judge every claim of every capture; what cannot be judged is told beside the rest.
 
     Args:
         test: The claims and captures.
@@ -73,17 +79,23 @@ def run_motion_test(
         actionary: An Actionary whose rules count too; None for CAPAR_ACTIONARY's.
 
     Raises:
-        FileError: A claim cannot be read.
-        CaparError: A capture cannot be read.
+        CaparError: The rules have a fault, or there is no such profile.
     """
     files = user_rules(test.rules or rules, actionary=actionary)
+    base = _base(test.profile, files)
     for capture in test.captures:
-        seen = _observed(capture, test.profile, files)
         for claim in test.claims:
-            try:
-                yield judge(claim, seen)
-            except ClaimError as error:
-                raise FileError(test.path, f"in the claim {claim!r}: {error}.") from None
+            yield _verdict(claim, capture, base)
+
+
+def _verdict(claim: str, capture: str, base: Profile) -> Verdict:
+    name = Path(capture).name
+    try:
+        seen, names = _observed(capture, base)
+        name = seen.capture
+        return judge(claim, seen, names=names)
+    except (CaparError, OSError) as error:
+        return Verdict(claim, name, holds=False, found="", mistake=str(error))
 
 
 def failures(verdicts: Sequence[Verdict]) -> tuple[Verdict, ...]:
@@ -92,8 +104,20 @@ def failures(verdicts: Sequence[Verdict]) -> tuple[Verdict, ...]:
 
 
 @cache
-def _observed(capture: Path, base: str, rules: tuple[Path, ...]) -> Observation:
-    return observe(capture, rules=profile(base, added=rules))
+def _base(name: str, added: tuple[Path, ...]) -> Profile:
+    return profile(name, added=added)
+
+
+@cache
+def _observed(capture: str, base: Profile) -> tuple[Observation, Names]:
+    trial = read_capture(capture)
+    looking = (
+        each.name
+        for each in trial.sensors
+        if each in trial.attending or each.end_effector == "head"
+    )
+    seen = observe(trial, rules=base)
+    return seen, names_of(seen, rules=base, sensors=looking)
 
 
 def _content(path: Path) -> dict[str, object]:
@@ -105,13 +129,42 @@ def _content(path: Path) -> dict[str, object]:
         raise FileError(path, f"is no TOML: {error}.", _EXAMPLE) from None
 
 
-def _captures(path: Path, patterns: Sequence[str]) -> Iterator[Path]:
+def _captures(path: Path, patterns: Sequence[str]) -> Iterator[str]:
     for pattern in patterns:
-        found = sorted(each for each in path.parent.glob(pattern) if _is_capture(each))
+        found = [str(each) for each in _places(path.parent, pattern)]
+        if not found and ":" in pattern:
+            found = _takes(path, pattern)
         if not found:
             raise FileError(path, f"no capture matches {pattern!r}.", _EXAMPLE)
         yield from found
 
 
+def _places(folder: Path, pattern: str) -> list[Path]:
+    """Captures that a pattern means, from that folder on or, absolute, from the root."""
+    # Path.glob refuses absolute patterns.
+    found = glob(pattern, root_dir=folder, recursive=True, include_hidden=True)  # noqa: PTH207
+    return [folder / each for each in sorted(found) if _is_capture(folder / each)]
+
+
+def _takes(path: Path, pattern: str) -> list[str]:
+    """The takes that FOLDER:TAKE or FOLDER:* means, folders sorted, takes as they are declared.
+
+    Raises:
+        FileError: There are such folders, and none has such a take.
+        CaparError: A capture.toml cannot be read.
+    """
+    stem, _, wanted = pattern.rpartition(":")
+    folders = _places(path.parent, stem)
+    known = [(each, take) for each in folders for take in takes(each)]
+    found = [f"{each}:{take}" for each, take in known if fnmatchcase(take, wanted)]
+    if folders and not found:
+        names = ", ".join(dict.fromkeys(take for _, take in known))
+        there = f"Its takes are: {names}." if names else "It is one capture without takes."
+        raise FileError(path, f"no take matches {pattern!r}.", there)
+    return found
+
+
 def _is_capture(path: Path) -> bool:
-    return path.suffix == ".toml" if path.is_file() else (path / "capture.toml").is_file()
+    if path.is_file():
+        return path.suffix == ".toml" and not path.name.endswith(SUFFIX)
+    return (path / "capture.toml").is_file()

@@ -30,16 +30,22 @@ class MotionFile(pytest.File):
         test = read_motion_test(self.path)
         for capture in test.captures:
             for claim in test.claims:
-                name = f"{capture.name}: {claim}"
+                name = f"{Path(capture).name}: {claim}"
                 yield ClaimItem.from_parent(
                     self, name=name, test=test, capture=capture, claim=claim
                 )
+
+    def repr_failure(  # type: ignore[override]  # pytest's own collectors take no style either
+        self, excinfo: pytest.ExceptionInfo[BaseException]
+    ) -> Any:
+        """What is wrong with the file, without a traceback."""
+        return _told(excinfo) or super().repr_failure(excinfo)
 
 
 class ClaimItem(pytest.Item):
     """One claim about one capture."""
 
-    def __init__(self, *, test: Any, capture: Path, claim: str, **others: Any) -> None:
+    def __init__(self, *, test: Any, capture: str, claim: str, **others: Any) -> None:
         """Keep what is to be judged."""
         super().__init__(**others)
         self.test, self.capture, self.claim = test, capture, claim
@@ -53,16 +59,20 @@ class ClaimItem(pytest.Item):
         one = replace(self.test, captures=(self.capture,), claims=(self.claim,))
         for verdict in run_motion_test(one):
             if not verdict.holds:
-                raise ClaimFailedError(f"{verdict.claim}\nfound: {verdict.found}")
+                told = verdict.mistake or f"found: {verdict.found}"
+                raise ClaimFailedError(f"{verdict.claim}\n{told}")
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
         """The claim and what was found, without a traceback."""
-        from capar.model.errors import CaparError
-
-        if isinstance(excinfo.value, ClaimFailedError | CaparError):
-            return str(excinfo.value)
-        return str(super().repr_failure(excinfo, style))
+        return _told(excinfo) or str(super().repr_failure(excinfo, style))
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
         """Where the claim stands."""
         return self.path, None, self.name
+
+
+def _told(excinfo: pytest.ExceptionInfo[BaseException]) -> str:
+    """The message of a user's mistake or of a claim that fails; empty for anything else."""
+    from capar.model.errors import CaparError
+
+    return str(excinfo.value) if isinstance(excinfo.value, ClaimFailedError | CaparError) else ""

@@ -1,32 +1,50 @@
 """What a change of rules does to what was observed: names compared, and segments renamed."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from hashlib import sha256
 from pathlib import Path
 
-from capar.model.capture import Capture
-from capar.model.errors import FileError, RuleError, UnknownNameError
 from capar.model.facts import Fact
-from capar.model.observation import Observation, ObservedLink, Segment
-from capar.model.par import FeatureSet
-from capar.observe import observe
-from capar_rules.authoring import new_rule, telling
-from capar_rules.examples import Example, try_examples
-from capar_rules.profiles import Profile
+from capar.model.observation import Observation
+from capar.observe import facts_program
+from capar.observed_again import observe_again
+from capar_rules.authoring import proven
+from capar_rules.placing import put_back, take_away, unbroken
+from capar_rules.profiles import Profile, profile
 from capar_rules.reasoning import infer
-from extractors.facts import extract
-from extractors.readers.bundle import read_capture, takes
+from extractors.readers.bundle import read_capture
 from kb.actionary import Actionary
-from kb.lookup.changes import facts, replace_all, source_files
+from kb.lookup.changes import NamedSegment, facts, named_segments, replace_all, source_files
 
-Seen = Mapping[str, tuple[Fact, ...]]
-"""The facts of captures, by the capture's name."""
+NOTHING = "none"
+"""Stands for the name of a segment that is not there before, or not after."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What a capture's segments are named by."""
+
+    facts: tuple[Fact, ...]
+    names: tuple[NamedSegment, ...] | None = None
+    """The segments as they are stored; None where the rules before are to name them."""
+
+
+Seen = Mapping[str, Trial]
+"""Trials by the capture's name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """The observations of an Actionary that a change of rules concerns, and the others."""
+
+    seen: Seen
+    others: tuple[str, ...]
+    """Those that were made with another profile, which are left alone; sorted."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Renamed:
-    """A segment that two rule bases name differently."""
+    """A segment that two rule bases name differently; ``none`` where one of them has none."""
 
     capture: str
     ee: str
@@ -37,191 +55,204 @@ class Renamed:
     after: str
 
 
-def stored_facts(actionary: str | None) -> Seen:
-    """The facts of every observation in an Actionary.
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """What was renamed in an Actionary, and the observations that were left alone."""
+
+    changes: tuple[Renamed, ...]
+    others: tuple[str, ...]
+    """Those that were made with another profile; sorted."""
+
+
+def stored(actionary: str | None, *, profile: str) -> Kept:
+    """The observations in an Actionary that were made with a profile, as they are stored.
 
     Raises:
         StoreError: There is nothing to read.
     """
     with Actionary.open(actionary, read_only=True) as store:
-        return dict(_stored(store))
+        return _kept(store, profile)
 
 
-def captured_facts(captures: Iterable[str]) -> Seen:
-    """The facts of captures that are read and measured now.
+def captured(captures: Iterable[str], *, rules: Profile) -> Seen:
+    """Captures that are read and measured now, flicker resolved as the rules have it.
 
     Raises:
         CaparError: A capture cannot be read.
     """
     trials = [read_capture(each) for each in captures]
-    return {each.name: extract(each).facts for each in trials}
+    return {each.name: Trial(facts_program(each, rules=rules)[0].facts) for each in trials}
 
 
 def renamed(seen: Seen, *, before: Profile, after: Profile) -> tuple[Renamed, ...]:
     """The segments that have another name by another rule base, by capture and time.
 
+    Args:
+        seen: Trials; what is stored of one is what its segments are named before.
+        before: The rules that name the segments of the other trials.
+        after: Those that are to name them.
+
     Raises:
         RuleError: A rule base has a fault.
     """
     changes = []
-    for capture in sorted(seen):
-        old, new = (_names(seen[capture], each) for each in (before, after))
-        for key, segment in sorted(new.items()):
-            was = old[key].name if key in old else "none"
-            if was != segment.name:
-                changes.append(
-                    Renamed(
-                        capture, segment.ee, segment.index, segment.start_s, segment.end_s,
-                        was, segment.name,
-                    )
-                )  # fmt: skip
+    for capture, trial in sorted(seen.items()):
+        names = _names(trial.facts, before) if trial.names is None else trial.names
+        old, new = (
+            {(each.ee, each.first, each.last): each for each in rows}
+            for rows in (names, _names(trial.facts, after))
+        )
+        for key in sorted(old.keys() | new.keys()):
+            was, now = old.get(key), new.get(key)
+            segment = now or old[key]
+            words = [each.name if each else NOTHING for each in (was, now)]
+            if words[0] != words[1]:
+                place = segment.ee, segment.index, segment.start_s, segment.end_s
+                changes.append(Renamed(capture, *place, *words))
     return tuple(changes)
 
 
-def reclassified(
-    actionary: str | None, *, before: Profile, after: Profile, captures: Sequence[Path]
-) -> tuple[Renamed, ...]:
+def reclassified(actionary: str | None, *, after: Profile, captures: Sequence[Path]) -> Effect:
     """Rename what rules change in an Actionary, all of it in one transaction.
 
     Args:
         actionary: Its place; None for the usual one.
-        before: The rules that named the segments.
-        after: Those that are to name them.
+        after: The rules that are to name the segments observed with their profile.
         captures: Folders below which the captures are, as they were when they were observed.
 
     Each observation that changes is made anew from its capture's files, which must be those that
-    it was made from; it then says which rules it rests on.
+    it was made from, and with flicker resolved only if it was; it then says which rules it rests
+    on.
 
     Raises:
         FileError: The files of a capture are gone or have changed; nothing is renamed then.
         StoreError: The Actionary cannot be used.
     """
     with Actionary.open(actionary) as store:
-        changes = renamed(dict(_stored(store)), before=before, after=after)
-        names = {each.name: each.action for each in store.observations()}
-        anew = [
-            (
-                _anew(source_files(store.store, each), each, names[each], after, captures),
-                names[each],
-            )
-            for each in sorted({each.capture for each in changes})
-        ]
+        effect, anew = _planned(store, after, captures)
         replace_all(store.store, anew)
-    return changes
+    return effect
 
 
-def rule_from_features(
-    name: str, features: str, *, definition: str = "", general: str = "", verb: str = ""
-) -> str:
-    """A rule file for the feature set that a user writes: ``100,101,10,00``.
-
-    Raises:
-        RuleError: It is no feature set.
-        ParError: Its strings do not belong together.
-    """
-    parts = [each.strip() for each in features.split(",")]
-    if len(parts) != 4:
-        raise RuleError(f"{features!r} is no feature set; write START,END,CHANGE,FORCE")
-    start, end, change, force = parts
-    found = FeatureSet(start, end, change, "any", force)
-    return new_rule(name, found, definition=definition, general=general, verb=verb)
-
-
-def rule_from_segment(
-    name: str,
-    source: str,
+def add_reclassifying(
+    path: Path,
     *,
-    rules: Profile,
-    definition: str = "",
-    general: str = "",
-    verb: str = "",
-) -> str:
-    """A rule file for the features of an observed segment, with its capture as an example.
+    folder: Path,
+    actionary: str | None,
+    base: str,
+    over: Sequence[str] = (),
+    beside: Sequence[Path],
+    captures: Sequence[Path],
+) -> tuple[Path, Effect]:
+    """Take a rule file among the user's rules and rename what it changes: both, or neither.
 
     Args:
-        name: What the primitive is called.
-        source: CAPTURE:SEGMENT, the segment as END_EFFECTOR/INDEX.
-        rules: The rules by which the capture is cut into segments.
-        definition: What it is, in words.
-        general: The primitive that it specialises.
-        verb: The verb for it.
+        path: The file.
+        folder: The folder of rules that it goes to.
+        actionary: The Actionary's place; None for the usual one.
+        base: The profile that it joins.
+        over: Primitives that it is to be more specific than.
+        beside: Every rule file that counts already.
+        captures: Folders below which the captures are.
+
+    Returns:
+        Where the file now is, and the segments that have another name.
 
     Raises:
-        RuleError: The source names no segment.
-        CaparError: The capture cannot be read.
+        CaparError: The rule does not count, or the observations cannot be made anew.
     """
-    capture, colon, place = source.rpartition(":")
-    if not colon:
-        raise RuleError(f"{source!r} names no segment; write CAPTURE:END_EFFECTOR/INDEX")
-    trial = read_capture(capture)
-    measured = extract(trial).facts
-    segment = _segment(infer(measured, profile=rules).links, place, trial)
-    told = telling(measured)
-    (outcome,) = try_examples([Example("", True, told, (), 0)], profile=rules)
-    names = tuple(
-        (ee, tuple(
-            name if (ee, at) == (segment.ee, segment.index) else each
-            for at, each in enumerate(found)
-        ))
-        for ee, found in outcome.found
-    )  # fmt: skip
-    example = Example(f"{trial.name}, segment {place}.", True, told, names, 0)
-    return new_rule(
-        name, segment.features, definition=definition, general=general, verb=verb,
-        examples=[example],
-    )  # fmt: skip
+    with proven(path, folder=folder, base=base, over=over, beside=beside) as draft:
+        after = profile(base, added=(*beside, draft))
+        with Actionary.open(actionary) as store:
+            effect, anew = _planned(store, after, captures)
+            target = folder / path.name
+            with unbroken():
+                draft.replace(target)
+                try:
+                    replace_all(store.store, anew)
+                except BaseException:
+                    target.unlink()
+                    raise
+    return target, effect
 
 
-def _segment(links: Sequence[ObservedLink], place: str, trial: Capture) -> Segment:
-    segments = [each for link in links for each in link.segments]
-    known = {f"{each.ee}/{each.index}": each for each in segments}
-    if len(links) == 1:
-        known |= {str(each.index): each for each in segments}
-    if place not in known:
-        raise UnknownNameError("segment", place, known, where=trial.name)
-    return known[place]
+def remove_reclassifying(
+    path: Path, *, actionary: str | None, after: Profile, captures: Sequence[Path]
+) -> Effect:
+    """Take a rule file away and rename what it named: both, or neither.
+
+    Args:
+        path: The file.
+        actionary: The Actionary's place; None for the usual one.
+        after: The rules without it.
+        captures: Folders below which the captures are.
+
+    Raises:
+        CaparError: The observations cannot be made anew.
+    """
+    with Actionary.open(actionary) as store:
+        effect, anew = _planned(store, after, captures)
+        with unbroken():
+            aside = take_away(path)
+            try:
+                replace_all(store.store, anew)
+            except BaseException:
+                put_back(aside, path)
+                raise
+            aside.unlink()
+    return effect
 
 
-def _names(measured: tuple[Fact, ...], rules: Profile) -> dict[tuple[str, int, int], Segment]:
-    links = infer(measured, profile=rules).links
-    return {(each.ee, each.first, each.last): each for link in links for each in link.segments}
+def bearing(actionary: str | None, names: Iterable[str]) -> int:
+    """How many stored segments, of whatever profile, bear one of some names.
+
+    Raises:
+        StoreError: There is nothing to read.
+    """
+    wanted = set(names)
+    with Actionary.open(actionary, read_only=True) as store:
+        return sum(
+            segment.name in wanted
+            for each in store.observations()
+            for segment in named_segments(store.store, each.name)
+        )
 
 
-def _stored(store: Actionary) -> Iterator[tuple[str, tuple[Fact, ...]]]:
-    for each in store.observations():
-        yield each.name, facts(store.store, each.name)
+def _planned(
+    store: Actionary, after: Profile, captures: Sequence[Path]
+) -> tuple[Effect, list[tuple[Observation, str]]]:
+    """What would be renamed, and the observations that would take the places of others."""
+    kept = _kept(store, after.name)
+    seen = kept.seen
+    changes = renamed(seen, before=after, after=after)
+    there = {each.name: each for each in store.observations()}
+    changed = sorted({each.capture for each in changes})
+    return Effect(changes, kept.others), [
+        (
+            observe_again(
+                source_files(store.store, each), there[each], seen[each].facts, after, captures
+            ),
+            there[each].action,
+        )
+        for each in changed
+    ]  # fmt: skip
 
 
-def _trials(path: Path, name: str) -> Iterator[Capture]:
-    """The captures that a file describes and that may bear a name: of its takes, or the one."""
-    known = takes(path)
-    # A capture is called after its take, so that the others need not be read.
-    named = sorted((each for each in known if each in name), key=lambda each: (-len(each), each))
-    for place in [f"{path}:{each}" for each in named] if known else [path]:
-        trial = read_capture(place)
-        if trial.name == name:
-            yield trial
+def _kept(store: Actionary, profile: str) -> Kept:
+    every = store.observations()
+    seen = {
+        each.name: Trial(facts(store.store, each.name), named_segments(store.store, each.name))
+        for each in every
+        if each.profile == profile
+    }
+    return Kept(seen, tuple(sorted(each.name for each in every if each.profile != profile)))
 
 
-def _anew(
-    files: Sequence[tuple[str, str]],
-    capture: str,
-    action: str,
-    rules: Profile,
-    places: Iterable[Path],
-) -> Observation:
-    """The observation of the same files by other rules."""
-    digests = sorted(digest for _, digest in files)
-    for place in places:
-        for path in sorted(place.rglob("*.toml")):
-            if path.is_file() and sha256(path.read_bytes()).hexdigest() in digests:
-                for trial in _trials(path, capture):
-                    if sorted(each.sha256 for each in trial.sources) == digests:
-                        return observe(trial, rules=rules, name=action)
-    searched = ", ".join(map(str, places))
-    raise FileError(
-        files[0][0] if files else capture,
-        f"and the other files from which {capture!r} was observed are not below {searched}, or "
-        "have changed; nothing was renamed.",
-        "Name the folder that holds them with --captures, or observe and add it anew.",
+def _names(measured: tuple[Fact, ...], rules: Profile) -> tuple[NamedSegment, ...]:
+    return tuple(
+        NamedSegment(
+            each.ee, each.index, each.first, each.last, each.start_s, each.end_s, each.name
+        )
+        for link in infer(measured, profile=rules).links
+        for each in link.segments
     )

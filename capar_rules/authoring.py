@@ -1,8 +1,8 @@
-"""Rules that people write: which there are, new ones from what was seen, adding, removing."""
+"""Rules that people write: new ones from what was seen, trying, adding and removing them."""
 
-import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -20,82 +20,19 @@ from capar.model.facts import (
     ZeroCrossing,
 )
 from capar.model.par import FeatureSet
+from capar_rules.catalogue import RuleInfo as RuleInfo
+from capar_rules.catalogue import rule_of as rule_of
+from capar_rules.catalogue import rules_of as rules_of
 from capar_rules.checking import check, require
 from capar_rules.examples import Example, lacking, read_examples, try_examples, written
-from capar_rules.profiles import DEFAULT, Profile, profile
-from capar_rules.syntax import Statement, parse, split_arguments
-from capar_rules.teaching import actionary_rules, make_folder, taught
+from capar_rules.introducing import dependants
+from capar_rules.introducing import introduced as introduced
+from capar_rules.profiles import DEFAULT, profile
+from capar_rules.teaching import make_folder, taught
 from capar_rules.teaching import user_rules as user_rules
 
 TELLING = (Frames, RateMhz, Link, Tag, ZeroCrossing, Touching, Gap, Moving, ForceTransfer)
 """The facts that an example tells: contacts and motions, without places and courses."""
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class RuleInfo:
-    """One primitive and where it comes from."""
-
-    name: str
-    origin: str
-    """``core`` if it ships, ``user`` if it is beside the Actionary, ``project`` otherwise."""
-
-    file: str
-    definition: str
-    verb: str
-    general: tuple[str, ...]
-
-
-def rules_of(base: Profile, *, actionary: str | Path | None = None) -> tuple[RuleInfo, ...]:
-    """Every primitive of a rule base, by name.
-
-    Args:
-        base: The rule base.
-        actionary: The Actionary whose rules are the user's own; None for ``CAPAR_ACTIONARY``'s.
-    """
-    statements = parse(base.files)
-    mine = actionary_rules(actionary)
-    origins = {
-        str(each): "user" if mine and each.resolve().parent == mine.resolve() else "project"
-        for each in base.added
-    }
-    verbs = dict(_pairs(statements, "verb"))
-    general: dict[str, list[str]] = {}
-    for name, other in _pairs(statements, "specialises"):
-        general.setdefault(name, []).append(other)
-    heads: dict[str, str] = {}
-    for each in statements:
-        if each.kind == "comment":
-            heads.setdefault(each.place.file, each.text)
-    found = [
-        RuleInfo(
-            split_arguments(each.heads[0].text)[0].strip('"'),
-            origins.get(each.place.file, "core"),
-            each.place.file,
-            _definition(heads.get(each.place.file, "")),
-            "",
-            (),
-        )
-        for each in statements
-        if each.heads and each.heads[0].signature == ("primitive", 1)
-    ]
-    return tuple(
-        sorted(
-            replace(each, verb=verbs.get(each.name, ""), general=tuple(general.get(each.name, ())))
-            for each in found
-        )
-    )
-
-
-def rule_of(base: Profile, name: str, *, actionary: str | Path | None = None) -> RuleInfo:
-    """One primitive of a rule base.
-
-    Raises:
-        UnknownNameError: There is none of that name.
-    """
-    known = {each.name: each for each in rules_of(base, actionary=actionary)}
-    if name not in known:
-        raise UnknownNameError("primitive", name, known)
-    return known[name]
 
 
 def new_rule(
@@ -103,7 +40,8 @@ def new_rule(
     features: FeatureSet,
     *,
     definition: str = "",
-    general: str = "",
+    general: str | Sequence[str] = (),
+    besides: Sequence[str] = (),
     verb: str = "",
     examples: Sequence[Example] = (),
 ) -> str:
@@ -113,18 +51,30 @@ def new_rule(
         name: What it is called.
         features: The feature set that a segment has.
         definition: What it is, in words.
-        general: The primitive that it specialises, if any.
+        general: The primitives that it specialises, if any.
+        besides: Others that name some of the same segments, and that it is ordered before.
         verb: The verb for it; its name in small letters if empty.
         examples: Stories that it must, or must not, match.
 
     Raises:
-        RuleError: The name is no name of a primitive.
+        RuleError: The name is no name of a primitive, or a text would not stay a text.
     """
+    said = " ".join((definition or "named by a user for this feature set").split())
+    if "%*" in said or "*%" in said or set(verb) & set('"\\\n'):
+        raise RuleError("a definition holds no *% and a verb no quotes; write plain words")
     _, *lines = taught(name, features, verb=verb).splitlines(keepends=True)
-    said = definition or "named by a user for this feature set"
+    over = [general] if isinstance(general, str) else general
     text = f"%* {name}: {said.rstrip('.')}. *%\n{''.join(lines)}"
-    if general:
-        text += f'specialises("{name}", "{general}").\n'
+    text += "".join(f'specialises("{name}", "{each}").\n' for each in over if each)
+    if besides:
+        text += "% These name segments with the same features. Keep those that it is a kind of.\n"
+        text += "".join(f'specialises("{name}", "{each}").\n' for each in besides)
+    text += (
+        "% The row fits every segment with these features. To fit fewer, put a rule in its place:\n"
+        f'%   fits(Segment, "{name}") :- fits(Segment, "{next(iter(over), "") or "General"}"), '
+        "further conditions.\n"
+        "% Before it can be added it needs an Example and a Counter-example.\n"
+    )
     return "\n".join([text, *map(written, examples)])
 
 
@@ -182,6 +132,25 @@ def add_rule(
         RuleError: The check finds errors, an ambiguity among them, or an example fails.
         FileError: A file of that name is there already.
     """
+    with proven(path, folder=folder, base=base, over=over, beside=beside) as draft:
+        return draft.replace(folder / path.name)
+
+
+@contextmanager
+def proven(
+    path: Path,
+    *,
+    folder: Path,
+    base: str = DEFAULT,
+    over: Sequence[str] = (),
+    beside: Sequence[Path] | None = None,
+) -> Iterator[Path]:
+    """The same up to the last step: a copy that need only be moved to the folder of rules.
+
+    Raises:
+        RuleError: The check finds errors, an ambiguity among them, or an example fails.
+        FileError: A file of that name is there already.
+    """
     target = folder / path.name
     if target.exists():
         raise FileError(target, "exists already.", "Remove that rule first, or rename this file.")
@@ -201,56 +170,61 @@ def add_rule(
                 for each in findings
             ],
         )
-        failures = try_rule(draft, base=base, beside=others)
+        try:
+            failures = try_rule(draft, base=base, beside=others)
+        except RuleError as error:
+            raise RuleError(str(error).replace(str(draft), str(path))) from None
         if failures:
             told = "\n".join(failures).replace(str(draft), str(path))
             raise RuleError(f"its examples do not hold:\n{told}")
-        draft.replace(target)
-    return target
+        yield draft
 
 
-def remove_rule(name: str, *, files: Sequence[Path]) -> Path:
+def remove_rule(name: str, *, files: Sequence[Path], every: Sequence[Path] = ()) -> Path:
     """Take a primitive out of rule files that people wrote.
 
     Args:
         name: The primitive.
         files: The files to look through.
+        every: All rule files that count together, some of which may rest on it.
 
     Returns:
         The first file that introduces it, which is gone.
 
     Raises:
         UnknownNameError: None of them introduces it.
+        RuleError: Another rule rests on it.
+    """
+    path = removable(name, files=files, every=every)
+    path.unlink()
+    return path
+
+
+def removable(name: str, *, files: Sequence[Path], every: Sequence[Path] = ()) -> Path:
+    """The same, and nothing is removed yet.
+
+    Raises:
+        UnknownNameError: None of them introduces it.
+        RuleError: Another rule rests on it.
     """
     info = {each: path for path in reversed(files) for each in introduced(path)}
     if name not in info:
         folders = ", ".join(sorted({str(each.parent) for each in files}))
         raise UnknownNameError("rule of the user's", name, info, where=folders)
-    info[name].unlink()
-    return info[name]
+    path = info[name]
+    resting = dependants(path, files=every)
+    if resting:
+        told = ", ".join(f"{each} ({file})" for each, file in sorted(resting.items()))
+        raise RuleError(
+            f"{path} stays: {told} rests on {', '.join(introduced(path))}. Remove that first, or "
+            "have it specialise another primitive."
+        )
+    return path
 
 
 def _ordering(path: Path, over: Sequence[str]) -> str:
     names = introduced(path) if over else []
     return "".join(f'specialises("{name}", "{other}").\n' for name in names for other in over)
-
-
-def introduced(path: Path) -> list[str]:
-    """The primitives that a rule file states, in their order."""
-    return re.findall(r'^\s*primitive\("(\w+)"\)', _text(path), re.MULTILINE)
-
-
-def _pairs(statements: Sequence[Statement], predicate: str) -> Iterator[tuple[str, str]]:
-    for each in statements:
-        for head in each.heads:
-            if head.signature == (predicate, 2):
-                first, second = split_arguments(head.text)
-                yield first.strip('"'), second.strip('"')
-
-
-def _definition(comment: str) -> str:
-    text = " ".join(comment.strip("%* \n").split())
-    return text.partition(": ")[2] or text
 
 
 def _text(path: Path) -> str:

@@ -3,7 +3,7 @@
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import clingo
 
@@ -137,7 +137,8 @@ class Derivations:
             if not above & set(children):
                 children += sorted(self.more.get(symbol, ()))
                 return self.places[number], list(dict.fromkeys(children))
-        return None, []
+        told_below = () if symbol in self.instances else self.more.get(symbol, ())
+        return None, sorted(told_below)
 
 
 def _shown(control: clingo.Control) -> list[clingo.Symbol]:
@@ -157,8 +158,9 @@ def _records(number: int, rule: Statement) -> list[str]:
     if rule.head_kind != "atom" or (len(rule.heads) != 1 and ";" not in rule.heads[0].text):
         return []
     head = rule.heads[0].text
-    body = "; ".join(each.text for each in rule.body)
-    lines = [f"because({number},{head},{_tuple(rule.body)}) :- {body}."]
+    literals, choices = _chosen(rule.body)
+    body = "; ".join((*(each.text for each in literals), *choices))
+    lines = [f"because({number},{head},{_tuple(literals)}) :- {body}."]
     shared = _variables(head).union(*(_variables(each.text) for each in _plainly(rule.body)))
     for literal in rule.body:
         for element in filter(None, literal.elements):
@@ -167,6 +169,27 @@ def _records(number: int, rule: Statement) -> list[str]:
             own = _variables(inside) - shared
             lines.append(_renamed(part, own) + f" :- {body}; {_renamed(inside, own)}.")
     return lines
+
+
+_POOL = re.compile(r"(?<![\w\"])\([^()]*;[^()]*\)")
+
+
+def _chosen(body: Sequence[Literal]) -> tuple[list[Literal], list[str]]:
+    """The body with a variable for each pool of its atoms, and what those variables may be.
+
+    A pool that stood in the head as well would there be expanded on its own, and the grounds told
+    would be of every choice, not of the one that held.
+    """
+    literals: list[Literal] = []
+    choices: list[str] = []
+    for literal in body:
+        text = literal.text
+        while literal.kind == "atom" and literal.sign == 0 and (found := _POOL.search(text)):
+            variable = f"Pool{len(choices)}"
+            choices.append(f"{variable} = {found[0]}")
+            text = text[: found.start()] + variable + text[found.end() :]
+        literals.append(replace(literal, text=text))
+    return literals, choices
 
 
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\b_*[A-Z]\w*')

@@ -11,7 +11,7 @@ from capar_rules.profiles import Profile
 from capar_rules.reasoning import infer
 
 _EXAMPLE = re.compile(r"%\*\s*(Example|Counter-example):\s*(.*?)\n(.*?)\*%", re.DOTALL)
-_FACT = re.compile(r"[a-z]\w*(?:\([^()]*\))?(?=\.(?:\s|$))")
+_FACT = re.compile(r"([a-z]\w*(?:\([^()]*\))?)\.(?=\s|$)")
 
 
 @dataclass(frozen=True)
@@ -57,11 +57,8 @@ def _examples(text: str, file: str) -> Iterator[Example]:
         story, body = found[2].strip(), found[3]
         rows = [each.strip() for each in body.splitlines()]
         expected = [each[2:].strip() for each in rows if each.startswith("=>")]
-        stated = "\n".join(each for each in rows if not each.startswith("=>"))
-        try:
-            facts = tuple(read_fact(each) for each in _FACT.findall(stated))
-        except CaparError as error:
-            raise RuleError(f"{file}:{line}: in the example {story!r}: {error}") from None
+        stated = "\n".join("" if each.startswith("=>") else each for each in rows)
+        facts = tuple(_facts(stated, f"in the example {story!r}: ", file, line + 1))
         if not facts or not expected:
             raise RuleError(
                 f"{file}:{line}: the example {story!r} needs facts and a line such as "
@@ -69,6 +66,26 @@ def _examples(text: str, file: str) -> Iterator[Example]:
             )
         names = tuple(_expectation(each, file, line) for each in expected)
         yield Example(story, found[1] == "Example", facts, names, line)
+
+
+def _facts(stated: str, where: str, file: str, first: int) -> Iterator[Fact]:
+    """Every fact of an example, one after another with nothing else between them."""
+    at = 0
+    while rest := stated[at:].lstrip():
+        at = len(stated) - len(rest)
+        place = f"{file}:{first + stated.count(chr(10), 0, at)}: {where}"
+        found = _FACT.match(stated, at)
+        if found is None:
+            told = rest.splitlines()[0].rstrip()
+            raise RuleError(
+                f"{place}{told!r} is no fact; a fact reads moving(cup, 0, 200). and "
+                "ends with a full stop"
+            )
+        try:
+            yield read_fact(found[1])
+        except CaparError as error:
+            raise RuleError(f"{place}{error}") from None
+        at = found.end()
 
 
 def _expectation(text: str, file: str, line: int) -> tuple[str, tuple[str, ...]]:

@@ -12,17 +12,15 @@ from capar.model.observation import Segment
 from capar.model.par import UNKNOWN
 from capar_rules.derivations import Derivations, Grounds, Recorder
 from capar_rules.engine import rule_file
-from capar_rules.instants import frames_of
+from capar_rules.instants import frames_of, mended
 from capar_rules.profiles import Profile
 from capar_rules.ranking import rank
 from capar_rules.sentences import Clock, Sentences
+from capar_rules.summaries import summary
 from capar_rules.syntax import Place, Statement, parse, parse_text
 from capar_rules.windows import Windows
 
 ALWAYS = (("segment", 3), ("also", 2))
-
-BESIDE = ("joins_in(", "looks(")
-"""How what begins that is told beside a name, and is no reason for it."""
 
 
 @dataclass(frozen=True)
@@ -131,6 +129,7 @@ class Explainer:
         self.base = rule_base(profile)
         self.windows = Windows(facts, rank(facts, crossings_only=profile.crossings_only))
         self.distance_m = distance_m
+        self.mended = mended(facts)
 
     def explain(self, segment: Segment) -> Explanation:
         """Why a segment has its name, or why it has none.
@@ -185,7 +184,7 @@ class Explainer:
         if grounds.atom in done:
             return done[grounds.atom]
         told = grounds.predicate, grounds.arguments
-        mood = "not" if grounds.absent else ""
+        mood = self._mood(grounds)
         template = self.base.sentences.template(*told, mood=mood)
         done[grounds.atom] = found = Reason(
             self.base.sentences.tell(*told, clock, mood=mood),
@@ -196,6 +195,13 @@ class Explainer:
             tuple(self._reason(each, clock, done) for each in grounds.because),
         )
         return found
+
+    def _mood(self, grounds: Grounds) -> str:
+        """How an atom is told: it does not hold, it was mended, or else it holds as measured."""
+        if grounds.absent:
+            return "not"
+        doubted = any(each.predicate == "doubted" for each in grounds.because)
+        return "mended" if doubted or grounds.atom in self.mended else ""
 
 
 def _roots(
@@ -222,44 +228,10 @@ def _explanation(segment: Segment, reasons: Sequence[Reason]) -> Explanation:
     if len(reasons) > 1:
         below = (*top.because, *reasons[1:])
         top = Reason(top.sentence, top.atom, top.rule, top.frames, top.leading, below)
-    summary = f"{segment.name}, because {_listed(_leading(top))}."
+    told = summary(segment.name, top)
     return Explanation(
-        segment.ee, segment.index, segment.name, segment.start_s, segment.end_s, summary, top
+        segment.ee, segment.index, segment.name, segment.start_s, segment.end_s, told, top
     )
-
-
-def _leading(reason: Reason) -> list[str]:
-    """The telling sentences, each once; of the same at several times, one."""
-    places: dict[str, list[str]] = {}
-    for each in _deciding(reason):
-        if each.leading:
-            text, at, time = each.sentence.rpartition(" at ")
-            timed = at and time[:1].isdigit()
-            times = places.setdefault(text if timed else each.sentence, [])
-            if timed and time not in times:
-                times.append(time)
-    return [
-        f"{text} at {' and '.join(sorted(times, key=_seconds))}" if times else text
-        for text, times in places.items()
-    ]
-
-
-def _deciding(reason: Reason) -> Iterator[Reason]:
-    """This node and those below it on which the name rests, without what is told beside it."""
-    if not reason.atom.startswith(BESIDE):
-        yield reason
-        for each in reason.because:
-            yield from _deciding(each)
-
-
-def _seconds(time: str) -> float:
-    return float(time.removesuffix(" s"))
-
-
-def _listed(parts: Sequence[str]) -> str:
-    if len(parts) < 2:
-        return "".join(parts) or "the rules say so"
-    return f"{', '.join(parts[:-1])}, and {parts[-1]}"
 
 
 def _told(reason: Reason, known: set[str]) -> Reason:

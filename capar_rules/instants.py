@@ -1,9 +1,11 @@
 """When atoms hold: the frames of a measurement, of a tick, or of a segment."""
 
-from collections.abc import Sequence
+from bisect import bisect_left, bisect_right
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from dataclasses import fields
 
-from capar.model.facts import STATED, Fact
+from capar.model.facts import STATED, Doubted, Fact, Moving, Resting, Touching
 from capar_rules.ranking import Tick
 from capar_rules.sentences import Clock
 
@@ -27,3 +29,26 @@ def frames_of(predicate: str, arguments: Sequence[str], clock: Clock) -> tuple[i
         if span is not None:
             return span
     return None
+
+
+def mended(facts: Iterable[Fact]) -> frozenset[str]:
+    """The contacts, motions and rests, as atoms, that were not measured throughout."""
+    doubts: dict[tuple[str, str, str], list[int]] = defaultdict(list)
+    spans: list[tuple[tuple[str, str, str], Touching | Moving | Resting]] = []
+    for each in facts:
+        if isinstance(each, Doubted):
+            doubts[each.taken, each.body, each.other].append(each.first)
+        elif isinstance(each, Touching):
+            spans.append((("touching", each.body, each.other), each))
+        elif isinstance(each, Moving):
+            spans.append((("moving", each.object, each.object), each))
+        elif isinstance(each, Resting):
+            spans.append((("resting", each.ee, each.ee), each))
+    for frames in doubts.values():
+        frames.sort()
+    return frozenset(
+        str(each)
+        for key, each in spans
+        if bisect_left(doubts.get(key, ()), each.first)
+        < bisect_right(doubts.get(key, ()), each.last)
+    )

@@ -9,6 +9,7 @@ from capar_rules.engine import rule_file
 from capar_rules.findings import Finding, errors
 from capar_rules.growth import growth_findings
 from capar_rules.reading import Reading, read_rules
+from capar_rules.slips import slip_findings
 from capar_rules.statics import Known, known, static_findings
 from capar_rules.syntax import Statement, parse
 from capar_rules.trials import unsafe_findings
@@ -69,7 +70,7 @@ def judge_one(reading: Reading, base: Known) -> Iterator[Finding]:
     """What is wrong with one file by its text alone; a stage with errors is the last."""
     own = reading.statements
     stages = (
-        static_findings(own, base, file=reading.file),
+        (*static_findings(own, base, file=reading.file), *slip_findings(own, base)),
         unsafe_findings(reading.text, reading.file),
         growth_findings(own),
         cycle_findings(own, base.rules),

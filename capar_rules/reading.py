@@ -66,7 +66,11 @@ def _text(path: Path) -> tuple[str, list[Finding]]:
                 "Split it: one primitive a file.",
             )
         ]  # fmt: skip
-    content = path.read_bytes()
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        message = f"it cannot be read: {error.strerror}."
+        return "", [Finding(start, "no-file", message, "Take the right to read it, or move it.")]
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:

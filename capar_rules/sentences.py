@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from capar_rules.syntax import Statement
 
-_TEMPLATE = re.compile(r"%!(!?)\s*(?:(had not|had|not) )?(\w+)/(\d+)(?: (\w+))?:\s*(.+)")
+_TEMPLATE = re.compile(r"%!(!?)\s*(?:(had not|had|not|mended) )?(\w+)/(\d+)(?: (\w+))?:\s*(.+)")
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
 
@@ -20,7 +20,14 @@ class Template:
 
 
 Key = tuple[str, str, int, str]
-"""Mood: it holds, "", it does "not", "had" it held, "had not"; predicate; arity; an argument."""
+"""Mood, predicate, arity and an argument.
+
+Moods: it holds, ""; it does "not"; "had" it held, "had not"; it was "mended": taken to hold,
+though not all of it was measured so.
+"""
+
+LEAST_M = 0.01
+"""The least distance that is told of a motion [m]: nearer than that it ended where it began."""
 
 
 @dataclass(frozen=True)
@@ -37,9 +44,21 @@ class Clock:
     distance_m: Callable[[str, int, int], float] | None = None
     """How far an object moved between two frames [m], where that was measured."""
 
+    objects: Mapping[str, str] = field(default_factory=dict)
+    """What segments are about, by their terms."""
+
     def at(self, frame: int) -> str:
         """A frame as a time."""
         return f"{frame / self.rate_hz:.2f} s"
+
+    def border(self, segment: str, side: str) -> str:
+        """When a segment starts or ends."""
+        span = self.span(segment)
+        return f"its {side}" if span is None else self.at(span[side == "end"])
+
+    def about(self, segment: str) -> str:
+        """The object that a segment is about."""
+        return self.objects.get(segment, "object").replace("_", " ")
 
     def span(self, segment: str) -> tuple[int, int] | None:
         """First and last frame of the segment that a term names."""
@@ -67,7 +86,12 @@ class Sentences:
     def template(
         self, predicate: str, arguments: Sequence[str], *, mood: str = ""
     ) -> Template | None:
-        """The template for an atom; the one for a certain argument before the general one."""
+        """The template for an atom; the one for a certain argument before the general one.
+
+        What was mended is told like what was measured, where no template tells it otherwise.
+        """
+        if mood == "mended" and (mood, predicate, len(arguments), "") not in self.templates:
+            mood = ""
         key = mood, predicate, len(arguments)
         for each in arguments:
             if (*key, each) in self.templates:
@@ -96,16 +120,31 @@ class _Value:
             return self.clock.at(int(self.text))
         if form == "tick":
             return self.clock.at(self.clock.frames[self.beside[0]][int(self.text)])
-        if form in ("segment", "distance"):
-            span = self.clock.span(self.text)
-            if span is None:
-                return "its start and its end" * (form == "segment")
-            if form == "segment":
-                return f"{self.clock.at(span[0])} and {self.clock.at(span[1])}"
-            return self._distance(span)
-        return self.text.replace("_", " ")
+        told = self._of_segment(form)
+        return self.text.replace("_", " ") if told is None else told
+
+    def _of_segment(self, form: str) -> str | None:
+        """What is told of the segment that this argument names, or else the first one."""
+        if form in ("start", "end"):
+            return self.clock.border(self.text, form)
+        if form == "border":
+            return self.clock.border(self.beside[0], self.text)
+        if form == "object":
+            return self.clock.about(self.text)
+        if form == "hand":
+            return self.text.removeprefix("seg(").split(",")[0].replace("_", " ")
+        return self._of_span(form) if form in ("segment", "distance") else None
+
+    def _of_span(self, form: str) -> str:
+        span = self.clock.span(self.text)
+        if span is None:
+            return "its start and its end" * (form == "segment")
+        if form == "segment":
+            return f"{self.clock.at(span[0])} and {self.clock.at(span[1])}"
+        return self._distance(span)
 
     def _distance(self, span: tuple[int, int]) -> str:
         if self.clock.distance_m is None:
             return ""
-        return f" {self.clock.distance_m(self.beside[0], *span):.2f} m"
+        distance = self.clock.distance_m(self.beside[0], *span)
+        return f" {distance:.2f} m" if distance >= LEAST_M else ""

@@ -57,12 +57,18 @@ def rule_files(folder: Path | None = None) -> tuple[Path, ...]:
     """The project's rule files, sorted by name.
 
     Raises:
-        FileError: A folder was named that is none.
+        FileError: A folder was named that is none, or it cannot be read.
     """
     place = rules_folder(folder)
     if folder is not None and not place.is_dir():
         raise FileError(place, "is no folder of rule files.", "Name one that holds .lp files.")
-    return tuple(sorted(place.glob("*.lp"))) if place.is_dir() else ()
+    if not place.is_dir():
+        return ()
+    try:
+        return tuple(sorted(each for each in place.iterdir() if each.match("*.lp")))
+    except OSError as error:
+        message = f"cannot be read: {error.strerror}."
+        raise FileError(place, message, "Take the rights to it, or name another folder.") from None
 
 
 def user_rules(
@@ -93,7 +99,10 @@ def _content(path: Path) -> object:
     """What makes two files one: the same content under the same name."""
     if not path.is_file() or path.stat().st_size > LARGEST_BYTES:
         return path
-    return path.name, path.read_bytes()
+    try:
+        return path.name, path.read_bytes()
+    except OSError:  # whoever judges the file says so
+        return path
 
 
 def taught(name: str, features: FeatureSet, *, verb: str = "") -> str:

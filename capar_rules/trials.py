@@ -8,10 +8,14 @@ from capar_rules.auditing import ASKED, Audit, evaluate, given_in_audit, summari
 from capar_rules.findings import NOTE, Finding
 from capar_rules.searching import Atom, brave, understand
 from capar_rules.slicing import heads_of, towards
+from capar_rules.slips import fitting_findings, single_findings
 from capar_rules.statics import Known
 from capar_rules.syntax import Place, Signature, Statement, parse_text, split_arguments
 
 FIRED, IDLE = ("fired", 1), ("idle", 1)
+
+MOST_RIVALS = 5
+"""How many of those that share its segments an ambiguity names."""
 
 _MESSAGE = re.compile(r"[^:\n]*:(\d+):(\d+)(?:-[\d:]+)?: (?:error|info): (.*)")
 _UNSAFE = re.compile(r": note: '(\w+)' is unsafe")
@@ -80,6 +84,8 @@ def world_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
     atoms = evaluate([*base.rules, *own, *_probes(judged)], asked)
     yield from _firing(judged, atoms)
     yield from _clashes(own, summarise(atoms))
+    yield from fitting_findings(own, base)
+    yield from single_findings(own)
 
 
 def _probes(rules: Sequence[Statement]) -> Iterator[Statement]:
@@ -116,6 +122,21 @@ def _firing(rules: Sequence[Statement], atoms: frozenset[Atom]) -> Iterator[Find
             )  # fmt: skip
 
 
+def rivals(name: str, own: Sequence[Statement], base: Known) -> tuple[str, ...]:
+    """The primitives that name the same segments as one of a file's, neither more specific."""
+    return _rivals(name, summarise(evaluate([*base.rules, *own], ASKED)))
+
+
+def _rivals(name: str, audit: Audit) -> tuple[str, ...]:
+    """The same, those first that it shares most feature sets with."""
+    shared = {
+        each.second if each.first == name else each.first: len(each.features)
+        for each in audit.ambiguous
+        if name in (each.first, each.second)
+    }
+    return tuple(sorted(shared, key=lambda each: (-shared[each], each)))
+
+
 def _clashes(own: Sequence[Statement], audit: Audit) -> Iterator[Finding]:
     places = {
         split_arguments(head.text)[0].strip('"'): head.place
@@ -124,15 +145,19 @@ def _clashes(own: Sequence[Statement], audit: Audit) -> Iterator[Finding]:
         if head.signature == ("primitive", 1)
     }
     for name, place in places.items():
-        pairs = [each for each in audit.ambiguous if name in (each.first, each.second)]
-        others = sorted(each.second if each.first == name else each.first for each in pairs)
+        others = _rivals(name, audit)
         if others:
+            pairs = [each for each in audit.ambiguous if name in (each.first, each.second)]
             where = ", ".join(each or "none" for each in pairs[0].features[0])
+            told = ", ".join(others[:MOST_RIVALS])
+            rest = len(others) - MOST_RIVALS
             yield Finding(
                 place, "ambiguous",
-                f"{name} and {', '.join(others)} name the same segments, such as those with "
-                f"features {where}, and neither is the more specific.",
-                f'Order them, as by specialises("{name}", "{others[0]}"), or add a condition.',
+                f"{name} and {told}{f' and {rest} more' if rest > 0 else ''} name the same "
+                f"segments, such as those with features {where}, and neither is the more specific.",
+                f"If {name} is a kind of {others[0]}, say "
+                f'specialises("{name}", "{others[0]}"); if not, add a condition that keeps them '
+                f'apart, such as not fits(Segment, "{others[0]}").',
             )  # fmt: skip
         if name in audit.shadowed:
             yield Finding(

@@ -1,6 +1,7 @@
 """Claims about captures, in words: true ones hold, false ones say what was found."""
 
 import json
+import shutil
 import subprocess
 import sys
 from importlib.metadata import entry_points
@@ -10,12 +11,14 @@ import motions
 import pytest
 from typer.testing import CliRunner
 
+from capar.claim_names import names_of
 from capar.claims import ClaimError, judge
 from capar.cli import app
-from capar.model.errors import FileError
+from capar.model.errors import CaparError, FileError, UnknownNameError
 from capar.model.observation import Observation
-from capar.motion_tests import read_motion_test
+from capar.motion_tests import read_motion_test, run_motion_test
 from capar.observe import observe
+from capar_rules.profiles import Profile
 
 DEMO = Path(__file__).parents[1] / "capar" / "demo"
 
@@ -77,7 +80,7 @@ TRUE_OF_BOTH = (
     "both hands do Touch(box) while left_hand touches box",
     "both hands do Lift lasts 0.3 to 1 s",
     "no both hands do Reach(box)",
-    "no both feet do Lift(box)",
+    "no both hands do Drink(_)",
 )
 FALSE_OF_BOTH = (
     "both hands do Reach(box)",
@@ -106,15 +109,71 @@ def test_one_hand_alone_is_not_both(drink, claim):
     ("claim", "message"),
     [
         ("right hand takes the mug", "is no event"),
-        ("left_hand Reach", "no end-effector 'left_hand' acts"),
-        ("left_hand and right_hand do Lift(mug)", "no end-effector 'left_hand' acts"),
-        ("mug touches cup", "no body 'cup'"),
+        ("right_hand Reach lasts 1.2.3 to 2 s", "is no event"),
+        ("right_hand Reach lasts 2 to 1 s", "the shorter time first"),
         ("right_hand: reach", "is no step"),
+        ("no mug touches mug", "nothing touches itself"),
+        ("no right_hand and right_hand do Reach", "an end-effector twice"),
     ],
 )
 def test_a_claim_that_cannot_be_read_says_why(drink, claim, message):
     with pytest.raises(ClaimError, match=message):
         judge(claim, drink)
+
+
+UNKNOWN = (
+    ("left_hand Reach", "no acting end-effector 'left_hand'"),
+    ("left_hand and right_hand do Reach(mug)", "no acting end-effector 'left_hand'"),
+    ("both feet do Reach", "no pair of acting end-effectors 'both feet'"),
+    ("right_hand Raech(mug)", "no primitive 'Raech'.*Did you mean 'Reach'"),
+    ("both hands do Raech", "no primitive 'Raech'"),
+    ("right_hand Lift(mug)", "no primitive 'Lift'"),
+    ("right_hand MoveObjTo(mugg, head)", "no object 'mugg'.*Did you mean 'mug'"),
+    ("right_hand MoveObjTo(_, haed)", "no object 'haed'"),
+    ("mug touches cup", "no body 'cup'"),
+    ("cup lets go of mug", "no body 'cup'"),
+    ("cup moves", "no object 'cup'"),
+    ("right_hand moves", "no object 'right_hand'"),
+    ("head looks at cup", "no object 'cup'"),
+    ("haed looks at mug", "no sensor that looks 'haed'"),
+    ("right_hand looks at mug", "no sensor that looks 'right_hand'"),
+    ("head looks away from cup", "no object 'cup'"),
+)
+FORMS = (
+    "{}", "no {}", "{} lasts 0 to 9 s", "{} before right_hand Reach", "right_hand Reach while {}"
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("event", "message"), UNKNOWN)
+def test_what_bears_no_such_name_is_refused_in_every_form_of_claim(drink, event, message):
+    for form in FORMS:
+        with pytest.raises(UnknownNameError, match=message) as told:
+            judge(form.format(event), drink)
+        assert isinstance(told.value, ClaimError)
+
+
+@pytest.mark.parametrize(
+    "claim",
+    ["left_hand: Reach", "right_hand: Reach, Raech", "right_hand: Hit, Reach(cup)",
+     "right_hand: ..., Reach(cup), ..."],
+)  # fmt: skip
+def test_a_sequence_of_unknown_names_is_refused_wherever_they_stand(drink, claim):
+    with pytest.raises(UnknownNameError):
+        judge(claim, drink)
+
+
+def test_a_name_of_the_profile_that_fits_nothing_here_can_be_denied(drink):
+    assert judge("no right_hand Hit(mug)", drink).holds
+    assert judge("no right_hand Unknown", drink).holds
+
+
+def test_the_names_of_a_user_s_rules_can_be_claimed(drink, tmp_path):
+    rule = tmp_path / "squeeze.lp"
+    rule.write_text('%* Squeeze: it is pressed. *%\nprimitive("Squeeze").\n')
+    names = names_of(drink, rules=Profile("thesis", crossings_only=True, added=(rule,)))
+    assert judge("no right_hand Squeeze(mug)", drink, names=names).holds
+    with pytest.raises(ClaimError, match="no primitive 'Squeeze'"):
+        judge("no right_hand Squeeze(mug)", drink)
 
 
 @pytest.fixture
@@ -135,17 +194,114 @@ def test_the_command_exits_with_one_if_a_claim_fails(folder):
     assert [each["passed"] for each in suite["cases"]] == [True, False]
 
 
-def test_pytest_collects_files_of_claims(folder):
+def with_pytest(folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
     named = {each.value for each in entry_points(group="pytest11")}
     plugin = [] if "capar.pytest_plugin" in named else ["-p", "capar.pytest_plugin"]
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *plugin, "."],
+    return subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *plugin, *options, "."],
         cwd=folder, capture_output=True, text=True, check=False,
     )  # fmt: skip
+
+
+def test_pytest_collects_files_of_claims(folder):
+    done = with_pytest(folder, "-q")
     assert done.returncode == 1, done.stdout + done.stderr
     assert "1 failed, 1 passed" in done.stdout
     assert "found: never" in done.stdout
     assert "Traceback" not in done.stdout
+
+
+@pytest.fixture
+def bundle(tmp_path: Path) -> Path:
+    """Two takes of one capture; the second breaks off."""
+    place = tmp_path / "bundle"
+    shutil.copytree(DEMO / "drink_from_mug", place)
+    lines = (place / "motion.csv").read_text().splitlines(keepends=True)
+    (place / "whole.csv").write_text("".join(lines))
+    (place / "short.csv").write_text("".join(lines[: len(lines) // 2]))
+    text = (place / "capture.toml").read_text().replace('"motion.csv"', '"{take}.csv"')
+    (place / "capture.toml").write_text(f'takes = ["whole", "short"]\n{text}')
+    return place
+
+
+def written(folder: Path, captures: str, *claims: str) -> Path:
+    path = folder / "said.motion.toml"
+    expected = "".join(f"[[expect]]\nthat = {json.dumps(each)}\n" for each in claims)
+    path.write_text(f"captures = {captures}\n{expected}")
+    return path
+
+
+def captures_of(path: Path) -> list[str]:
+    return [str(Path(each).name) for each in read_motion_test(path).captures]
+
+
+def test_captures_are_named_from_the_root_or_from_the_folder(folder, tmp_path_factory):
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    for pattern in (folder / "drink", folder / "dr*", folder / "dr*" / "capture.toml"):
+        assert len(captures_of(written(elsewhere, json.dumps([str(pattern)]), "x"))) == 1
+    assert captures_of(written(folder, '["drink", "dr*"]', "x")) == ["drink"]
+    assert captures_of(written(folder, '"*"', "x")) == ["drink"]
+
+
+def test_takes_are_captures_one_by_one_or_all(bundle):
+    def named(pattern: str) -> list[str]:
+        return captures_of(written(bundle.parent, json.dumps([pattern]), "x"))
+
+    assert named("bundle:short") == ["bundle:short"]
+    assert named(f"{bundle}:whole") == ["bundle:whole"]
+    assert named("bun*:*") == ["bundle:whole", "bundle:short"]
+    with pytest.raises(FileError, match="Its takes are: whole, short"):
+        named("bundle:long")
+
+
+def test_each_take_is_judged_for_itself(bundle):
+    path = written(bundle.parent, '["bundle:*"]', "right_hand ResumePosture")
+    whole, short = run_motion_test(read_motion_test(path))
+    assert (whole.capture, whole.holds) == ("drink_from_mug_tall_man_whole", True)
+    assert (short.capture, short.holds) == ("drink_from_mug_tall_man_short", False)
+
+
+def test_a_bundle_of_takes_says_that_one_is_to_be_named(bundle):
+    path = written(bundle.parent, '["bundle"]', "right_hand Reach")
+    (verdict,) = run_motion_test(read_motion_test(path))
+    assert not verdict.holds
+    assert "has several takes" in verdict.mistake
+
+
+BAD = ("right_hand Lfit(mug)", "no right_hand Drink(mugg, head)", "right_hand: lift")
+
+
+def test_a_claim_that_cannot_be_judged_hides_no_other(folder):
+    path = written(folder, '["drink"]', BAD[0], "right_hand Hit", *BAD[1:], "right_hand Reach")
+    result = CliRunner().invoke(app, ["test", str(path), "--json"])
+    assert isinstance(result.exception, CaparError)
+    assert "3 claims could not be judged" in str(result.exception)
+    (suite,) = json.loads(result.stdout)
+    assert [each["passed"] for each in suite["cases"]] == [False, False, False, False, True]
+    assert [bool(each["error"]) for each in suite["cases"]] == [True, False, True, True, False]
+    assert "Did you mean 'Lift'" in suite["cases"][0]["error"]
+    assert "Did you mean 'mug'" in suite["cases"][2]["error"]
+    told = CliRunner().invoke(app, ["test", str(path)]).stdout
+    assert (told.count("ERROR"), told.count("FAILS"), told.count("holds")) == (3, 1, 1)
+
+
+def test_a_file_that_cannot_be_used_hides_no_other(folder):
+    (folder / "a.motion.toml").write_text("captures = 3")
+    result = CliRunner().invoke(app, ["test", str(folder)])
+    assert isinstance(result.exception, FileError)
+    assert "holds  drink_from_mug_tall_man: right_hand MoveObjTo(mug, head)" in result.stdout
+
+
+def test_pytest_names_takes_and_tells_mistakes_without_a_traceback(bundle):
+    written(bundle.parent, '["bundle:*"]', "right_hand Reach", BAD[0])
+    (bundle.parent / "a.motion.toml").write_text("captures = 3")
+    done = with_pytest(bundle.parent, "-v", "--continue-on-collection-errors")
+    assert "bundle:short: right_hand Reach PASSED" in done.stdout
+    assert "2 failed, 2 passed, 1 error" in done.stdout
+    assert "no primitive 'Lfit'" in done.stdout
+    assert "captures is no list of patterns" in done.stdout
+    assert "Traceback" not in done.stdout
+    assert "motion_tests.py" not in done.stdout
 
 
 @pytest.mark.parametrize(
@@ -164,3 +320,10 @@ def test_a_file_that_cannot_be_used_says_why(tmp_path, text, message):
     path.write_text(text)
     with pytest.raises(FileError, match=message):
         list(read_motion_test(path).captures)
+
+
+def test_the_shipped_example_holds():
+    path = Path(__file__).parents[1] / "examples" / "drink.motion.toml"
+    verdicts = list(run_motion_test(read_motion_test(path)))
+    assert [each.claim for each in verdicts if not each.holds] == []
+    assert len(verdicts) == 5

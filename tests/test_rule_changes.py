@@ -1,6 +1,8 @@
 """What rules change in what was observed: foretold by a comparison, then made so at once."""
 
 import shutil
+import signal
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,17 +11,23 @@ from typer.testing import CliRunner
 from capar.cli import app
 from capar.model.errors import CaparError, FileError
 from capar.observe import observe
+from capar.observed_again import observe_again
 from capar.rule_changes import (
-    captured_facts,
+    add_reclassifying,
+    bearing,
+    captured,
     reclassified,
+    remove_reclassifying,
     renamed,
-    rule_from_features,
-    rule_from_segment,
-    stored_facts,
+    stored,
 )
+from capar.rule_drafts import rule_from_features, rule_from_segment
 from capar_rules.authoring import try_rule
+from capar_rules.placing import unbroken
 from capar_rules.profiles import profile
 from kb.actionary import Actionary
+from kb.errors import StoreError
+from kb.lookup.changes import NamedSegment, source_files
 
 DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 
@@ -37,6 +45,42 @@ stood(seg(Hand, From)) :-
 """
 
 
+EXAMPLES = """
+%* Example: a cup is taken from a table and brought to the head.
+   frames(0, 400).  rate_mhz(100000).  link(hand, hand, right).
+   tag(cup, mobile).  tag(table, fixed).  tag(head, self).
+   zero_crossing(hand, 0).  zero_crossing(hand, 100).  zero_crossing(hand, 200).
+   zero_crossing(hand, 300).
+   touching(hand, cup, 100, 400).  touching(cup, table, 0, 110).  touching(cup, head, 200, 400).
+   moving(cup, 105, 300).
+   => hand: Reach, Lift, MoveObj
+*%
+
+%* Counter-example: a cup is held in the air and put on a table.
+   frames(0, 400).  rate_mhz(100000).  link(hand, hand, right).
+   tag(cup, mobile).  tag(table, fixed).
+   zero_crossing(hand, 0).  zero_crossing(hand, 100).  zero_crossing(hand, 200).
+   touching(hand, cup, 0, 400).  touching(cup, table, 200, 400).
+   moving(cup, 0, 200).
+   => hand: MoveObjTo, TouchWith
+*%
+"""
+
+
+def shaky(folder: Path) -> Path:
+    """A capture whose hand jerks away from the mug that it holds, for a moment."""
+    place = folder / "shaky"
+    shutil.copytree(DEMO, place)
+    head, *rows = (place / "motion.csv").read_text().splitlines()
+    at = head.split(",").index("right_hand_y")
+    for frame in range(210, 222):
+        cells = rows[frame].split(",")
+        cells[at] = f"{float(cells[at]) - 0.15:.7f}"
+        rows[frame] = ",".join(cells)
+    (place / "motion.csv").write_text("\n".join([head, *rows]) + "\n")
+    return place
+
+
 @pytest.fixture
 def kept(tmp_path: Path) -> Path:
     """A folder with a capture, its observation in an Actionary, and a rule."""
@@ -48,27 +92,153 @@ def kept(tmp_path: Path) -> Path:
 
 
 def test_stored_facts_are_those_that_were_measured(kept):
-    seen = stored_facts(str(kept / "actionary"))
+    seen = stored(str(kept / "actionary"), profile="thesis").seen
     (name,) = seen
-    assert seen == captured_facts([str(kept / "captures" / "drink")])
-    assert seen[name] == observe(DEMO, rules="thesis").facts
+    again = captured([str(kept / "captures" / "drink")], rules=profile("thesis"))
+    observed = observe(DEMO, rules="thesis")
+    assert seen[name].facts == again[name].facts == observed.facts
+    assert [each.name for each in seen[name].names or ()] == [
+        each.name for each in observed.segments
+    ]
 
 
 def test_the_segments_change_as_the_comparison_foretold(kept):
     place = str(kept / "actionary")
     before, after = profile("thesis"), profile("thesis", added=(kept / "lift.lp",))
-    foretold = renamed(stored_facts(place), before=before, after=after)
+    foretold = renamed(stored(place, profile="thesis").seen, before=before, after=after)
     assert [(each.index, each.before, each.after) for each in foretold] == [
         (1, "MoveObjTo", "Lift")
     ]
-    changed = reclassified(place, before=before, after=after, captures=[kept / "captures"])
-    assert changed == foretold
+    effect = reclassified(place, after=after, captures=[kept / "captures"])
+    assert (effect.changes, effect.others) == (foretold, ())
     with Actionary.open(place) as store:
-        (stored,) = store.observations()
-        assert stored.rules == after.fingerprint
-        steps = store.complex_par(stored.action).links[0].steps
+        (there,) = store.observations()
+        assert there.rules == after.fingerprint
+        steps = store.complex_par(there.action).links[0].steps
     assert [each.action for each in steps][:2] == ["Reach", "Lift"]
-    assert renamed(stored_facts(place), before=after, after=after) == ()
+    assert renamed(stored(place, profile="thesis").seen, before=after, after=after) == ()
+
+
+def test_observations_of_another_profile_are_left_alone_and_said_so(kept):
+    place = str(kept / "actionary")
+    with Actionary.open(place, read_only=True) as store:
+        before = store.observations()
+    effect = reclassified(place, after=profile("extended"), captures=[kept / "captures"])
+    assert (effect.changes, effect.others) == ((), ("drink_from_mug_tall_man",))
+    with Actionary.open(place, read_only=True) as store:
+        assert store.observations() == before
+    (kept / "hoist.lp").write_text(LIFT.replace("Lift", "Hoist"))
+    command = ["rules", "diff", str(kept / "hoist.lp"), "--actionary", place]
+    told = CliRunner().invoke(app, command, catch_exceptions=False)
+    assert told.stdout == "0 segments change\n"
+    assert told.stderr == "1 observation was made with another profile: left alone\n"
+
+
+def test_what_is_compared_with_is_the_name_that_is_stored(kept):
+    place = str(kept / "actionary")
+    with_lift = profile("thesis", added=(kept / "lift.lp",))
+    reclassified(place, after=with_lift, captures=[kept / "captures"])
+    without = profile("thesis")
+    changes = renamed(stored(place, profile="thesis").seen, before=without, after=without)
+    assert [(each.before, each.after) for each in changes] == [("Lift", "MoveObjTo")]
+    assert bearing(place, ["Lift"]) == 1
+
+
+def test_segments_that_appear_or_vanish_are_listed_as_such():
+    (trial,) = captured([str(DEMO)], rules=profile("thesis")).values()
+    names = tuple(NamedSegment("right_hand", at, at, at + 1, 0.0, 0.1, "Nod") for at in (5,))
+    seen = {"drink": replace(trial, names=names)}
+    changes = renamed(seen, before=profile("thesis"), after=profile("thesis"))
+    assert [each.after for each in changes if each.before == "Nod"] == ["none"]
+    segments = observe(DEMO, rules="thesis").segments
+    assert sorted(each.after for each in changes if each.before == "none") == sorted(
+        each.name for each in segments
+    )
+
+
+def test_a_segment_without_steadying_stays_so(tmp_path):
+    capture = shaky(tmp_path / "captures")
+    place = str(tmp_path / "actionary")
+    raw = profile("extended", steady=False)
+    with Actionary.open(place) as store:
+        store.add(observe(capture, rules=raw))
+        (known,) = store.observations()
+    found = stored(place, profile="extended").seen[known.name]
+    steadied = captured([str(capture)], rules=profile("extended"))[known.name]
+    assert set(found.facts) != set(steadied.facts)
+    with Actionary.open(place) as store:
+        again = observe_again(
+            source_files(store.store, known.name), known, found.facts, profile("extended"),
+            [tmp_path / "captures"],
+        )  # fmt: skip
+    assert (again.rules, again.facts) == (raw.fingerprint, found.facts)
+
+
+def with_examples(kept: Path) -> Path:
+    path = kept / "lift.lp"
+    path.write_text(LIFT + EXAMPLES)
+    return path
+
+
+def adding(kept: Path, **changed: object) -> dict[str, object]:
+    return {
+        "folder": kept / "rules",
+        "actionary": str(kept / "actionary"),
+        "base": "thesis",
+        "beside": (),
+        "captures": [kept / "captures"],
+    } | changed
+
+
+def test_a_rule_and_what_it_renames_come_together_and_go_together(kept):
+    place = str(kept / "actionary")
+    added, effect = add_reclassifying(with_examples(kept), **adding(kept))
+    assert added == kept / "rules" / "lift.lp"
+    assert [each.after for each in effect.changes] == ["Lift"]
+    assert bearing(place, ["Lift"]) == 1
+    with Actionary.open(place, read_only=True) as store:
+        assert store.observations()[0].rules == profile("thesis", added=(added,)).fingerprint
+    gone = remove_reclassifying(
+        added, actionary=place, after=profile("thesis"), captures=[kept / "captures"]
+    )
+    assert [each.after for each in gone.changes] == ["MoveObjTo"]
+    assert list((kept / "rules").iterdir()) == []
+    assert bearing(place, ["Lift"]) == 0
+
+
+def test_no_rule_is_added_where_the_captures_are_not_found(kept):
+    with pytest.raises(FileError, match="nothing was renamed"):
+        add_reclassifying(with_examples(kept), **adding(kept, captures=[kept / "actionary"]))
+    assert list((kept / "rules").iterdir()) == []
+    assert bearing(str(kept / "actionary"), ["Lift"]) == 0
+
+
+@pytest.mark.parametrize("error", [StoreError("the disk is full"), KeyboardInterrupt()])
+def test_no_rule_is_added_or_removed_where_the_store_fails(kept, monkeypatch, error):
+    def fail(*arguments: object) -> None:
+        raise error
+
+    added, _ = add_reclassifying(with_examples(kept), **adding(kept))
+    remains = added.read_text()
+    monkeypatch.setattr("capar.rule_changes.replace_all", fail)
+    with pytest.raises(type(error)):
+        remove_reclassifying(
+            added, actionary=str(kept / "actionary"), after=profile("thesis"),
+            captures=[kept / "captures"],
+        )  # fmt: skip
+    assert [each.read_text() for each in (kept / "rules").iterdir()] == [remains]
+    with pytest.raises(type(error)):
+        add_reclassifying(with_examples(kept), **adding(kept, folder=kept / "other"))
+    assert list((kept / "other").iterdir()) == []
+
+
+def test_who_interrupts_is_heard_when_the_step_is_done():
+    done = []
+    with pytest.raises(KeyboardInterrupt), unbroken():
+        signal.raise_signal(signal.SIGINT)
+        done.append("the step")
+    assert done == ["the step"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_nothing_is_renamed_when_the_files_have_changed(kept):
@@ -78,7 +248,6 @@ def test_nothing_is_renamed_when_the_files_have_changed(kept):
     with pytest.raises(FileError, match="nothing was renamed"):
         reclassified(
             place,
-            before=profile("thesis"),
             after=profile("thesis", added=(kept / "lift.lp",)),
             captures=[kept / "captures"],
         )
@@ -100,9 +269,9 @@ def test_takes_of_a_bundle_are_found_again(tmp_path):
     with Actionary.open(place) as store:
         for take in ("take1", "take10"):
             store.add(observe(f"{bundle}/mine.toml:{take}", rules="thesis"))
-    before, after = profile("thesis"), profile("thesis", added=(tmp_path / "lift.lp",))
-    changed = reclassified(place, before=before, after=after, captures=[tmp_path / "captures"])
-    assert [(each.capture, each.after) for each in changed] == [
+    after = profile("thesis", added=(tmp_path / "lift.lp",))
+    effect = reclassified(place, after=after, captures=[tmp_path / "captures"])
+    assert [(each.capture, each.after) for each in effect.changes] == [
         ("drink_from_mug_tall_man_take1", "Lift"),
         ("drink_from_mug_tall_man_take10", "Lift"),
     ]
@@ -134,8 +303,10 @@ def test_a_drafted_rule_names_the_segment_that_it_was_drafted_from(tmp_path):
 
 
 def test_a_feature_set_in_letters_is_read_or_refused():
-    assert 'feature_row("Odd", any, "1", "1", "1", "0").' in rule_from_features("Odd", "1,1,1,0")
+    assert 'feature_row("Odd", any, "1", "1", "1", "0").' in rule_from_features(
+        "Odd", "1,1,1,0", rules=profile("thesis")
+    )
     with pytest.raises(CaparError, match="write START,END,CHANGE,FORCE"):
-        rule_from_features("Odd", "1,1")
+        rule_from_features("Odd", "1,1", rules=profile("thesis"))
     with pytest.raises(CaparError, match="over 1 objects"):
-        rule_from_features("Odd", "11,1,1,0")
+        rule_from_features("Odd", "11,1,1,0", rules=profile("thesis"))

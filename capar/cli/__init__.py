@@ -10,6 +10,7 @@ import typer
 from typer.core import TyperGroup
 
 from capar import __version__
+from capar.cli._places import told
 from capar.model.errors import CaparError
 
 
@@ -36,6 +37,17 @@ class Commands(TyperGroup):
         command = typer.main.get_command(module.app)
         command.name = name
         return command
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; typer itself would end an interrupted one without a word."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            typer.echo("capar: interrupted; nothing was left half-written", err=True)
+            raise typer.Exit(130) from None
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise typer.Exit(0) from None
 
 
 app = typer.Typer(
@@ -68,9 +80,6 @@ def main() -> None:
     except CaparError as error:
         typer.echo(f"capar: {error}", err=True)
         sys.exit(2)
-    except KeyboardInterrupt:
-        typer.echo("capar: interrupted; nothing was left half-written", err=True)
-        sys.exit(130)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(0)
+    except OSError as error:
+        typer.echo(f"capar: {told(error)}", err=True)
+        sys.exit(2)

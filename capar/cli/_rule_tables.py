@@ -10,14 +10,40 @@ if TYPE_CHECKING:
     from capar_rules.auditing import Audit
 
 
-def print_changes(changes: "tuple[Renamed, ...]") -> None:
-    """The segments that have another name now, and how many."""
+def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) -> None:
+    """The segments that have another name now, and how many; who was left alone."""
+    from capar.rule_changes import NOTHING
+
     for each in changes:
+        what = f"{each.before} -> {each.after}"
+        if NOTHING in (each.before, each.after):
+            what = f"{each.before} vanishes" if each.after == NOTHING else f"{each.after} appears"
         typer.echo(
             f"{each.capture}  {each.ee}/{each.index}  {each.start_s:.2f} to {each.end_s:.2f} s: "
-            f"{each.before} -> {each.after}"
+            f"{what}"
         )
     typer.echo("1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change")
+    print_others(others)
+
+
+def print_others(others: tuple[str, ...]) -> None:
+    """How many observations were left alone, as they were made with another profile."""
+    if others:
+        several = "s were" if len(others) > 1 else " was"
+        typer.echo(
+            f"{len(others)} observation{several} made with another profile: left alone", err=True
+        )
+
+
+def print_bearing(count: int, names: list[str]) -> None:
+    """How many stored segments bear a name that no rule gives any longer."""
+    if count:
+        told = "1 stored segment still bears" if count == 1 else f"{count} segments still bear"
+        typer.echo(
+            f"{told} the name {' or '.join(names)}; observing again renames them, as would "
+            "--reclassify have done",
+            err=True,
+        )
 
 
 def print_audit(found: "Audit") -> None:

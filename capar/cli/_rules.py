@@ -71,3 +71,36 @@ def opened(actionary: str | None) -> str:
     from kb.store import place
 
     return place(actionary)
+
+
+def has_actionary(place: str, *, named: str | None) -> bool:
+    """Whether observations can be looked up there: in a folder, or at an address that was named."""
+    from kb.embedded import DATA_FOLDER
+    from kb.store import is_address
+
+    return bool(named) if is_address(place) else (Path(place) / DATA_FOLDER).is_dir()
+
+
+def require_actionary(actionary: str | None, *, observed: bool = False) -> None:
+    """Refuse an Actionary that is not there, so that a slip of the pen makes none.
+
+    Args:
+        actionary: Its place; None for the usual one.
+        observed: Whether observations must be in it; else a folder of rules is enough.
+
+    Raises:
+        FileError: Nothing is there.
+    """
+    from capar.model.errors import FileError
+    from capar_rules.teaching import FOLDER
+    from kb.embedded import DATA_FOLDER
+    from kb.store import is_address
+
+    place = opened(actionary)
+    there = [DATA_FOLDER] if observed else [DATA_FOLDER, FOLDER]
+    if not is_address(place) and not any((Path(place) / each).is_dir() for each in there):
+        raise FileError(
+            place, "is no Actionary.",
+            f"`capar observe CAPTURE --actionary {place}` makes one; --rules FOLDER keeps rules "
+            "without one.",
+        )  # fmt: skip

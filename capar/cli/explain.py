@@ -1,13 +1,17 @@
 """The command that says why a segment has its name, and why not another."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from capar.cli._rules import Beside, Rules, Steady, rule_base
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from capar.explanation import Explained
+    from capar.model.observation import Segment
     from capar_rules.explaining import Explanation, Reason
     from capar_rules.why_not import Alternative
 
@@ -47,26 +51,29 @@ def explain(
     seen = explained(read_capture(capture), rules=base)
     chosen = (segment_named(seen.observation, segment),) if segment else seen.observation.segments
     if why_not:
-        for each in chosen:
-            limit = 100 if every else 1
-            _print_alternatives(
-                why_not, alternatives(seen.explainer, each, why_not, limit=limit), json=json
-            )
+        asked = [each for each in chosen if segment or each.name != why_not]
+        limit = 100 if every else 1
+        rows = [(each, alternatives(seen.explainer, each, why_not, limit=limit)) for each in asked]
+        if json:
+            _echo_json(_rows(rows, seen))
+            return
+        for each, found in rows:
+            if segment is None:
+                typer.echo(f"{_header(each)}  {each.name}")
+            _print_alternatives(why_not, found)
         return
     told = [seen.explainer.explain(each) for each in chosen]
     if svg:
         _draw(told, svg)
-    _print(told, json=json, tree=segment is not None)
+    _print(told, seen, json=json, tree=segment is not None)
 
 
-def _print(told: "list[Explanation]", *, json: bool, tree: bool) -> None:
+def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bool) -> None:
     if json:
-        import json as codec
-
-        typer.echo(codec.dumps([_plain(each) for each in told], indent=2))
+        _echo_json([_plain(each, seen) for each in told])
         return
     for each in told:
-        typer.echo(f"{each.ee}/{each.index}  {each.start_s:.2f} to {each.end_s:.2f} s")
+        typer.echo(_header(each))
         typer.echo(each.summary)
         if tree:
             _branch(each.reason.told(), 0)
@@ -80,25 +87,59 @@ def _branch(reason: "Reason", depth: int) -> None:
         _branch(each, depth + 1)
 
 
-def _print_alternatives(name: str, found: "tuple[Alternative, ...]", *, json: bool) -> None:
-    from dataclasses import asdict
+def _header(each: "Segment | Explanation") -> str:
+    span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
+    return f"{each.ee}/{each.index}  {span}"
 
-    if json:
-        import json as codec
 
-        rows = [{"sentence": each.sentence, **asdict(each)} for each in found]
-        typer.echo(codec.dumps(rows, indent=2))
-        return
+def _print_alternatives(name: str, found: "tuple[Alternative, ...]") -> None:
     for each in found:
         typer.echo(each.sentence)
     if not found:
         typer.echo(f"Nothing between these borders could have been {name}.")
 
 
-def _plain(told: "Explanation") -> dict[str, object]:
+def _rows(
+    rows: "Sequence[tuple[Segment, tuple[Alternative, ...]]]", seen: "Explained"
+) -> list[dict[str, Any]]:
     from dataclasses import asdict
 
-    return asdict(told)
+    return [
+        {"ee": each.ee, "index": each.index, "is": each.name, "sentence": told.sentence}
+        | _placed(asdict(told), seen)
+        for each, found in rows
+        for told in found
+    ]
+
+
+def _echo_json(value: object) -> None:
+    import json as codec
+
+    typer.echo(codec.dumps(value, indent=2))
+
+
+def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
+    from dataclasses import asdict
+
+    return _placed(asdict(told), seen)
+
+
+def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
+    """A tree as JSON, and beside each atom the segments that it speaks of by their ticks."""
+    from capar.explanation import segments_in
+
+    placed: dict[str, Any] = {}
+    for key, value in node.items():
+        if isinstance(value, dict):
+            placed[key] = _placed(value, seen)
+        elif isinstance(value, list | tuple):
+            whole = [_placed(each, seen) if isinstance(each, dict) else each for each in value]
+            placed[key] = whole
+        else:
+            placed[key] = value
+        if key == "atom":
+            placed["segments"] = list(segments_in(seen, str(value)))
+    return placed
 
 
 def _draw(told: "list[Explanation]", path: Path) -> None:

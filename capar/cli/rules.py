@@ -6,14 +6,26 @@ from typing import Annotated
 import typer
 
 from capar.cli._actionary import Place
-from capar.cli._rule_tables import print_audit, print_changes, print_json
-from capar.cli._rules import Rules, opened, rule_base
+from capar.cli._rule_tables import (
+    print_audit,
+    print_bearing,
+    print_changes,
+    print_json,
+    print_others,
+)
+from capar.cli._rule_writing import Base, Json, list_words, new
+from capar.cli._rules import Rules, has_actionary, opened, require_actionary, rule_base
 
 app = typer.Typer(no_args_is_help=True)
 
-Base = Annotated[str, typer.Option("--profile", help="The rules: extended or thesis.")]
 File = Annotated[Path, typer.Argument(help="A rule file.")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Reclassify = Annotated[
+    bool, typer.Option("--reclassify", help="Rename the stored segments that this changes.")
+]
+Captures = Annotated[
+    list[Path] | None,
+    typer.Option(help="With --reclassify: a folder that holds captures; else this one."),
+]
 
 
 @app.callback()
@@ -67,46 +79,6 @@ def show(
 
 
 @app.command()
-def new(
-    name: Annotated[str, typer.Argument(help="What the primitive is called, such as Lift.")],
-    source: Annotated[
-        str | None,
-        typer.Option("--from", help="CAPTURE:SEGMENT whose features it has: take:right_hand/3."),
-    ] = None,
-    features: Annotated[
-        str | None,
-        typer.Option(help="START,END,CHANGE,FORCE in bits, such as 100,101,10,00."),
-    ] = None,
-    definition: Annotated[str, typer.Option(help="What it is, in words.")] = "",
-    general: Annotated[str, typer.Option(help="The primitive that it specialises.")] = "",
-    verb: Annotated[str, typer.Option(help="The verb for it.")] = "",
-    out: Annotated[Path | None, typer.Option(help="The file to write; else it is printed.")] = None,
-    profile: Base = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
-) -> None:
-    """Write a rule file for NAME from a segment or a feature set, ready to be edited."""
-    from capar.model.errors import FileError, RuleError
-    from capar.rule_changes import rule_from_features, rule_from_segment
-
-    words = {"definition": definition, "general": general, "verb": verb}
-    if (source is None) == (features is None):
-        raise RuleError("say either --from CAPTURE:SEGMENT or --features START,END,CHANGE,FORCE")
-    if source is not None:
-        base = rule_base(profile, rules, opened(actionary))
-        text = rule_from_segment(name, source, rules=base, **words)
-    else:
-        text = rule_from_features(name, features or "", **words)
-    if out is None:
-        typer.echo(text, nl=False)
-        return
-    if out.exists():
-        raise FileError(out, "exists already.", "Choose another file.")
-    out.write_text(text, encoding="utf-8")
-    typer.echo(f"wrote {out}; edit it, then: capar rules check {out}", err=True)
-
-
-@app.command()
 def check(
     file: File,
     profile: Base = "extended",
@@ -127,7 +99,7 @@ def check(
         if not findings:
             typer.echo(f"{file}: nothing is wrong")
     if errors(findings):
-        raise typer.Exit(1)
+        raise typer.Exit(2)
 
 
 @app.command()
@@ -147,7 +119,7 @@ def test(
     for each in failures:
         typer.echo(each)
     if failures:
-        raise typer.Exit(1)
+        raise typer.Exit(2)
     typer.echo(f"{file}: its examples hold")
 
 
@@ -158,13 +130,8 @@ def add(
         list[str] | None,
         typer.Option(help="A primitive that it is to be more specific than; may be repeated."),
     ] = None,
-    reclassify: Annotated[
-        bool, typer.Option("--reclassify", help="Rename the stored segments that it changes.")
-    ] = False,
-    captures: Annotated[
-        list[Path] | None,
-        typer.Option(help="With --reclassify: a folder that holds captures; else this one."),
-    ] = None,
+    reclassify: Reclassify = False,
+    captures: Captures = None,
     profile: Base = "extended",
     rules: Rules = None,
     actionary: Place = None,
@@ -174,43 +141,74 @@ def add(
     It goes to the folder that --rules or CAPAR_RULES names, else to the folder rules of the
     Actionary that --actionary or CAPAR_ACTIONARY names, else to ./rules.
     """
-    from capar.rule_changes import reclassified
+    from capar.rule_changes import add_reclassifying
     from capar_rules.authoring import add_rule
-    from capar_rules.teaching import make_folder, new_rules_folder
+    from capar_rules.teaching import actionary_rules, make_folder, new_rules_folder
 
-    folder = make_folder(new_rules_folder(rules, actionary=actionary))
     place = opened(actionary)
-    before = rule_base(profile, rules, place)
+    folder = new_rules_folder(rules, actionary=actionary)
+    if reclassify or actionary:
+        require_actionary(actionary, observed=reclassify)
+    if rules:
+        make_folder(folder)
+    rule_base(profile, rules, place)
+    if folder == actionary_rules():
+        require_actionary(actionary)
+    make_folder(folder)
     beside = _others(file, rules, actionary)
-    added = add_rule(file, folder=folder, base=profile, over=over or (), beside=beside)
-    typer.echo(f"added {added}")
-    if reclassify:
-        changed = reclassified(
-            actionary,
-            before=before,
-            after=rule_base(profile, rules, place),
-            captures=captures or [Path()],
+    if not reclassify:
+        typer.echo(
+            f"added {add_rule(file, folder=folder, base=profile, over=over or (), beside=beside)}"
         )
-        print_changes(changed)
+        return
+    added, effect = add_reclassifying(
+        file, folder=folder, actionary=actionary, base=profile, over=over or (), beside=beside,
+        captures=captures or [Path()],
+    )  # fmt: skip
+    typer.echo(f"added {added}")
+    print_changes(effect.changes, effect.others)
 
 
 @app.command()
 def remove(
     name: Annotated[str, typer.Argument(help="A primitive of yours.")],
+    reclassify: Reclassify = False,
+    captures: Captures = None,
+    profile: Base = "extended",
     rules: Rules = None,
     actionary: Place = None,
 ) -> None:
     """Take a primitive out of your rules: first your project's, then those of the Actionary.
 
-    With --rules alone or --actionary alone, only that folder is looked through.
+    With --rules alone or --actionary alone, only that folder is looked through. A rule on which
+    another one rests stays.
     """
-    from capar_rules.authoring import remove_rule
-    from capar_rules.teaching import actionary_rules, rule_files
+    from capar.rule_changes import bearing, remove_reclassifying
+    from capar_rules.authoring import introduced, removable
+    from capar_rules.profiles import profile as named_profile
+    from capar_rules.teaching import actionary_rules, rule_files, user_rules
 
-    mine = actionary_rules(opened(actionary))
+    place = opened(actionary)
+    mine = actionary_rules(place)
     project = rule_files(rules) if rules or not actionary else ()
     beside = rule_files(mine) if mine and mine.is_dir() and (actionary or not rules) else ()
-    typer.echo(f"removed {remove_rule(name, files=(*project, *beside))}")
+    every = user_rules(rules, actionary=place)
+    path = removable(name, files=(*project, *beside), every=every)
+    names = introduced(path)
+    if not reclassify:
+        path.unlink()
+        typer.echo(f"removed {path}")
+        if has_actionary(place, named=actionary):
+            print_bearing(bearing(actionary, names), names)
+        return
+    require_actionary(actionary, observed=True)
+    others = tuple(each for each in every if each.resolve() != path.resolve())
+    effect = remove_reclassifying(
+        path, actionary=actionary, after=named_profile(profile, added=others),
+        captures=captures or [Path()],
+    )  # fmt: skip
+    typer.echo(f"removed {path}")
+    print_changes(effect.changes, effect.others)
 
 
 @app.command()
@@ -225,10 +223,13 @@ def diff(
     actionary: Place = None,
     json: Json = False,
 ) -> None:
-    """Show which segments, of which captures, would change their name if FILE were added."""
+    """Show which segments, of which captures, would change their name if FILE were added.
+
+    Of an Actionary, those observations are compared that were made with the same profile.
+    """
     from dataclasses import asdict
 
-    from capar.rule_changes import captured_facts, renamed, stored_facts
+    from capar.rule_changes import captured, renamed, stored
     from capar_rules.checking import check as checked
     from capar_rules.checking import require
     from capar_rules.profiles import profile as named_profile
@@ -238,12 +239,18 @@ def diff(
     findings = checked(file, profile=profile, beside=beside)
     require(file, [each for each in findings if each.code != "ambiguous"])
     after = named_profile(profile, added=(*beside, file))
-    seen = captured_facts(on) if on else stored_facts(actionary)
+    others: tuple[str, ...] = ()
+    if on:
+        seen = captured(on, rules=before)
+    else:
+        kept = stored(actionary, profile=profile)
+        seen, others = kept.seen, kept.others
     changes = renamed(seen, before=before, after=after)
     if json:
         print_json([asdict(each) for each in changes])
+        print_others(others)
     else:
-        print_changes(changes)
+        print_changes(changes, others)
 
 
 @app.command()
@@ -262,3 +269,7 @@ def audit(
         print_audit(found)
     if not found.clean:
         raise typer.Exit(1)
+
+
+app.command("new")(new)
+app.command("words")(list_words)

@@ -2,11 +2,15 @@
 
 from collections.abc import Iterator, Sequence
 from html import escape
+from textwrap import wrap
 
 from capar_rules.explaining import Explanation, Reason
 
-ROW, INDENT, TEXT, STRIP = 20, 18, 760, 240
-"""Height of a row, step of a level, width of the text and of the strip of time [px]."""
+ROW, LINE, INDENT, TEXT, STRIP = 20, 15, 18, 760, 240
+"""Heights of a row and of each further line, step of a level, widths of text and of time [px]."""
+
+LETTER, BOLD = 6.4, 7.2
+"""How wide a letter is at most, on an average [px]."""
 
 
 def reasons_svg(told: Sequence[Explanation]) -> str:
@@ -15,13 +19,14 @@ def reasons_svg(told: Sequence[Explanation]) -> str:
     y = ROW
     for each in told:
         title = f"{each.ee}/{each.index}  {each.start_s:.2f} to {each.end_s:.2f} s: {each.summary}"
-        rows.append(f'<text x="8" y="{y}" font-weight="bold">{escape(title)}</text>')
-        y += ROW
+        lines = _lines(title, TEXT + STRIP, BOLD)
+        rows.append(f'<text x="8" y="{y}" font-weight="bold">{_set(lines, 8)}</text>')
+        y += ROW + (len(lines) - 1) * LINE
         tree = each.reason.told()
-        span = _span(tree)
+        span, above = _span(tree), y
         for depth, reason in _rows(tree, 0):
-            rows += _row(reason, depth, y, span)
-            y += ROW
+            drawn, height = _row(reason, depth, y, span, above=above)
+            rows, above, y = [*rows, *drawn], y, y + height
         y += ROW // 2
     width = 8 + TEXT + STRIP + 16
     return (
@@ -31,14 +36,18 @@ def reasons_svg(told: Sequence[Explanation]) -> str:
     )
 
 
-def _row(reason: Reason, depth: int, y: int, span: tuple[int, int]) -> list[str]:
+def _row(
+    reason: Reason, depth: int, y: int, span: tuple[int, int], *, above: int
+) -> tuple[list[str], int]:
+    """What one sentence is drawn with, and how high it is."""
     x = 8 + depth * INDENT
-    rule = f" <tspan fill='#777'>({escape(reason.rule)})</tspan>" if reason.rule else ""
+    rule = f" ({reason.rule})" if reason.rule else ""
+    told = _lines(f"{reason.sentence}{rule}", TEXT - x, LETTER)
     colour = "#000" if reason.because else "#135"
-    lines = [f'<text x="{x}" y="{y}" fill="{colour}">{escape(reason.sentence)}{rule}</text>']
+    lines = [f'<text x="{x}" y="{y}" fill="{colour}">{_set(told, x)}</text>']
     if depth:
         lines.append(
-            f'<path d="M{x - INDENT + 4} {y - ROW + 4}V{y - 4}H{x - 3}" fill="none" stroke="#bbb"/>'
+            f'<path d="M{x - INDENT + 4} {above + 4}V{y - 4}H{x - 3}" fill="none" stroke="#bbb"/>'
         )
     if reason.frames:
         first, last = reason.frames
@@ -49,7 +58,20 @@ def _row(reason: Reason, depth: int, y: int, span: tuple[int, int]) -> list[str]
             f'<rect x="{begin:.1f}" y="{y - 10}" width="{width:.1f}" height="11" fill="#7ab">'
             f"<title>frames {first} to {last}</title></rect>"
         )
-    return lines
+    return lines, ROW + (len(told) - 1) * LINE
+
+
+def _lines(text: str, width_px: float, letter_px: float) -> list[str]:
+    """A text in lines that the width holds."""
+    return wrap(text, max(int(width_px / letter_px), 20), break_long_words=False)
+
+
+def _set(lines: Sequence[str], x: int) -> str:
+    """Lines below each other, in one text."""
+    return "".join(
+        f'<tspan x="{x}" dy="{LINE if number else 0}">{escape(line)}</tspan>'
+        for number, line in enumerate(lines)
+    )
 
 
 def _rows(reason: Reason, depth: int) -> Iterator[tuple[int, Reason]]:

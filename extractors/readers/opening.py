@@ -107,6 +107,9 @@ def _read(path: Path, limit: int, *, whole: bool) -> bytes:
     try:
         with path.open("rb") as raw, _expanding(raw) as file:
             return file.read(limit)
+    except PermissionError as error:
+        what = f"cannot be read: {error.strerror}."
+        raise FileError(path, what, "Take the right to read it.") from error
     except _DAMAGE as error:
         hint = "Copy it again." if whole else "It seems compressed, and damaged."
         raise FileError(path, f"cannot be read to its end: {error}.", hint) from error

@@ -2,12 +2,13 @@
 
 from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 from pyoxigraph import Literal, NamedNode
 
 from capar.model.facts import STATED, Fact
+from capar.model.par import UNKNOWN
 from kb import names, writing
 from kb.encode import encode
 from kb.encode.facts import CLASSES, PROPERTIES
@@ -52,6 +53,47 @@ def source_files(store: Store, name: str) -> tuple[tuple[str, str], ...]:
         for path, digest in rows
         if isinstance(path, Literal) and isinstance(digest, Literal)
     )
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class NamedSegment:
+    """A segment, between which frames it is, and what it is called."""
+
+    ee: str
+    index: int
+    first: int
+    last: int
+    start_s: float
+    end_s: float
+    name: str
+
+
+_SEGMENTS = f"""SELECT ?ee ?index ?first ?last ?start ?end ?name
+WHERE {{
+  GRAPH @graph@ {{
+    @graph@ {CAPAR.segment} ?segment .
+    ?segment {CAPAR.ee} ?ee ; {CAPAR.index} ?index ;
+      {CAPAR.firstFrame} ?first ; {CAPAR.lastFrame} ?last ;
+      {CAPAR.start} ?start ; {CAPAR.end} ?end .
+  }}
+  OPTIONAL {{
+    GRAPH @graph@ {{ ?segment {CAPAR.action} ?action }}
+    ?action {CAPAR.name} ?name
+  }}
+}}
+ORDER BY ?ee ?index"""
+
+
+def named_segments(store: Store, name: str) -> tuple[NamedSegment, ...]:
+    """The segments of an observation as they are stored, by end-effector and time."""
+    found = set()
+    for row in store.ask(fill(_SEGMENTS, graph=str(names.observation(name)))).rows:
+        ee, index, first, last, start, end, called = (
+            each.value if isinstance(each, Literal) else "" for each in row
+        )
+        place = ee, int(index), int(first), int(last), float(start), float(end)
+        found.add(NamedSegment(*place, called or UNKNOWN))
+    return tuple(sorted(found))
 
 
 _BY_CLASS = {str(node): predicate for predicate, node in CLASSES.items()}

@@ -9,6 +9,7 @@ from capar.model.errors import FileError, RuleError, UnknownNameError
 from capar.model.par import FeatureSet
 from capar_rules.authoring import (
     add_rule,
+    introduced,
     new_rule,
     remove_rule,
     rule_of,
@@ -89,11 +90,51 @@ def test_examples_are_read_as_they_are_written(grasp):
         ("%* Example: no end.\n   frames(0, 1).\n*%\n", "needs facts and a line such as"),
         ("%* Example: odd.\n   frames(0, a).\n   => hand: Reach\n*%\n", "a is no int"),
         ("%* Example: odd.\n   frames(0, 1).\n   => Reach\n*%\n", "expected END_EFFECTOR"),
+        (
+            "\n%* Example: odd.\n   frames(0, 9).\n   moving(cup, 0).\n   => hand: Reach\n*%\n",
+            r"^x.lp:4: in the example 'odd.': .*moving",
+        ),
+        (
+            "%* Example: odd.\n   frames(0, 9).  moving(cup, 0, 2)\n   => hand: Reach\n*%\n",
+            r"^x.lp:2: .*'moving\(cup, 0, 2\)' is no fact",
+        ),
+        (
+            "%* Example: odd.\n   moving(cup, 0, 2)\n   frames(0, 9).\n   => hand: Reach\n*%\n",
+            r"^x.lp:2: .*'moving\(cup, 0, 2\)' is no fact",
+        ),
+        (
+            "%* Example: odd.\n   frames(0, 9).\n   Moving(cup, 0, 2).\n   => hand: Reach\n*%\n",
+            r"^x.lp:3: .*'Moving\(cup, 0, 2\)\.' is no fact",
+        ),
     ],
 )
 def test_an_example_that_cannot_be_read_says_why(text, message):
     with pytest.raises(RuleError, match=message):
         read_examples(text, file="x.lp")
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ('primitive( "Nip" ).\n', ["Nip"]),
+        ('primitive("Nip"). primitive("Sip").\n', ["Nip", "Sip"]),
+        ('% primitive("Nap").\n%* primitive("Nop"). *%\nprimitive(\n"Nip").\n', ["Nip"]),
+        ('primitive("nip it; good").\n', ["nip it; good"]),
+        ('primitive("Nip").\nfits(S, "Nip" :- x.\n', ["Nip"]),
+    ],
+)
+def test_what_a_file_introduces_is_read_as_rules_are(tmp_path, text, names):
+    path = tmp_path / "nip.lp"
+    path.write_text(text)
+    assert introduced(path) == names
+
+
+def test_every_primitive_of_a_line_needs_its_examples(grasp):
+    grasp.write_text(
+        GRASP.replace('primitive("Grasp").', 'primitive("Grasp"). primitive( "Grab" ).')
+    )
+    failures = try_rule(grasp, base="thesis")
+    assert [each.partition("lacks ")[2] for each in failures] == ["an Example in which Grab occurs"]
 
 
 def test_examples_that_hold_are_silent_and_others_say_what_was_found(grasp):

@@ -17,6 +17,11 @@ def drink() -> Explained:
     return explained(motions.drink_from_mug(motions.TALL_MAN).capture, rules=profile("thesis"))
 
 
+@pytest.fixture(scope="module")
+def cup() -> Explained:
+    return explained(motions.drink_from_mug(motions.TALL_MAN).capture, rules=profile())
+
+
 def segment(seen: Explained, name: str, at: int = 0):
     return [each for each in seen.observation.segments if each.name == name][at]
 
@@ -32,11 +37,11 @@ def test_one_change_of_motion_turns_a_move_into_a_touch(drink):
 
 
 def test_all_equally_small_answers_are_given_on_demand(drink):
-    found = sentences(drink, "MoveObjTo", "MoveObj")
+    found = sentences(drink, "MoveObj", "MoveObjTo")
     assert len(found) == 2
-    assert any("had the mug touched the head at 1." in each for each in found)
-    assert any("had the mug touched the table at 2." in each for each in found)
-    one = why_not(drink.explainer, segment(drink, "MoveObjTo"), "MoveObj")
+    assert any("had the mug not touched the head at 2.3" in each for each in found)
+    assert any("had the mug touched the table at 2.5" in each for each in found)
+    one = why_not(drink.explainer, segment(drink, "MoveObj"), "MoveObjTo")
     assert one[0].sentence in found
 
 
@@ -69,15 +74,45 @@ def test_what_could_not_have_been_has_no_answer():
     assert why_not(seen.explainer, moves[0], "Drink", limit=5) == ()
 
 
-def test_a_course_is_explained_away_by_another_course():
+def test_a_course_is_explained_away_by_another_course_in_one_sentence():
     capture = motions.pick_up_with_both_hands(motions.TALL_MAN).capture
     seen = explained(capture, rules=profile())
-    lift = segment(seen, "Lift")
-    found = why_not(seen.explainer, lift, "Carry", limit=20)
-    assert found
-    for each in found:
-        assert "had the box not gone up" in each.sentence
-        assert "had the box gone aside, more than up or down" in each.sentence
+    (only,) = why_not(seen.explainer, segment(seen, "Lift"), "Carry", limit=20)
+    (change,) = only.changes
+    assert "the box gone aside, more than up or down" in change.sentence
+
+
+def test_what_it_is_too_is_said_before_what_would_make_it_no_more(cup):
+    """To touch with is to touch: the segment is a Touch, and its own name says more."""
+    (only,) = why_not(cup.explainer, segment(cup, "TouchWith"), "Touch")
+    assert only.sentence.startswith("It is a Touch too: TouchWith is more specific. It would be no")
+    assert only.changes
+
+
+def test_of_the_body_that_an_answer_no_longer_speaks_of_nothing_is_told(cup):
+    """The hand that holds the mug need not be upright, or near, for the mug to be moved."""
+    (only,) = why_not(cup.explainer, segment(cup, "Reach"), "MoveObjTo")
+    assert len(only.changes) == 3
+    assert [each.atom.split("(")[0] for each in only.changes] == ["moved", "reads", "reads"]
+
+
+def test_what_held_in_truth_is_not_presupposed_otherwise(cup):
+    """The mug stood on the table before it was taken, and lay there when it was let go."""
+    for was, at, name in (("MoveObjTo", 0, "Lift"), ("MoveObjTo", 1, "PutDown")):
+        (only,) = why_not(cup.explainer, segment(cup, was, at), name)
+        assert not {"from_rest", "comes_to_lie"} & {
+            each.atom.split("(")[0] for each in only.changes
+        }
+        assert any(each.atom.startswith("reads(") for each in only.changes)
+
+
+def test_no_answer_is_empty_and_none_shows_an_atom(cup):
+    for each in cup.observation.segments:
+        for name in {*each.general, "Touch", "Lift", "Throw", "Rest", "Give", "Tilt"} - {each.name}:
+            for found in why_not(cup.explainer, each, name):
+                assert found.changes, (each.index, name)
+                assert "(" not in found.sentence
+                assert "_" not in found.sentence
 
 
 def test_a_name_that_there_is_not_or_that_it_has_is_refused(drink):

@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 
 from capar.cli import app
 from capar.model.errors import UnknownNameError
+from capar.workbench.lettering import width_in
 
 DEMO = str(Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug")
 THESIS = ["--profile", "thesis"]
@@ -23,8 +24,19 @@ def answered(*arguments: str) -> str:
 def test_every_segment_is_told_in_one_sentence():
     lines = answered(*THESIS).splitlines()
     assert len(lines) == 12
-    assert lines[3].startswith("MoveObjTo, because the mug touched the head at 2.38 s")
-    assert "the mug moved 0.60 m between 1.70 s and 2.38 s" in lines[3]
+    assert lines[3].startswith(
+        "MoveObjTo, because the right hand touched the mug at 1.70 s and 2.38 s, the mug moved "
+        "0.60 m between 1.70 s and 2.38 s, the mug touched the head at 2.38 s"
+    )
+
+
+def test_a_summary_leads_with_the_name_s_own_conditions_and_tells_no_mere_border():
+    told = {each["index"]: each["summary"] for each in json.loads(answered("--json"))}
+    assert told[1].startswith("Reach, because the right hand touched the mug at 1.73 s")
+    assert "table" not in told[1]
+    assert "rested" not in told[1]
+    assert told[3].startswith("Drink, because the mug touched the head at 2.35 s and 2.59 s, the")
+    assert told[3].index("leant otherwise") < told[3].index("the mug moved")
 
 
 def test_one_segment_is_told_as_a_tree_down_to_its_frames():
@@ -57,14 +69,41 @@ def test_the_picture_has_a_row_for_each_sentence(tmp_path):
     assert ElementTree.parse(path).getroot().get("height") == root.get("height")
 
 
+def test_no_line_of_the_picture_is_wider_than_it(tmp_path):
+    path = tmp_path / "why.svg"
+    answered("--svg", str(path))
+    root = ElementTree.parse(path).getroot()
+    lines = list(root.iter("{http://www.w3.org/2000/svg}tspan"))
+    width = float(root.get("width"))
+    assert len(lines) > 100
+    for each in lines:
+        assert float(each.get("x")) + width_in(each.text, points=12) * 72 < width
+
+
 def test_why_not_gives_one_answer_or_all():
-    one = answered("right_hand/1", "--why-not", "MoveObj", *THESIS).splitlines()
-    every = answered("right_hand/1", "--why-not", "MoveObj", "--all", *THESIS).splitlines()
+    asked = ["right_hand/2", "--why-not", "MoveObjTo", *THESIS]
+    one = answered(*asked).splitlines()
+    every = answered(*asked, "--all").splitlines()
     assert (len(one), len(every)) == (1, 2)
     assert one[0] in every
-    rows = json.loads(answered("right_hand/1", "--why-not", "MoveObj", "--json", *THESIS))
-    assert rows[0]["sentence"] == one[0]
-    assert rows[0]["changes"][0]["holds"] is True
+    (row,) = json.loads(answered(*asked, "--json"))
+    assert row["sentence"] == one[0]
+    assert (row["ee"], row["index"], row["is"]) == ("right_hand", 2, "MoveObj")
+    assert [each["holds"] for each in row["changes"]] in ([True], [False])
+
+
+def test_why_not_without_a_segment_asks_of_each_that_has_another_name():
+    lines = answered("--why-not", "MoveObjTo", *THESIS).splitlines()
+    headers = [each for each in lines if each.startswith("right_hand/")]
+    assert [each.split()[0][-1] for each in headers] == ["0", "2", "4", "5"]
+    assert headers[0].endswith("Reach")
+    assert all(lines[lines.index(each) + 1].startswith("It would be") for each in headers)
+
+
+def test_json_gives_the_index_of_the_segment_that_an_atom_names_by_its_tick():
+    (told,) = json.loads(answered("right_hand/1", "--json", *THESIS))
+    assert told["reason"]["atom"].startswith("named(seg(right_hand,3)")
+    assert told["reason"]["segments"] == ["right_hand/1"]
 
 
 def test_a_segment_that_there_is_not_is_refused_with_those_there_are():

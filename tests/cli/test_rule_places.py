@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 from capar.cli import app
 from capar.model.errors import CaparError, FileError, RuleError
 from capar_rules.admitting import faults
+from kb.actionary import Actionary
 
 DEMO = str(Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug")
 
@@ -38,6 +39,7 @@ COMMANDS = {
     "rules new": ["Sip", "--from", f"{DEMO}:right_hand/2"],
     "rules show": ["Reach"],
     "rules test": ["sip.lp"],
+    "rules words": [],
     "test": ["sip.motion.toml"],
     "verb": ["carry"],
 }
@@ -106,7 +108,7 @@ def test_a_bad_rule_reaches_the_solver_through_no_command(command, place, monkey
 def test_a_bad_rule_can_still_be_checked_and_removed():
     bad = kept("rules", "bad", BAD)
     told = CliRunner().invoke(app, ["rules", "check", str(bad)])
-    assert (told.exit_code, "unknown" in told.output or "no predicate" in told.output) == (1, True)
+    assert (told.exit_code, "unknown" in told.output or "no predicate" in told.output) == (2, True)
     assert run("rules", "remove", "Bad") == f"removed {bad}\n"
     assert run("rules", "list").startswith("core  ")
 
@@ -162,6 +164,7 @@ def test_a_rule_is_added_beside_the_actionary_that_is_named_and_removed_from_the
     )
     Path("sip.lp").write_text(example + other)
     named = ["--profile", "thesis", "--actionary", "known"]
+    Actionary.open("known").close()
     assert run("rules", "add", "sip.lp", *named) == "added known/rules/sip.lp\n"
     assert "user  Sip" in run("rules", "list", *named)
     with pytest.raises(RuleError, match="already, in known/rules/sip"):
@@ -178,6 +181,83 @@ def test_a_folder_that_is_none_is_refused():
 def test_what_is_no_folder_takes_no_rule():
     with pytest.raises(FileError, match="cannot hold rule files"):
         run("rules", "add", "sip.lp", "--rules", "sip.lp")
+
+
+def test_a_misspelt_actionary_is_refused_and_not_made():
+    for command in (["add", "sip.lp"], ["add", "sip.lp", "--reclassify"]):
+        with pytest.raises(FileError, match=r"konwn: is no Actionary\. `capar observe CAPTURE"):
+            run("rules", *command, "--actionary", "konwn")
+    with pytest.raises(FileError, match="actionary: is no Actionary"):
+        run("rules", "add", "sip.lp", "--reclassify")
+    assert not Path("konwn").exists()
+    assert not Path("actionary").exists()
+
+
+def test_an_actionary_of_the_environment_is_not_made_either(monkeypatch):
+    monkeypatch.setenv("CAPAR_ACTIONARY", "konwn")
+    with pytest.raises(FileError, match="is no Actionary"):
+        run("rules", "add", "sip.lp")
+    assert not Path("konwn").exists()
+
+
+def test_a_projects_folder_of_rules_is_made():
+    with pytest.raises(RuleError, match="lacks an Example"):
+        run("rules", "add", "sip.lp", "--rules", "mine", "--profile", "thesis")
+    assert Path("mine").is_dir()
+
+
+def test_a_rule_on_which_another_rests_stays():
+    sip = kept("rules", "sip", SIP)
+    gulp = SIP.replace("Sip", "Gulp").replace("MoveObj", "Sip").replace('"sip"', '"gulp"')
+    kept("rules", "gulp", gulp)
+    with pytest.raises(RuleError, match=r"stays: Gulp \(rules/gulp.lp\) rests on Sip"):
+        run("rules", "remove", "Sip")
+    assert sip.exists()
+    run("rules", "remove", "Gulp")
+    assert run("rules", "remove", "Sip") == f"removed {sip}\n"
+
+
+def test_a_rule_that_another_asks_about_stays():
+    kept("rules", "sip", SIP)
+    kept(
+        "rules", "sup",
+        '%* Sup: a sip. *%\nprimitive("Sup").\nspecialises("Sup", "MoveObj").\n'
+        'fits(Segment, "Sup") :- fits(Segment, "Sip").\n',
+    )  # fmt: skip
+    with pytest.raises(RuleError, match="Sup"):
+        run("rules", "remove", "Sip")
+
+
+def test_a_file_that_is_no_logic_program_can_be_removed():
+    broken = kept(
+        "rules", "broken", 'primitive("Broken").\nfits(S, "Broken" :- segment(S, _, _).\n'
+    )
+    assert run("rules", "remove", "Broken") == f"removed {broken}\n"
+
+
+def test_a_file_with_faults_exits_with_2():
+    kept(".", "bad", BAD)
+    assert CliRunner().invoke(app, ["rules", "check", "bad.lp"]).exit_code == 2
+    told = CliRunner().invoke(app, ["rules", "test", "sip.lp", "--profile", "thesis"])
+    assert (told.exit_code, "lacks an Example" in told.output) == (2, True)
+
+
+def test_a_taken_name_and_an_unknown_general_are_refused():
+    features = ["--features", "101,101,10,00", "--profile", "thesis"]
+    with pytest.raises(RuleError, match="there is a primitive 'Reach' already"):
+        run("rules", "new", "Reach", *features)
+    with pytest.raises(CaparError, match="Did you mean 'MoveObj'"):
+        run("rules", "new", "Sup", *features, "--general", "MovObj")
+
+
+def test_a_rule_is_drafted_from_a_stored_observation():
+    run("observe", DEMO, "--actionary", "known")
+    drafted = run("rules", "new", "Sip", "--from", "drink_from_mug_tall_man:right_hand/3",
+                  "--actionary", "known")  # fmt: skip
+    assert drafted == run("rules", "new", "Sip", "--from", f"{DEMO}:right_hand/3")
+    with pytest.raises(RuleError, match="say --profile extended"):
+        run("rules", "new", "Sip", "--from", "drink_from_mug_tall_man:right_hand/3",
+            "--actionary", "known", "--profile", "thesis")  # fmt: skip
 
 
 def test_the_rule_of_these_tests_is_sound():

@@ -30,6 +30,7 @@ CONCEPTS = sorted(
         "extended",
         "derived",
         "explaining",
+        "sentences",
     }
 )
 

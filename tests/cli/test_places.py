@@ -1,0 +1,141 @@
+"""Files that the system does not give end a command with one sentence, and so does SIGINT."""
+
+import ctypes
+import errno
+import os
+import signal
+import stat
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from capar.cli._places import REMEDIES, told
+
+DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
+CAPAR = Path(sys.executable).parent / "capar"
+SIP = """%* Sip: it is held to what it touches. *%
+primitive("Sip").
+feature_row("Sip", any, "111", "111", "11", "00").
+verb("Sip", "sip").
+"""
+_OVERRIDES = (1, 2)
+"""CAP_DAC_OVERRIDE and CAP_DAC_READ_SEARCH: by them an administrator needs no rights to files."""
+
+
+def without_overrides() -> None:
+    """Be an administrator no more in what concerns files; for others there is nothing to drop."""
+    if os.geteuid() == 0:
+        libc = ctypes.CDLL(None, use_errno=True)
+        for each in _OVERRIDES:
+            assert libc.prctl(24, each, 0, 0, 0) == 0, os.strerror(ctypes.get_errno())
+
+
+def capar(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("CAPAR_")}
+    return subprocess.run(
+        [str(CAPAR), *map(str, arguments)], cwd=cwd, env=environment, capture_output=True,
+        text=True, check=False, preexec_fn=without_overrides,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def closed(tmp_path: Path) -> Iterator[Path]:
+    """A folder that may be read only, with a rule in it; beside it a rule that may not be read."""
+    place = tmp_path / "ro"
+    place.mkdir()
+    (place / "sip.lp").write_text(SIP)
+    (tmp_path / "new.lp").write_text(SIP.replace("Sip", "Nip"))
+    (tmp_path / "unread").mkdir()
+    (tmp_path / "unread" / "sip.lp").write_text(SIP)
+    (tmp_path / "unread" / "sip.lp").chmod(0)
+    (tmp_path / "unread" / "motion.csv").write_text("time\n")
+    (tmp_path / "unread" / "motion.csv").chmod(0)
+    (tmp_path / "shut").mkdir(mode=0)
+    (tmp_path / "file").touch()
+    place.chmod(stat.S_IRUSR | stat.S_IXUSR)
+    yield tmp_path
+    place.chmod(stat.S_IRWXU)
+    (tmp_path / "shut").chmod(stat.S_IRWXU)
+
+
+FAULTS = (
+    (("rules", "remove", "Sip", "--rules", "ro"), "ro/sip.lp", "Permission denied"),
+    (("rules", "new", "Sip", "--features", "111,111,11,00", "--out", "ro/x.lp"), "ro/x.lp",
+     "Permission denied"),
+    (("rules", "new", "Sip", "--features", "111,111,11,00", "--out", "file/x.lp"), "file/x.lp",
+     "Not a directory"),
+    (("rules", "list", "--rules", "unread"), "unread/sip.lp", "cannot be read"),
+    (("rules", "list", "--rules", "shut"), "shut", "not readable"),
+    (("inspect", "unread/motion.csv"), "unread/motion.csv", "Take the right to read it"),
+    (("observe", DEMO, "--rules", "unread"), "unread/sip.lp", "cannot be read"),
+    (("explain", DEMO, "right_hand/2", "--svg", "ro/k.svg"), "ro/k.svg", "Permission denied"),
+    (("explain", DEMO, "right_hand/2", "--svg", "nowhere/k.svg"), "nowhere/k.svg",
+     "No such file or directory"),
+    (("explain", DEMO, "right_hand/2", "--svg", "ro"), "ro", "Is a directory"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("arguments", "where", "what"), FAULTS)
+def test_what_cannot_be_used_is_named_and_ends_with_two(closed, arguments, where, what):
+    before = sorted(closed.rglob("*.*"))
+    done = capar(*arguments, cwd=closed)
+    assert done.returncode == 2, done.stderr
+    assert "Traceback" not in done.stderr
+    assert where in done.stderr
+    assert what in done.stderr
+    assert sorted(closed.rglob("*.*")) == before
+
+
+def test_rules_that_nobody_named_are_not_left_out_in_silence(closed):
+    (closed / "shut").rename(closed / "rules")
+    done = capar("rules", "list", cwd=closed)
+    (closed / "rules").rename(closed / "shut")
+    assert done.returncode == 2
+    assert done.stderr.startswith("capar: rules: cannot be read: Permission denied. ")
+
+
+def test_a_rule_is_not_added_to_a_folder_that_takes_none(closed):
+    done = capar("rules", "add", "new.lp", "--rules", "ro", cwd=closed)
+    assert done.returncode == 2, done.stderr
+    assert "Traceback" not in done.stderr
+    assert "Permission denied" in done.stderr
+    assert [each.name for each in (closed / "ro").iterdir()] == ["sip.lp"]
+
+
+@pytest.mark.parametrize("number", [*REMEDIES, errno.EIO])
+def test_every_fault_says_what_where_and_what_would_be_right(number):
+    what = os.strerror(number)
+    assert told(OSError(number, what, "a/b")).startswith(f"a/b: cannot be used: {what}. ")
+    assert told(OSError(number, what, "a/b")).count(". ") == 1
+    assert told(OSError(number, what, "a", None, "b")).startswith("a -> b: ")
+    assert told(OSError(number, what)).startswith("cannot be used: ")
+
+
+def test_an_interrupt_is_told_once_without_a_traceback(tmp_path):
+    """The whole group is interrupted, as a terminal does it, while the command reads its input."""
+    fifo = tmp_path / "drink.motion.toml"
+    os.mkfifo(fifo)
+    process = subprocess.Popen(
+        [str(CAPAR), "test", str(fifo)], cwd=tmp_path, text=True, start_new_session=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    with fifo.open("w"):  # opens once the command has begun to read
+        time.sleep(0.2)
+        os.killpg(process.pid, signal.SIGINT)
+        out, errors = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert out == ""
+    assert errors == "capar: interrupted; nothing was left half-written\n"
+
+
+def test_output_that_nobody_reads_on_is_no_fault(tmp_path):
+    done = subprocess.run(
+        ["sh", "-c", f"{CAPAR} rules list --json | head -c 1"],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.stdout == "["
+    assert done.stderr == ""

@@ -1,0 +1,229 @@
+"""Sentences about motion and rest, recomputed from streams."""
+
+import numpy as np
+from motions.rolling import CAN
+from scipy.spatial.transform import Rotation
+
+from capar.model.facts import Flies, Rolls, Swings, Touching
+from recomputed.known import MERGE_S, NAME, ROUNDED, TIME, Known, near
+
+GONE_M, GONE_RAD = 0.009, 0.07
+"""What has left its place is further away than this [m], [rad]."""
+
+SETTLED_M = 0.015
+"""An end-effector that rests sways less than this [m]."""
+
+SETTLED_RAD = 0.1
+"""A head that turns to another thing turns by more [rad]."""
+
+GRAVITY = np.array([0.0, 0.0, -9.81])
+
+
+def moved(known: Known, what: str, distance: str, first: str, last: str) -> bool:
+    """It is displaced by so much, or, where no distance is told, elsewhere meanwhile."""
+    begin, end = known.frame(first), known.frame(last)
+    place = known.stream(what).positions
+    way = float(np.linalg.norm(place[end] - place[begin]))
+    if distance:
+        return abs(way - float(distance)) < 0.02
+    far = [_apart(known, what, begin, frame) for frame in range(begin, end + 1)]
+    return way < 0.015 and max(far) > 1.0
+
+
+def stayed(known: Known, what: str, first: str, last: str) -> bool:
+    """It is where it is at the end all along, but for what moves in a merged border."""
+    begin, end = known.frame(first), known.frame(last)
+    inner = range(min(begin + round(known.reach), end), max(end - round(known.reach), begin) + 1)
+    middle = (begin + end) // 2
+    return all(_apart(known, what, frame, middle) <= 1.2 for frame in inner)
+
+
+def _apart(known: Known, what: str, one: int, other: int) -> float:
+    """How far it is at one frame from where it is at another, by the least that counts [1]."""
+    stream = known.stream(what)
+    way = np.linalg.norm(stream.positions[one] - stream.positions[other])
+    turn = (known.turn(what, one) * known.turn(what, other).inv()).magnitude()
+    return max(float(way) / GONE_M, float(turn) / GONE_RAD)
+
+
+def measured(known: Known, what: str, first: str, last: str) -> bool:
+    return any(
+        near(each.first, known.at(first)) and near(each.last, known.at(last))
+        for each in known.moving(what)
+    )
+
+
+def left_place(known: Known, what: str, at: str, counts: str) -> bool:
+    """Where it rested shortly before it is not any more; what counts is that or a bit earlier."""
+    early = known.at(at) - known.at(counts)
+    return -ROUNDED <= early <= MERGE_S * known.rate + 1 and _parts(known, what, at, -1)
+
+
+def came_to_place(known: Known, what: str, at: str, counts: str) -> bool:
+    """The same backwards."""
+    late = known.at(counts) - known.at(at)
+    return -ROUNDED <= late <= MERGE_S * known.rate + 1 and _parts(known, what, at, 1)
+
+
+def _parts(known: Known, what: str, at: str, sign: int) -> bool:
+    """It is just out of the place where it is slowest within a third of a second."""
+    frame, last = known.frame(at), len(known.capture.times) - 1
+    frames = [frame + sign * each for each in range(round(0.35 * known.rate))]
+    side = [each for each in frames if 0 <= each <= last]
+    steps = [_apart(known, what, each, max(each - 1, 0)) for each in side]
+    rest = side[int(np.argmin(steps))]
+    return 0.8 < _apart(known, what, rest, frame) < 2.5 and min(steps) < 0.1
+
+
+def rested(known: Known, what: str, first: str, last: str) -> bool:
+    begin, end = known.frame(first), known.frame(last)
+    place = known.stream(what).positions[begin : end + 1]
+    return bool(np.linalg.norm(place - np.median(place, axis=0), axis=1).max() < SETTLED_M)
+
+
+def rested_free(known: Known, what: str, first: str, last: str) -> bool:
+    begin, end = known.at(first), known.at(last)
+    hand = [each for each in known.of(Touching) if each.body == what.replace(" ", "_")]
+    free = all(each.last < begin + ROUNDED or each.first > end - ROUNDED for each in hand)
+    return free and rested(known, what, first, last)
+
+
+def measured_rest(known: Known, what: str, first: str, last: str) -> bool:
+    return rested(known, what, first, last) and any(
+        near(each.first, known.at(first)) and near(each.last, known.at(last))
+        for each in known.resting(what)
+    )
+
+
+def came_to_rest(known: Known, what: str, at: str) -> bool:
+    return _turned_from_rest(known, what, known.frame(at), 1)
+
+
+def left_rest(known: Known, what: str, at: str) -> bool:
+    return _turned_from_rest(known, what, known.frame(at), -1)
+
+
+def _turned_from_rest(known: Known, what: str, frame: int, sign: int) -> bool:
+    """On the one side of the instant it stays, on the other it was elsewhere."""
+    place, last = known.stream(what).positions, len(known.capture.times) - 1
+    after = [min(max(frame + sign * each, 0), last) for each in range(round(0.3 * known.rate))]
+    before = min(max(frame - sign * round(0.5 * known.rate), 0), last)
+    stays = np.linalg.norm(place[after] - place[frame], axis=1).max() < SETTLED_M
+    came = np.linalg.norm(place[before] - place[frame]) > SETTLED_M
+    turned = (known.turn(what, before) * known.turn(what, frame).inv()).magnitude() > SETTLED_RAD
+    return bool(stays and (came or turned))
+
+
+def turned_back(known: Known, what: str, at: str) -> bool:
+    """Its height has an extremum there, and is well away from it before and after."""
+    frame, height = known.frame(at), known.stream(what).positions[:, 2]
+    within = round(0.7 * known.rate)
+    sides = (height[max(frame - within, 0) : frame + 1], height[frame : frame + within])
+    for sign in (1.0, -1.0):
+        top = all((sign * (height[frame] - side)).min() > -0.003 for side in sides)
+        if top and all((sign * (height[frame] - side)).max() > 0.02 for side in sides):
+            return True
+    return False
+
+
+def turned_round(known: Known, what: str, at: str) -> bool:
+    """It is slower than before and after."""
+    speed = np.linalg.norm(np.gradient(known.stream(what).positions, axis=0), axis=1) * known.rate
+    frame, side = known.frame(at), round(0.15 * known.rate)
+    return bool(speed[frame] < 0.3 and speed[frame] < speed[frame - side] + 0.02
+                and speed[frame] < speed[frame + side] + 0.02)  # fmt: skip
+
+
+def to_and_fro(known: Known, what: str, first: int, last: int) -> bool:
+    """It turns back at least four times along an axis, a centimetre or more each time."""
+    place = known.stream(what).positions[first : last + 1]
+    return max(_turning_points(place[:, axis]) for axis in range(3)) >= 4
+
+
+def _turning_points(values: np.ndarray) -> int:
+    signs = np.sign(np.diff(values))
+    extrema = [values[0], *values[1:-1][np.diff(signs) != 0], values[-1]]
+    return int((np.abs(np.diff(extrema)) > 0.01).sum()) - 1
+
+
+def swung(known: Known, what: str) -> bool:
+    return to_and_fro(known, what, known.segment.first, known.segment.last)
+
+
+def measured_swings(known: Known, what: str, first: str, last: str) -> bool:
+    found = any(
+        each.body == what.replace(" ", "_")
+        and near(each.first, known.at(first))
+        and near(each.last, known.at(last))
+        for each in known.of(Swings)
+    )
+    return found and to_and_fro(known, what, known.frame(first), known.frame(last))
+
+
+def rolled(known: Known, what: str) -> bool:
+    """The can's turn about its axis is its way over its radius."""
+    ends = [known.segment.first, known.segment.last]
+    way = np.linalg.norm(np.diff(known.stream(what).positions[ends], axis=0))
+    turns = Rotation.concatenate([known.turn(what, each) for each in ends])
+    return bool(abs((turns[1] * turns[0].inv()).magnitude() - way / CAN[0]) < 0.05 and way > 0.02)
+
+
+def measured_rolling(known: Known, what: str, first: str, last: str) -> bool:
+    return any(
+        near(each.first, known.at(first)) and near(each.last, known.at(last))
+        for each in known.of(Rolls)
+        if each.object == what.replace(" ", "_")
+    )
+
+
+def falls(known: Known, what: str, first: float, last: float) -> bool:
+    """Its acceleration between two frames is gravity's."""
+    place = known.stream(what).positions[round(first) : round(last) + 1]
+    found = np.diff(place, n=2, axis=0).mean(axis=0) * known.rate**2
+    return bool(np.linalg.norm(found - GRAVITY) < 0.3 * 9.81)
+
+
+def measured_fall(known: Known, what: str, first: str, last: str) -> bool:
+    begin, end = known.at(first), known.at(last)
+    measured = any(near(each.first, begin) and near(each.last, end) for each in known.of(Flies))
+    return measured and falls(known, what, begin, end)
+
+
+def flew_until_touched(known: Known) -> bool:
+    """The contact that begins where the segment ends stops its fall."""
+    what = known.segment.objects[0]
+    begins = [
+        each.first
+        for each in known.touching(known.segment.ee, what)
+        if abs(each.first - known.segment.last) <= known.reach
+    ]
+    return any(falls(known, what, each - 0.2 * known.rate, each - 2) for each in begins)
+
+
+def flew_on(known: Known) -> bool:
+    what = known.segment.objects[0]
+    let_go = max(each.last for each in known.touching(known.segment.ee, what)
+                 if each.first < known.segment.last)  # fmt: skip
+    return falls(known, what, let_go + 2, let_go + 0.3 * known.rate)
+
+
+FORMS = (
+    (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),
+    (rf"the {NAME} stayed where it was between {TIME} and {TIME}", stayed),
+    (rf"motion of the {NAME} to and fro was measured from {TIME} to {TIME}", measured_swings),
+    (rf"motion of the {NAME} was measured from {TIME} to {TIME}", measured),
+    (rf"rolling of the {NAME} was measured from {TIME} to {TIME}", measured_rolling),
+    (rf"free fall of the {NAME} was measured from {TIME} to {TIME}", measured_fall),
+    (rf"rest of the {NAME} was measured from {TIME} to {TIME}", measured_rest),
+    (rf"the {NAME} turned as it went, without slipping", rolled),
+    (rf"the {NAME} was moved to and fro", swung),
+    (rf"the {NAME} had left its place by {TIME}, which counts from {TIME} on", left_place),
+    (rf"the {NAME} had come to its place by {TIME}, which counts from {TIME} on", came_to_place),
+    (rf"the {NAME} rested and touched nothing from {TIME} to {TIME}", rested_free),
+    (rf"the {NAME} came to rest at {TIME}", came_to_rest),
+    (rf"the {NAME} began to move at {TIME}", left_rest),
+    (rf"the {NAME} turned back at {TIME}", turned_back),
+    (rf"the {NAME} turned round at {TIME}", turned_round),
+    (r"the object flew until it was touched", flew_until_touched),
+    (r"it flew on when it was let go", flew_on),
+)

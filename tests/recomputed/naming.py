@@ -1,0 +1,256 @@
+"""Sentences about features and names: relations from contacts, names as authors wrote them."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import fields
+
+from capar.model.facts import (
+    Bears,
+    Displaced,
+    LookingAt,
+    Moving,
+    Resting,
+    Reverses,
+    Touching,
+    ZeroCrossing,
+)
+from capar.model.par import UNKNOWN
+from recomputed.known import NAME, TIME, Known, near
+from recomputed.others import met_fast
+
+Row = tuple[str, str, str, str]
+
+PUBLISHED: dict[str, tuple[Row, ...]] = {
+    "Reach": (("0", "1", "0", "0"),),
+    "Hit": (("0", "1", "0", "1"),),
+    "Touch": (("1", "1", "0", "0"),),
+    "TouchWith": (("101", "101", "00", "00"),),
+    "MoveObj": (("101", "101", "10", "00"),),
+    "MoveObjTo": (("100", "101", "10", "00"),),
+    "ResumePosture": (("1", "0", "0", "0"),),
+}
+"""The feature table of the thesis (Fig 4.15)."""
+
+FURTHER: dict[str, tuple[Row, ...]] = {
+    "Reach": (("0", "1", "1", "0"),),
+    "Hit": (("0", "1", "1", "1"),),
+    "TouchWith": (("101", "101", "01", "00"),),
+    "MoveObj": (("1", "1", "1", "0"), ("101", "101", "11", "00")),
+    "MoveObjTo": (("100", "101", "11", "00"),),
+    "ResumePosture": (("1", "0", "1", "0"),),
+}
+"""What the extended profile adds to it: of one object, and of what moves itself."""
+
+CHANGES = (Touching, Moving, Displaced, Resting, Reverses, LookingAt, Bears, ZeroCrossing)
+"""Measurements whose begin or end may be a border."""
+
+
+def table(known: Known) -> dict[str, tuple[Row, ...]]:
+    if known.thesis:
+        return PUBLISHED
+    return {each: PUBLISHED[each] + FURTHER.get(each, ()) for each in PUBLISHED}
+
+
+def borders(known: Known, first: str, last: str) -> bool:
+    """Some segment lies there, and at either end something changes, or the capture ends."""
+    known_ends = any(
+        near(each.first, known.at(first)) and near(each.last, known.at(last))
+        for each in known.seen.observation.segments
+    )
+    return known_ends and all(_changes(known, known.at(each)) for each in (first, last))
+
+
+def _changes(known: Known, frame: float) -> bool:
+    ends = (0, len(known.capture.times) - 1)
+    marks = {*ends, *(mark for fact in known.facts for mark in _marks(fact))}
+    return any(near(mark, frame) for mark in marks)
+
+
+def _marks(fact: object) -> Iterable[int]:
+    if isinstance(fact, CHANGES):
+        for field in fields(fact):
+            if field.name in ("first", "last", "frame"):
+                yield getattr(fact, field.name)
+
+
+def features(known: Known, *strings: str) -> bool:
+    """Each bit of the four strings, from contacts and motions around the borders."""
+    start, end, change, force = strings
+    objects = known.segment.objects
+    pairs = [(known.segment.ee, each) for each in objects]
+    pairs += [(objects[0], each) for each in objects[1:]]
+    if [len(each) for each in strings] != [max(len(pairs), 0)] * 2 + [len(objects)] * 2:
+        return False
+    sides = ((start, known.segment.first), (end, known.segment.last))
+    related = all(
+        _related(known, pair, frame, bit == "1")
+        for bits, frame in sides
+        for pair, bit in zip(pairs, bits, strict=True)
+    )
+    changed = all(_moves(known, each, bit == "1")
+                  for each, bit in zip(objects, change, strict=True))  # fmt: skip
+    forced = all(_forced(known, each, bit == "1")
+                 for each, bit in zip(objects, force, strict=True))  # fmt: skip
+    return related and changed and forced
+
+
+def _related(known: Known, pair: tuple[str, str], frame: int, holds: bool) -> bool:
+    """Around the border they touch at some frame, or at some frame do not."""
+    first, last = frame - known.reach, frame + known.reach
+    spans = known.touching(*pair)
+    if holds:
+        return any(each.first <= last and each.last >= first for each in spans)
+    low, high = max(first, 0.0), min(last, len(known.capture.times) - 1.0)
+    return not any(each.first <= low and each.last >= high for each in spans)
+
+
+def _moves(known: Known, what: str, moves: bool) -> bool:
+    """It is mobile and moves in the segment; what else moves lies in a merged border."""
+    first, last = known.segment.first, known.segment.last
+    shared = [min(each.last, last) - max(each.first, first) for each in known.moving(what)]
+    mobile = known.capture.tag_object(what).tag == "mobile"
+    if moves:
+        return mobile and max(shared, default=0) > 0
+    return not mobile or max(shared, default=0) <= known.reach
+
+
+def _forced(known: Known, what: str, forced: bool) -> bool:
+    """Force passes where a contact begins, fast or since the user says so."""
+    begins = any(
+        abs(each.first - known.segment.last) <= known.reach
+        for each in known.touching(known.segment.ee, what)
+    )
+    if forced:
+        return begins and (known.capture.force_transfer or met_fast(known, what))
+    return not (begins and known.capture.force_transfer)
+
+
+def row(known: Known, what: str, *strings: str) -> bool:
+    """The table has that row, and so have the contacts and motions of what was named by it."""
+    named = known.segment.name != UNKNOWN
+    return strings in table(known)[what] and (not named or features(known, *strings))
+
+
+def written(known: Known, what: str) -> bool:
+    """The author of the motion wrote the segment's name, which is that one or a more special one.
+
+    Nobody writes down who rests before or after: rests are left out on both sides.
+    """
+    plan = [each for each in known.steps[known.segment.ee] if each != "Rest"]
+    mine = [each for each in known.seen.observation.segments
+            if each.ee == known.segment.ee and each.name != "Rest"]  # fmt: skip
+    names = (known.segment.name, *known.segment.general)
+    if known.segment.name == "Rest":
+        return what in names
+    place = [each.index for each in mine].index(known.segment.index)
+    return len(plan) == len(mine) and plan[place] == known.segment.name and what in names
+
+
+def fits(known: Known, what: str) -> bool:
+    """It is so written, and where the table has the name, a row of it is the segment's own.
+
+    Of several objects at a time no row speaks: of them what moves and what is touched counts.
+    """
+    found = known.segment.features
+    own = (found.rel_start, found.rel_end, found.change_loc, found.force)
+    rows = table(known).get(what)
+    return written(known, what) and (rows is None or own in rows or _passes_on(known, what))
+
+
+def _passes_on(known: Known, what: str) -> bool:
+    """A reach from one thing to another: it touches one at the start, and another at the end."""
+    spans = [each for each in known.of(Touching) if each.body == known.segment.ee]
+    ends = [
+        {each.other for each in spans if _around(known, each, frame)}
+        for frame in (known.segment.first, known.segment.last)
+    ]
+    return what == "Reach" and bool(ends[1] - ends[0])
+
+
+def _around(known: Known, each: Touching, frame: int) -> bool:
+    return each.first <= frame + known.reach and each.last >= frame - known.reach
+
+
+def overruled_by_none(known: Known, what: str) -> bool:
+    return what == known.segment.name and written(known, what)
+
+
+def listed(known: Known, what: str) -> bool:
+    """The end-effector touches it at a border, or looks at it and touches nothing."""
+    held = any(
+        each.first <= frame + known.reach and each.last >= frame - known.reach
+        for each in known.touching(known.segment.ee, what)
+        for frame in (known.segment.first, known.segment.last)
+    )
+    return held or any(each.sensor == known.segment.ee for each in known.looking(what))
+
+
+def subordinate(known: Known, what: str) -> bool:
+    """The object that the end-effector has touches it where the segment ends."""
+    return any(
+        each.first <= known.segment.last + known.reach
+        and each.last >= known.segment.last - known.reach
+        for each in known.touching(known.segment.objects[0], what)
+    )
+
+
+def changes_alike(known: Known, side: str) -> bool:
+    """The object's motion begins, ends or turns, or a contact of it does, near the border."""
+    border = known.segment.first if side == "begin" else known.segment.last
+    what = known.segment.objects[0]
+    frames = {frame for each in known.moving(what) for frame in (each.first, each.last)}
+    frames |= {
+        frame
+        for each in known.of(Touching)
+        if each.body == what
+        for frame in (each.first, each.last)
+    }
+    frames |= {each.frame for each in known.of(Reverses) if each.object == what}
+    return any(abs(each - border) <= known.reach for each in frames)
+
+
+def _agreeing(known: Known, level: int) -> set[str]:
+    """Names with a row whose first so many features are the segment's own."""
+    found = known.segment.features
+    own = (found.rel_start, found.rel_end, found.change_loc, found.force)
+    assert features(known, *own)
+    return {
+        each
+        for each, rows in table(known).items()
+        if any(row[:level] == own[:level] for row in rows)
+    }
+
+
+def parted(known: Known, level: str) -> bool:
+    """Some row agrees above the level, and none down to it."""
+    unknown = known.segment.name == UNKNOWN and not _agreeing(known, 4)
+    above = int(level) == 1 or bool(_agreeing(known, int(level) - 1))
+    return unknown and above and not _agreeing(known, int(level))
+
+
+def agrees(known: Known, what: str, level: str) -> bool:
+    return what in _agreeing(known, int(level))
+
+
+def nearest(known: Known, what: str) -> bool:
+    deepest = max(level for level in range(4) if level == 0 or _agreeing(known, level))
+    return what in _agreeing(known, deepest)
+
+
+FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
+    (rf"the segment lies between {TIME} and {TIME}", borders),
+    (
+        r"the relations are ?(\d*) at the start and ?(\d*) at the end, "
+        r"change of location is ?(\d*), force is ?(\d*)",
+        features,
+    ),
+    (r"(\w+) is known by the features (\d+), (\d+), (\d+) and (\d+)", row),
+    (r"it is (\w+)", written),
+    (r"it fits (\w+)", fits),
+    (r"nothing that fits is more specific than (\w+)", overruled_by_none),
+    (rf"the {NAME} is its dominant object", listed),
+    (rf"the {NAME} is its subordinate object", subordinate),
+    (r"both segments (begin|end) with the same change of the object", changes_alike),
+    (r"it agrees with no known primitive from level (\d) of the decision tree on", parted),
+    (r"up to there it agrees with (\w+)", nearest),
+    (r"it agrees with (\w+) down to level (\d)", agrees),
+)
