@@ -1,6 +1,6 @@
 """What every fact is: a typed value that is an atom of the rules."""
 
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass, fields
 from functools import cache
 from typing import Any, ClassVar, Self, cast, get_type_hints
 
@@ -28,7 +28,8 @@ class Fact:
         Raises:
             FactError: An integer that the solver cannot hold.
         """
-        return clingo.Function(self.predicate, [_symbol(each) for each in astuple(self)])
+        values = (getattr(self, name) for name in _arguments(cast(Any, type(self))))
+        return clingo.Function(self.predicate, [_symbol(each) for each in values])
 
     @classmethod
     def from_symbol(cls, symbol: clingo.Symbol) -> Self:
@@ -65,6 +66,11 @@ def _value(symbol: clingo.Symbol, kind: type) -> Any:
     if symbol.type is clingo.SymbolType.Function and kind is str and not symbol.arguments:
         return symbol.name
     raise FactError(f"{symbol} is no {kind.__name__}")
+
+
+@cache
+def _arguments(cls: Any) -> tuple[str, ...]:
+    return tuple(each.name for each in fields(cls))
 
 
 @cache
