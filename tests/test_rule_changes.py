@@ -21,8 +21,6 @@ from capar.rule_changes import (
     renamed,
     stored,
 )
-from capar.rule_drafts import rule_from_features, rule_from_segment
-from capar_rules.authoring import try_rule
 from capar_rules.placing import unbroken
 from capar_rules.profiles import profile
 from kb.actionary import Actionary
@@ -289,24 +287,3 @@ def test_the_commands_say_the_same(kept):
     refused = CliRunner().invoke(app, ["rules", "add", lift, *options, *rules])
     assert isinstance(refused.exception, CaparError)
     assert "lacks an Example" in str(refused.exception)
-
-
-def test_a_drafted_rule_names_the_segment_that_it_was_drafted_from(tmp_path):
-    text = rule_from_segment(
-        "Sip", f"{DEMO}:right_hand/2", rules=profile("thesis"), general="MoveObj"
-    )
-    path = tmp_path / "sip.lp"
-    path.write_text(text)
-    assert 'feature_row("Sip", hand, "101", "101", "10", "00").' in text
-    failures = try_rule(path, base="thesis")
-    assert failures == (f"{path}: it lacks a Counter-example in which Sip does not occur",)
-
-
-def test_a_feature_set_in_letters_is_read_or_refused():
-    assert 'feature_row("Odd", any, "1", "1", "1", "0").' in rule_from_features(
-        "Odd", "1,1,1,0", rules=profile("thesis")
-    )
-    with pytest.raises(CaparError, match="write START,END,CHANGE,FORCE"):
-        rule_from_features("Odd", "1,1", rules=profile("thesis"))
-    with pytest.raises(CaparError, match="over 1 objects"):
-        rule_from_features("Odd", "11,1,1,0", rules=profile("thesis"))

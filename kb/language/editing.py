@@ -44,9 +44,8 @@ def _leading_up(told: Sequence[Clause]) -> list[Clause]:
     """The clauses, without one that the next says more of: ``move it``, ``move it to the bowl``."""
     out: list[Clause] = []
     for clause in told:
-        if out and _more_of(clause, out[-1]) and out[-1].count == 1:
-            clause = replace(clause, start_s=out.pop().start_s)  # noqa: PLW2901 (the same deed)
-        out.append(clause)
+        same = bool(out) and _more_of(clause, out[-1]) and out[-1].count == 1
+        out.append(replace(clause, start_s=out.pop().start_s) if same else clause)
     return out
 
 

@@ -1,9 +1,12 @@
 """Flicker is resolved to the fewest changes that explain what was measured, and told."""
 
+from collections.abc import Callable
 from itertools import chain, combinations
+from random import Random
 
 import motions
 import pytest
+from flickering import flickering
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -166,7 +169,7 @@ def test_no_other_course_costs_less(facts: tuple[Fact, ...]) -> None:
 @settings(max_examples=30, deadline=None)
 @given(facts=courses(), random=st.randoms(use_true_random=False))
 def test_the_measurements_can_be_told_again_and_their_order_does_not_matter(
-    facts: tuple[Fact, ...], random: object
+    facts: tuple[Fact, ...], random: Random
 ) -> None:
     found = steady(facts)
     for name in ("mug", "jar"):
@@ -180,25 +183,8 @@ def test_the_measurements_can_be_told_again_and_their_order_does_not_matter(
             frame for first, last in contacts(facts, other=name) for frame in range(first, last + 1)
         }
     shuffled = list(facts)
-    random.shuffle(shuffled)  # type: ignore[attr-defined]
+    random.shuffle(shuffled)
     assert set(steady(shuffled)) == set(found)
-
-
-def flickering(facts: tuple[Fact, ...], rate_hz: float, every_s: float) -> tuple[Fact, ...]:
-    """The facts with a tenth of a second lost of each contact of a hand, again and again."""
-    hands = {each.ee for each in facts if isinstance(each, Link)}
-    gap, period = round(0.1 * rate_hz), round(every_s * rate_hz)
-    found: list[Fact] = []
-    for each in facts:
-        if not isinstance(each, Touching) or each.body not in hands:
-            found.append(each)
-            continue
-        first = each.first
-        while each.last - first > period + 2 * gap:
-            found.append(Touching(each.body, each.other, first, first + period - 1))
-            first += period + gap
-        found.append(Touching(each.body, each.other, first, each.last))
-    return tuple(found)
 
 
 @pytest.mark.parametrize("every_s", [0.21, 0.34, 0.55])
@@ -207,11 +193,13 @@ def flickering(facts: tuple[Fact, ...], rate_hz: float, every_s: float) -> tuple
     [motions.drink_from_mug, motions.touch_cycle, motions.pick_up_with_both_hands],
     ids=lambda each: each.__name__,
 )
-def test_lost_contact_does_not_change_the_steps(action: object, every_s: float) -> None:
-    """What the thesis called luck: without the rules, the same losses cut every hold in pieces."""
-    capture = action(motions.WOMAN).capture  # type: ignore[operator]
+def test_lost_contact_does_not_change_the_steps(
+    action: Callable[..., motions.Trial], every_s: float
+) -> None:
+    """Without the rules, the same losses cut every hold in pieces."""
+    capture = action(motions.WOMAN).capture
     facts = extract(capture).facts
-    lost = flickering(facts, capture.rate_hz, every_s)
+    lost = flickering(facts, capture.rate_hz, every_s=every_s)
     whole, mended, cut = (
         [[each.name for each in link.segments] for link in infer(each, profile=profile()).links]
         for each in (facts, steady(lost), lost)
@@ -229,7 +217,7 @@ def test_it_can_be_switched_off_and_is_off_in_the_thesis() -> None:
 
 def test_an_explanation_says_what_was_doubted() -> None:
     capture = motions.touch_cycle(motions.WOMAN).capture
-    facts = steady(flickering(extract(capture).facts, capture.rate_hz, 0.34))
+    facts = steady(flickering(extract(capture).facts, capture.rate_hz))
     (link,) = infer(facts, profile=profile()).links
     explainer = Explainer(facts, profile=profile())
     told = {each.name: explainer.explain(each).summary for each in link.segments}

@@ -6,6 +6,7 @@ from functools import cache
 
 import motions
 import numpy as np
+from flickering import flickering
 from motions import encounters, figure, shapes, uses
 from motions.handled import BLOCK, Leg, Stage, beside, handle, place
 from motions.paths import Still, pose
@@ -67,23 +68,6 @@ def told(name: str) -> Told:
         tuple(Known(seen, facts, each, trial.capture, steps) for each in observation.segments),
         tuple(explainer.explain(each) for each in observation.segments),
     )
-
-
-def flickering(facts: tuple[Fact, ...], rate_hz: float) -> tuple[Fact, ...]:
-    """A tenth of a second is lost of each contact of a hand, again and again."""
-    hands = {each.ee for each in facts if isinstance(each, Link)}
-    gap, period = round(0.1 * rate_hz), round(0.34 * rate_hz)
-    found: list[Fact] = []
-    for each in facts:
-        if isinstance(each, Touching) and each.body in hands:
-            first = each.first
-            while each.last - first > period + 2 * gap:
-                found.append(replace(each, first=first, last=first + period - 1))
-                first += period + gap
-            found.append(replace(each, first=first))
-        else:
-            found.append(each)
-    return tuple(found)
 
 
 def chattering(facts: tuple[Fact, ...], rate_hz: float) -> tuple[Fact, ...]:
