@@ -22,11 +22,11 @@ from capar_rules.statics import Known
 from capar_rules.syntax import Place
 from capar_rules.trials import safety_findings, world_findings
 
-CPU_S = 10
-"""How long a check may compute [s]."""
+CPU_S = 30
+"""How long a check may compute [s]: a sound file needs about 5 s, on a slow machine 10 s."""
 
-WALL_S = 40.0
-"""How long it may take [s]."""
+WALL_S = 90.0
+"""How long it may take, beside other work [s]."""
 
 DONE = "done"
 """What a child says last, once it has told everything."""

@@ -75,13 +75,13 @@ def brave(text: str, shown: Iterable[Signature]) -> frozenset[Atom]:
         RuleError: The program has a fault, or no answer.
     """
     control = _grounded(_showing(text, shown), ["--enum-mode=brave", "--models=0"])
-    found: list[frozenset[Atom]] = []
     with control.solve(yield_=True) as handle:
-        for model in handle:
-            found[:] = [_atoms(model)]
-    if not found:
-        raise RuleError("these rules contradict each other: they have no answer")
-    return found[0]
+        for _ in handle:
+            pass  # each answer adds to what the ones before have shown
+        last = handle.last()
+        if last is None:
+            raise RuleError("these rules contradict each other: they have no answer")
+        return _atoms(last)
 
 
 def _showing(text: str, shown: Iterable[Signature]) -> str:
