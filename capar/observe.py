@@ -161,6 +161,7 @@ def _locations(
         yield ConstraintLocation(
             action=segment.name,
             purpose=segment.purpose,
+            ee=segment.ee,
             side=sides[segment.ee],
             frame=place.frame,
             dominant=place.dominant,

@@ -205,6 +205,7 @@ class CAPAR(metaclass=Closed):
     Gap: NamedNode
     Moving: NamedNode
     LookingAt: NamedNode
+    Look: NamedNode
     ForceTransfer: NamedNode
     Intended: NamedNode
     segment: NamedNode
@@ -233,6 +234,8 @@ class CAPAR(metaclass=Closed):
     goalName: NamedNode
     tagName: NamedNode
     rank: NamedNode
+    look: NamedNode
+    when: NamedNode
     # provenance.ttl
     Observation: NamedNode
     Capture: NamedNode

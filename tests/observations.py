@@ -299,6 +299,7 @@ def location(segment: Segment) -> ConstraintLocation:
     return ConstraintLocation(
         action=segment.name,
         purpose=segment.purpose,
+        ee=segment.ee,
         side=segment.ee.partition("_")[0],
         frame=segment.last,
         dominant=segment.objects[0] if two else "",

@@ -106,6 +106,9 @@ class ConstraintLocation:
 
     action: str
     purpose: str
+    ee: str
+    """The end-effector that made it."""
+
     side: str
     frame: int
     dominant: str

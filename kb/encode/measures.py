@@ -16,32 +16,39 @@ if TYPE_CHECKING:
 
 
 def locations(
-    out: Statements, observation: "Observation", objects: dict[str, NamedNode]
+    out: Statements,
+    observation: "Observation",
+    agents: dict[str, NamedNode],
+    objects: dict[str, NamedNode],
 ) -> list[NamedNode]:
     """Every constraint location, with the kinds of objects that it is kept with."""
     kinds = {each.name: kind_of(each) for each in observation.objects}
+    ended = {
+        (each.ee, each.last, each.name): segment_node(out.about, each.ee, each.index)
+        for link in observation.links
+        for each in link.segments
+    }
     return [
-        _location(out, index, each, _segment(out, observation, each), objects=objects, kinds=kinds)
+        _location(
+            out,
+            index,
+            each,
+            {
+                CAPAR.agent: agents[observation.performer(each.ee)],
+                CAPAR.ofSegment: ended.get((each.ee, each.frame, each.action)),
+            },
+            objects=objects,
+            kinds=kinds,
+        )
         for index, each in enumerate(observation.locations)
     ]
-
-
-def _segment(
-    out: Statements, observation: "Observation", value: ConstraintLocation
-) -> NamedNode | None:
-    """The segment at whose end the constraint was made."""
-    for link in observation.links:
-        for each in link.segments:
-            if (link.side, each.last, each.name) == (value.side, value.frame, value.action):
-                return segment_node(out.about, each.ee, each.index)
-    return None
 
 
 def _location(
     out: Statements,
     index: int,
     value: ConstraintLocation,
-    segment: NamedNode | None,
+    made: Said,
     *,
     objects: dict[str, NamedNode],
     kinds: dict[str, str],
@@ -51,7 +58,8 @@ def _location(
 
     said: Said = {
         CAPAR.index: index,
-        CAPAR.ofSegment: segment,
+        **made,
+        CAPAR.ee: value.ee,
         CAPAR.action: action(out, value.action),
         CAPAR.actionName: value.action,
         CAPAR.purpose: value.purpose,

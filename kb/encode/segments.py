@@ -119,6 +119,7 @@ def _segment(
         CAPAR.beginsWith: _borders(out, node, "begin", seen.begins),
         CAPAR.endsWith: _borders(out, node, "end", seen.ends),
         CAPAR.placement: _placements(out, node, seen.prepositions),
+        CAPAR.look: _looks(out, node, seen.looks, objects),
         CAPAR.purpose: seen.purpose,
         CAPAR.next: follows,
         MEETS: follows,
@@ -149,6 +150,23 @@ def _placements(
             {CAPAR.preposition: preposition, CAPAR.body: body, CAPAR.other: other},
         )
         for index, (preposition, body, other) in enumerate(prepositions)
+    ]
+
+
+def _looks(
+    out: Statements,
+    of: NamedNode,
+    looks: tuple[tuple[str, str], ...],
+    objects: dict[str, NamedNode],
+) -> list[NamedNode]:
+    return [
+        out.say(
+            names.part(of, "look", index),
+            (CAPAR.Look,),
+            {CAPAR.seen: objects[seen], CAPAR.when: when},
+        )
+        for index, (seen, when) in enumerate(looks)
+        if seen in objects
     ]
 
 

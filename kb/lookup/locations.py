@@ -25,21 +25,22 @@ WHERE {{
   ?place {CAPAR.side} ?side .
 }}"""
 
-_DETAIL = f"""SELECT ?place ?observation ?agent ?action ?purpose ?side ?frame
-  ?dominant ?goal ?ee ?at ?seen ?view
+_DETAIL = f"""SELECT ?place ?observation ?agent ?action ?purpose ?ee ?side ?frame
+  ?dominant ?goal ?held ?at ?seen ?view
 WHERE {{
   VALUES ?place {{ @places@ }}
   ?place {CAPAR.actionName} ?action ;
+    {CAPAR.ee} ?ee ;
+    {CAPAR.agent}/{CAPAR.name} ?agent ;
     {CAPAR.side} ?side ;
     {CAPAR.frame} ?frame .
   ?in {CAPAR.location} ?place ;
-    {CAPAR.capture}/{CAPAR.name} ?observation ;
-    {CAPAR.agent}/{CAPAR.name} ?agent .
+    {CAPAR.capture}/{CAPAR.name} ?observation .
   OPTIONAL {{ ?place {CAPAR.purpose} ?purpose }}
   OPTIONAL {{ ?place {CAPAR.dominant}/{CAPAR.name} ?dominant }}
   OPTIONAL {{ ?place {CAPAR.goal}/{CAPAR.name} ?goal }}
   OPTIONAL {{ ?place {CAPAR.seen}/{CAPAR.name} ?seen }}
-  OPTIONAL {{ ?place {CAPAR.eeNlt} ?ee }}
+  OPTIONAL {{ ?place {CAPAR.eeNlt} ?held }}
   OPTIONAL {{ ?place {CAPAR.goalNlt} ?at }}
   OPTIONAL {{ ?place {CAPAR.vNlt} ?view }}
 }}"""
@@ -98,15 +99,16 @@ def _ranked(row: tuple[Found, ...], order: tuple[str, ...], side: str | None) ->
 
 def _found(row: tuple[Found, ...], ranked: _Ranked, asked: str) -> FoundLocation:
     text = [each.value if isinstance(each, Literal) else "" for each in row]
-    observation, agent, action, purpose, on, frame, dominant, goal, ee, at, seen, view = text
+    observation, agent, action, purpose, ee, on, frame, dominant, goal, held, at, seen, view = text
     location = ConstraintLocation(
         action=action,
         purpose=purpose,
+        ee=ee,
         side=on,
         frame=int(frame),
         dominant=dominant,
         goal=goal,
-        ee_nlt=_nlt(ee),
+        ee_nlt=_nlt(held),
         goal_nlt=_nlt(at),
         seen=seen,
         v_nlt=_nlt(view),

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import motions
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -10,6 +11,7 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 from capar.model.errors import ParError, UnknownNameError
 from capar.model.observation import Observation
 from capar.model.par import FeatureSet, Ipar, Nlt, Upar
+from capar.observe import observe
 from kb.actionary import Actionary
 from kb.errors import StoreError
 from kb.lookup.pars import effective
@@ -84,6 +86,20 @@ def test_a_place_is_found_by_kind_action_purpose_and_side(actionary: Actionary) 
     assert left.goal_nlt == Nlt((0.0, 0.5, 0.5), (0.6, -0.8, 0.0, 0.0))
     assert actionary.location("mug", action="Reach", purpose="Throw") is None
     assert actionary.location("table", action="MoveObjTo") is not None
+
+
+def test_what_the_performer_looks_at_in_a_segment_can_be_asked() -> None:
+    seen = observe(motions.drink_from_mug(motions.WOMAN).capture)
+    assert any(each.looks for each in seen.segments)
+    query = """SELECT ?ee ?index ?seen ?when WHERE {
+      ?segment capar:look [ capar:seen/capar:name ?seen ; capar:when ?when ] ;
+        capar:ee ?ee ; capar:index ?index
+    }"""
+    with Actionary.in_memory() as store:
+        store.add(seen)
+        rows = [tuple(row.values()) for row in store.query(query).plain()]
+    expected = [(each.ee, each.index, *look) for each in seen.segments for look in each.looks]
+    assert sorted(rows, key=str) == sorted(expected, key=str)
 
 
 def test_what_is_kept_with_a_kind_holds_for_the_kinds_below_it(actionary: Actionary) -> None:
