@@ -4,12 +4,13 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, cached_property
 
 import clingo
 
 from capar.model.errors import RuleError
-from capar.model.facts import Fact, program
-from capar_rules.slicing import towards
+from capar.model.facts import Fact
+from capar_rules.slicing import firing, towards
 from capar_rules.syntax import Literal, Place, Signature, Statement
 
 ABSENT = "absent"
@@ -42,10 +43,14 @@ class Recorder:
         self.rules = towards(list(statements), targets)
         recorded = [each for each in self.rules if each.body]
         self.places = [each.place for each in recorded]
-        lines = [each.text for each in self.rules]
-        for number, rule in enumerate(recorded):
-            lines += _records(number, rule)
-        self.text = "\n".join([*lines, *_SHOWN])
+        self._records = {rule: _records(number, rule) for number, rule in enumerate(recorded)}
+
+    @cache  # noqa: B019 - recorders are few and kept
+    def text(self, measured: frozenset[Signature]) -> str:
+        """The rules that can fire where these are measured, and what records each of them."""
+        rules = firing(self.rules, measured)
+        records = [line for rule in rules for line in self._records.get(rule, ())]
+        return "\n".join([*(each.text for each in rules), *records, *_SHOWN])
 
     def solve(self, facts: Sequence[Fact]) -> "Derivations":
         """What follows from facts, and why.
@@ -56,8 +61,12 @@ class Recorder:
         messages: list[str] = []
         control = clingo.Control(["--models=1"], logger=lambda _, text: messages.append(text))
         try:
-            control.add("base", [], self.text)
-            control.add("base", [], program(tuple(facts)))
+            symbols = [each.symbol() for each in facts]
+            measured = frozenset((each.name, len(each.arguments)) for each in symbols)
+            control.add("base", [], self.text(measured))
+            with control.backend() as backend:
+                for each in symbols:
+                    backend.add_rule([backend.add_atom(each)])
             control.ground([("base", [])])
         except RuntimeError as error:
             raise RuleError(f"the rules cannot be explained: {messages or error}") from None
@@ -86,8 +95,7 @@ class Derivations:
 
     def holding(self, predicate: str) -> list[tuple[str, ...]]:
         """Arguments of each derived atom of a predicate, sorted."""
-        heads = sorted(each for each in self.instances if each.name == predicate)
-        return [tuple(map(_plain, each.arguments)) for each in heads]
+        return [tuple(map(_plain, each.arguments)) for each in sorted(self._derived(predicate))]
 
     def why(self, atom: str) -> Grounds:
         """The tree that derives an atom.
@@ -95,10 +103,21 @@ class Derivations:
         Raises:
             RuleError: It was not derived.
         """
-        symbol = clingo.parse_term(atom)
-        if symbol not in self.instances:
-            raise RuleError(f"{atom} does not hold")
-        return self._grounds(symbol, frozenset(), {})
+        for symbol in self._derived(atom.partition("(")[0]):
+            if str(symbol) == atom:
+                return self._grounds(symbol, frozenset(), {})
+        raise RuleError(f"{atom} does not hold")
+
+    def _derived(self, predicate: str) -> list[clingo.Symbol]:
+        return self._named.get(predicate, [])
+
+    @cached_property
+    def _named(self) -> dict[str, list[clingo.Symbol]]:
+        """Every derived atom by its predicate."""
+        table: dict[str, list[clingo.Symbol]] = defaultdict(list)
+        for each in self.instances:
+            table[each.name].append(each)
+        return table
 
     def _grounds(
         self,

@@ -46,6 +46,31 @@ def towards(
     ]
 
 
+def firing(statements: Sequence[Statement], measured: Iterable[Signature]) -> list[Statement]:
+    """The rules that can fire at all where only these are measured, and the constants.
+
+    Args:
+        statements: A rule base.
+        measured: Predicates of which there is a fact.
+    """
+    known, fired = set(measured), set[int]()
+    needs = [(number, each, _needed(each)) for number, each in enumerate(statements)]
+    while found := [(number, each) for number, each, needed in needs if needed <= known]:
+        fired |= {number for number, _ in found}
+        known |= heads_of(each for _, each in found)
+        needs = [each for each in needs if each[0] not in fired]
+    return [each for number, each in enumerate(statements) if number in fired]
+
+
+def _needed(statement: Statement) -> set[Signature]:
+    """The predicates that must hold somewhere for a rule to fire."""
+    return {
+        literal.atoms[0].signature
+        for literal in statement.body
+        if literal.kind == "atom" and literal.sign == 0
+    }
+
+
 FITS = ("fits", 2)
 _NAME = re.compile(r'"(\w+)"')
 
