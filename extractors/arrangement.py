@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from extractors.figures import Figure
+from extractors.figures import Figure, blocks
 from extractors.thresholds import Thresholds
 
 Holds = Bool[np.ndarray, "frames"]
@@ -35,13 +35,15 @@ def _share(
     out = np.zeros(len(body.middles))
     planes = other.planes
     frames = np.flatnonzero(_overlaps(body, other, 0.0))
-    if planes is not None and frames.size:
-        world = points @ np.swapaxes(body.turns[frames], 1, 2) + body.middles[frames, None]
-        local = (world - other.middles[frames, None]) @ other.turns[frames]
-        within = np.ones(local.shape[:2], dtype=bool)
-        for plane in planes:
-            within &= local @ plane[:3] + plane[3] <= -depth_m
-        out[frames] = within.mean(axis=1)
+    if planes is not None:
+        for block in blocks(len(frames)):
+            some = frames[block]
+            world = points @ np.swapaxes(body.turns_at(some), 1, 2) + body.middles[some, None]
+            local = (world - other.middles[some, None]) @ other.turns_at(some)
+            within = np.ones(local.shape[:2], dtype=bool)
+            for plane in planes:
+                within &= local @ plane[:3] + plane[3] <= -depth_m
+            out[some] = within.mean(axis=1)
     return out
 
 
@@ -81,7 +83,7 @@ def along(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
     sizes = np.sort(other.shape.size)
     if sizes[2] < 2.0 * sizes[1]:
         return out
-    axis = other.turns[:, :, int(np.argmax(other.shape.size))]
+    axis = other.turns_at(slice(None))[:, :, int(np.argmax(other.shape.size))]
     times = body.where.smooth.times
     step = np.gradient(body.middles, times, axis=0)
     pace = np.linalg.norm(step, axis=1)
@@ -114,7 +116,7 @@ def gap(body: Figure, other: Figure) -> Float[np.ndarray, "frames"]:
 
 def sides(body: Figure, other: Figure, frames: Int[np.ndarray, "two"]) -> str:
     """Whether a body is at opposite sides of another at two frames, or merely at other ones."""
-    ends = [other.turns[frame].T @ (body.middles[frame] - other.middles[frame]) for frame in frames]
+    ends = [other.turn(frame).T @ (body.middles[frame] - other.middles[frame]) for frame in frames]
     size = np.ones(3) if other.shape is None else np.maximum(other.shape.size, 1e-6)
     first, last = (each / size for each in ends)
     axis = int(np.argmax(np.abs(first - last)))

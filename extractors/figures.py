@@ -1,11 +1,12 @@
 """A body as seen from outside: its middle, its outermost points and its box in the world."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import trimesh
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy.spatial import ConvexHull, QhullError
 
 from capar.model.capture import Sensor, Shape, TagObject
@@ -14,6 +15,9 @@ from extractors.poses import Poses, rotation_matrices
 DIRECTIONS = 64
 """Directions in which a body's outermost corners are taken [1]: 25 degrees lie between them."""
 
+
+BLOCK = 4096
+"""How many frames are worked on at once where each takes kilobytes."""
 
 AROUND = np.asarray(trimesh.creation.icosphere(subdivisions=2).vertices)
 """Unit directions all around, evenly."""
@@ -39,16 +43,19 @@ class Figure:
         if self.shape is None:
             return places
         offset = self.shape.bounds.mean(axis=0)
-        return np.asarray(places + self.turns @ offset)
+        return np.asarray(places + rotation_matrices(self.orientations) @ offset)
 
     @property
     def _smooth(self) -> tuple[np.ndarray, np.ndarray]:
         return self.where.smooth.positions, self.where.smooth.orientations
 
-    @cached_property
-    def turns(self) -> Float[np.ndarray, "frames 3 3"]:
-        """Rotation matrices from the body's axes to the world's."""
-        return rotation_matrices(self.orientations)
+    def turns_at(self, frames: Int[np.ndarray, "some"] | slice) -> Float[np.ndarray, "some 3 3"]:
+        """Rotation matrices from the body's axes to the world's; made anew, being large."""
+        return rotation_matrices(self.orientations[frames])
+
+    def turn(self, frame: int) -> Float[np.ndarray, "3 3"]:
+        """That matrix at one frame."""
+        return self.turns_at(slice(frame, frame + 1))[0]
 
     @cached_property
     def corners(self) -> Float[np.ndarray, "corners 3"]:
@@ -81,16 +88,24 @@ class Figure:
     @cached_property
     def boxes(self) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
         """Lowest and highest corner of its box along the world's axes at each frame [m]."""
-        if self.where.rests:
-            spread = self.turns[:1] @ self.corners.T
-        else:
-            spread = self.turns @ self.corners.T
-        return self.middles + spread.min(axis=2), self.middles + spread.max(axis=2)
+        low, high = self.middles.copy(), self.middles.copy()
+        for block in [slice(None)] if self.where.rests else blocks(len(low)):
+            poses = slice(0, 1) if self.where.rests else block
+            spread = self.turns_at(poses) @ self.corners.T
+            low[block] += spread.min(axis=2)
+            high[block] += spread.max(axis=2)
+        return low, high
 
 
 def figure(body: Sensor | TagObject, where: Poses) -> Figure:
     """The figure of a sensor's or an object's body."""
     return Figure(body.name, body.shape, where)
+
+
+def blocks(count: int) -> Iterator[slice]:
+    """So many things in few at a time, for what takes much memory for each."""
+    for first in range(0, count, BLOCK):
+        yield slice(first, first + BLOCK)
 
 
 def _directions() -> Float[np.ndarray, "directions 3"]:

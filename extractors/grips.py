@@ -34,7 +34,7 @@ def shifts(
         return
     part = slice(first, last + 1)
     offset = hand.middles[part] - thing.middles[part]
-    place = np.einsum("fij,fi->fj", thing.turns[part], offset)
+    place = np.einsum("fij,fi->fj", thing.turns_at(part), offset)
     times = hand.where.smooth.times[part]
     pace = speed(place, times)
     noise = max(hand.where.noise.position_m, thing.where.noise.position_m)

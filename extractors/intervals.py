@@ -1,5 +1,7 @@
 """Stretches of frames as closed intervals [first, last], closed up and weeded by duration."""
 
+from collections.abc import Callable
+
 import numpy as np
 from jaxtyping import Bool, Float
 
@@ -7,6 +9,12 @@ from capar.model import geometry
 
 Interval = tuple[int, int]
 """First and last frame, both inside."""
+
+Telling = Callable[[slice], Bool[np.ndarray, "some"]]
+"""Tells of consecutive frames at which something holds."""
+
+NEAREST = 64
+"""How many frames are asked about at first when one is looked for; each further time twice."""
 
 
 def intervals(
@@ -49,3 +57,29 @@ def mask(found: list[Interval], frames: int) -> Bool[np.ndarray, "frames"]:
     for first, last in found:
         out[first : last + 1] = True
     return out
+
+
+def first_where(holds: Telling, frame: int, frames: int) -> int | None:
+    """The first of so many frames, from one on, at which something holds.
+
+    It costs what the way to that frame does, however long the capture is.
+    """
+    few = NEAREST
+    while frame < frames:
+        found = np.flatnonzero(holds(slice(frame, min(frame + few, frames))))
+        if found.size:
+            return frame + int(found[0])
+        frame, few = frame + few, 2 * few
+    return None
+
+
+def last_where(holds: Telling, frame: int) -> int | None:
+    """The last frame up to one at which something holds, at the same cost."""
+    few = NEAREST
+    while frame >= 0:
+        begin = max(frame + 1 - few, 0)
+        found = np.flatnonzero(holds(slice(begin, frame + 1)))
+        if found.size:
+            return begin + int(found[-1])
+        frame, few = begin - 1, 2 * few
+    return None

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from capar.model import geometry
-from extractors.intervals import Interval
-from extractors.object_motion import Floor, Stay
+from extractors.intervals import Interval, first_where, last_where
+from extractors.object_motion import Floor, Stay, stands
 from extractors.poses import Poses
 from extractors.signals import gains
 from extractors.thresholds import Thresholds
@@ -28,15 +27,17 @@ def motion_edges(
     floor = _hair(where, thresholds)
     before = [each for each in rests if each.interval[0] < moved[0]]
     after = [each for each in rests if each.interval[1] > moved[1]]
+    stream = where.smooth
     first, last = moved
     if before:
-        there = _there(where, before[-1], floor)
-        found = np.flatnonzero(there[:first])
-        first = int(found[-1]) + 1 if found.size else before[-1].interval[0]
+        stay = before[-1]
+        there = last_where(lambda frames: stands(stream, frames, stay, floor), first - 1)
+        first = stay.interval[0] if there is None else there + 1
     if after:
-        there = _there(where, after[0], floor)
-        found = np.flatnonzero(there[last + 1 :])
-        last = last + int(found[0]) if found.size else after[0].interval[1]
+        come = after[0]
+        count = len(stream.times)
+        there = first_where(lambda frames: stands(stream, frames, come, floor), last + 1, count)
+        last = come.interval[1] if there is None else there - 1
     return first, last
 
 
@@ -48,11 +49,3 @@ def _hair(where: Poses, thresholds: Thresholds) -> Floor:
         max(thresholds.edge_m, left * where.noise.position_m),
         max(thresholds.edge_rad, left * where.noise.orientation_rad),
     )
-
-
-def _there(where: Poses, stay: Stay, floor: Floor) -> np.ndarray:
-    stream = where.smooth
-    distance = np.linalg.norm(stream.positions - stay.position, axis=1)
-    angle = geometry.angle_between(stream.orientations, stay.orientation[None])
-    with np.errstate(invalid="ignore"):
-        return np.asarray((distance <= floor.position_m) & (angle <= floor.rotation_rad))

@@ -16,10 +16,10 @@ def contact_normal(body: Figure, other: Figure, frame: int) -> Float[np.ndarray,
     if np.isnan(offset).any():
         return None
     length = float(np.linalg.norm(offset))
-    axes = np.concatenate([np.eye(3), body.turns[frame].T, other.turns[frame].T])
+    axes = np.concatenate([np.eye(3), body.turn(frame).T, other.turn(frame).T])
     directions = np.concatenate([axes, -axes, [offset / length] if length else axes[:1]])
-    own = body.corners @ body.turns[frame].T
-    others = other.corners @ other.turns[frame].T
+    own = body.corners @ body.turn(frame).T
+    others = other.corners @ other.turn(frame).T
     apart = (
         directions @ offset + (own @ directions.T).min(axis=0) - (others @ directions.T).max(axis=0)
     )

@@ -1,6 +1,6 @@
 """When an object is away from each place where it rests (thesis 4.4.1)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -9,7 +9,7 @@ from scipy.ndimage import uniform_filter1d
 
 from capar.model import geometry
 from capar.model.capture import Stream
-from extractors.intervals import Interval, intervals, mask
+from extractors.intervals import Interval, first_where, intervals, last_where, mask
 from extractors.noise import Noise
 from extractors.poses import Poses, median_pose
 from extractors.signals import gains
@@ -154,23 +154,32 @@ def _slope(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.n
 
 
 def _stay(stream: Stream, seed: Interval, floor: Floor) -> Stay:
-    place, turn = median_pose(stream, mask([seed], len(stream.times)))
-    distance = np.linalg.norm(stream.positions - place, axis=1)
-    angle = geometry.angle_between(stream.orientations, turn[None])
+    first, last = seed
+    place, turn = median_pose(stream, slice(first, last + 1))
+    stay = Stay(seed, place, turn)
+
+    def gone(frames: slice) -> Bool[np.ndarray, "some"]:
+        return ~stands(stream, frames, stay, floor)
+
+    middle = _middle(~gone(slice(first, last + 1)), seed)
+    before, after = last_where(gone, middle - 1), first_where(gone, middle + 1, len(stream.times))
+    begin = 0 if before is None else before + 1
+    end = len(stream.times) - 1 if after is None else after - 1
+    return replace(stay, interval=(begin, end))
+
+
+def stands(stream: Stream, frames: slice, stay: Stay, floor: Floor) -> Bool[np.ndarray, "some"]:
+    """Whether an object is at a place within a floor, at each of some frames; not where lost."""
+    distance = np.linalg.norm(stream.positions[frames] - stay.position, axis=1)
+    angle = geometry.angle_between(stream.orientations[frames], stay.orientation[None])
     with np.errstate(invalid="ignore"):
-        there = (distance <= floor.position_m) & (angle <= floor.rotation_rad)
-    middle = _middle(there, seed)
-    outside = np.flatnonzero(~there)
-    before, after = outside[outside < middle], outside[outside > middle]
-    first = int(before[-1]) + 1 if before.size else 0
-    last = int(after[0]) - 1 if after.size else len(there) - 1
-    return Stay((first, last), place, turn)
+        return np.asarray((distance <= floor.position_m) & (angle <= floor.rotation_rad))
 
 
-def _middle(there: Bool[np.ndarray, "frames"], seed: Interval) -> int:
+def _middle(there: Bool[np.ndarray, "some"], seed: Interval) -> int:
     """A frame of the seed at which the object is at its place, the nearest to its middle."""
     first, last = seed
-    inside = np.flatnonzero(there[first : last + 1])
+    inside = np.flatnonzero(there)
     centre = (last - first) // 2
     return first + int(inside[np.argmin(np.abs(inside - centre))] if inside.size else centre)
 

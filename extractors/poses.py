@@ -55,15 +55,15 @@ def poses(body: Sensor | TagObject, thresholds: Thresholds) -> Poses:
 
 
 def median_pose(
-    stream: Stream, frames: Bool[np.ndarray, "frames"]
+    stream: Stream, frames: slice
 ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]:
-    """The middle of the known poses among some frames: median place [m] and mean orientation.
+    """The middle of the known poses of some frames in a row: median place [m], mean orientation.
 
     The median is taken about each axis of the world's own frame, its middle half averaged; it
     hardly depends on how the axes lie.
     """
-    chosen = frames & ~stream.lost
-    places, turns = stream.positions[chosen], stream.orientations[chosen]
+    known = ~stream.lost[frames]
+    places, turns = stream.positions[frames][known], stream.orientations[frames][known]
     centre = np.median(places, axis=0)
     near = np.linalg.norm(places - centre, axis=1)
     core = near <= np.median(near)
@@ -82,7 +82,7 @@ def _smooth(stream: Stream, thresholds: Thresholds) -> Stream:
 
 
 def _held(stream: Stream) -> Stream:
-    place, turn = median_pose(stream, ~stream.lost)
+    place, turn = median_pose(stream, slice(None))
     frames = len(stream.times)
     return Stream(stream.times, np.tile(place, (frames, 1)), np.tile(turn, (frames, 1)))
 
