@@ -121,6 +121,11 @@ def words_of(rules: Sequence[Statement]) -> list[Statement]:
     return [each for each in words if signatures_below([each]) | heads_of([each]) <= spoken]
 
 
+def chosen_in_audit() -> frozenset[Signature]:
+    """The relations that the audit's world leaves free, some only for a few of their words."""
+    return heads_of(each for each in _own("words.lp") if each.head_kind == "choice")
+
+
 def physics() -> tuple[Statement, ...]:
     """What no segment can be."""
     return _own("physical.lp")

@@ -33,7 +33,7 @@ def compose(inference: Inference, *, name: str, frames: int, duration_s: float) 
         duration_s=duration_s,
         links=links,
         common=common,
-        relations=tuple(_relations(links)),
+        relations=tuple(_relations(links, frames)),
     )
 
 
@@ -127,28 +127,28 @@ def _in_order(links: Iterable[ObservedLink]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for each in ordered for name in each.objects))
 
 
-def _relations(links: tuple[LinkSteps, ...]) -> Iterable[Relation]:
+def _relations(links: tuple[LinkSteps, ...], frames: int) -> Iterable[Relation]:
     """Allen's relations of steps of different links that share time or meet."""
     for place, link in enumerate(links):
         for other in links[place + 1 :]:
-            yield from _between(link, other)
+            yield from _between(link, other, frames)
 
 
-def _between(link: LinkSteps, other: LinkSteps) -> Iterable[Relation]:
+def _between(link: LinkSteps, other: LinkSteps, frames: int) -> Iterable[Relation]:
     start = 0
     for index, step in enumerate(link.steps):
-        first, last = step.begin, step.begin + step.share
-        while start < len(other.steps) and _end(other.steps[start]) < first:
+        first, last = _span(step, frames)
+        while start < len(other.steps) and _span(other.steps[start], frames)[1] < first:
             start += 1
         for number in range(start, len(other.steps)):
-            begin, end = other.steps[number].begin, _end(other.steps[number])
+            begin, end = _span(other.steps[number], frames)
             if begin > last:
                 break
             yield Relation((link.ee, index), allen(first, last, begin, end), (other.ee, number))
 
 
-def _end(step: Step) -> float:
-    return step.begin + step.share
+def _span(step: Step, frames: int) -> tuple[int, int]:
+    return round(step.begin * frames), round((step.begin + step.share) * frames)
 
 
 def allen(first: float, last: float, begin: float, end: float) -> str:

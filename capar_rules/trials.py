@@ -1,23 +1,34 @@
 """Checks that ask the solver: safety, and what the rules of a file do in every possible segment."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from capar.model.errors import RuleError
-from capar_rules.auditing import ASKED, Audit, evaluate, given_in_audit, summarise
+from capar_rules.auditing import (
+    ASKED,
+    Audit,
+    chosen_in_audit,
+    evaluate,
+    given_in_audit,
+    summarise,
+)
 from capar_rules.findings import NOTE, Finding
-from capar_rules.searching import Atom, brave, understand
-from capar_rules.slicing import heads_of, towards
+from capar_rules.searching import Atom as Answered
+from capar_rules.searching import brave, understand
+from capar_rules.slicing import heads_of, signatures_below, towards
 from capar_rules.slips import fitting_findings, single_findings
 from capar_rules.statics import Known
-from capar_rules.syntax import Place, Signature, Statement, parse_text, split_arguments
+from capar_rules.syntax import Atom, Place, Signature, Statement, parse_text, split_arguments
+from capar_rules.words import STRING
 
-FIRED, IDLE = ("fired", 1), ("idle", 1)
+FIRED, IDLE, HELD = ("fired", 1), ("idle", 1), ("held", 3)
 
 MOST_RIVALS = 5
 """How many of those that share its segments an ambiguity names."""
 
 _MESSAGE = re.compile(r"[^:\n]*:(\d+):(\d+)(?:-[\d:]+)?: (?:error|info): (.*)")
+_COMPUTES = re.compile(r"[-+*/\\|&?^~;]|\.\.")
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\b_*[A-Z]\w*')
 _UNSAFE = re.compile(r": note: '(\w+)' is unsafe")
 
 
@@ -75,17 +86,20 @@ def world_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
     for each in rules:
         if each not in judged:
             words = ", ".join(f"{name}/{arity}" for name, arity in _beyond(each, own, base))
-            yield Finding(
-                each.place, "not-judged",
-                f"whether it can fire was not judged: it rests on {words}, measured outside the "
-                "audit's world.", "Give the file examples that it must and must not match.", NOTE,
-            )  # fmt: skip
-    asked = (*ASKED, FIRED, IDLE, ("feature_row", 6))
+            yield _not_judged(each, f"{words}, measured outside the audit's world")
+    asked = (*ASKED, FIRED, IDLE, HELD, ("feature_row", 6))
     atoms = evaluate([*base.rules, *own, *_probes(judged)], asked)
-    yield from _firing(judged, atoms)
+    yield from _firing(judged, atoms, lambda number: _missing(number, judged, own, base, atoms))
     yield from _clashes(own, summarise(atoms))
     yield from fitting_findings(own, base)
     yield from single_findings(own)
+
+
+def _not_judged(rule: Statement, what: str) -> Finding:
+    return Finding(
+        rule.place, "not-judged", f"whether it can fire was not judged: it rests on {what}.",
+        "Give the file examples that it must and must not match.", NOTE,
+    )  # fmt: skip
 
 
 def _probes(rules: Sequence[Statement]) -> Iterator[Statement]:
@@ -97,10 +111,51 @@ def _probes(rules: Sequence[Statement]) -> Iterator[Statement]:
                 segment = split_arguments(rule.heads[0].text)[0]
                 text += f"fired({number},{segment}) :- {body}.\n"
                 text += f"idle({number}) :- segment(S,_,_); not fired({number},S).\n"
+            for place, atom in _plain(rule):
+                name, arity = atom.signature
+                text += f"held({number},{place},so) :- {_loosened(atom.text)}.\n"
+                if arity:
+                    text += f"held({number},{place},any) :- {name}({','.join('_' * arity)}).\n"
             yield from parse_text(text)
 
 
-def _firing(rules: Sequence[Statement], atoms: frozenset[Atom]) -> Iterator[Finding]:
+def _plain(rule: Statement) -> Iterator[tuple[int, Atom]]:
+    """The conditions of a rule that must hold by themselves and compute nothing, by place."""
+    for place, literal in enumerate(rule.body):
+        if literal.kind == "atom" and literal.sign == 0:
+            atom = literal.atoms[0]
+            if not _COMPUTES.search(STRING.sub("", atom.text)):
+                yield place, atom
+
+
+def _loosened(text: str) -> str:
+    """An atom's text with whatever may stand for its variables."""
+    return _TOKEN.sub(lambda found: found[0] if found[0].startswith('"') else "_", text)
+
+
+def _missing(
+    number: int,
+    judged: Sequence[Statement],
+    own: Sequence[Statement],
+    base: Known,
+    atoms: frozenset[Answered],
+) -> str:
+    """A condition that the audit's world does not have, though a segment may; else nothing.
+
+    It has no such relation at all, or leaves what the relation rests on free for few words only.
+    """
+    held = {row[1:] for name, row in atoms if name == "held" and row[0] == number}
+    for place, atom in _plain(judged[number]):
+        if (place, "so") not in held and (
+            (place, "any") not in held or _below([atom.signature], own, base) & chosen_in_audit()
+        ):
+            return atom.text
+    return ""
+
+
+def _firing(
+    rules: Sequence[Statement], atoms: frozenset[Answered], missing: Callable[[int], str]
+) -> Iterator[Finding]:
     fired = {row[0] for name, row in atoms if name == "fired" and len(row) == 1}
     idle = {row[0] for name, row in atoms if name == "idle"}
     possible = {tuple(map(str, row)) for name, row in atoms if name == "possible"}
@@ -108,7 +163,10 @@ def _firing(rules: Sequence[Statement], atoms: frozenset[Atom]) -> Iterator[Find
         head = rule.heads[0]
         arguments = [each.strip('"') for each in split_arguments(head.text)]
         row = head.signature == ("feature_row", 6) and tuple(arguments[2:]) not in possible
-        if (rule.body and number not in fired) or row:
+        unfired = bool(rule.body) and number not in fired
+        if unfired and (beyond := missing(number)):
+            yield _not_judged(rule, f"{beyond}, which the audit's world does not have")
+        elif unfired or row:
             what = f"the features {', '.join(arguments[2:])}" if row else "what it asks for"
             yield Finding(
                 rule.place, "never-fires",
@@ -168,15 +226,15 @@ def _clashes(own: Sequence[Statement], audit: Audit) -> Iterator[Finding]:
 
 def _beyond(rule: Statement, own: Sequence[Statement], base: Known) -> tuple[Signature, ...]:
     """The measurements below a rule that the audit's world does not have."""
-    below = {atom.signature for literal in rule.body for atom in literal.atoms}
-    given = given_in_audit()
-    slice_ = towards([*base.rules, *own], below - given, given=given)
-    read = below | {
-        atom.signature
-        for each in slice_
-        for literal in each.body
-        for atom in literal.atoms
-        if each.kind == "rule"
-    }
+    read = _below((atom.signature for each in rule.body for atom in each.atoms), own, base)
     defined = heads_of([*base.rules, *own])
-    return tuple(sorted((read & base.measured) - given - defined))
+    return tuple(sorted((read & base.measured) - given_in_audit() - defined))
+
+
+def _below(
+    signatures: Iterable[Signature], own: Sequence[Statement], base: Known
+) -> frozenset[Signature]:
+    """Predicates and what they rest on, down to what the audit's world states."""
+    below, given = frozenset(signatures), given_in_audit()
+    slice_ = towards([*base.rules, *own], below - given, given=given)
+    return below | signatures_below(each for each in slice_ if each.kind == "rule")

@@ -52,9 +52,10 @@ def swings(
 ) -> tuple[Interval, ...]:
     """Closed intervals of frames in which a body moves to and fro along an axis of the world.
 
-    To and fro is a chain of turning points, each soon after the one before; several axes that
-    swing at a time are one swinging. It begins and ends with the motion itself, if that is soon
-    before or after and no further than one stroke.
+    To and fro is a chain of turning points, each soon after the one before, whose strokes add up
+    to more than the way from the first to the last: what bobs as it is carried along does not
+    swing. Several axes that swing at a time are one swinging. It begins and ends with the motion
+    itself, if that is soon before or after and no further than one stroke.
     """
     stream = where.smooth
     chains: list[Interval] = []
@@ -63,7 +64,8 @@ def swings(
         for axis in range(3):
             turns = first + turning_points(part[:, axis], thresholds.swing_m)
             for chain in _chains(turns, stream.times, thresholds):
-                chains.append(_whole(chain, (first, last), stream, axis, thresholds))
+                if _outweighs(chain, stream, axis):
+                    chains.append(_whole(chain, (first, last), stream, axis, thresholds))
     out: list[Interval] = []
     for first, last in sorted(chains):
         if out and first <= out[-1][1]:
@@ -88,6 +90,12 @@ def _chains(
     breaks = np.flatnonzero(np.diff(times[turns]) > thresholds.swing_s) + 1
     groups = np.split(turns, breaks)
     return [each for each in groups if len(each) >= thresholds.swing_turns]
+
+
+def _outweighs(turns: Int[np.ndarray, "turns"], stream: Stream, axis: int) -> bool:
+    """Whether the strokes add up to more than the way from the first turn to the last."""
+    way = np.linalg.norm(stream.positions[turns[-1]] - stream.positions[turns[0]])
+    return bool(np.abs(np.diff(stream.positions[turns, axis])).sum() > way)
 
 
 def _whole(

@@ -9,6 +9,11 @@ import pytest
 
 from capar_rules.checking import check, check_all
 from capar_rules.findings import NOTE, Finding, errors
+from capar_rules.glossary import glossary
+from capar_rules.judging import base_of
+from capar_rules.profiles import profile
+from capar_rules.syntax import parse_text
+from capar_rules.trials import world_findings
 
 EXPECTED = {
     "script_python": "script",
@@ -129,3 +134,35 @@ def test_the_nearest_names_are_offered(tmp_path):
     remedies = {each.code: each.remedy for each in check(path, profile="thesis")}
     assert "possessed" in remedies["unknown-predicate"]
     assert remedies["unknown-primitive"] == "Did you mean Touch?"
+
+
+def test_rules_over_words_of_which_the_world_has_few_are_not_judged_but_noted(tmp_path):
+    """What lies above another is measured; the world only knows what is in another, or dips."""
+    path = tmp_path / "tap.lp"
+    path.write_text(
+        '%* Tap: tap. *%\nprimitive("Tap").\nspecialises("Tap", "MoveObj").\n'
+        'fits(S, "Tap") :- fits(S, "MoveObj"), overlaps(S, above, _, _).\n'
+        'fits(S, "Tap") :- fits(S, "MoveObj"), lies_at(S, end, below, _, _).\n'
+        'fits(S, "Tap") :- fits(S, "MoveObj"), regrasps(S, _).\n'
+        'fits(S, "Tap") :- fits(S, "MoveObj"), segment(S, From, _), From < 0.\n'
+    )
+    found = [(each.place.line, each.code) for each in check(path)]
+    assert sorted(found) == [
+        (4, "not-judged"), (5, "not-judged"), (6, "not-judged"), (7, "never-fires"),
+    ]  # fmt: skip
+
+
+def test_every_word_of_rules_can_stand_in_one_and_no_such_rule_is_said_never_to_fire():
+    words = {
+        each.signature: ",".join("S" if name == "Segment" else "_" for name in each.arguments)
+        for each in glossary(profile()).words
+        if each.arguments
+    }
+    rules = parse_text(
+        "\n".join(
+            f"speaks(S) :- segment(S,_,_), {name}({inside})." for (name, _), inside in words.items()
+        )
+    )
+    found = list(world_findings(rules, base_of("extended")))
+    assert len(words) > 200
+    assert {each.code for each in found} == {"not-judged"}

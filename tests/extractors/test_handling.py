@@ -82,6 +82,15 @@ def test_what_moves_to_and_fro_swings() -> None:
     assert swings(body(slow).where, whole, LIMITS) == ()
 
 
+@pytest.mark.parametrize(("speed_mps", "swinging"), [(0.0, True), (0.1, True), (0.5, False)])
+def test_what_bobs_as_it_is_carried_along_does_not_swing(speed_mps: float, swinging: bool) -> None:
+    """A stroke of 6 cm each quarter of a second is 0.24 m/s to and fro."""
+    wave = np.zeros((len(TIMES), 3))
+    wave[:, 0] = speed_mps * TIMES
+    wave[:, 2] = 0.03 * np.sin(2.0 * np.pi * 2.0 * TIMES)
+    assert bool(swings(body(wave).where, ((0, len(TIMES) - 1),), LIMITS)) is swinging
+
+
 def test_motion_to_and_fro_begins_and_ends_with_the_motion_that_is_soon_before_and_after() -> None:
     wave = np.zeros((len(TIMES), 3))
     during = (TIMES > 1.0) & (TIMES < 3.0)

@@ -80,14 +80,15 @@ def hand_over(*, taker: Agent | None = None) -> Trial:
 
 
 def _of_two(capture: Capture, taker: Agent) -> Capture:
-    """The capture with the second hand as the right hand of another agent."""
+    """The capture with the second hand as another agent's right hand, or her own left one."""
+    others = () if taker == capture.agent else (taker,)
+    side = "right" if others else "left"
     sensors = tuple(
-        replace(each, side="right", link="right_arm", agent=taker.name)
+        replace(each, side=side, link=f"{side}_arm", agent=taker.name)
         if each.name == TAKING
         else each
         for each in capture.sensors
     )
-    others = () if taker == capture.agent else (taker,)
     return replace(capture, sensors=sensors, others=others)
 
 

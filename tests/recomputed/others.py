@@ -64,12 +64,12 @@ def agent(known: Known, what: str) -> str:
     return known.capture.agent_of(body)
 
 
-def another_had(known: Known) -> bool:
-    return bool(_taken_from(known))
+def another_had(known: Known, other: str) -> bool:
+    return name(other) in _taken_from(known)
 
 
-def another_took(known: Known) -> bool:
-    return bool(_left_to(known))
+def another_took(known: Known, other: str) -> bool:
+    return name(other) in _left_to(known)
 
 
 def stranger_had(known: Known) -> bool:
@@ -108,8 +108,8 @@ def tagged(known: Known, what: str, kind: str) -> bool:
 
 FORMS = (
     (rf"the {NAME} was met at a high speed", met_fast),
-    (r"another end-effector had the object by then", another_had),
-    (r"another end-effector had taken the object by then", another_took),
+    (rf"the {NAME} had the object by then", another_had),
+    (rf"the {NAME} had taken the object by then", another_took),
     (r"it was another agent who had it", stranger_had),
     (r"it was another agent who had taken it", stranger_took),
     (rf"the {NAME} belongs to {NAME}", belongs),

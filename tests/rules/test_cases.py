@@ -5,6 +5,7 @@ extended ones. Its .expected file holds one atom a line that must follow; `not` 
 that it must not.
 """
 
+import re
 from pathlib import Path
 
 import pytest
@@ -35,12 +36,18 @@ CONCEPTS = sorted(
 )
 
 
+_SEGMENT = re.compile(r"seg\(\w+,\d+\)")
+"""What an expectation is about; of a segment that is not there nothing could be expected."""
+
+
 @pytest.mark.parametrize("case", CASES, ids=lambda path: f"{path.parent.name}/{path.stem}")
 def test_a_story_ends_as_expected(case: Path) -> None:
     answer = _answer(case)
     lines = case.with_suffix(".expected").read_text().splitlines()
     wanted = [line.removesuffix(".") for line in lines if line and not line.startswith("%")]
     assert wanted, "a case expects something"
+    told = set(_SEGMENT.findall(" ".join(wanted)))
+    assert told <= {each for line in answer for each in _SEGMENT.findall(line)}
     for line in wanted:
         if line.startswith("not "):
             assert line.removeprefix("not ") not in answer
