@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from capar.claim_names import ClaimError as ClaimError
 from capar.claim_names import Names, names_of, parts
-from capar.model.facts import Fact, LookingAt, Moving, Touching
+from capar.model.facts import Fact, Frames, LookingAt, Moving, Touching
 from capar.model.observation import Observation, Segment
 
 Span = tuple[float, float]
@@ -151,19 +151,21 @@ def _event(text: str, seen: _Scene) -> Iterator[Span]:
 
 def _looks(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
     pair = seen.names.sensor(found[1]), seen.names.object(found[3])
+    ending = found[2] != "at"
     for each in _facts(seen, LookingAt):
-        if (each.sensor, each.object) == pair:
-            yield _when(each.first, each.last, seen, ending=found[2] != "at")
+        if (each.sensor, each.object) == pair and not (ending and _cut_off(each.last, seen)):
+            yield _when(each.first, each.last, seen, ending=ending)
 
 
 def _meets(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
     pair = {seen.names.body(found[1]), seen.names.body(found[3])}
     if len(pair) == 1:
         raise ClaimError(f"{found[0]!r}: nothing touches itself")
+    ending = found[2] != "touches"
     spans = {
-        _when(each.first, each.last, seen, ending=found[2] != "touches")
+        _when(each.first, each.last, seen, ending=ending)
         for each in _facts(seen, Touching)
-        if {each.body, each.other} == pair
+        if {each.body, each.other} == pair and not (ending and _cut_off(each.last, seen))
     }
     return iter(sorted(spans))
 
@@ -213,6 +215,11 @@ def _facts(seen: _Scene, kind: type[_Kind]) -> Iterator[_Kind]:
 def _when(first: int, last: int, seen: _Scene, *, ending: bool) -> Span:
     rate = seen.seen.rate_hz
     return (last / rate, last / rate) if ending else (first / rate, last / rate)
+
+
+def _cut_off(last: int, seen: _Scene) -> bool:
+    """Whether something lasts until the capture's end: nobody saw it end."""
+    return any(each.last == last for each in _facts(seen, Frames))
 
 
 def _of(ee: str, seen: _Scene) -> Sequence[Segment]:

@@ -22,12 +22,13 @@ if TYPE_CHECKING:
 
 MAIN = "lexical/main.lp"
 
-_COMMENT = re.compile(r"%\*.*?\*%|%[^\n]*", re.DOTALL)
 _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_TEXT_OR_COMMENT = re.compile(rf"({_TEXT.pattern})|%\*.*?\*%|%[^\n]*", re.DOTALL)
 _NAMED = re.compile(r'^named\(.*,\s*"([^"]+)"\)', re.MULTILINE)
+_SAID = re.compile(rf"{_TEXT.pattern}|0|[1-9]\d*")
 _FACT = re.compile(
     rf"(?:^|\.)\s*(?P<predicate>[a-z]\w*)\((?P<arguments>\s*{_TEXT.pattern}"
-    rf"(?:\s*,\s*{_TEXT.pattern})*\s*)\)\s*(?=\.)",
+    rf"(?:\s*,\s*(?:{_SAID.pattern}))*\s*)\)\s*(?=\.)",
     re.MULTILINE,
 )
 
@@ -58,14 +59,14 @@ def primitive_words(files: Sequence[Path]) -> tuple[PrimitiveWords, ...]:
 
 
 def _stated(path: Path) -> dict[str, list[tuple[str, ...]]]:
-    """Facts over texts alone that stand in a rule file, by predicate, in their order."""
+    """Facts over texts and numbers that stand in a rule file, by predicate, in their order."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise FileError(path, f"cannot be read ({error});", "name a rule file.") from None
     facts: dict[str, list[tuple[str, ...]]] = {}
-    for match in _FACT.finditer(_COMMENT.sub("", text)):
-        arguments = tuple(json.loads(each) for each in _TEXT.findall(match["arguments"]))
+    for match in _FACT.finditer(_TEXT_OR_COMMENT.sub(r"\1", text)):
+        arguments = tuple(str(json.loads(each)) for each in _SAID.findall(match["arguments"]))
         facts.setdefault(match["predicate"], []).append(arguments)
     return facts
 

@@ -10,12 +10,9 @@ from extractors.thresholds import Thresholds
 
 Holds = Bool[np.ndarray, "frames"]
 
-CONE = np.cos(np.pi / 4.0)
-"""Of two points the one is above the other within 45 degrees of the vertical [1]."""
-
 
 def inside(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
-    """At least half of the body lies in the other's hull, and it does not stand on its top.
+    """At least half of the body lies in the other's hull.
 
     The share is that of the body's outermost points, those halfway to its middle, and its middle.
     """
@@ -116,7 +113,10 @@ def gap(body: Figure, other: Figure) -> Float[np.ndarray, "frames"]:
 
 def sides(body: Figure, other: Figure, frames: Int[np.ndarray, "two"]) -> str:
     """Whether a body is at opposite sides of another at two frames, or merely at other ones."""
-    ends = [other.turn(frame).T @ (body.middles[frame] - other.middles[frame]) for frame in frames]
+    ends = [
+        other.turn(frame).T @ (body.middles[frame] - other.middles[frame])
+        for frame in map(int, frames)
+    ]
     size = np.ones(3) if other.shape is None else np.maximum(other.shape.size, 1e-6)
     first, last = (each / size for each in ends)
     axis = int(np.argmax(np.abs(first - last)))

@@ -16,7 +16,7 @@ NOTHING = -1
 """Stands for an object where none is looked at."""
 
 BEHIND_M = 1e-6
-"""A ray begins this far in front of the eye [m], so that it does not meet what it starts on."""
+"""A ray begins this far from the eye [m], so that it does not meet what it starts on."""
 
 
 @dataclass(frozen=True, eq=False)

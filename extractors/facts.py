@@ -115,9 +115,13 @@ def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measur
         ),
     ]
     facts += handling(capture, where, facts, limits)
-    notices = (*capture.notices, *_notices(capture, tolerance, limits))
+    own = [each for each in capture.notices if each.code != LOSS]
+    notices = (*own, *_notices(capture, tolerance, limits))
     return Measurements(_ordered(facts), notices, tolerance, tracks, looks, where)
 
+
+LOSS = "long-gap"
+"""The notice of a body that was lost for long: one a body, in place of the reader's one a gap."""
 
 HEAD = "head"
 """The general type of an end-effector that carries the eyes, whether it attends or acts."""
@@ -245,10 +249,18 @@ def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
             yield Notice("assumed-support", f"{each.name!r} is assumed: {each.assumed}")
         lost = long_gaps(each.stream, gap_s=thresholds.gap_s)
         if lost:
-            first, last = max(lost, key=lambda gap: gap[1] - gap[0])
-            yield Notice(
-                "long-gap",
-                f"{each.name!r} was lost {len(lost)} times for long, at most from "
-                f"{capture.times[first]:.2f} to {capture.times[last]:.2f} s; no contact is known "
-                "there",
-            )
+            fixed = isinstance(each, TagObject) and each.tag is TagType.FIXED
+            told = _when(lost, capture, fixed=fixed)
+            yield Notice(LOSS, f"{each.name!r} was lost {told}")
+
+
+def _when(lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> str:
+    """How often a body was lost for long, when at most, and what follows."""
+    first, last = max(lost, key=lambda gap: gap[1] - gap[0])
+    if last - first + 1 == len(capture.times):
+        return "throughout; no contact of it is known"
+    often = {1: "once", 2: "twice"}.get(len(lost), f"{len(lost)} times")
+    most = " at most" if len(lost) > 1 else ""
+    span = f"{capture.times[first]:.2f} to {capture.times[last]:.2f} s"
+    follows = "it is held to stay" if fixed else "no contact of it is known there"
+    return f"{often} for long,{most} from {span}; {follows}"

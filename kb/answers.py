@@ -59,6 +59,11 @@ def plain(term: Found) -> Plain:
     return short(term.value) if isinstance(term, NamedNode) else str(term)
 
 
+def exact(term: Found) -> Plain:
+    """The same with an IRI in full, as other programs take it."""
+    return term.value if isinstance(term, NamedNode) else plain(term)
+
+
 def short(iri: str) -> str:
     """An IRI with its prefix, where it has a known one."""
     for prefix, base in PREFIXES.items():

@@ -57,10 +57,17 @@ def as_text(store: Store, name: str) -> str:
         lines.append(f"  {one} {i + 1} {relation.relation} {two} {j + 1}")
     lines.append("  observed, in the order of the shares:")
     lines += [
-        f"    {each.name} by {each.agent}, {each.duration_s:.3f} s, profile {each.profile}"
+        f"    {each.name} by {_performers(store, each)}, {each.duration_s:.3f} s, "
+        f"profile {each.profile}"
         for each in found
     ]
     return "\n".join(lines) + "\n"
+
+
+def _performers(store: Store, observed: Stored) -> str:
+    """Everyone who acts in an observation, its first agent first."""
+    acting = {each.agent for each in pars.ipars(store, observed.name)} or {observed.agent}
+    return " and ".join(sorted(acting, key=lambda name: (name != observed.agent, name)))
 
 
 def _rows(value: ComplexPar) -> Iterable[tuple[str, tuple[Step, ...]]]:

@@ -7,7 +7,7 @@ from typing import Any
 from pyoxigraph import NamedNode, Quad, RdfFormat
 from pyoxigraph import Store as Oxigraph
 
-from kb import answers, bounded
+from kb import answers, bounded, sparql
 from kb.answers import Answer
 from kb.errors import StoreError
 from kb.lock import WriterLock
@@ -60,7 +60,7 @@ class EmbeddedStore:
         self._flush()
 
     def ask(self, query: str) -> Answer:
-        """What a query of ours answers, over the union of all graphs."""
+        """What a query of ours answers, over the union of all graphs if it names none."""
         try:
             return _answer(self._store, query)
         except (OSError, RuntimeError):
@@ -121,7 +121,8 @@ class EmbeddedStore:
 
 
 def _answer(store: Oxigraph, query: str) -> Answer:
-    return answers.collect(store.query(query, use_default_graph_as_union=True))
+    union = not sparql.names_graphs(query)
+    return answers.collect(store.query(query, use_default_graph_as_union=union))
 
 
 def _locked(folder: Path, wait_s: float) -> WriterLock:

@@ -52,8 +52,14 @@ def format_of(path: Path | str, given: str | None = None) -> str:
 
     Raises:
         UnknownNameError: No such format, or none that the name tells.
+        FileError: The name has no ending that could tell one.
     """
     name = given or SUFFIXES.get(Path(path).suffix.lower(), Path(path).suffix)
+    if not name:
+        *some, last = sorted(FORMATS)
+        raise FileError(
+            path, "its name tells no format;", f"add --format: {', '.join(some)} or {last}."
+        )
     if name not in FORMATS:
         raise UnknownNameError("format", name, FORMATS)
     return name
@@ -111,12 +117,14 @@ def read(data: bytes, format_name: str, *, path: Path | str = "-") -> list[Quad]
     """Statements of a file, each in the graph where it belongs, its unnamed things named.
 
     Raises:
-        FileError: It is not what its format says.
+        FileError: It is not what its format says, or says nothing.
     """
     try:
         parsed = list(parse(data, format=FORMATS[format_name]))
     except (SyntaxError, ValueError) as error:
         raise FileError(path, f"is no {format_name}: {error}") from None
+    if not parsed:
+        raise FileError(path, f"holds no statements of {format_name}.", "Export it again.")
     return [_placed(each) for each in _named(parsed)]
 
 

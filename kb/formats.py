@@ -6,7 +6,7 @@ import json
 
 from pyoxigraph import Literal, RdfFormat, serialize
 
-from kb.answers import Answer, plain, turtle
+from kb.answers import Answer, exact, plain, turtle
 from kb.answers import Found as Term
 from kb.questions import questions
 
@@ -41,7 +41,7 @@ def _cell(term: Term) -> str:
 
 
 def as_csv(answer: Answer) -> str:
-    """Comma-separated values with a header, numbers exact."""
+    """Comma-separated values with a header, numbers exact, IRIs in full."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(header(answer))
@@ -53,17 +53,18 @@ def as_csv(answer: Answer) -> str:
 
 
 def _exact(term: Term) -> str:
-    value = plain(term)
+    value = exact(term)
     if isinstance(value, bool):
         return str(value).lower()
     return "" if value is None else str(value)
 
 
 def as_json(answer: Answer) -> str:
-    """A list of objects, or a truth; statements as JSON-LD."""
+    """A list of objects, IRIs in full, or a truth; statements as JSON-LD."""
     if answer.triples is not None:
         return (serialize(answer.triples, format=RdfFormat.JSON_LD) or b"").decode() + "\n"
-    value = answer.boolean if answer.boolean is not None else list(answer.plain())
+    rows = [dict(zip(answer.variables, map(exact, row), strict=True)) for row in answer.rows]
+    value = rows if answer.boolean is None else answer.boolean
     return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
 
 

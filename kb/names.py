@@ -49,7 +49,11 @@ _OF_FOLDER = {
 
 @lru_cache(maxsize=4096)
 def _quoted(word: str) -> str:
-    return quote(word, safe="")
+    """A word of an IRI: never empty, and with no dot at its end, which not every reader takes."""
+    if word in {"", "-"}:
+        return "%2D" if word else "-"
+    quoted = quote(word, safe="")
+    return quoted[:-1] + "%2E" if quoted.endswith(".") else quoted
 
 
 def observation(name: str) -> NamedNode:

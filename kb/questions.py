@@ -5,16 +5,41 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from typing import TYPE_CHECKING
 
 from pyoxigraph import Literal
 
 from capar.model.errors import CaparError, UnknownNameError
 from kb import sparql
 
+if TYPE_CHECKING:
+    from kb.store import Store
+
 _PARAMETER = re.compile(
     r"(?P<name>\w+) \((?P<kind>text|number)"
     r"(?:, (?:(?P<required>required)|default (?P<default>\w+)))?\): (?P<meaning>[^;]+)"
 )
+
+_OBJECT = ("object", "?of a capar:TagObject ; capar:name|(capar:kind/capar:isA/capar:name) ?name")
+_WHOLE = ("whole action", "?of a capar:Observation ; capar:name ?name")
+BEARERS = {
+    "action": (
+        "action",
+        "{ ?of a capar:Observation ; rdfs:label ?name } UNION { ?of a ?kind ; capar:name ?name "
+        "VALUES ?kind { capar:Action capar:Upar capar:JointAction capar:Observation } }",
+    ),
+    "body": ("body", "?of capar:body ?name"),
+    "capture": ("capture", "?of a capar:Capture ; capar:name ?name"),
+    "first": _WHOLE,
+    "goal": _OBJECT,
+    "object": _OBJECT,
+    "observation": ("observation", "?of a capar:Observation ; rdfs:label ?name"),
+    "performer": ("performer", "?of a capar:Agent ; capar:name ?name"),
+    "preposition": ("preposition", "?of capar:preposition ?name"),
+    "purpose": ("purpose", "?of capar:purpose ?name"),
+    "second": _WHOLE,
+}
+"""What each parameter that is a text names, and the pattern of those that bear such a name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +137,37 @@ def question(name: str) -> Question:
     if name not in questions():
         raise UnknownNameError("question", name, questions())
     return questions()[name]
+
+
+def prove_known(store: "Store", asked: Question, given: Mapping[str, object]) -> None:
+    """Prove of a question that nothing answers that what it is asked of is there at all.
+
+    Raises:
+        UnknownNameError: Nothing that was observed bears a name; the message lists those there are.
+        CaparError: The capture has no such time.
+    """
+    for each in asked.parameters:
+        value = str(given.get(each.name) or "")
+        if each.kind != "text" or not value:
+            continue
+        kind, pattern = BEARERS[each.name]
+        known = _texts(store, pattern)
+        if value not in known:
+            raise UnknownNameError(kind, value, known, where=store.place)
+    if {"capture", "time"} <= given.keys():
+        name, time = Literal(str(given["capture"])), float(str(given["time"]))
+        lasts = f"?of a capar:Capture ; capar:name {name} ; capar:duration ?name"
+        end = max(map(float, _texts(store, lasts)))
+        if not 0.0 <= time <= max(end, round(end, 3)):
+            raise CaparError(
+                f"{store.place}: {name.value} lasts from 0 to {end:.3f} s; {time:g} s lies outside"
+            )
+
+
+def _texts(store: "Store", pattern: str) -> set[str]:
+    query = sparql.complete(f"SELECT DISTINCT ?name WHERE {{ {pattern} }}")
+    found = (row[0] for row in store.ask(query).rows)
+    return {each.value for each in found if isinstance(each, Literal)}
 
 
 def _read(name: str, query: str) -> Question:

@@ -8,14 +8,18 @@ from typing import Any
 
 from pyoxigraph import NamedNode, Quad
 
-from kb import answers, bounded
+from kb import answers, bounded, sparql
 from kb.answers import Answer
 from kb.errors import QueryError, StoreError
 from kb.statements import insertion
+from ontology import DATA
 
 ACCEPT = "application/sparql-results+json, application/n-triples"
 PATIENCE_S = 60.0
 """How long a server may be silent in answering a query or a change of ours [s]."""
+
+NOWHERE = DATA + "graph/none"
+"""A graph that there never is."""
 
 
 class RemoteStore:
@@ -79,18 +83,23 @@ class RemoteStore:
         """Nothing is held."""
 
 
-def _query_address(address: str) -> str:
-    return f"{address}/query?union-default-graph=true"
-
-
 def post_query(address: str, query: str) -> tuple[str, bytes]:
     """A server's answer to a query: its media type and its bytes.
 
     Raises:
         QueryError: The server says that it is no query.
-        StoreError: The server does not answer.
+        StoreError: The server does not answer, or takes no heed of the graphs that a query names.
     """
-    return _post(_query_address(address), query, "application/sparql-query")
+    kind = "application/sparql-query"
+    if not sparql.names_graphs(query):
+        return _post(f"{address}/query?union-default-graph=true", query, kind)
+    asked = f"{address}/query"
+    if answers.decode(*_post(asked, f"ASK FROM <{NOWHERE}> {{ ?s ?p ?o }}", kind)).boolean:
+        raise StoreError(
+            f"{address}: this server takes no heed of FROM; write GRAPH <...> {{ ... }} in its "
+            "place, or start the server without --union-default-graph"
+        )
+    return _post(asked, query, kind)
 
 
 def _post(url: str, text: str, kind: str) -> tuple[str, bytes]:
@@ -101,7 +110,7 @@ def _post(url: str, text: str, kind: str) -> tuple[str, bytes]:
             return reply.headers.get("Content-Type", ""), reply.read()
     except urllib.error.HTTPError as error:
         said = error.read().decode(errors="replace").strip()
-        if error.code == 400:
+        if error.code == 400 or "custom function" in said:
             raise QueryError(said) from None
         raise StoreError(f"{url} refuses: {error.code} {error.reason} {said}".strip()) from None
     except (urllib.error.URLError, OSError) as error:

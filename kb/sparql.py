@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import dropwhile, pairwise
 
 from kb.errors import QueryError
 from ontology import BASE, PREFIXES
@@ -25,6 +25,7 @@ _ESCAPE = re.compile(r"\\u([0-9A-Fa-f]{4})|\\U([0-9A-Fa-f]{8})")
 _GAP = re.compile(r"@(\w+)@")
 _UPDATES = {"insert", "delete", "load", "clear", "drop", "create", "add", "move", "copy", "with"}
 _FORMS = {"select", "construct", "ask", "describe"}
+_FIRST = _FORMS | _UPDATES | {"prefix", "base"}
 
 ELEMENT = (
     '<http://www.w3.org/2001/XMLSchema#double>(REPLACE(CONCAT(STR({0}), " x"), '
@@ -55,12 +56,34 @@ def tokens(query: str) -> Iterator[Token]:
         yield Token(match.lastgroup or "other", match.group())
 
 
+def is_meant(text: str) -> bool:
+    """Whether a text is meant as SPARQL, by its first word and what follows; or says nothing."""
+    pieces = list(dropwhile(lambda each: each.kind == "space", tokens(text)))
+    if len(pieces) < 2:
+        return not pieces
+    first, after = pieces[:2]
+    return first.text.lower() in _FIRST and after.kind in {"space", "iri", "variable"}
+
+
+def names_graphs(query: str) -> bool:
+    """Whether a query says itself which graphs it is asked of (FROM), instead of all."""
+    if "from" not in query.lower():
+        return False
+    words = pairwise([Token("space", ""), *tokens(query)])
+    return any(
+        each.kind == "word" and each.text.lower() == "from" and before.text != "@"
+        for before, each in words
+    )
+
+
 def prepare(query: str) -> str:
     """A user's query with known prefixes declared and our functions spelt out.
 
     Raises:
-        QueryError: It writes, or calls other services.
+        QueryError: It is empty, writes, or calls other services.
     """
+    if all(each.kind == "space" for each in tokens(query)):
+        raise QueryError("the query is empty; `capar query --list` names questions to begin with")
     _refuse(query)
     if _ESCAPE.search(query):
         _refuse(_ESCAPE.sub(lambda at: chr(int(at.group(1) or at.group(2), 16)), query))

@@ -166,3 +166,10 @@ def test_the_names_of_a_user_s_rules_can_be_claimed(drink, tmp_path):
     assert judge("no right_hand Squeeze(mug)", drink, names=names).holds
     with pytest.raises(ClaimError, match="no primitive 'Squeeze'"):
         judge("no right_hand Squeeze(mug)", drink)
+
+
+def test_what_lasts_until_the_capture_ends_was_not_seen_to_end():
+    touching = observe(motions.touch_from_rest(motions.WOMAN).capture, rules="thesis")
+    assert judge("right_hand touches box", touching).holds
+    assert not judge("right_hand lets go of box", touching).holds
+    assert judge("no right_hand lets go of box", touching).holds

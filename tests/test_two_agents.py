@@ -1,7 +1,9 @@
 """Two people hand over a mug: who gives, who takes, and whose action each PAR is."""
 
 import json
+import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
@@ -13,13 +15,18 @@ from write_demo import write_tables
 from capar.cli import main
 from capar.explanation import explained
 from capar.model.errors import CaptureError, UnknownNameError
+from capar.model.facts import Touching
 from capar.model.json_form import from_json, published_schema, to_json
 from capar.model.observation import Observation
+from capar.model.par import Step
 from capar.observe import observe
+from capar.workbench.picture import draw
+from capar.workbench.script import script
 from capar_rules.profiles import profile
 from extractors.readers.bundle import read_capture
 from kb.actionary import Actionary
 from kb.checking import check
+from kb.drawing import as_text
 from kb.language.describe import describe
 
 BUNDLE = """\
@@ -188,8 +195,72 @@ def test_what_each_did_is_told_of_each(seen: Observation) -> None:
     told = describe(seen)
     assert told.startswith("The woman reached for the mug with the right hand")
     hers, his = told.split(" The tall man ")
-    assert hers.endswith("and handed it to someone.")
+    assert hers.endswith("and handed it to the tall man.")
     assert his.startswith("accepted")
+
+
+def test_who_takes_it_is_someone_where_no_hand_of_another_is_seen_to_have_it(
+    seen: Observation,
+) -> None:
+    own = tuple(
+        each for each in seen.facts if not (isinstance(each, Touching) and each.body == TAKING)
+    )
+    assert "handed it to someone." in describe(replace(seen, facts=own))
+
+
+def test_who_takes_it_is_said_by_a_name_of_their_own(seen: Observation) -> None:
+    text = to_json(seen).replace('"tall_man"', '"bob"').replace(",tall_man)", ",bob)")
+    assert "handed it to Bob. Bob accepted" in describe(from_json(text))
+
+
+def test_each_step_of_a_script_is_of_the_agent_whose_end_effector_takes_it(
+    seen: Observation,
+) -> None:
+    text = script(seen)
+    assert "def execution_steps(self, agent1, agent2, obj1):" in text
+    assert "# agent1 was 'woman'\n# agent2 was 'tall_man'\n" in text
+    whose = re.findall(r"'agents': (\w+),.*?'EE': '(\w+)'", text, re.DOTALL)
+    assert set(whose) == {("agent1", GIVING), ("agent2", TAKING)}
+
+
+def test_a_step_that_ends_every_link_is_of_all_agents(seen: Observation) -> None:
+    last = Step("ResumePosture", "all", ("mug",), 0.1, "", 0.9, ())
+    text = script(replace(seen, complex_par=replace(seen.complex_par, common=last)))
+    (agents,) = re.findall(r"'ResumePosture', {\s*'agents': (.*),\n", text)
+    assert agents == "(agent1, agent2)"
+
+
+def test_the_command_writes_the_script_and_hatches_what_was_lost(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = (place := bundle(tmp_path) / "motion.csv").read_text().splitlines()
+    columns = lines[0].split(",")
+    for frame in range(210, 240):
+        cells = lines[frame + 1].split(",")
+        cells[columns.index("mug_valid")] = "0"
+        lines[frame + 1] = ",".join(cells)
+    place.write_text("\n".join(lines) + "\n")
+    picture = tmp_path / "handing.svg"
+    command = ["capar", "observe", str(tmp_path), "--script", "--plot", str(picture)]
+    monkeypatch.setattr(sys, "argv", command)
+    with pytest.raises(SystemExit):
+        main()
+    assert "'agents': agent2" in capsys.readouterr().out
+    assert "fill: url(#h" in picture.read_text(encoding="utf-8")
+
+
+def test_who_was_seen_to_do_it_are_all_that_act(seen: Observation) -> None:
+    with Actionary.in_memory() as store:
+        store.add(seen)
+        assert "handing_over by woman and tall_man, 5.595 s" in as_text(store.store, seen.capture)
+
+
+def test_the_picture_names_everyone_who_acts(seen: Observation, tmp_path: Path) -> None:
+    draw(seen, {}, path=tmp_path / "handing.svg")
+    assert "woman and tall man · 5.60 s" in (tmp_path / "handing.svg").read_text("utf-8")
+    hers = replace(seen, links=tuple(each for each in seen.links if each.ee == GIVING))
+    draw(hers, {}, path=tmp_path / "giving.svg")
+    assert "<!-- woman · 5.60 s" in (tmp_path / "giving.svg").read_text("utf-8")
 
 
 def test_an_agent_who_is_not_there_is_a_mistake_with_its_line(tmp_path: Path) -> None:

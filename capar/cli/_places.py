@@ -1,7 +1,13 @@
-"""What is said of a file or folder that the system does not give."""
+"""Files that a command writes, and what is said of those that the system does not give."""
 
 import errno
 import os
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from shutil import copymode
+
+from capar.model.errors import FileError
 
 REMEDIES = {
     errno.EACCES: "Take the rights to it, or name another place.",
@@ -30,3 +36,70 @@ def told(error: OSError) -> str:
 
 def _named(name: object) -> bool:
     return isinstance(name, str | bytes | os.PathLike)
+
+
+def prove_place(path: Path, *, suffixes: Collection[str] = ()) -> None:
+    """Prove that a file could be written, before anything is computed for it.
+
+    Args:
+        path: The file, which is left as it is.
+        suffixes: How its name may end; any, if there are none.
+
+    Raises:
+        FileError: Its name ends otherwise.
+        OSError: It cannot be written; the error bears its name.
+    """
+    from tempfile import TemporaryFile
+
+    with _told_of(path):
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        if path.is_file():
+            path.open("ab").close()
+        if not _is_device(path):
+            TemporaryFile(dir=path.parent).close()
+    if suffixes and path.suffix.lower() not in suffixes:
+        known = ", ".join(suffixes)
+        raise FileError(path, f"no picture format {path.suffix!r};", f"there are: {known}.")
+
+
+@contextmanager
+def written(path: Path) -> Iterator[Path]:
+    """A draft to write beside a file, whose place it takes once it is whole.
+
+    Whatever goes wrong before leaves the file as it was. A pipe or device is written itself.
+
+    Raises:
+        OSError: It cannot be written; the error bears the file's name, not the draft's.
+    """
+    prove_place(path)
+    target = Path(os.path.realpath(path))
+    draft = target.with_name(f".{os.getpid()}.draft{path.suffix}")
+    with _told_of(path):
+        if _is_device(path):
+            yield path
+            return
+        try:
+            yield draft
+            if target.exists():
+                copymode(target, draft)
+            draft.replace(target)
+        finally:
+            with suppress(OSError):
+                draft.unlink()
+
+
+def _is_device(path: Path) -> bool:
+    return path.exists() and not path.is_file()
+
+
+@contextmanager
+def _told_of(path: Path) -> Iterator[None]:
+    """Faults that speak of a file's draft, or of no file, speak of the file."""
+    try:
+        yield
+    except OSError as error:
+        error.filename, error.filename2 = str(path), None
+        raise
+    except FileError as error:
+        raise FileError(path, error.problem, error.remedy) from None

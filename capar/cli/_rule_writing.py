@@ -35,6 +35,7 @@ def new(
     actionary: Place = None,
 ) -> None:
     """Write a rule file for NAME from a segment or a feature set, ready to be edited."""
+    from capar.cli._places import written
     from capar.model.errors import FileError, RuleError
     from capar.rule_drafts import rule_from_features, rule_from_segment
 
@@ -53,7 +54,8 @@ def new(
         return
     if out.exists():
         raise FileError(out, "exists already.", "Choose another file.")
-    out.write_text(text, encoding="utf-8")
+    with written(out) as draft:
+        draft.write_text(text, encoding="utf-8")
     typer.echo(f"wrote {out}; edit it, then: capar rules check {out}", err=True)
 
 

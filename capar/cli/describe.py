@@ -37,12 +37,15 @@ def describe(
     """Say in plain English what was done in CAPTURE."""
     from capar.cli._words import print_json, rule_words
     from capar.observe import observe
+    from capar.workbench.notices import reservation_lines, reservations
     from kb.language.describe import describe as told
 
     observation = observe(capture, rules=rule_base(profile, rules, actionary))
     words = rule_words(rules, actionary)
     text = told(observation, detail=detail.value, timed=timed, words=words)
+    notices = reservations(observation.notices)
     if json:
-        print_json({"capture": observation.capture, "description": text})
+        told_of = {"capture": observation.capture, "description": text}
+        print_json(told_of | {"notices": notices})
     else:
-        typer.echo(text)
+        typer.echo("\n".join((text, *reservation_lines(notices))))

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from capar.explanation import Explained
+    from capar.model.capture import Notice
     from capar.model.observation import Segment
     from capar_rules.explaining import Explanation, Reason
     from capar_rules.why_not import Alternative
@@ -26,7 +27,10 @@ def explain(
     ],
     segment: Annotated[
         str | None,
-        typer.Argument(help="END_EFFECTOR/INDEX, such as right_hand/3; without it, every one."),
+        typer.Argument(
+            help="END_EFFECTOR/INDEX, such as right_hand/3; END_EFFECTOR for all of its own; "
+            "without it, every one."
+        ),
     ] = None,
     why_not: Annotated[
         str | None,
@@ -43,29 +47,54 @@ def explain(
     svg: Annotated[Path | None, typer.Option(help="Draw the tree to this file.")] = None,
 ) -> None:
     """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
+    from capar.cli._places import prove_place
     from capar.explanation import explained, segment_named
     from capar_rules.why_not import why_not as alternatives
     from extractors.readers.bundle import read_capture
 
+    if svg:
+        prove_place(svg, suffixes=(".svg",))
     base = rule_base(profile, rules, actionary, steady=steady)
     seen = explained(read_capture(capture), rules=base)
-    chosen = (segment_named(seen.observation, segment),) if segment else seen.observation.segments
+    every_one = seen.observation.segments
+    chosen = tuple(each for each in every_one if not segment or each.ee == segment)
+    alone = bool(segment) and not chosen
+    if segment and alone:
+        chosen = (segment_named(seen.observation, segment),)
     if why_not:
-        asked = [each for each in chosen if segment or each.name != why_not]
+        asked = [each for each in chosen if alone or each.name != why_not]
         limit = 100 if every else 1
         rows = [(each, alternatives(seen.explainer, each, why_not, limit=limit)) for each in asked]
         if json:
             _echo_json(_rows(rows, seen))
             return
         for each, found in rows:
-            if segment is None:
+            if not alone:
                 typer.echo(f"{_header(each)}  {each.name}")
             _print_alternatives(why_not, found)
+        _print_notices(asked, seen)
         return
     told = [seen.explainer.explain(each) for each in chosen]
     if svg:
         _draw(told, svg)
-    _print(told, seen, json=json, tree=segment is not None)
+    _print(told, seen, json=json, tree=alone)
+    if not json:
+        _print_notices(chosen, seen)
+
+
+def _notices(segments: "Sequence[Segment]", seen: "Explained") -> "tuple[Notice, ...]":
+    """What of the bodies that the segments are about is known with reservations."""
+    from capar.workbench.notices import reservations
+
+    about = {name for each in segments for name in (each.ee, *each.objects)}
+    return reservations(seen.observation.notices, about=about)
+
+
+def _print_notices(segments: "Sequence[Segment]", seen: "Explained") -> None:
+    from capar.workbench.notices import reservation_lines
+
+    for line in reservation_lines(_notices(segments, seen)):
+        typer.echo(line)
 
 
 def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bool) -> None:
@@ -107,6 +136,7 @@ def _rows(
     return [
         {"ee": each.ee, "index": each.index, "is": each.name, "sentence": told.sentence}
         | _placed(asdict(told), seen)
+        | {"notices": [asdict(notice) for notice in _notices([each], seen)]}
         for each, found in rows
         for told in found
     ]
@@ -121,7 +151,9 @@ def _echo_json(value: object) -> None:
 def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
     from dataclasses import asdict
 
-    return _placed(asdict(told), seen)
+    segments = [e for e in seen.observation.segments if (e.ee, e.index) == (told.ee, told.index)]
+    notices = [asdict(each) for each in _notices(segments, seen)]
+    return _placed(asdict(told), seen) | {"notices": notices}
 
 
 def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
@@ -143,7 +175,9 @@ def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
 
 
 def _draw(told: "list[Explanation]", path: Path) -> None:
+    from capar.cli._places import written
     from capar.workbench.reasons import reasons_svg
 
-    path.write_text(reasons_svg(told), encoding="utf-8")
+    with written(path) as draft:
+        draft.write_text(reasons_svg(told), encoding="utf-8")
     typer.echo(f"drew {path}", err=True)

@@ -26,11 +26,14 @@ def export(
     actionary: Place = None,
 ) -> None:
     """Write everything, or one observation, as Turtle, TriG, N-Quads or JSON-LD."""
+    from capar.cli._places import prove_place, written
     from kb import Actionary
     from kb.exchange import export as exported
     from kb.exchange import format_of, misplaced
 
     chosen = format_of(file or "", format_ or (None if file else "trig"))
+    if file is not None:
+        prove_place(file)
     with Actionary.open(actionary, read_only=True) as opened:
         data = exported(opened.store, chosen, observation=observation)
         lost = misplaced(opened.store) if chosen == "turtle" and observation is None else 0
@@ -42,14 +45,6 @@ def export(
         )
     if file is None:
         sys.stdout.buffer.write(data)
-    else:
-        _write(file, data)
-
-
-def _write(file: Path, data: bytes) -> None:
-    from capar.model.errors import FileError
-
-    try:
-        file.write_bytes(data)
-    except OSError as error:
-        raise FileError(file, f"cannot be written ({error.strerror})") from None
+        return
+    with written(file) as draft:
+        draft.write_bytes(data)

@@ -12,24 +12,26 @@ app = typer.Typer()
 def new_capture(
     files: Annotated[list[Path], typer.Argument(help="Motion files of one trial.")],
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="The capture.toml to write.")
+        Path, typer.Option("-o", "--output", help="The capture.toml to write, or its folder.")
     ] = Path("capture.toml"),
     force: Annotated[bool, typer.Option("--force", help="Overwrite what is there.")] = False,
 ) -> None:
     """Write a commented capture.toml that a person then edits; it is read back at once."""
+    from capar.cli._places import written
     from capar.model.errors import CaparError, FileError
     from extractors.readers.bundle import read_capture
     from extractors.readers.draft import TODO, draft
     from extractors.readers.registry import read_recording
 
-    path = output / "capture.toml" if output.is_dir() else output
+    folder = output.is_dir() or output.suffix != ".toml"
+    path = output / "capture.toml" if folder else output
     if path.exists() and not force:
         raise FileError(path, "is there already.", "Name another with -o, or say --force.")
-    if not path.parent.is_dir():
-        raise FileError(path.parent, "no such folder.", "Make it first.")
     recordings = [read_recording(each) for each in files]
     text = draft(recordings, path.parent, files[0].name.split(".")[0])
-    path.write_text(text, encoding="utf-8")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with written(path) as draft_file:
+        draft_file.write_text(text, encoding="utf-8")
     typer.echo(f"wrote {path}")
     for number, line in enumerate(text.splitlines(), 1):
         if TODO in line:

@@ -74,6 +74,7 @@ def observe(
     from extractors.facts import extract
     from extractors.readers.bundle import read_capture
 
+    _prove_output(json=json, script=script, pars=pars, plot=plot)
     base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
     measurements = extract(trial)
@@ -91,6 +92,21 @@ def observe(
         _draw(observation, trial, measurements, plot)
     if actionary:
         _keep(observation, actionary, name=name, wait_s=wait)
+
+
+def _prove_output(*, json: bool, script: bool, pars: bool, plot: Path | None) -> None:
+    """What is to come out can come out; told before anything is computed."""
+    from capar.cli._places import prove_place
+    from capar.model.errors import CaparError
+
+    forms = {"--json": json, "--script": script, "--pars": pars}
+    named = [name for name, given in forms.items() if given]
+    if len(named) > 1:
+        raise CaparError(f"{' and '.join(named)} print different things; say one of them")
+    if plot:
+        from capar.workbench.picture import SUFFIXES
+
+        prove_place(plot, suffixes=SUFFIXES)
 
 
 def _keep(observation: "Observation", place: str, *, name: str, wait_s: float) -> None:
@@ -113,7 +129,7 @@ def _print(observation: "Observation", *, json: bool, script: bool, pars: bool) 
     if script:
         from capar.workbench.script import script as written
 
-        typer.echo(written(observation.complex_par), nl=False)
+        typer.echo(written(observation), nl=False)
         return
     _tables(observation)
     if pars:
@@ -128,6 +144,7 @@ def _tables(observation: "Observation") -> None:
     """Tables for a terminal; plain aligned columns for anything else."""
     import sys
 
+    from capar.workbench.notices import note_lines
     from capar.workbench.tables import (
         aligned,
         joint_lines,
@@ -152,20 +169,23 @@ def _tables(observation: "Observation") -> None:
     for segment in observation.segments:
         if not segment.known:
             typer.echo(unknown_note(segment))
-    for notice in observation.notices:
-        typer.echo(f"note [{notice.code}]: {notice.message}", err=True)
+    for line in note_lines(observation.notices):
+        typer.echo(line, err=True)
 
 
 def _draw(
     observation: "Observation", capture: "Capture", measurements: "Measurements", path: Path
 ) -> None:
+    from capar.cli._places import written
     from capar.workbench.picture import draw
 
     speeds = {
         link.ee: (capture.times, measurements.tracks[link.ee].speed_mps)
         for link in observation.links
     }
-    draw(observation, speeds, path=path)
+    lost = {name: each.lost for (_, name), each in measurements.poses.items()}
+    with written(path) as draft:
+        draw(observation, speeds, path=draft, lost=lost)
     typer.echo(f"drew {path}", err=True)
 
 

@@ -77,5 +77,10 @@ def _print_answers(
         typer.echo("Nobody did, in any observation.")
     for row in answers:
         typer.echo(
-            "  ".join(f"{name}: {value}" for name, value in row.items() if value is not None)
+            "  ".join(f"{name}: {_short(each)}" for name, each in row.items() if each is not None)
         )
+
+
+def _short(value: object) -> object:
+    """A number to milliseconds, for people."""
+    return round(value, 3) if isinstance(value, float) else value

@@ -67,19 +67,22 @@ def query(
     if list_ or question is None:
         _list(chosen)
         return
-    text = _text(question, parameters or [])
+    given = _given(parameters or [])
+    raw = _raw(question)
+    text = _text(question, raw, given)
     from kb import Actionary
+    from kb.questions import prove_known
+    from kb.questions import question as named
 
     with Actionary.open(actionary, read_only=True) as opened:
         answer = opened.store.ask_within(text, seconds=time_limit)
+        if raw is None and not answer.rows:
+            prove_known(opened.store, named(question), given)
     _print(answer, chosen)
 
 
-def _text(question: str, parameters: list[str]) -> str:
-    """The SPARQL that is meant."""
+def _given(parameters: list[str]) -> dict[str, str]:
     from capar.model.errors import CaparError
-    from kb import sparql
-    from kb.questions import question as named
 
     given = {}
     for each in parameters:
@@ -87,7 +90,15 @@ def _text(question: str, parameters: list[str]) -> str:
         if not equals:
             raise CaparError(f"{each!r} is no parameter; one is written NAME=VALUE")
         given[name] = value
-    raw = _raw(question)
+    return given
+
+
+def _text(question: str, raw: str | None, given: dict[str, str]) -> str:
+    """The SPARQL that is meant."""
+    from capar.model.errors import CaparError
+    from kb import sparql
+    from kb.questions import question as named
+
     if raw is None:
         return named(question).bind(given)
     if given:
@@ -97,19 +108,28 @@ def _text(question: str, parameters: list[str]) -> str:
 
 def _raw(question: str) -> str | None:
     """SPARQL that was given itself, or by a file or standard input."""
+    from kb import sparql
+
     if question == "-":
         return sys.stdin.read()
     if any(each in question for each in "{\n"):
         return question
     path = Path(question)
-    if path.suffix in {".rq", ".sparql"} or path.is_file():
+    if path.suffix in {".rq", ".sparql"} or _is_file(path):
         from capar.model.errors import FileError
 
         try:
             return path.read_text("utf-8")
-        except (OSError, UnicodeDecodeError) as error:
+        except UnicodeDecodeError as error:
             raise FileError(path, f"cannot be read as a query ({error})") from None
-    return None
+    return question if sparql.is_meant(question) else None
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # too long for a file's name
+        return False
 
 
 def _list(chosen: str) -> None:

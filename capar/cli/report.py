@@ -44,16 +44,20 @@ def linguistics(
     json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
 ) -> None:
     """Which verbs and classes of verbs the system addresses, with what proves it."""
+    from capar.cli._places import prove_place, written
     from capar.cli._words import open_words
     from capar.report import cases_of, primitive_files
     from capar.report import linguistics as report_of
     from kb.reports.writing import write
 
+    if out is not None:
+        prove_place(out)
     files = primitive_files(rule_base("extended", rules, opened(actionary)).added)
     with open_words(actionary) as store:
         report = report_of(files, store=store, cases=cases_of(files, cases))
     text = write(report, Format.JSON.value if json else form.value)
     if out is None:
         typer.echo(text, nl=False)
-    else:
-        out.write_text(text, encoding="utf-8")
+        return
+    with written(out) as draft:
+        draft.write_text(text, encoding="utf-8")

@@ -1,5 +1,7 @@
 """What a verb means to the system, and which verbs fit a segment."""
 
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -9,6 +11,7 @@ from capar.cli._rules import Rules, opened, rule_base
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from kb.lexicon.evidence import Seen
     from kb.lexicon.fitting import Fit
     from kb.lexicon.verbs import VerbAnswer
     from kb.store import Store
@@ -58,12 +61,16 @@ def verb(
             _print_kinds(lemma, names, store, json=json)
         else:
             from capar.report import answer_verb
+            from kb.lexicon.claims import doubts_of
 
+            for doubt in doubts_of(words):
+                typer.echo(f"note [unknown-word]: {doubt}", err=True)
             _print_verb(answer_verb(lemma, words, store=store), json=json)
 
 
 def _print_verb(answer: "VerbAnswer", *, json: bool) -> None:
     from capar.cli._words import print_json
+    from kb.lexicon.evidence import often, summed
 
     if json:
         print_json(answer)
@@ -84,8 +91,18 @@ def _print_verb(answer: "VerbAnswer", *, json: bool) -> None:
         console.print(f"{near.relation} {', '.join(near.verbs)}{by}: [dim]{near.definition}[/]")
     for claim in answer.claims:
         console.print(f"Thesis {claim.section}: {claim.status.value}. {claim.reason}")
-    for seen in answer.seen:
-        console.print(f"Seen: {seen.primitive} in {seen.observation}, {seen.count} times.")
+    for seen in summed(answer.seen):
+        console.print(f"Seen: {seen.primitive} in {seen.observation}, {often(seen.count)}.")
+    if answer.general_seen:
+        console.print(f"Not seen; what is more general was: {_in_all(answer.general_seen)}.")
+
+
+def _in_all(seen: "Iterable[Seen]") -> str:
+    """Primitives with how often each was seen in every observation together."""
+    from kb.lexicon.evidence import often, summed
+
+    sums = summed(replace(each, observation="") for each in seen)
+    return ", ".join(f"{each.primitive} {often(each.count)}" for each in sums)
 
 
 def _print_classes(console: "Console", answer: "VerbAnswer") -> None:
@@ -103,15 +120,15 @@ def _print_classes(console: "Console", answer: "VerbAnswer") -> None:
 
 def _print_kinds(lemma: str, names: tuple[str, ...], store: "Store | None", *, json: bool) -> None:
     from capar.cli._words import print_json
-    from kb.lexicon.evidence import seen_in
+    from kb.lexicon.evidence import often, seen_in, summed
 
     seen = [each for each in (seen_in(store) if store else ()) if each.primitive in names]
     if json:
         print_json({"verb": lemma, "primitives": names, "seen": seen})
         return
     typer.echo(f"{lemma}, and every kind of it: {', '.join(names) or 'no primitive'}")
-    for each in seen:
-        typer.echo(f"  {each.observation}: {each.primitive}, {each.count} times")
+    for each in summed(seen):
+        typer.echo(f"  {each.observation}: {each.primitive}, {often(each.count)}")
 
 
 def _print_fits(fits: "tuple[Fit, ...]", *, json: bool) -> None:

@@ -104,7 +104,7 @@ class Touching(Fact):
 
 @dataclass(frozen=True, slots=True, order=True)
 class Gap(Fact):
-    """How far two bodies are apart when they begin to touch [micrometres]; negative: overlap."""
+    """How far two bodies are apart when they begin to touch [micrometres]; zero where they cut."""
 
     predicate = "gap"
     body: str
@@ -125,7 +125,7 @@ class Moving(Fact):
 
 @dataclass(frozen=True, slots=True, order=True)
 class LookingAt(Fact):
-    """The line of sight of a sensor that attends meets the object first."""
+    """The line of sight of a sensor that attends, or of a head that acts, meets it first."""
 
     predicate = "looking_at"
     sensor: str

@@ -39,6 +39,9 @@ HEIGHTS_IN = {
     Kind.NAMES: 0.24,
     Kind.CURVE: 0.8,
 }
+LOST: dict[str, Any] = {"facecolor": "none", "edgecolor": QUIET, "hatch": "/////", "linewidth": 0}
+"""How frames look in which tracking had lost a body."""
+
 LABEL_ROW_IN = 0.17
 LINK_GAP_IN = 0.2
 FOOT_IN = 0.06
@@ -210,6 +213,8 @@ class Painter:
         colour = MOTION if row.kind is Kind.MOTION else CONTACT
         for span in row.spans:
             self._box(axes, span, low - 0.16, 0.12, facecolor=colour, zorder=2)
+        for span in row.lost:
+            self._box(axes, span, low - 0.16, 0.12, **LOST, zorder=2.5)
 
     def _looks(self, axes: "Axes", index: int, low: float) -> None:
         self._name(axes, self._rows[index].label, low - 0.12)

@@ -9,7 +9,18 @@ from capar.model.errors import FileError
 from capar.model.observation import Observation
 from capar.workbench.lettering import width_in
 from capar.workbench.painter import INK, QUIET, Painter
-from capar.workbench.rows import ASSUMED, STAND_IN, Kind, Speeds, rows, spoken, stand_ins
+from capar.workbench.rows import (
+    ASSUMED,
+    STAND_IN,
+    Kind,
+    Lost,
+    Row,
+    Speeds,
+    rows,
+    spoken,
+    stand_ins,
+)
+from capar.workbench.tables import performers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,17 +40,20 @@ TITLE_IN = 0.75
 NOTE_POINTS = 8.0
 NOTE_LINE_IN = 0.16
 
+LOST_NOTE = "hatched: a body of that row was not tracked; a bar across it is inferred."
+
 Entry: TypeAlias = tuple[Kind, str]
 """A name in the legend, and the kind of rows that it stands in."""
 
 
-def draw(observation: Observation, speeds: Speeds, *, path: Path) -> None:
+def draw(observation: Observation, speeds: Speeds, *, path: Path, lost: Lost | None = None) -> None:
     """Draw the observation to a PNG, SVG or PDF file, as the suffix says.
 
     Args:
         observation: What to draw.
         speeds: Of each end-effector: times [s] and speeds [m/s]; a link without one has no curve.
         path: The file, which is overwritten.
+        lost: Of each body whether tracking had lost it, by frame; such frames are hatched.
 
     Raises:
         FileError: The suffix is another one, or the file cannot be written.
@@ -58,23 +72,22 @@ def draw(observation: Observation, speeds: Speeds, *, path: Path) -> None:
         "text.parse_math": False,
     }
     with mpl.rc_context(rc={**dict(mpl.rcParamsDefault), **settings, "backend": "agg"}):
-        figure = _figure(observation, speeds)
+        figure = _figure(observation, rows(observation, speeds, lost))
         try:
             figure.savefig(path, dpi=DPI, metadata=SUFFIXES[suffix])
         except OSError as error:
             raise FileError(path, f"cannot be written: {error.strerror or error}.") from None
 
 
-def _figure(observation: Observation, speeds: Speeds) -> "Figure":
+def _figure(observation: Observation, content: Sequence[Row]) -> "Figure":
     """Lay the rows out, then the time axis, the legend and the footnote under them."""
     from matplotlib.figure import Figure
 
-    content = rows(observation, speeds)
     left = EDGE_IN + 0.15 + max(width_in(each.label, points=9.5) for each in content)
     width = _width(observation, left)
     painter = Painter(content, observation.duration_s, width - left - EDGE_IN - 0.1)
     legend = _flowed(painter.legend, width - 2 * EDGE_IN)
-    notes = _notes(observation, width - 2 * EDGE_IN)
+    notes = _notes(observation, content, width - 2 * EDGE_IN)
     foot = 0.62 + 0.24 * len(legend) + NOTE_LINE_IN * len(notes) + (0.24 if notes else 0.0)
     height = TITLE_IN + painter.height + foot
     figure = Figure(figsize=(width, height), facecolor="white")
@@ -102,9 +115,10 @@ def _title(figure: "Figure", observation: Observation, left: float) -> None:
     figure.text(
         left / width, 1 - 0.2 / height, name, fontsize=14, weight="bold", color=INK, va="top"
     )
+    who = " and ".join(map(spoken, performers(observation)))
     capture = "" if name == observation.capture else f"{observation.capture} · "
     text = (
-        f"{capture}{spoken(observation.agent.name)} · {observation.duration_s:.2f} s at "
+        f"{capture}{who} · {observation.duration_s:.2f} s at "
         f"{observation.rate_hz:.4g} Hz · {observation.profile} rules"
     )
     figure.text(left / width, 1 - 0.47 / height, text, fontsize=9, color=QUIET, va="top")
@@ -153,8 +167,8 @@ def _entry(entry: Entry) -> str:
     return name if kind is Kind.SEGMENTS else f"looks at {name}"
 
 
-def _notes(observation: Observation, width: float) -> list[str]:
-    """What is assumed and what stands in for something else, in lines of that width [inches]."""
+def _notes(observation: Observation, content: Sequence[Row], width: float) -> list[str]:
+    """What is assumed, stands in for something else or was lost, in lines that wide [inches]."""
     notes = [
         f"{ASSUMED} {spoken(each.name)} is assumed: {each.assumed}."
         for each in observation.objects
@@ -164,5 +178,7 @@ def _notes(observation: Observation, width: float) -> list[str]:
     if shapes:
         parts = ", ".join(f"{spoken(name)} ({shape})" for name, shape in shapes.items())
         notes.append(f"{STAND_IN} stand-ins of stated size, not true shapes: {parts}.")
+    if any(each.lost for each in content):
+        notes.append(LOST_NOTE)
     columns = max(int(width / width_in("n", points=NOTE_POINTS)), 40)
     return [line for note in notes for line in wrap(note, columns, subsequent_indent="   ")]

@@ -1,20 +1,24 @@
 """What a picture of an observation shows, row by row, before any of it is drawn."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import TypeVar
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from capar.model.facts import LookingAt, Moving, Touching, ZeroCrossing
+from capar.model.geometry import gaps
 from capar.model.observation import Observation, ObservedLink, ObservedObject
 from capar.workbench.lettering import Span
 
 Speeds = Mapping[str, tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]]
 """Of each end-effector: times [s] and speeds [m/s]."""
+
+Lost = Mapping[str, Bool[np.ndarray, "frames"]]
+"""Of each body: whether tracking had lost it."""
 
 ASSUMED, STAND_IN = "*", "†"
 """Marks of an object that is assumed, and of a shape that stands in for the true one."""
@@ -46,15 +50,29 @@ class Row:
     borders: tuple[float, ...] = ()
     """Times at which a fine line crosses the row: the borders of its link's segments."""
 
+    lost: tuple[Span, ...] = ()
+    """When tracking had lost a body that the row is about."""
 
-def rows(observation: Observation, speeds: Speeds) -> tuple[Row, ...]:
+    about: tuple[str, ...] = ()
+    """The bodies whose contact or motion its bars show."""
+
+
+def rows(observation: Observation, speeds: Speeds, lost: Lost | None = None) -> tuple[Row, ...]:
     """Every row, from the top: each link, what several do as one action, objects, and gaze."""
     clock = frame_clock(observation, speeds)
     out: list[Row] = []
     for link in observation.links:
         out += _link_rows(observation, link, speeds, clock)
     out += _joint_rows(observation, clock)
-    return (*out, *_object_rows(observation, clock), *_gaze_rows(observation, clock))
+    out += _object_rows(observation, clock)
+    out = [replace(each, lost=_lost(each.about, lost or {}, clock)) for each in out]
+    return (*out, *_gaze_rows(observation, clock))
+
+
+def _lost(about: Sequence[str], lost: Lost, clock: Callable[[int], float]) -> tuple[Span, ...]:
+    found = [lost[each] for each in about if each in lost]
+    missing = gaps(np.logical_or.reduce(found)) if found else []
+    return tuple(Span(clock(first), clock(last), "") for first, last in missing)
 
 
 def frame_clock(observation: Observation, speeds: Speeds) -> Callable[[int], float]:
@@ -119,7 +137,7 @@ def _link_rows(
     for name in _in_order(each.other for each in touched):
         bars = tuple(_span(each, clock) for each in touched if each.other == name)
         label = f"touches {marked(observation, name)}"
-        out.append(Row(Kind.BARS, label, bars, borders=borders))
+        out.append(Row(Kind.BARS, label, bars, borders=borders, about=(link.ee, name)))
     if link.ee in speeds:
         out.append(Row(Kind.CURVE, "speed", curve=speeds[link.ee], borders=borders))
     return out
@@ -146,11 +164,12 @@ def _object_rows(observation: Observation, clock: Callable[[int], float]) -> lis
         names = (found[0].body, found[0].other)
         label = " touches ".join(marked(observation, each) for each in names)
         bars = tuple(dict.fromkeys(_span(each, clock) for each in found))
-        out.append(Row(Kind.BARS, label, bars))
+        out.append(Row(Kind.BARS, label, bars, about=names))
     moves = sorted(each for each in observation.facts if isinstance(each, Moving))
     for name in _in_order(each.object for each in moves):
         bars = tuple(_span(each, clock) for each in moves if each.object == name)
-        out.append(Row(Kind.MOTION, f"{marked(observation, name)} moves", bars))
+        label = f"{marked(observation, name)} moves"
+        out.append(Row(Kind.MOTION, label, bars, about=(name,)))
     return [Row(Kind.HEADING, "objects"), *out] if out else []
 
 

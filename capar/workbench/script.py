@@ -10,7 +10,9 @@ from functools import singledispatch
 from keyword import iskeyword
 
 from capar.model.errors import ParError
+from capar.model.observation import Observation
 from capar.model.par import ComplexPar, Condition, Step, Upar
+from capar.workbench.tables import performers
 
 INDENT = "    "
 CAPABILITY = (
@@ -27,7 +29,8 @@ def script(par: object) -> str:
     """The PAR as a Python script.
 
     A UPAR has the four functions of thesis 4.6.1; a complex PAR has its execution steps, whose
-    parts prove their own conditions (thesis 4.6.2).
+    parts prove their own conditions (thesis 4.6.2). Of an observation it is its complex PAR, in
+    which each step names its own agent where several act.
 
     Raises:
         ParError: A parameter of a UPAR is no Python name.
@@ -58,22 +61,45 @@ def _upar(par: Upar) -> str:
 
 @script.register
 def _complex(par: ComplexPar) -> str:
+    return _execution(par, {}, {})
+
+
+@script.register
+def _observed(observation: Observation) -> str:
+    par, acting = observation.complex_par, performers(observation)
+    if len(acting) < 2:
+        return script(par)
+    agents = {name: f"agent{index + 1}" for index, name in enumerate(acting)}
+    whose = {each.ee: agents[observation.performer(each.ee)] for each in par.links}
+    return _execution(par, agents, whose)
+
+
+def _execution(par: ComplexPar, agents: Mapping[str, str], whose: Mapping[str, str]) -> str:
+    """A complex PAR's script.
+
+    Args:
+        par: The PAR.
+        agents: Of several agents the parameter for each; empty where there is one.
+        whose: The parameter for the agent of each end-effector.
+    """
     names = {name: f"obj{index + 1}" for index, name in enumerate(par.objects)}
-    sequences = [
-        _nest("SEQUENCE", [_step(each, names, par.name) for each in link.steps])
-        for link in par.links
-    ]
+    everyone = _tuple(agents.values()) if agents else "agent"
+
+    def written(step: Step) -> str:
+        return _step(step, names, par.name, whose.get(step.ee, everyone))
+
+    sequences = [_nest("SEQUENCE", list(map(written, link.steps))) for link in par.links]
     whole = sequences[0] if len(sequences) == 1 else _nest("PARALLEL", sequences)
     if par.common:
-        last = _step(par.common, names, par.name)
+        last = written(par.common)
         if len(par.links) == 1:
-            steps = [_step(each, names, par.name) for each in par.links[0].steps]
-            whole = _nest("SEQUENCE", [*steps, last])
+            whole = _nest("SEQUENCE", [*map(written, par.links[0].steps), last])
         else:
             whole = _nest("SEQUENCE", [whole, last])
-    parameters = ", ".join(["self", "agent", *names.values()])
+    parameters = ", ".join(["self", *(agents.values() or ["agent"]), *names.values()])
     body = f"complex = {whole}\nactions = {{'COMPLEX': complex}}\nreturn actions\n"
-    legend = "".join(f"# {new} was {old!r}\n" for old, new in names.items())
+    known = [*agents.items(), *names.items()]
+    legend = "".join(f"# {new} was {old!r}\n" for old, new in known)
     head = f"from actionDef import *\n\n{_heading(par.name)}{legend}"
     return f"{head}\n\ndef execution_steps({parameters}):\n{_indented(body)}"
 
@@ -113,9 +139,9 @@ def _primitive(par: Upar, parameters: str) -> str:
     return f"def execution_steps({parameters}):\n{_indented(body)}"
 
 
-def _step(step: Step, names: Mapping[str, str], parent: str) -> str:
+def _step(step: Step, names: Mapping[str, str], parent: str, agents: str) -> str:
     fields = {
-        "agents": "agent",
+        "agents": agents,
         "objects": _tuple(names[each] for each in step.objects),
         "duration": repr(step.share),
         "purpose": repr(step.purpose),

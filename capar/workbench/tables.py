@@ -63,6 +63,13 @@ def steps_table(par: ComplexPar) -> "Table":
     return table
 
 
+def performers(observation: Observation) -> tuple[str, ...]:
+    """Names of the agents who act; of the first where nothing does."""
+    acting = {observation.performer(each.ee) for each in observation.links}
+    agents = (observation.agent, *observation.others)
+    return tuple(each.name for each in agents if each.name in acting) or (agents[0].name,)
+
+
 def joint_lines(observation: Observation) -> tuple[str, ...]:
     """What several end-effectors did as one action: ``both hands: Lift(box) 1.55-2.40 s``."""
     return tuple(

@@ -155,7 +155,7 @@ def _own_frame(table: Table, cluster: Cluster) -> Cluster:
 
 def _axes(table: Table, places: Mapping[str, Float[np.ndarray, "3"]]) -> Rotation:
     """Axes from pairs of markers: the first stands as it is, the second is made square to it."""
-    keys = [each for each in table.given() if each in "xyz"]
+    keys = [each for each in table.given() if each in ("x", "y", "z")]
     if len(keys) != 2:
         raise table.error("", "axes takes two of x, y, z, each from one marker to another.")
     ways = {}

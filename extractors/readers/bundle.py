@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.capture import (
+    NAME,
     Agent,
     Capture,
     Notice,
@@ -18,10 +19,11 @@ from capar.model.capture import (
     Stream,
     TagObject,
 )
-from capar.model.errors import UnknownNameError
+from capar.model.errors import CaptureError, UnknownNameError
 from capar.model.geometry import gaps
 from extractors.readers.clock import GAP_S
 from extractors.readers.declared import Declared, declared
+from extractors.readers.names import constant_name
 from extractors.readers.opening import source_of
 from extractors.readers.place import Place, find_place, open_bundle, takes
 from extractors.readers.registry import read_recording
@@ -44,6 +46,7 @@ def read_capture(place: str | Path) -> Capture:
         CaparError: A file, body or value is not as the capture.toml says; it names the line.
     """
     table, take = open_bundle(place)
+    _prove_names(table)
     files = read_files(table)
     group = _declared(table, files)
     notices = [*(each for file in files.values() for each in file.notices), *group.notices]
@@ -52,21 +55,24 @@ def read_capture(place: str | Path) -> Capture:
     agent, *others = _agents(table)
     _prove_agents(table, (agent, *others))
     contact = _contact(table)
-    capture = Capture(
-        name=_name(table, take),
-        sensors=group.sensors,
-        objects=group.objects,
-        agent=agent,
-        contact_tolerance_m=contact.get("tolerance_m"),
-        contact_dropout_s=contact.get("dropout_s"),
-        contact_minimum_s=contact.get("minimum_s"),
-        pivot_contacts=_pivots(table, group),
-        purposes=_purposes(table),
-        force_transfer=table.flag("force_transfer"),
-        sources=(*sources, *_once(group.sources)),
-        notices=(*notices, *_gap_notices(group.sensors, group.objects)),
-        others=tuple(others),
-    )
+    try:
+        capture = Capture(
+            name=_name(table, take),
+            sensors=group.sensors,
+            objects=group.objects,
+            agent=agent,
+            contact_tolerance_m=contact.get("tolerance_m"),
+            contact_dropout_s=contact.get("dropout_s"),
+            contact_minimum_s=contact.get("minimum_s"),
+            pivot_contacts=_pivots(table, group),
+            purposes=_purposes(table),
+            force_transfer=table.flag("force_transfer"),
+            sources=(*sources, *_once(group.sources)),
+            notices=(*notices, *_gap_notices(group.sensors, group.objects)),
+            others=tuple(others),
+        )
+    except CaptureError as error:
+        raise CaptureError(f"{table.file}: {error}") from None
     table.close()
     return capture
 
@@ -96,8 +102,32 @@ def clock_of(recording: WorldRecording) -> Float[np.ndarray, "frames"]:
 
 
 def _name(table: Table, take: str) -> str:
-    name = table.text("name", table.file.parent.name)
+    folder = table.file.parent
+    name = _filled(table, "name", folder.name.strip(".") or folder.resolve().name)
     return f"{name}_{take}" if take and take not in name else name
+
+
+def _filled(table: Table, key: str, default: str) -> str:
+    """A text that is not empty."""
+    text = table.text(key, default)
+    if not text.strip():
+        raise table.error(key, f"{key} is empty.", "Name it, or leave the line out.")
+    return text
+
+
+def _prove_names(table: Table) -> None:
+    """Every sensor and object has a name of its own that rules can bear."""
+    for kind in ("sensor", "object"):
+        lines: dict[str, str] = {}
+        for each in table.tables(kind):
+            _filled(each, "kind", "thing")
+            name, where = each.text("name"), each.where("name")
+            if not NAME.fullmatch(name):
+                rule = "names begin with a lower-case letter and hold letters, digits and _."
+                raise each.error("name", f"{kind} {name!r}: {rule}", f"Like {constant_name(name)}.")
+            if name in lines:
+                raise each.error("name", f"two {kind}s are called {name!r}; also {lines[name]}.")
+            lines[name] = where
 
 
 def read_files(table: Table) -> dict[str, WorldRecording]:
@@ -164,6 +194,8 @@ def _parents(table: Table, known: list[str]) -> dict[str, str]:
 def _declared(table: Table, files: Mapping[str, WorldRecording]) -> Declared:
     """Every sensor and object on one clock."""
     rate = table.number("rate_hz") if "rate_hz" in table else None
+    if rate is not None and rate <= 0.0:
+        raise table.error("rate_hz", f"rate_hz = {rate:g}; it is positive.")
     ends = [table.number(key) if key in table else None for key in ("from_s", "to_s")]
     return declared(table, files, rate_hz=rate, span_s=(ends[0], ends[1]))
 
@@ -179,7 +211,7 @@ def _agents(table: Table) -> tuple[Agent, ...]:
 def _agent(agent: Table) -> Agent:
     measures = agent.table("measures")
     values = {key: measures.number(key) for key in measures.given()} if measures else {}
-    out = Agent(agent.text("name", "agent"), agent.text("kind", "person"), values)
+    out = Agent(_filled(agent, "name", "agent"), _filled(agent, "kind", "person"), values)
     agent.close()
     return out
 
@@ -252,5 +284,7 @@ def _long_gaps(stream: Stream) -> list[tuple[int, int]]:
 
 
 def _gap_notice(name: str, stream: Stream, gap: tuple[int, int]) -> Notice:
+    if gap == (0, len(stream.times) - 1):
+        return Notice("long-gap", f"{name} is lost throughout")
     start, end = stream.times[gap[0]], stream.times[gap[1]]
     return Notice("long-gap", f"{name} is lost from {start:.2f} s to {end:.2f} s")

@@ -23,14 +23,17 @@ ORDERS = {"xyzw": [3, 0, 1, 2], "wxyz": [0, 1, 2, 3]}
 
 
 def recognises(path: Path, head: bytes) -> bool:
-    """Whether the first line names columns and the second holds numbers."""
+    """Whether the first line names columns and the second, if there is one, holds numbers."""
     try:
         lines = [each for each in head.decode("utf-8-sig", "ignore").splitlines() if each.strip()]
     except UnicodeDecodeError:
         return False
-    if len(lines) < 2 or "\0" in lines[0]:
+    if not lines or "\0" in lines[0]:
         return False
     delimiter = _delimiter(lines[0])
+    names = _names(lines[0], delimiter)
+    if len(lines) == 1:
+        return len(names) > 2 and bool(_groups(names) or {*TIMES} & {n.lower() for n in names})
     cells = lines[1].split(delimiter)
     return (
         len(cells) > 2
@@ -43,15 +46,19 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
     """The bodies (seven columns) and markers (three) of a table.
 
     Raises:
-        FileError: No column of time and no rate, or a row is damaged.
+        FileError: No column of time and no rate, no row, or a row is damaged.
         UnknownNameError: The options name a column that is not there.
     """
     lines = read_text(path).splitlines()
     start = next((n for n, each in enumerate(lines) if each.strip()), 0)
     delimiter = str(options.get("delimiter", _delimiter(lines[start])))
-    names = [each.strip().strip('"') for each in lines[start].split(delimiter)]
+    names = _names(lines[start], delimiter)
     if len(set(names)) != len(names):
         raise FileError(path, "names a column twice.")
+    if not any(each.strip() for each in lines[start + 1 :]):
+        raise FileError(
+            path, "holds no frames: a header, and no rows under it.", "Export it again."
+        )
     rows = read_rows(
         lines[start + 1 :], path=path, first_line=start + 2, columns=len(names), delimiter=delimiter
     )
@@ -130,6 +137,10 @@ def _times(
         f"no column of time among {sorted(table)[:12]}.",
         'Name it in capture.toml (time = "column") or state rate_hz.',
     )
+
+
+def _names(line: str, delimiter: str) -> list[str]:
+    return [each.strip().strip('"') for each in line.split(delimiter)]
 
 
 def _delimiter(line: str) -> str:

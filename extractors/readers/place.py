@@ -36,9 +36,16 @@ def find_place(place: str | Path) -> Place:
         raise FileError(
             text,
             f"no capture here: there is no file {path}.",
-            f"Write one with: capar new-capture FILES... -o {path}",
+            f"Write one with: capar new-capture FILES... -o {_wanted(path)}",
         )
     return Place(path, take)
+
+
+def _wanted(path: Path) -> Path:
+    """Where a capture.toml ought to be, by a path that leads nowhere: a file or a folder."""
+    if path.suffix == ".toml":
+        return path
+    return (path.parent if path.suffix else path) / FILE
 
 
 def takes(place: str | Path) -> list[str]:

@@ -7,7 +7,7 @@ from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import Ipar, Motion
 from kb.language.contacts import Scene
 from kb.language.english import joined, words_of
-from kb.language.phrasing import QUIET, Phrasebook
+from kb.language.phrasing import QUIET, SOMEONE, Phrasebook
 from kb.lexicon.links import motion_senses
 from kb.lexicon.wordnet import wordnet
 
@@ -77,7 +77,11 @@ def clauses(
             last = found[-1][0] if found else None
             ipar = ipars.get((segment.ee, segment.start_s))
             cases = _cases(segment, last, scene, ipar, held=held)
-            found.append((segment, _clause(segment, before, book, cases, names)))
+            clause = _clause(segment, before, book, cases, names)
+            if SOMEONE in clause.pattern:
+                named = clause.pattern.replace(SOMEONE, scene.taker(segment) or SOMEONE)
+                clause = replace(clause, pattern=named)
+            found.append((segment, clause))
         before = segment
     return _with_purposes(found, names)
 

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterable
 
-from capar.model.facts import Link, Moving, Touching
+from capar.model.facts import Link, Moving, OfAgent, Touching
 from capar.model.observation import Observation, Segment
+from kb.language.english import the_agent
 
 
 class Scene:
@@ -17,6 +18,9 @@ class Scene:
         self._pairs = [each for each in touching if each.body not in effectors]
         self._moving = [each for each in observation.facts if isinstance(each, Moving)]
         self._tags = {each.name: each.tag for each in observation.objects}
+        owners = [each for each in observation.facts if isinstance(each, OfAgent)]
+        self._owners = {each.body: each.agent for each in owners}
+        self._kinds = {each.name: each.kind for each in (observation.agent, *observation.others)}
 
     def is_self(self, name: str) -> bool:
         """Whether an object is of the agent's own body."""
@@ -34,6 +38,20 @@ class Scene:
             each.first <= segment.first and each.last < segment.last
             for each in self._between(thing, goal)
         )
+
+    def taker(self, segment: Segment) -> str:
+        """The one other agent who has the dominant object when a segment begins, and after it.
+
+        Said as a noun phrase; empty where there is none, or several.
+        """
+        own = self._owners.get(segment.ee)
+        found = {
+            self._owners.get(each.body, own)
+            for each in self._hands
+            if each.other in segment.objects[:1] and each.first <= segment.first < each.last
+        }
+        names = [each for each in found if each and each != own]
+        return the_agent(names[0], self._kinds.get(names[0], "")) if len(names) == 1 else ""
 
     def _between(self, thing: str, other: str) -> Iterable[Touching]:
         return (each for each in self._pairs if {each.body, each.other} == {thing, other})

@@ -47,14 +47,18 @@ def describe(
         words: What the primitives of the rule base are called; those that are not there are said
             by the verb of a more general one.
     """
-    if observation.others:
-        stories = [_of(observation, each) for each in (observation.agent, *observation.others)]
-        return " ".join(
-            describe(each, detail=detail, timed=timed, words=words)
-            for each in stories
-            if each.links
-        )
     book, scene = Phrasebook(words), Scene(observation)
+    told = [observation]
+    if observation.others:
+        agents = (observation.agent, *observation.others)
+        told = [each for each in (_of(observation, agent) for agent in agents) if each.links]
+    return " ".join(_story(each, book, scene, detail=detail, timed=timed) for each in told)
+
+
+def _story(
+    observation: Observation, book: Phrasebook, scene: Scene, *, detail: Detail, timed: bool
+) -> str:
+    """What one agent did."""
     links = spoken_links(observation.links)
     summary = detail == "summary"
     told = [
@@ -65,7 +69,7 @@ def describe(
     steps = told_in_order(links, told)
     if not timed:
         steps = edited(steps, summary=summary)
-    subject = the_agent(observation.agent.name)
+    subject = the_agent(observation.agent.name, observation.agent.kind)
     telling = Telling(links, timed=timed)
     if not steps:
         return f"{capital(subject)} {telling.idle(_moved_freely(links, book))}."
@@ -80,7 +84,7 @@ def describe(
 def _of(observation: Observation, agent: Agent) -> Observation:
     """What one of several agents did."""
     own = tuple(each for each in observation.links if observation.performer(each.ee) == agent.name)
-    return replace(observation, agent=agent, links=own, others=())
+    return replace(observation, agent=agent, links=own)
 
 
 def _moved_freely(links: Sequence[ObservedLink], book: Phrasebook) -> list[str]:

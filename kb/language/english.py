@@ -6,6 +6,20 @@ from functools import cache
 
 from kb.lexicon.tables import table
 
+PEOPLE = frozenset(
+    (
+        *("actor", "actress", "adult", "agent", "assistant", "athlete", "baby", "boy", "chef"),
+        *("child", "cook", "customer", "dancer", "demonstrator", "doctor", "elder", "expert"),
+        *("father", "female", "friend", "gentleman", "girl", "giver", "guest", "helper", "host"),
+        *("human", "individual", "infant", "instructor", "kid", "lady", "male", "man", "mother"),
+        *("musician", "neighbour", "novice", "nurse", "operator", "parent", "participant"),
+        *("partner", "patient", "performer", "person", "player", "pupil", "receiver", "robot"),
+        *("singer", "student", "subject", "taker", "teacher", "teenager", "therapist", "toddler"),
+        *("trainer", "user", "visitor", "volunteer", "waiter", "waitress", "woman", "worker"),
+    )
+)
+"""Common nouns for whoever may perform."""
+
 _CAMEL = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 
 
@@ -40,9 +54,17 @@ def the(name: str) -> str:
     return spoken if spoken[:1].isupper() else f"the {spoken}"
 
 
-def the_agent(name: str) -> str:
-    """Who acts: a name with a number stands alone, as proper names do."""
-    return noun(name) if any(each.isdigit() for each in name) else the(name)
+def the_agent(name: str, kind: str = "") -> str:
+    """Who acts: ``the tall man``, but ``Anna``; a name with a number stands alone as it is.
+
+    A name whose last word is the agent's kind, or a common noun for people, is no proper name.
+    """
+    words = noun(name).split()
+    if any(each.isdigit() for each in name):
+        return noun(name)
+    if not words or words[-1] in {*PEOPLE, *noun(kind).split()[-1:]}:
+        return the(name)
+    return " ".join(map(capital, words))
 
 
 def words_of(name: str) -> str:

@@ -22,6 +22,10 @@ FREE = "move {ee}"
 """The pattern of what a hand does that is of no object."""
 
 
+SOMEONE = "someone"
+"""In a pattern, another agent: said so where it is not known who."""
+
+
 class Phrasebook:
     """Patterns by primitive: shipped ones, and verbs of the rule files for all others."""
 

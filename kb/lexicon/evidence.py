@@ -1,5 +1,6 @@
 """What the stored observations show of primitives."""
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -17,6 +18,7 @@ class Seen:
     observation: str
     count: int
     purpose: str = ""
+    """What the user stated that they were for; empty where it only follows from what came next."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -33,7 +35,12 @@ SELECT ?name ?observation ?purpose (COUNT(DISTINCT ?segment) AS ?count) WHERE {{
   ?seen a {CAPAR.Observation} ; rdfs:label ?observation ; {CAPAR.segment} ?segment .
   ?segment a {CAPAR.Segment} .
   OPTIONAL {{ ?segment {CAPAR.action}/{CAPAR.name} ?name }}
-  OPTIONAL {{ ?segment {CAPAR.purpose} ?purpose }}
+  OPTIONAL {{
+    ?segment {CAPAR.purpose} ?purpose .
+    ?seen {CAPAR.fact} ?stated .
+    ?stated a {CAPAR.Intended} ; {CAPAR.purpose} ?purpose ; {CAPAR.actionName} ?doing .
+    FILTER (?doing = "any" || ?doing = ?name)
+  }}
 }} GROUP BY ?name ?observation ?purpose
 """
 
@@ -53,6 +60,19 @@ def seen_in(store: Store) -> tuple[Seen, ...]:
             if row["observation"] is not None
         )
     )
+
+
+def summed(seen: Iterable[Seen]) -> tuple[Seen, ...]:
+    """The same with one count for each primitive and observation, whatever it was done for."""
+    counts = Counter[tuple[str, str]]()
+    for each in seen:
+        counts[each.primitive, each.observation] += each.count
+    return tuple(sorted(Seen(*key, count) for key, count in counts.items()))
+
+
+def often(count: int) -> str:
+    """How often, in figures from three on: ``once``, ``twice``, ``32 times``."""
+    return {1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
 def total(seen: Iterable[Seen]) -> int:

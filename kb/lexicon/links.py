@@ -43,7 +43,7 @@ class PrimitiveWords:
     """The primitives that it specialises directly."""
 
     senses: tuple[str, ...] = ()
-    """WordNet sense keys that its rule file states."""
+    """WordNet sense keys, or numbers of its first verb's senses, that its rule file states."""
 
     levin: tuple[str, ...] = ()
     """Levin classes that its rule file states."""
@@ -136,18 +136,29 @@ def remarks() -> tuple[Remark, ...]:
 
 def sense_links(words: PrimitiveWords) -> tuple[SenseLink, ...]:
     """The senses of a primitive that we claim: its rule file's, else its verbs' as motions."""
-    if words.senses:
-        verb = words.verbs[0] if words.verbs else ""
-        return tuple(SenseLink(words.name, verb, key, Claimant.RULES) for key in words.senses)
+    verb = words.verbs[0] if words.verbs else ""
+    stated = [key for each in words.senses if (key := sense_key(verb, each))]
+    if stated:
+        return tuple(SenseLink(words.name, verb, key, Claimant.RULES) for key in stated)
     own = own_links(words.name)
     if own is not None:
-        verb = words.verbs[0] if words.verbs else ""
         return tuple(SenseLink(words.name, verb, key, Claimant.LEXICON) for key in own[0])
     return tuple(
         SenseLink(words.name, verb, key, Claimant.LEXICON)
         for verb in words.verbs
         for key in motion_senses(verb)
     )
+
+
+def sense_key(verb: str, stated: str) -> str:
+    """The sense key that a rule file states, as it stands or by the sense's number.
+
+    It is empty where the verb has no sense of that number in WordNet 3.1.
+    """
+    if not stated.isdigit():
+        return stated
+    senses = (sense for sense, _ in wordnet().of_lemma(verb))
+    return next((each.key for each in senses if each.number == int(stated)), "")
 
 
 def class_links(words: PrimitiveWords) -> tuple[tuple[str, ...], Claimant]:

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 
 from capar.model.errors import UnknownNameError
+from kb.lexicon.claims import nearest_verbs, the_nearest
 from kb.lexicon.evidence import Seen
 from kb.lexicon.levin import LevinClass, book_order, levin_classes
 from kb.lexicon.links import (
@@ -56,7 +56,8 @@ class Standing:
         if self.represented_by:
             return f"represented by {', '.join(self.represented_by)}"
         if self.general_only:
-            return f"seen only as {', '.join(self.general_only)}, which it is a kind of"
+            general = ", ".join(self.general_only)
+            return f"not represented; only what is more general is: {general}"
         return "not represented: no primitive has the verb, or one that it is a kind of"
 
 
@@ -83,7 +84,19 @@ class VerbAnswer:
     standing: Standing
     neighbours: tuple[Neighbour, ...]
     seen: tuple[Seen, ...]
-    """What observations show of its primitives."""
+    """What observations show of the primitives that represent it."""
+
+    general_seen: tuple[Seen, ...] = ()
+    """What they show of the nearest that it is a kind of; this shows nothing of the verb."""
+
+
+class UnknownVerbError(UnknownNameError):
+    """A verb that there is not; of the many that there are it tells the nearest alone."""
+
+    def __init__(self, verb: str) -> None:
+        near = nearest_verbs(verb)
+        super().__init__("verb", verb, near)
+        self.args = (f"no verb {verb!r} is known{the_nearest(near)}.",)
 
 
 def about(
@@ -104,15 +117,14 @@ def about(
         seen: What observations show.
 
     Raises:
-        UnknownNameError: WordNet has no such verb, and no primitive uses it.
+        UnknownVerbError: WordNet has no such verb, and no primitive uses it.
     """
     word = " ".join(verb.lower().replace("_", " ").split())
     found = wordnet().of_lemma(word)
     if not found and not standing.represented_by:
-        close = get_close_matches(word.replace(" ", "_"), wordnet().lemmas, n=8, cutoff=0.7)
-        raise UnknownNameError("verb", verb, [each.replace("_", " ") for each in close])
+        raise UnknownVerbError(verb)
     keys = motion_senses(word)
-    primitives = {*standing.represented_by, *standing.general_only}
+    shown = sorted(seen)
     return VerbAnswer(
         verb=word,
         senses=tuple(SenseOfVerb(sense, synset, sense.key in keys) for sense, synset in found),
@@ -120,7 +132,8 @@ def about(
         claims=tuple(each for each in thesis_claims() if word in each.verbs),
         standing=standing,
         neighbours=_neighbours(keys, keys_of),
-        seen=tuple(sorted(each for each in seen if each.primitive in primitives)),
+        seen=tuple(each for each in shown if each.primitive in standing.represented_by),
+        general_seen=tuple(each for each in shown if each.primitive in standing.general_only),
     )
 
 
@@ -175,7 +188,13 @@ def _neighbour(relation: str, synset: Synset, keys_of: Mapping[str, Sequence[str
 
 
 def kinds(verb: str, keys_of: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
-    """Primitives whose verb is the verb, or a kind of it: "every kind of move"."""
+    """Primitives whose verb is the verb, or a kind of it: "every kind of move".
+
+    Raises:
+        UnknownVerbError: WordNet has no such verb.
+    """
+    if not wordnet().of_lemma(verb):
+        raise UnknownVerbError(verb)
     tops = [wordnet().of_key(key) for key in motion_senses(verb)]
     return tuple(
         sorted(name for name, keys in keys_of.items() if any(_is_kind(key, tops) for key in keys))

@@ -4,6 +4,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from kb.language.english import words_of
+from kb.lexicon.claims import doubts_of
 from kb.lexicon.evidence import Seen, total
 from kb.lexicon.levin import above, book_order, levin_class, levin_classes
 from kb.lexicon.links import (
@@ -69,9 +71,12 @@ def assemble(
         senses=tuple(_senses(words)),
         primitives=tuple(sorted(words)),
         remarks=remarks(),
-        coverage=_coverage(classes, seen, derived),
+        coverage=_coverage(
+            classes, seen, {each for number in numbers for each in parts.showing(number)}
+        ),
         observations=tuple(sorted({each.observation for each in seen})),
         verbnet=bool(members),
+        doubts=doubts_of(sorted(words)),
     )
 
 
@@ -92,6 +97,8 @@ class _Parts:
             How.PURPOSE: derived.last_by("only_purpose"),
         }
         self.missing = derived.last_by("missing")
+        self.own = {(number, name) for number, _, name in derived.of("addressed")}
+        self.purposes = set(derived.of("only_purpose"))
         self.proofs = defaultdict(list)
         for number, primitive, kind, where in derived.of("proof"):
             self.proofs[number].append(Proof(primitive, kind, where))
@@ -100,13 +107,32 @@ class _Parts:
         self.seen = seen
         self.members = members
 
+    def showing(self, number: str) -> tuple[Seen, ...]:
+        """What was seen of a class: its verbs' own primitives, and what was stated to be done."""
+        return tuple(
+            each
+            for each in self.seen
+            if (number, each.primitive) in self.own
+            or (number, words_of(each.purpose), each.primitive) in self.purposes
+        )
+
+    def _proofs(self, number: str, showing: Sequence[Seen]) -> tuple[Proof, ...]:
+        """The derived proofs, without those by what is only more general."""
+        observed = {(each.primitive, "observed", each.observation) for each in showing}
+        return tuple(
+            each
+            for each in self.proofs[number]
+            if (number, each.primitive) in self.own
+            or (each.primitive, each.kind, each.where) in observed
+        )
+
     def class_report(self, number: str) -> ClassReport:
         levin = levin_class(number)
         judged = set(self.counts.get((number,), ()))
         verbs = sorted(judged | set(self.members.get(number, ())))
         reports = tuple(self._verb(number, verb, counts=verb in judged) for verb in verbs)
         doers = sorted({name for each in reports if each.counts for name in each.primitives})
-        linked = self.linked.get(number, ())
+        showing = self.showing(number)
         return ClassReport(
             number=number,
             title=levin.title,
@@ -114,11 +140,11 @@ class _Parts:
             status=self.status[number],
             claims=tuple(each for each in thesis_claims() if each.levin == number),
             verbs=reports,
-            primitives=linked,
+            primitives=self.linked.get(number, ()),
             files=tuple(sorted({self.files[each] for each in doers if each in self.files})),
-            proofs=tuple(self.proofs[number]),
+            proofs=self._proofs(number, showing),
             remarks=tuple(each for each in remarks() if _concerns(each.levin, number)),
-            segments=total(each for each in self.seen if each.primitive in {*linked, *doers}),
+            segments=total(showing),
         )
 
     def _verb(self, number: str, verb: str, *, counts: bool) -> VerbReport:
@@ -182,19 +208,21 @@ def _sense_row(link: SenseLink) -> SenseRow:
     return SenseRow(link, synset, number)
 
 
-def _coverage(classes: Sequence[ClassReport], seen: Sequence[Seen], derived: Derived) -> Coverage:
+def _coverage(
+    classes: Sequence[ClassReport], seen: Sequence[Seen], showing: Iterable[Seen]
+) -> Coverage:
     verbs = [each for report in classes for each in report.verbs]
-    linked = {row[0] for row in derived.of("linked")}
     return Coverage(
         classes=len(classes),
         classes_addressed=sum(each.status is Status.ADDRESSED for each in classes),
         classes_partly=sum(each.status is Status.PARTLY for each in classes),
         verbs=len(verbs),
         verbs_addressed=sum(each.how is How.ADDRESSED for each in verbs),
-        verbs_general=sum(each.how in {How.GENERAL, How.PURPOSE} for each in verbs),
+        verbs_general=sum(each.how is How.GENERAL for each in verbs),
+        verbs_purpose=sum(each.how is How.PURPOSE for each in verbs),
         segments=total(seen),
         segments_named=total(each for each in seen if each.primitive),
-        segments_in_classes=total(each for each in seen if each.primitive in linked),
+        segments_in_classes=total(showing),
         unstated=len(unstated_classes()),
     )
 

@@ -152,7 +152,7 @@ rect.not { fill: #ffffff; stroke-dasharray: 2 3; stroke: #857d72; }
 def _page(parts: Sequence[str], height: int) -> str:
     legend = (
         ("direct", "addressed"),
-        ("extension", "with an extension; ours: in general only"),
+        ("extension", "with an extension; ours: only what is more general"),
         ("not", "not addressed"),
     )
     marks: list[str] = []

@@ -28,12 +28,22 @@ class How(StrEnum):
 
     ADDRESSED = "addressed"
     GENERAL = "general"
-    """Only a more general primitive is seen, without the verb's own manner."""
+    """Not itself: only a more general primitive is seen, without the verb's own manner."""
 
     PURPOSE = "purpose"
     """Only as a purpose that the user states."""
 
     MISSING = "missing"
+
+    @property
+    def words(self) -> str:
+        """The standing as people read it."""
+        return {
+            "addressed": "addressed",
+            "general": "not seen, only what is more general",
+            "purpose": "only as a stated purpose",
+            "missing": "not seen",
+        }[self.value]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +97,7 @@ class ClassReport:
     proofs: tuple[Proof, ...]
     remarks: tuple[Remark, ...]
     segments: int
-    """Observed segments of primitives of the class."""
+    """Observed segments of primitives that have a verb of the class, or were stated to do one."""
 
     @property
     def thesis(self) -> tuple[ThesisStatus, ...]:
@@ -121,7 +131,7 @@ def _about(verb: VerbReport) -> str:
     by = ", ".join(verb.primitives)
     lacks = f" Missing: {'; '.join(verb.lacks)}." if verb.lacks else ""
     if verb.how is How.GENERAL:
-        return f"{verb.verb}: seen only as {by}, which it is a kind of.{lacks}"
+        return f"{verb.verb}: not seen; only what is more general is: {by}.{lacks}"
     if verb.how is How.PURPOSE:
         return f"{verb.verb}: only as a purpose that the user states, of {by}.{lacks}"
     return f"{verb.verb}: not seen.{lacks}"
@@ -147,10 +157,13 @@ class Coverage:
     verbs: int
     verbs_addressed: int
     verbs_general: int
+    """Verbs that are not seen, though something more general is."""
+
+    verbs_purpose: int
     segments: int
     segments_named: int
     segments_in_classes: int
-    """Observed segments whose primitive belongs to a class."""
+    """Observed segments that count in one class at least."""
 
     unstated: int
     """Levin classes of which the thesis says nothing."""
@@ -171,6 +184,9 @@ class LinguisticReport:
     observations: tuple[str, ...]
     verbnet: bool
     """Whether VerbNet's members are known."""
+
+    doubts: tuple[str, ...]
+    """What rule files state of words that WordNet or Levin does not know."""
 
 
 def share(part: int, whole: int) -> str:

@@ -16,12 +16,6 @@ LEAD = (
     "addressed, and what the rule base addresses now. Each status is derived by rules over the "
     "primitives, the lexicon and the observations; none is typed in."
 )
-HOW = {
-    How.ADDRESSED: "addressed",
-    How.GENERAL: "in general",
-    How.PURPOSE: "as a purpose",
-    How.MISSING: "not seen",
-}
 SECTIONS = (
     ("drawing", "Drawing"),
     ("classes", "Classes"),
@@ -41,7 +35,9 @@ def as_html(report: LinguisticReport) -> str:
         _section("senses", _table(report, "Senses", code=4)),
         _section("claims", _table(report, "Claims of the thesis")),
         _section(
-            "remarks", *(f'<p class="remark">{_remark(*each)}</p>' for each in _remarks(report))
+            "remarks",
+            *(f'<p class="remark">{_remark(*each)}</p>' for each in _remarks(report)),
+            *(f'<p class="remark">{escape(each)}.</p>' for each in report.doubts),
         ),
         '<footer class="page">Senses and glosses: WordNet 3.1, © 2011 Princeton University; '
         "indices: CILI. Classes: B. Levin, <i>English Verb Classes and Alternations</i>, 1993."
@@ -115,7 +111,7 @@ def _verb(each: VerbReport) -> str:
         f"{escape(sense.definition)} <code>{sense.ili or sense.offset}</code>"
         for sense in each.senses
     )
-    cells = (_tag(each.how.value, HOW[each.how]), escape(", ".join(each.primitives)), glosses)
+    cells = (_tag(each.how.value, each.how.words), escape(", ".join(each.primitives)), glosses)
     rest = "".join(f"<td>{cell}</td>" for cell in cells)
     return f'<tr><td class="verb">{escape(each.verb)}</td>{rest}</tr>'
 

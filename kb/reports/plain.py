@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from kb.reports.linguistics import ClassReport, LinguisticReport, named
-from kb.reports.tables import Table, coverage, shown_by, tables
+from kb.reports.tables import DOUBTS, Table, coverage, shown_by, tables
 
 TITLE = "Verbs that the system addresses"
 WIDTH = 96
@@ -31,6 +31,9 @@ def as_text(report: LinguisticReport) -> str:
     lines += ["", "Remarks", "-------"]
     for remark in report.remarks:
         lines += _wrapped(f"{remark.levin} {remark.verb}: {remark.text}")
+    if report.doubts:
+        lines += ["", DOUBTS, "-" * len(DOUBTS)]
+        lines += [line for doubt in report.doubts for line in _wrapped(f"{doubt}.")]
     return "\n".join(line.rstrip() for line in lines) + "\n"
 
 

@@ -6,6 +6,8 @@ from kb.reports.linguistics import ClassReport, LinguisticReport, SenseRow, shar
 Table = tuple[str, tuple[str, ...], tuple[tuple[str, ...], ...]]
 """Title, heads of columns, rows."""
 
+DOUBTS = "Doubts about what rule files state"
+
 
 def tables(report: LinguisticReport) -> tuple[Table, ...]:
     """Every table, in the order of the report."""
@@ -36,7 +38,14 @@ def tables(report: LinguisticReport) -> tuple[Table, ...]:
             ("class", "verb", "remark"),
             tuple((each.levin, each.verb, each.text) for each in report.remarks),
         ),
+        *_doubts(report),
     )
+
+
+def _doubts(report: LinguisticReport) -> tuple[Table, ...]:
+    """The table of doubts, if there are any."""
+    rows = tuple((each,) for each in report.doubts)
+    return ((DOUBTS, ("doubt",), rows),) if rows else ()
 
 
 def coverage(report: LinguisticReport) -> tuple[tuple[str, str], ...]:
@@ -47,7 +56,8 @@ def coverage(report: LinguisticReport) -> tuple[tuple[str, str], ...]:
         ("classes addressed", share(total.classes_addressed, total.classes)),
         ("classes addressed in part", share(total.classes_partly, total.classes)),
         (f"verbs addressed ({members})", share(total.verbs_addressed, total.verbs)),
-        ("verbs seen in general or as a purpose only", share(total.verbs_general, total.verbs)),
+        ("verbs not seen, only what is more general", share(total.verbs_general, total.verbs)),
+        ("verbs only as a purpose that the user states", share(total.verbs_purpose, total.verbs)),
         ("observed segments that a rule names", share(total.segments_named, total.segments)),
         ("observed segments in a class", share(total.segments_in_classes, total.segments)),
         ("classes of which the thesis says nothing", str(total.unstated)),
@@ -80,7 +90,7 @@ def _verb_rows(each: ClassReport) -> list[tuple[str, ...]]:
         (
             each.number,
             verb.verb,
-            verb.how.value,
+            verb.how.words,
             ", ".join(verb.primitives),
             "; ".join(verb.lacks),
             " ".join(sense.ili or sense.offset for sense in verb.senses),

@@ -63,3 +63,19 @@ def test_inspect_of_a_bundle_names_its_sensors_and_near_pairs(tmp_path: Path) ->
     (pair,) = report["pairs"]
     assert (pair["first"], pair["second"]) == ("h", "mug")
     assert pair["least_m"] == pytest.approx(0.011, abs=0.002)
+
+
+@pytest.mark.parametrize("output", ["mine/of/capture.toml", "mine/of"])
+def test_the_folder_of_a_new_capture_is_made(output: str, tmp_path: Path) -> None:
+    path = samples.write_csv(tmp_path / "m.csv")
+    result = RUNNER.invoke(app, ["new-capture", str(path), "-o", str(tmp_path / output)])
+    assert result.exit_code == 0, result.output
+    assert (tmp_path / "mine" / "of" / "capture.toml").is_file()
+    assert len(read_capture(tmp_path / "mine" / "of").sensors) == 1
+
+
+def test_no_folder_is_made_for_motion_that_cannot_be_read(tmp_path: Path) -> None:
+    output = str(tmp_path / "mine" / "capture.toml")
+    result = RUNNER.invoke(app, ["new-capture", str(tmp_path / "none.csv"), "-o", output])
+    assert isinstance(result.exception, FileError)
+    assert list(tmp_path.iterdir()) == []

@@ -4,11 +4,12 @@ import json
 from pathlib import Path
 from xml.etree import ElementTree
 
+import motions
 import pytest
 from typer.testing import CliRunner
 
 from capar.cli import app
-from capar.model.errors import UnknownNameError
+from capar.model.errors import FileError, UnknownNameError
 from capar.workbench.lettering import width_in
 
 DEMO = str(Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug")
@@ -117,3 +118,27 @@ def test_the_commands_tell_how_they_are_used(name):
     result = CliRunner().invoke(app, [name, "--help"])
     assert result.exit_code == 0
     assert "Usage" in result.output
+
+
+def test_an_end_effector_alone_means_all_of_its_segments_in_order(monkeypatch):
+    capture = motions.pick_up_with_both_hands(motions.TALL_MAN).capture
+    monkeypatch.setattr("extractors.readers.bundle.read_capture", lambda place: capture)
+    both = [each["ee"] for each in json.loads(answered("--json"))]
+    told = json.loads(answered("left_hand", "--json"))
+    assert {"left_hand", "right_hand"} == set(both)
+    assert [each["ee"] for each in told] == ["left_hand"] * both.count("left_hand")
+    assert [each["index"] for each in told] == list(range(len(told)))
+    headers = [each for each in answered("left_hand").splitlines() if each.startswith("left_hand/")]
+    assert len(headers) == len(told) > 2
+    asked = answered("left_hand", "--why-not", told[1]["name"]).splitlines()
+    named = [each for each in asked if each.startswith("left_hand/")]
+    assert len(named) == sum(each["name"] != told[1]["name"] for each in told)
+
+
+def test_a_picture_of_another_format_is_refused_before_anything_is_computed(monkeypatch, tmp_path):
+    monkeypatch.setattr("extractors.readers.bundle.read_capture", pytest.fail)
+    path = tmp_path / "a.png"
+    result = CliRunner().invoke(app, ["explain", DEMO, "--svg", str(path)])
+    assert isinstance(result.exception, FileError)
+    assert str(result.exception) == f"{path}: no picture format '.png'; there are: .svg."
+    assert not path.exists()

@@ -163,3 +163,23 @@ def test_a_name_that_is_asked_for_goes_beside_the_actionary_that_is_named(
     assert "Ferry" not in capsys.readouterr().out
     assert run(monkeypatch, *asked[:4], "--actionary", "known") == 0
     assert "Ferry" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        (("--plot", "x.bmp"), "x.bmp: no picture format '.bmp'; there are: .png, .svg, .pdf."),
+        (("--plot", "nodir/x.png"), "nodir/x.png: cannot be used: No such file or directory."),
+        (("--json", "--script"), "--json and --script print different things; say one of them"),
+        (("--script", "--pars"), "--script and --pars print different things; say one of them"),
+    ],
+)
+def test_what_cannot_come_out_is_refused_before_anything_is_computed(
+    asked: tuple[str, ...],
+    told: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr("extractors.readers.bundle.read_capture", pytest.fail)
+    assert run(monkeypatch, "observe", DEMO, *asked) == 2
+    assert told in capsys.readouterr().err

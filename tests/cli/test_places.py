@@ -1,8 +1,12 @@
-"""Files that the system does not give end a command with one sentence, and so does SIGINT."""
+"""Files that the system does not give end a command with one sentence, and so does SIGINT.
+
+What a command writes is there whole or not at all.
+"""
 
 import ctypes
 import errno
 import os
+import resource
 import signal
 import stat
 import subprocess
@@ -13,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from capar.cli._places import REMEDIES, told
+from capar.cli._places import REMEDIES, told, written
 
 DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
 CAPAR = Path(sys.executable).parent / "capar"
@@ -54,6 +58,8 @@ def closed(tmp_path: Path) -> Iterator[Path]:
     (tmp_path / "unread" / "sip.lp").chmod(0)
     (tmp_path / "unread" / "motion.csv").write_text("time\n")
     (tmp_path / "unread" / "motion.csv").chmod(0)
+    (tmp_path / "kept.svg").write_text("old")
+    (tmp_path / "kept.svg").chmod(stat.S_IRUSR)
     (tmp_path / "shut").mkdir(mode=0)
     (tmp_path / "file").touch()
     place.chmod(stat.S_IRUSR | stat.S_IXUSR)
@@ -76,6 +82,8 @@ FAULTS = (
     (("explain", DEMO, "right_hand/2", "--svg", "nowhere/k.svg"), "nowhere/k.svg",
      "No such file or directory"),
     (("explain", DEMO, "right_hand/2", "--svg", "ro"), "ro", "Is a directory"),
+    (("explain", DEMO, "right_hand/2", "--svg", "kept.svg"), "kept.svg", "Permission denied"),
+    (("new-capture", DEMO / "motion.csv", "-o", "ro/a/b"), "ro/a", "Permission denied"),
 )  # fmt: skip
 
 
@@ -139,3 +147,56 @@ def test_output_that_nobody_reads_on_is_no_fault(tmp_path):
     )  # fmt: skip
     assert done.stdout == "["
     assert done.stderr == ""
+
+
+def test_a_fault_while_a_file_is_written_leaves_the_old_one_and_no_draft(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+
+    def half() -> None:
+        with written(path) as draft:
+            draft.write_text("hal")
+            assert path.read_text() == "old"
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with pytest.raises(OSError, match="No space left") as caught:
+        half()
+    assert told(caught.value).startswith(f"{path}: cannot be used: No space left on device. ")
+    assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [("a.txt", "old")]
+
+
+def test_a_file_keeps_its_rights_and_links_to_it_and_a_device_stays_one(tmp_path):
+    path, link = tmp_path / "a.txt", tmp_path / "link.txt"
+    path.write_text("old")
+    path.chmod(0o640)
+    link.symlink_to(path)
+    with written(link) as draft:
+        draft.write_text("new")
+    assert link.is_symlink()
+    assert path.read_text() == "new"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o640
+    with written(Path(os.devnull)) as draft:
+        draft.write_text("gone")
+    assert Path(os.devnull).is_char_device()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("explain", DEMO, "--svg", "k.svg"),
+        ("observe", DEMO, "--plot", "k.svg"),
+        ("new-capture", DEMO / "motion.csv", "--force", "-o", "k.toml"),
+        ("report", "linguistics", "--out", "k.txt"),
+    ],
+)
+def test_a_command_that_cannot_write_on_names_the_file_and_leaves_the_old_one(arguments, tmp_path):
+    path = tmp_path / arguments[-1]
+    path.write_text("old")
+    done = subprocess.run(
+        [str(CAPAR), *map(str, arguments)], cwd=tmp_path, capture_output=True, text=True,
+        check=False, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)),
+    )  # fmt: skip
+    assert done.returncode == 2, done.stderr
+    assert f"capar: {path.name}: " in done.stderr
+    assert "File too large" in done.stderr
+    assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [(path.name, "old")]

@@ -1,6 +1,7 @@
 """The commands about words, as a person uses them."""
 
 import json
+import re
 from importlib.resources import files
 from pathlib import Path
 
@@ -97,3 +98,14 @@ def test_the_report_is_written_in_each_format(tmp_path: Path) -> None:
     assert target.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
     assert run("report", "linguistics").startswith("Verbs that the system addresses")
     assert json.loads(run("report", "linguistics", "--json"))["classes"]
+
+
+def test_answers_are_told_to_the_millisecond_and_machines_get_every_digit() -> None:
+    run("observe", DEMO, "--actionary", "book")
+    asked = ("parse", "who moved the mug to the table?", "--actionary", "book")
+    (answer,) = json.loads(run(*asked, "--json"))["answers"]
+    exact = [each for each in answer.values() if isinstance(each, float)]
+    assert any(each != round(each, 3) for each in exact)
+    told = run(*asked).splitlines()[-1]
+    assert f"duration: {round(answer['duration'], 3)}" in told
+    assert not re.search(r"\.\d{4}", told)

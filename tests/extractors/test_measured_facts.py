@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.capture import (
     Capture,
+    Notice,
     PivotContact,
     Purpose,
     Role,
@@ -154,6 +155,40 @@ def test_what_is_assumed_lost_or_stood_in_for_is_told() -> None:
     )
     codes = {each.code for each in extract(Capture("x", (hand,), (shelf,))).notices}
     assert codes == {"contact-tolerance", "stand-in-shape", "assumed-support", "long-gap"}
+
+
+@pytest.mark.parametrize(
+    ("gaps", "tag", "told"),
+    [
+        (((50, 99),), TagType.MOBILE, "once for long, from 0.50 to 0.99 s; {unknown} there"),
+        (
+            ((20, 39), (50, 99)),
+            TagType.MOBILE,
+            "twice for long, at most from 0.50 to 0.99 s; {unknown} there",
+        ),
+        (
+            ((0, 19), (50, 99), (150, 199)),
+            TagType.MOBILE,
+            "3 times for long, at most from 0.50 to 0.99 s; {unknown} there",
+        ),
+        (((0, 199),), TagType.MOBILE, "throughout; {unknown}"),
+        (((0, 199),), TagType.FIXED, "throughout; {unknown}"),
+        (((50, 99),), TagType.FIXED, "once for long, from 0.50 to 0.99 s; it is held to stay"),
+    ],
+)
+def test_each_loss_is_told_once_in_words(
+    gaps: tuple[tuple[int, int], ...], tag: TagType, told: str
+) -> None:
+    way = np.tile([0.0, 0.0, 1.0], (200, 1))
+    for first, last in gaps:
+        way[first : last + 1] = np.nan
+    hand = Sensor("hand", "hand", "right", "arm", still((0, 0, 0), 200), ball(0.04))
+    thing = TagObject("thing", tag, stream(way), ball(0.04))
+    read = Notice("long-gap", "thing is lost from 0.50 s to 0.99 s")
+    found = extract(Capture("x", (hand,), (thing,), notices=(read,))).notices
+    (loss,) = [each.message for each in found if each.code == "long-gap"]
+    unknown = "no contact of it is known"
+    assert loss == f"'thing' was lost {told.format(unknown=unknown)}"
 
 
 def test_purposes_and_force_are_stated_in_the_users_order() -> None:

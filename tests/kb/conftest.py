@@ -4,6 +4,7 @@ import socket
 import subprocess
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import motions
@@ -20,6 +21,19 @@ from kb.remote import RemoteStore
 @pytest.fixture(scope="session")
 def server() -> Iterator[str]:
     """The address of a server that runs while the tests do."""
+    with _served() as address:
+        yield address
+
+
+@pytest.fixture
+def union_server() -> Iterator[str]:
+    """The address of an empty server whose default graph is always the union of the others."""
+    with _served("--union-default-graph") as address:
+        yield address
+
+
+@contextmanager
+def _served(*options: str) -> Iterator[str]:
     binary = oxigraph_binary()
     if binary is None:
         pytest.skip("no oxigraph program beside this Python or on the path")
@@ -27,7 +41,7 @@ def server() -> Iterator[str]:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     running = subprocess.Popen(
-        [binary, "serve", "--bind", f"127.0.0.1:{port}"],
+        [binary, "serve", "--bind", f"127.0.0.1:{port}", *options],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
@@ -38,9 +52,11 @@ def server() -> Iterator[str]:
             break
         except StoreError:
             time.sleep(0.05)
-    yield address
-    running.kill()
-    running.wait()
+    try:
+        yield address
+    finally:
+        running.kill()
+        running.wait()
 
 
 @pytest.fixture(params=STORES)

@@ -14,7 +14,7 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 
 from capar.cli import main
 from kb.actionary import Actionary
-from kb.questions import questions
+from kb.questions import BEARERS, questions
 
 
 @pytest.fixture(scope="module")
@@ -203,3 +203,69 @@ def test_the_shell_completes_questions_and_parameters() -> None:
 
     assert "touching" in completed("capar query tou", 2)
     assert "capture=" in completed("capar query world cap", 3)
+
+
+WRONG = (
+    ("touching object=mugg", "no object 'mugg'; there are: ", "Did you mean 'mug'?"),
+    ("goal goal=shelf action=MoveObjTo", "no object 'shelf'; there are: ", "mug"),
+    ("goal goal=mug action=MoveObjTwo", "no action 'MoveObjTwo'; there are: ", "'MoveObjTo'?"),
+    ("performers action=Reech", "no action 'Reech'; there are: ", "Did you mean 'Reach'?"),
+    ("shared first=Drink second=DrinkFromMug", "no whole action 'Drink'; there are: ", "Strange"),
+    ("notices observation=DrinkFromMugg", "no observation 'DrinkFromMugg'", "'DrinkFromMug'?"),
+    ("world capture=nope time=1", "no capture 'nope'; there are: ", "DrinkFromMug"),
+    ("world capture=DrinkFromMug time=99", "DrinkFromMug lasts from 0 to ", "99 s lies outside"),
+    ("world capture=DrinkFromMug time=-1", "DrinkFromMug lasts from 0 to ", "-1 s lies outside"),
+)
+
+
+@pytest.mark.parametrize(("asked", "told", "hint"), WRONG)
+def test_a_question_about_what_is_not_there_is_a_mistake(
+    asked: str, told: str, hint: str, folder: Path
+) -> None:
+    done = capar("query", *asked.split(), at=folder)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"{folder}: {told}" in done.stderr and hint in done.stderr
+
+
+ANSWERLESS = ("follows action=ResumePosture", "both_hands object=mug", "unknown")
+
+
+@pytest.mark.parametrize("asked", ANSWERLESS)
+def test_a_question_about_what_is_there_may_have_no_answer(asked: str, tmp_path: Path) -> None:
+    place = tmp_path / "one"
+    with Actionary.open(place) as actionary:
+        actionary.add(drink_from_mug())
+    done = capar("query", *asked.split(), "--json", at=place)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "[]\n", "")
+
+
+def test_whose_name_every_text_of_a_question_is_can_be_looked_up(folder: Path) -> None:
+    texts = {p.name for each in questions().values() for p in each.parameters if p.kind == "text"}
+    assert texts == set(BEARERS)
+    for name, (_, pattern) in BEARERS.items():
+        found = capar("query", f"SELECT ?name WHERE {{ {pattern} }}", "--json", at=folder)
+        assert json.loads(found.stdout) or name in {"body", "preposition"}, name
+
+
+@pytest.mark.parametrize(("name", "text"), [("e.ttl", ""), ("e.jsonld", "[]"), ("e.nq", "# no\n")])
+def test_a_file_without_statements_is_a_mistake_and_makes_no_actionary(
+    name: str, text: str, tmp_path: Path
+) -> None:
+    (tmp_path / name).write_text(text)
+    done = capar("import", str(tmp_path / name), at=tmp_path / "new")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"{tmp_path / name}: holds no statements" in done.stderr
+    assert [each.name for each in tmp_path.iterdir()] == [name]
+
+
+def test_a_full_disk_is_told_with_the_file(folder: Path) -> None:
+    done = capar("export", "/dev/full", "--format", "trig", at=folder)
+    assert done.returncode == 2
+    assert "capar: /dev/full: cannot be used: No space left on device. Make room" in done.stderr
+
+
+def test_an_export_that_cannot_be_written_is_refused_before_the_actionary_is_read(
+    tmp_path: Path,
+) -> None:
+    done = capar("export", str(tmp_path / "none" / "a.trig"), at=tmp_path / "nowhere")
+    assert done.returncode == 2 and "No such file or directory" in done.stderr

@@ -10,8 +10,8 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 
 from capar.model.errors import FileError, UnknownNameError
 from capar.model.observation import Border, Observation
-from capar.model.par import Nlt, PathPoint
-from kb import literals
+from capar.model.par import FeatureSet, Nlt, PathPoint
+from kb import literals, names
 from kb.actionary import Actionary
 from kb.encode.segments import BORDER_KINDS
 from kb.errors import ShapeError
@@ -93,6 +93,43 @@ def test_rdflib_reads_the_turtle_as_an_isomorphic_graph() -> None:
     assert isomorphic(ours, Graph().parse(data=lines, format="nt"))
 
 
+def without_objects(name: str) -> Observation:
+    """One of a sensor on the chest, which touches nothing."""
+    made = with_unknown()
+    (link,) = made.links
+    bits = FeatureSet("", "", "", "chest", "")
+    segments = tuple(replace(each, objects=(), features=bits) for each in link.segments)
+    return replace(made, capture=name, links=(replace(link, segments=segments),))
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("capture", ["Chest", "Take 1.", ".", "-", "50% é/ü", "a#b?c&d"])
+def test_rdflib_reads_as_many_statements_as_there_are(name: str, capture: str) -> None:
+    from rdflib import Dataset
+
+    actionary = Actionary.in_memory()
+    actionary.add(without_objects(capture))
+    quads = set(actionary.store.quads())
+    form = {"jsonld": "json-ld"}.get(name, name)
+    found = Dataset().parse(data=export(actionary.store, name), format=form)
+    expected = {each.triple for each in quads} if name == "turtle" else quads
+    assert len(list(found.quads())) == len(expected)
+    assert {str(each) for each, *_ in found.quads()} == {each.subject.value for each in quads}
+    assert [each.name for each in actionary.observations()] == [capture]
+
+
+@given(st.lists(st.text(st.characters(exclude_categories=["Cs"])), min_size=1, max_size=3))
+def test_no_name_ends_in_a_dot_whatever_is_named(words: list[str]) -> None:
+    whole = names.observation(words[0])
+    made = (whole, names.part(whole, *words), names.shared("features", *words))
+    assert not any(each.value.endswith((".", "/", "#")) for each in made)
+    assert names.observation_name(whole) == words[0] or not words[0]
+
+
+def test_an_empty_word_and_the_mark_for_it_are_two_names() -> None:
+    assert names.shared("features", "", "1") != names.shared("features", "-", "1")
+
+
 def test_one_observation_travels_with_all_that_it_mentions() -> None:
     target = Actionary.in_memory()
     bring_in(target.store, read(export(full().store, "trig", observation="Strange"), "trig"))
@@ -122,6 +159,9 @@ def test_a_file_that_is_not_what_it_says_is_refused(tmp_path: Path) -> None:
         read(b"<a> <b>", "turtle", path=tmp_path / "x.ttl")
     with pytest.raises(UnknownNameError, match="jsonld, nquads, trig, turtle"):
         format_of("facts.docx")
+    for nameless in ("-", ".", "facts"):
+        with pytest.raises(FileError, match=r"add --format: jsonld, nquads, trig or turtle"):
+            format_of(nameless)
     assert format_of("facts.nq") == "nquads"
 
 

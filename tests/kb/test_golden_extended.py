@@ -119,10 +119,10 @@ def test_nothing_is_stored_twice_or_wrong(folder: Path) -> None:
 def test_where_bodies_are_and_go(
     known: Actionary, extended_five_by_three: tuple[Observation, ...]
 ) -> None:
-    rows = known.ask("where")
     found = {
-        (r["observation"], r["ee"], r["index"], r["preposition"], r["body"], r["other"])
-        for r in rows
+        (r["observation"], r["ee"], r["index"], r["preposition"], r["body"], other)
+        for r in known.ask("where")
+        for other in str(r["other"]).split()
     }
     assert found == {
         (each.capture, segment.ee, segment.index, *said)

@@ -1,15 +1,20 @@
 """A query that a user types cannot write, run for ever or reach the network."""
 
+import math
 import time
+from collections.abc import Callable, Iterator
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from observations import drink_from_mug
+from pyoxigraph import NamedNode
+from pyoxigraph import Store as Oxigraph
 
-from kb import sparql
+from kb import asker, sparql
 from kb.actionary import Actionary
-from kb.errors import QueryError, TimeLimitError
+from kb.answers import Answer
+from kb.errors import QueryError, StoreError, TimeLimitError
 
 ENDLESS = "SELECT (COUNT(*) AS ?n) WHERE { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l }"
 
@@ -62,6 +67,7 @@ def test_a_query_is_stopped_in_time(actionary: Actionary) -> None:
         "PREFIX a: <b:c> CLEAR ALL",
         "LOAD <http://127.0.0.1/x>",
         "# SELECT\nDROP ALL",
+        "DROP ALL",
     ],
 )
 def test_a_query_cannot_write(text: str, actionary: Actionary) -> None:
@@ -101,6 +107,111 @@ def test_the_word_may_stand_where_it_calls_nothing(text: str) -> None:
 def test_a_query_that_is_none_says_where(actionary: Actionary) -> None:
     with pytest.raises(QueryError, match="1:"):
         actionary.query("SELECT ?x WHERE {")
+
+
+OBSERVED = "https://w3id.org/capar/data/observation/DrinkFromMug"
+COUNTED = "SELECT (COUNT(*) AS ?n) {} WHERE {{ {} }}"
+EVERY, GRAPHS = "?s ?p ?o", "GRAPH ?g { ?s ?p ?o }"
+
+
+@pytest.mark.parametrize("ask", [Actionary.query, lambda made, text: made.store.ask(text)])
+def test_a_query_is_asked_of_the_graphs_that_it_names(
+    ask: Callable[[Actionary, str], Answer], actionary: Actionary
+) -> None:
+    actionary.add(drink_from_mug())
+    own = len(actionary.store.graph(NamedNode(OBSERVED)))
+    everything = len({each.triple for each in actionary.store.quads()})
+    assert 0 < own < everything
+    cases = {
+        ("", EVERY): everything,
+        ("FROM <urn:none>", EVERY): 0,
+        (f"from <{OBSERVED}>", EVERY): own,
+        (f"FROM <{OBSERVED}> FROM <urn:none>", EVERY): own,
+        (f"FROM NAMED <{OBSERVED}>", EVERY): 0,
+        (f"FROM NAMED <{OBSERVED}>", GRAPHS): own,
+        (f"FROM <{OBSERVED}>", GRAPHS): 0,
+    }
+    found = {key: ask(actionary, COUNTED.format(*key)) for key in cases}
+    assert {key: next(each.plain())["n"] for key, each in found.items()} == cases
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "SELECT (COUNT(?from) AS ?n) WHERE { ?from a capar:Segment } # FROM <urn:none>",
+        "SELECT (COUNT(*) AS ?n) WHERE { ?s a capar:Segment FILTER('FROM' != \"\"@from) }",
+        "PREFIX from: <a:> SELECT (COUNT(*) AS ?n) { ?s a capar:Segment MINUS { ?s a from:from } }",
+    ],
+)
+def test_the_word_from_may_stand_where_it_names_no_graph(text: str) -> None:
+    made = Actionary.in_memory()
+    made.add(drink_from_mug())
+    assert list(made.query(text).plain()) == [{"n": 6}]
+
+
+def test_a_server_that_does_not_heed_from_is_not_believed(union_server: str) -> None:
+    with Actionary.open(union_server) as made:
+        made.add(drink_from_mug())
+        assert made.query("ASK { ?s a capar:Segment }").boolean is True
+        with pytest.raises(StoreError, match=r"FROM.*GRAPH <\.\.\.>"):
+            made.query("ASK FROM <urn:none> { ?s ?p ?o }")
+
+
+@pytest.mark.parametrize("seconds", [math.nan, math.inf, -math.inf, -1.0, 0.0])
+def test_a_time_limit_is_a_positive_number(seconds: float) -> None:
+    with pytest.raises(QueryError, match="a positive number of seconds"):
+        STORE.query("ASK {}", seconds=seconds)
+
+
+def test_a_time_limit_may_be_very_long() -> None:
+    assert STORE.query("ASK {}", seconds=1e12).boolean is True
+
+
+def test_a_slip_in_a_functions_name_is_told_which_there_are(actionary: Actionary) -> None:
+    actionary.add(drink_from_mug())
+    with pytest.raises(QueryError) as slip:
+        actionary.query("SELECT (capar:elemnt(?n, 1) AS ?y) WHERE { ?l capar:goalNlt ?n }")
+    assert "no function 'capar:elemnt'" in str(slip.value)
+    assert "there are: capar:element, capar:elements" in str(slip.value)
+    assert "Did you mean 'capar:element'?" in str(slip.value)
+    with pytest.raises(QueryError, match="no function 'urn:none'; there are: capar:element, "):
+        actionary.query("CONSTRUCT { ?s ?p ?x } WHERE { ?s ?p ?o BIND(<urn:none>(?o) AS ?x) }")
+
+
+@pytest.mark.parametrize("text", ["", " \n", "# only a comment", "# one\n# two\n"])
+def test_an_empty_query_is_called_empty(text: str) -> None:
+    with pytest.raises(QueryError, match="the query is empty"):
+        sparql.prepare(text)
+
+
+WHOLE = (
+    "SELECT ?s WHERE { ?s ?p ?o OPTIONAL { ?s a ?k } FILTER(?s > ?o) } ORDER BY ?s",
+    "ASK { { ?s ?p ?o } UNION { GRAPH ?g { ?s ?p ?o } } }",
+    "CONSTRUCT { ?s ?p ?o } WHERE { ?s ?p ?o }",
+    "SELECT ?s { ?s ?p ?o } GROUP BY ?s",
+)
+
+
+def cuts() -> Iterator[str]:
+    """Queries that lack one piece, so that they are none."""
+    for whole in WHOLE:
+        pieces = [each.text for each in sparql.tokens(whole)]
+        for at in range(len(pieces)):
+            yield "".join(pieces[:at] + pieces[at + 1 :])
+            yield "".join(pieces[:at])
+
+
+def test_what_is_missing_is_never_something_that_is_refused() -> None:
+    store, told = Oxigraph(), []
+    for text in filter(str.strip, cuts()):
+        try:
+            store.query(text)
+        except SyntaxError as error:
+            told.append((text, str(error), asker.told(str(error))))
+    assert any("SERVICE" in raw for _, raw, _ in told)
+    for text, _, said in told:
+        assert "SERVICE" not in said and "LATERAL" not in said, text
+        assert "[_]" not in said and not said.endswith(("of", "expected", ",")), text
 
 
 @given(st.text(max_size=60))

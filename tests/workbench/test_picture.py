@@ -50,6 +50,21 @@ def test_a_picture_holds_the_names_of_its_segments_and_what_is_assumed(tmp_path:
     assert any(each.startswith("† stand-ins of stated size") for each in comments)
 
 
+def test_frames_in_which_a_body_was_lost_are_hatched_and_the_hatch_is_explained(
+    tmp_path: Path,
+) -> None:
+    seen = drink_from_mug()
+    lost = np.zeros(seen.frames, dtype=bool)
+    lost[200:221] = True
+    texts = []
+    for name, where in (("whole", {}), ("lost", {"mug": lost})):
+        draw(seen, {}, path=tmp_path / f"{name}.svg", lost=where)
+        texts.append((tmp_path / f"{name}.svg").read_text(encoding="utf-8"))
+    note = "hatched: a body of that row was not tracked; a bar across it is inferred."
+    assert [note in each for each in texts] == [False, True]
+    assert [each.count("fill: url(#h") for each in texts] == [0, 4]
+
+
 @pytest.mark.parametrize("make", [pick_up_with_both_hands, with_unknown])
 def test_the_picture_is_neither_empty_nor_cut(
     make: Callable[[], Observation], tmp_path: Path

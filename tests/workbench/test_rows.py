@@ -62,6 +62,18 @@ def test_what_moves_has_a_bar_from_its_first_to_its_last_frame() -> None:
     assert row.spans[0].end_s == pytest.approx(move.last / seen.rate_hz)
 
 
+def test_bars_are_marked_where_a_body_of_theirs_was_lost() -> None:
+    seen = drink_from_mug()
+    lost = np.zeros(seen.frames, dtype=bool)
+    lost[200:221] = True
+    out = rows(seen, {}, {"mug": lost, "table": np.zeros_like(lost)})
+    (start, end) = (frame_clock(seen, {})(each) for each in (200, 220))
+    marked = [each.label for each in out if each.lost]
+    assert marked == ["touches mug", "mug touches table*", "mug touches mouth†", "mug moves"]
+    assert {(span.start_s, span.end_s) for each in out for span in each.lost} == {(start, end)}
+    assert not any(each.lost for each in rows(seen, {}))
+
+
 def test_the_clock_of_the_speeds_wins_over_the_rate() -> None:
     seen = drink_from_mug()
     times = np.linspace(0.0, 1.0, seen.frames) ** 2

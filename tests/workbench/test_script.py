@@ -69,6 +69,8 @@ def test_the_data_of_a_complex_script_are_the_par(seen: Any) -> None:
     parallel = replace(par, common=None)
     assert held(script(parallel)) == steps_of(parallel)
 
+    assert script(seen) == script(par)
+
 
 def test_the_drink_of_the_thesis_is_one_sequence_of_six() -> None:
     kind, *steps = held(script(drink_from_mug().complex_par))

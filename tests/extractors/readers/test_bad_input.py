@@ -126,3 +126,19 @@ def test_a_bvh_with_two_joints_of_one_name_is_refused(tmp_path: Path) -> None:
     path.write_text(path.read_text().replace("JOINT tip", "JOINT hand"))
     with pytest.raises(FileError, match=r"m\.bvh:6"):
         read_recording(path)
+
+
+@pytest.mark.parametrize("rest", ["", "\n", "\n\n\n"])
+def test_a_table_without_rows_is_said_to_hold_no_frames(rest: str, tmp_path: Path) -> None:
+    path = samples.write_csv(tmp_path / "m.csv")
+    path.write_text(path.read_text().splitlines()[0] + rest)
+    with pytest.raises(FileError, match=r"m\.csv: holds no frames"):
+        read_recording(path)
+
+
+@pytest.mark.parametrize("text", ["one line of prose", "a, b, and c", "3,4,5"])
+def test_a_line_that_names_no_column_is_of_no_known_format(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "m.csv"
+    path.write_text(text)
+    with pytest.raises(FileError, match="is of no format known here"):
+        read_recording(path)

@@ -34,6 +34,28 @@ def test_names_are_said_as_nouns() -> None:
     assert [times(each) for each in (1, 2, 21)] == ["once", "twice", "twenty-one times"]
 
 
+@pytest.mark.parametrize(
+    ("name", "kind", "told"),
+    [
+        ("anna", "woman", "Anna"),
+        ("anna_maria", "person", "Anna Maria"),
+        ("Anna", "woman", "Anna"),
+        ("woman", "woman", "the woman"),
+        ("tall_man", "man", "the tall man"),
+        ("performer", "person", "the performer"),
+        ("second_actor", "person", "the second actor"),
+        ("welder", "welder", "the welder"),
+        ("old_welder", "welder", "the old welder"),
+        ("welder", "person", "Welder"),
+        ("man_2", "man", "man 2"),
+    ],
+)
+def test_who_acts_has_an_article_only_with_a_word_for_people(
+    name: str, kind: str, told: str
+) -> None:
+    assert the_agent(name, kind) == told
+
+
 @given(st.lists(st.from_regex(r"[a-z]{2,8}", fullmatch=True), min_size=1, max_size=4))
 def test_words_make_a_name_that_gives_them_back(words: list[str]) -> None:
     text = " ".join(words)

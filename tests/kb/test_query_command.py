@@ -1,0 +1,148 @@
+"""What the query command takes for SPARQL, what it says of slips, and what machines get of it."""
+
+import csv
+import io
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple, TypeAlias
+
+import pytest
+from observations import drink_from_mug, with_unknown
+
+from capar.cli import main
+from kb.actionary import Actionary
+
+
+class Done(NamedTuple):
+    """How a command ended, and what it printed."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+Ask: TypeAlias = Callable[..., Done]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("queries") / "actionary"
+    with Actionary.open(place) as actionary:
+        actionary.add(drink_from_mug())
+        actionary.add(with_unknown())
+    return place
+
+
+@pytest.fixture
+def ask(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Ask:
+    """Runs a command in this process, as its main function does."""
+    monkeypatch.setenv("CAPAR_ACTIONARY", str(folder))
+
+    def run(*words: str, given: str = "") -> Done:
+        monkeypatch.setattr(sys, "argv", ["capar", *words])
+        monkeypatch.setattr(sys, "stdin", io.StringIO(given))
+        with pytest.raises(SystemExit) as end:
+            main()
+        return Done(int(end.value.code or 0), *capsys.readouterr())
+
+    return run
+
+
+def test_machines_get_whole_iris_and_people_short_ones(ask: Ask) -> None:
+    text = (
+        "SELECT ?o ?s WHERE { ?o a capar:Observation ; rdfs:label 'Strange' . "
+        "?o capar:segment ?s . ?s capar:index 0 }"
+    )
+    whole = "https://w3id.org/capar/data/observation/Strange"
+    pair = [whole, f"{whole}#segment.right_hand.0"]
+    assert json.loads(ask("query", text, "--json").stdout) == [dict(zip("os", pair, strict=True))]
+    table = ask("query", text).stdout.splitlines()
+    assert table[1].split() == [each.replace(whole, "data:observation/Strange") for each in pair]
+    lines = ask("query", text, "--format", "csv").stdout.splitlines()
+    assert lines == ["o,s", ",".join(pair)]
+    graph = f"SELECT (COUNT(*) AS ?n) WHERE {{ GRAPH <{lines[1].split(',')[0]}> {{ ?s ?p ?o }} }}"
+    assert json.loads(ask("query", graph, "--json").stdout)[0]["n"] > 0
+    built = "CONSTRUCT { ?s a capar:Segment } WHERE { ?s a capar:UnknownSegment }"
+    (row,) = csv.DictReader(io.StringIO(ask("query", built, "--format", "csv").stdout))
+    assert row["object"] == "https://w3id.org/capar/ontology#Segment"
+
+
+def test_between_is_told_with_every_body_that_it_is_between() -> None:
+    made = with_unknown()
+    (link,) = made.links
+    said = (
+        ("beside", "cup", "shelf"), ("beside", "cup", "table"),
+        ("between", "cup", "shelf"), ("between", "cup", "table"),
+        ("between", "jug", "bowl"), ("between", "jug", "cup"), ("between", "jug", "shelf"),
+    )  # fmt: skip
+    segments = tuple(replace(each, prepositions=said) for each in link.segments)
+    actionary = Actionary.in_memory()
+    actionary.add(replace(made, links=(replace(link, segments=segments),)))
+    rows = actionary.ask("where")
+    assert [(r["index"], r["preposition"], r["body"], r["other"]) for r in rows] == [
+        (index, *each)
+        for index in range(len(segments))
+        for each in (
+            ("beside", "cup", "shelf"),
+            ("beside", "cup", "table"),
+            ("between", "cup", "shelf table"),
+            ("between", "jug", "bowl cup shelf"),
+        )
+    ]
+    narrow = actionary.ask("where", preposition="between", body="cup")
+    assert {each["other"] for each in narrow} == {"shelf table"} and len(narrow) == len(segments)
+
+
+def test_what_begins_as_sparql_is_no_questions_name(ask: Ask) -> None:
+    described = ask("query", "DESCRIBE <https://w3id.org/capar/data/observation/Strange>")
+    assert described.returncode == 0 and "capar:Observation" in described.stdout
+    prologue = "BASE <https://w3id.org/capar/data/> describe <observation/Strange>"
+    assert ask("query", prologue).stdout == described.stdout
+    long = ask("query", f"DESCRIBE <urn:{'a' * 5000}>")
+    assert (long.returncode, long.stdout.split()) == (0, ["subject", "predicate", "object"])
+    for text in ("DROP ALL", "LOAD <http://127.0.0.1/x>", "PREFIX a: <b:c> clear all"):
+        writes = ask("query", text)
+        assert writes.returncode == 2 and "may not write" in writes.stderr, text
+    for text in ("", "  ", "# nothing"):
+        empty = ask("query", text)
+        assert empty.returncode == 2 and "the query is empty" in empty.stderr
+    empty = ask("query", "-", given="")
+    assert empty.returncode == 2 and "the query is empty" in empty.stderr
+
+
+def test_a_file_keeps_its_meaning_even_if_it_is_called_like_a_query(
+    ask: Ask, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("select all.txt").write_text("ASK {}")
+    asked = ask("query", "select all.txt")
+    assert asked.stdout.split() == ["answer", "yes"], asked.stderr
+    missing = ask("query", "nothere.rq")
+    assert missing.returncode == 2
+    assert "capar: nothere.rq: cannot be used: No such file or directory. Name" in missing.stderr
+    Path("folder.rq").mkdir()
+    wrong = ask("query", "folder.rq")
+    assert wrong.returncode == 2
+    assert "capar: folder.rq: cannot be used: Is a directory. Name a file" in wrong.stderr
+    Path("latin.rq").write_bytes("ASK {} # é".encode("latin-1"))
+    wrong = ask("query", "latin.rq")
+    assert wrong.returncode == 2 and "latin.rq: cannot be read as a query" in wrong.stderr
+
+
+@pytest.mark.parametrize("limit", ["nan", "inf", "-1", "0"])
+def test_a_time_limit_that_is_none_is_refused(limit: str, ask: Ask) -> None:
+    done = ask("query", "actions", "--time-limit", limit)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "a positive number of seconds" in done.stderr
+
+
+@pytest.mark.parametrize("file", ["-", "."])
+def test_an_import_without_a_format_says_how_to_give_one(
+    file: str, ask: Ask, tmp_path: Path
+) -> None:
+    done = ask("import", file, "--actionary", str(tmp_path / "new"))
+    assert done.returncode == 2 and "add --format" in done.stderr
+    assert not (tmp_path / "new").exists()
