@@ -50,6 +50,10 @@ def contacts(
 ) -> tuple[Contact, ...]:
     """Every contact that is watched for: acting sensors and mobile objects with tag objects.
 
+    A contact that is there before and after a body was lost is taken to last in between, however
+    long; one that is there on one side alone ends, or begins, where the body was last, or first,
+    seen (spec 3).
+
     Args:
         capture: The trial.
         where: Poses by ``("sensor", name)`` and ``("object", name)``.
@@ -72,6 +76,8 @@ def contacts(
                 touching = bridged(touching, near(one, two, distance_m=release))
         else:
             continue
+        # Where a body was lost nothing begins or ends: what touched before and after has touched.
+        touching = bridged(touching, where[first].lost | where[second].lost)
         for interval in intervals(
             touching,
             capture.times,

@@ -247,7 +247,11 @@ def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
     for each in everything:
         if isinstance(each, TagObject) and each.assumed:
             yield Notice("assumed-support", f"{each.name!r} is assumed: {each.assumed}")
-        lost = long_gaps(each.stream, gap_s=thresholds.gap_s)
+        lost = [
+            (first, last)
+            for first, last in long_gaps(each.stream, gap_s=thresholds.gap_s)
+            if last - first + 1 >= thresholds.gap_s * capture.rate_hz
+        ]
         if lost:
             fixed = isinstance(each, TagObject) and each.tag is TagType.FIXED
             told = _when(lost, capture, fixed=fixed)
@@ -262,5 +266,5 @@ def _when(lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> str:
     often = {1: "once", 2: "twice"}.get(len(lost), f"{len(lost)} times")
     most = " at most" if len(lost) > 1 else ""
     span = f"{capture.times[first]:.2f} to {capture.times[last]:.2f} s"
-    follows = "it is held to stay" if fixed else "no contact of it is known there"
+    follows = "it is held to stay" if fixed else "a contact before and after is taken to last"
     return f"{often} for long,{most} from {span}; {follows}"

@@ -160,16 +160,16 @@ def test_what_is_assumed_lost_or_stood_in_for_is_told() -> None:
 @pytest.mark.parametrize(
     ("gaps", "tag", "told"),
     [
-        (((50, 99),), TagType.MOBILE, "once for long, from 0.50 to 0.99 s; {unknown} there"),
+        (((50, 99),), TagType.MOBILE, "once for long, from 0.50 to 0.99 s; {lasts}"),
         (
             ((20, 39), (50, 99)),
             TagType.MOBILE,
-            "twice for long, at most from 0.50 to 0.99 s; {unknown} there",
+            "twice for long, at most from 0.50 to 0.99 s; {lasts}",
         ),
         (
             ((0, 19), (50, 99), (150, 199)),
             TagType.MOBILE,
-            "3 times for long, at most from 0.50 to 0.99 s; {unknown} there",
+            "3 times for long, at most from 0.50 to 0.99 s; {lasts}",
         ),
         (((0, 199),), TagType.MOBILE, "throughout; {unknown}"),
         (((0, 199),), TagType.FIXED, "throughout; {unknown}"),
@@ -188,7 +188,15 @@ def test_each_loss_is_told_once_in_words(
     found = extract(Capture("x", (hand,), (thing,), notices=(read,))).notices
     (loss,) = [each.message for each in found if each.code == "long-gap"]
     unknown = "no contact of it is known"
-    assert loss == f"'thing' was lost {told.format(unknown=unknown)}"
+    lasts = "a contact before and after is taken to last"
+    assert loss == f"'thing' was lost {told.format(unknown=unknown, lasts=lasts)}"
+
+
+def test_a_moments_loss_at_an_end_of_the_capture_is_no_long_one() -> None:
+    way = np.tile([0.0, 0.0, 1.0], (200, 1))
+    way[-1] = np.nan
+    hand = Sensor("hand", "hand", "right", "arm", stream(way), ball(0.04))
+    assert "long-gap" not in {each.code for each in extract(Capture("x", (hand,), ())).notices}
 
 
 def test_purposes_and_force_are_stated_in_the_users_order() -> None:
