@@ -98,11 +98,6 @@ def _verdict(claim: str, capture: str, base: Profile) -> Verdict:
         return Verdict(claim, name, holds=False, found="", mistake=str(error))
 
 
-def failures(verdicts: Sequence[Verdict]) -> tuple[Verdict, ...]:
-    """Those that do not hold."""
-    return tuple(each for each in verdicts if not each.holds)
-
-
 @cache
 def _base(name: str, added: tuple[Path, ...]) -> Profile:
     return profile(name, added=added)

@@ -15,7 +15,7 @@ APPROACH_S = 0.05
 
 
 def closing_speed(body: Figure, other: Figure, frame: int) -> float:
-    """How fast two bodies' middles approach each other just before a frame [m/s].
+    """How fast two bodies' middles move relative to each other just before a frame [m/s].
 
     The fastest relative speed in the last twentieth of a second, so that a filter which rounds
     a blow does not hide it; zero where either is lost or the contact begins the capture.

@@ -42,7 +42,7 @@ class Agent:
 class Purpose:
     """The end to which a step is done, as the user states it (thesis 4.4.2.2).
 
-    An empty field fits every step.
+    An empty field fits every step that is about an object.
     """
 
     purpose: str

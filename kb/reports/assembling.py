@@ -33,9 +33,6 @@ from kb.reports.linguistics import (
 
 Rows = Iterable[tuple[str, ...]]
 
-NO_PRIMITIVE = "primitive"
-"""What the rules call the need that is nothing but a primitive's verb."""
-
 
 @dataclass(frozen=True)
 class Derived:
