@@ -22,10 +22,10 @@ from pyoxigraph import Quad
 
 from capar.model.observation import Observation
 from kb.actionary import Actionary
-from kb.embedded import EmbeddedStore
 from kb.encode import encode
-from kb.names import GRAPHS
-from kb.questions import question
+from kb.queries.questions import question
+from kb.store.embedded import EmbeddedStore
+from kb.store.names import GRAPHS
 from ontology.files import ontology
 
 MADE = (drink_from_mug(), pick_up_with_both_hands(), with_unknown())

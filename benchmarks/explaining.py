@@ -13,11 +13,11 @@ from statistics import median
 from time import perf_counter
 
 from capar.model.facts import Fact, Frames
-from capar_rules.explaining import Explainer
-from capar_rules.profiles import profile
-from capar_rules.reasoning import infer
-from extractors.facts import extract
-from extractors.readers.bundle import read_capture
+from capar_rules.engine.profiles import profile
+from capar_rules.explain.explanation import Explainer
+from capar_rules.pars.inference import infer
+from extractors.measure import extract
+from extractors.readers.bundle.capture_toml import read_capture
 
 COPIES = (1, 10, 100)
 TIMED = ("first", "last", "frame")

@@ -14,10 +14,10 @@ import fcl
 import scene
 
 from capar.model.capture import Capture
-from capar_rules.profiles import profile
-from capar_rules.reasoning import infer
-from extractors.contact import shaped, watched
-from extractors.facts import Measurements, extract
+from capar_rules.engine.profiles import profile
+from capar_rules.pars.inference import infer
+from extractors.contact.contacts import shaped, watched
+from extractors.measure import Measurements, extract
 
 SAMPLE = 10
 

@@ -13,10 +13,10 @@ from statistics import median
 from time import perf_counter
 
 from capar.model.facts import Fact, Frames, Link, Moving, RateMhz, Tag, Touching, program
-from capar_rules.engine import solve
-from capar_rules.profiles import profile
-from capar_rules.ranking import rank
-from capar_rules.reasoning import infer
+from capar_rules.borders.ranking import rank
+from capar_rules.engine.profiles import profile
+from capar_rules.engine.solver import solve
+from capar_rules.pars.inference import infer
 
 RATE_HZ = 100
 PERIOD = 400

@@ -18,10 +18,10 @@ from time import perf_counter
 import clingo
 
 from capar.model.facts import Fact, Frames, Link, RateMhz, Resting, Tag, Touching, program
-from capar_rules.engine import solve
-from capar_rules.idling import undisturbed
-from capar_rules.profiles import profile
-from capar_rules.ranking import Tick, rank
+from capar_rules.borders.ranking import Tick, rank
+from capar_rules.borders.undisturbed_rest import undisturbed
+from capar_rules.engine.profiles import profile
+from capar_rules.engine.solver import solve
 
 RATE_HZ = 100
 PERIOD = 100

@@ -15,12 +15,12 @@ from statistics import median
 from time import perf_counter
 from typing import TypeVar
 
-from capar.report import answer_verb, primitive_files, primitive_words
+from capar.pipelines.linguistic_report import answer_verb, primitive_files, primitive_words
 from kb.lexicon.loading import load_verbnet, load_words
 from kb.lexicon.tables import compressed_lines
 from kb.lexicon.verbnet_files import read_verbnet
 from kb.lexicon.wordnet import WordNet, wordnet
-from kb.store import Store, open_store
+from kb.store.stores import Store, open_store
 
 Value = TypeVar("Value")
 

@@ -23,22 +23,22 @@ from capar.model.facts import (
     Touching,
     Upward,
 )
-from extractors.arrangement import ARRANGEMENTS, Holds, between, gap, sides
-from extractors.bearing import bearing
-from extractors.figures import Figure, figure
-from extractors.grips import shifts
-from extractors.impulses import closing_speed, falls
-from extractors.intervals import Interval, intervals
-from extractors.leaning import leaning, upright_axis
-from extractors.marks import marks
-from extractors.normals import contact_normal
-from extractors.object_motion import motion_floor, stays
-from extractors.places import distances, places
-from extractors.poses import Poses
-from extractors.resting import resting
-from extractors.rolling import rolling
+from extractors.contact.normals import contact_normal
+from extractors.motion.impacts import closing_speed, falls
+from extractors.motion.leaning import leaning, upright_axis
+from extractors.motion.object_motion import motion_floor, stays
+from extractors.motion.places import distances, places
+from extractors.motion.rest import resting
+from extractors.motion.rolling import rolling
+from extractors.relations.arrangement import ARRANGEMENTS, Holds, between, gap, sides
+from extractors.relations.body_geometry import Figure, figure
+from extractors.relations.grips import shifts
+from extractors.relations.weight_bearing import bearing
+from extractors.sample_frames import marks
+from extractors.signals.intervals import Interval, intervals
+from extractors.signals.poses import Poses
+from extractors.signals.turning_points import reversals, swings
 from extractors.thresholds import Thresholds
-from extractors.turning_points import reversals, swings
 
 PASSED = ("inside", "above")
 """Arrangements that a body may pass through."""

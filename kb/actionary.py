@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
-from kb import names, sparql, writing
-from kb.answers import Answer, Plain
 from kb.errors import StoreError
 from kb.findings import Added, Stored
 from kb.knowledge import Knowledge
 from kb.lookup import stored
-from kb.questions import question
-from kb.store import Store, open_store
-from kb.store import place as default_place
+from kb.queries.questions import question
+from kb.store import names, sparql
+from kb.store import updates as writing
+from kb.store.answers import Answer, Plain
+from kb.store.stores import Store, open_store
+from kb.store.stores import place as default_place
 from ontology import CAPAR
 from ontology import files as ontology_files
 

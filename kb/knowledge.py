@@ -13,7 +13,7 @@ from capar.model.par import (
 )
 from kb.findings import Ability, FeatureRow, FoundLocation, FoundStyle, Stored
 from kb.lookup import abilities, feature_table, kinds, locations, pars, recognition, styles
-from kb.store import Store
+from kb.store.stores import Store
 
 
 class Knowledge:

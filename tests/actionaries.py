@@ -8,7 +8,7 @@ import motions
 import pytest
 
 from kb.actionary import Actionary
-from kb.remote import RemoteStore
+from kb.store.remote import RemoteStore
 
 STORES = ("memory", "folder", "server")
 

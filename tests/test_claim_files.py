@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from capar.claims.files import read_motion_test, run_motion_test
 from capar.cli import app
 from capar.model.errors import CaparError, FileError
-from capar.motion_tests import read_motion_test, run_motion_test
 
 DEMO = Path(__file__).parents[1] / "capar" / "demo"
 
@@ -37,7 +37,7 @@ def test_the_command_exits_with_one_if_a_claim_fails(folder):
 
 def with_pytest(folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
     named = {each.value for each in entry_points(group="pytest11")}
-    plugin = [] if "capar.pytest_plugin" in named else ["-p", "capar.pytest_plugin"]
+    plugin = [] if "capar.claims.pytest_plugin" in named else ["-p", "capar.claims.pytest_plugin"]
     return subprocess.run(
         [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *plugin, *options, "."],
         cwd=folder, capture_output=True, text=True, check=False,

@@ -5,12 +5,12 @@ from pathlib import Path
 import motions
 import pytest
 
-from capar.claim_names import names_of
-from capar.claims import ClaimError, judge
+from capar.claims.claims import ClaimError, judge
+from capar.claims.names import names_of
 from capar.model.errors import UnknownNameError
 from capar.model.observation import Observation
-from capar.observe import observe
-from capar_rules.profiles import Profile
+from capar.pipelines.observation import observe
+from capar_rules.engine.profiles import Profile
 
 DEMO = Path(__file__).parents[1] / "capar" / "demo"
 

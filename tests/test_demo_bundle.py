@@ -7,7 +7,7 @@ import numpy as np
 from write_demo import demo_capture, write_tables
 
 from capar.model import geometry
-from extractors.readers.bundle import read_capture
+from extractors.readers.bundle.capture_toml import read_capture
 
 BUNDLE = Path(str(resources.files("capar"))) / "demo" / "drink_from_mug"
 

@@ -6,12 +6,12 @@ import motions
 import pytest
 from motions import PERFORMERS, TALL_MAN, Performer
 
-from capar.explanation import explained
 from capar.model.capture import Capture, Role
 from capar.model.facts import LookingAt
 from capar.model.json_form import from_json, to_json
-from capar.observe import observe
-from capar_rules.profiles import profile
+from capar.pipelines.explanation import explained
+from capar.pipelines.observation import observe
+from capar_rules.engine.profiles import profile
 from kb.actionary import Actionary
 
 performer = pytest.mark.parametrize("performer", PERFORMERS, ids=lambda each: each.name)

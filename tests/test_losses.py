@@ -8,7 +8,7 @@ import pytest
 
 from capar.model.capture import Capture, Sensor, Stream, TagObject
 from capar.model.facts import Touching
-from capar.observe import observe
+from capar.pipelines.observation import observe
 
 WHOLE = motions.drink_from_mug(motions.WOMAN).capture
 HELD_S = (2.1, 2.6)

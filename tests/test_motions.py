@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Capture, Shape
 from capar.model.facts import Touching
-from extractors.facts import extract
+from extractors.measure import extract
 
 Act = Callable[..., Trial]
 

@@ -14,9 +14,9 @@ from scipy.spatial.transform import Rotation
 from capar.model.facts import Fact, Frames, Link, Moving, RateMhz, Tag, Touching, ZeroCrossing
 from capar.model.json_form import to_json
 from capar.model.observation import Observation, Segment
-from capar.observe import observe
-from capar_rules.profiles import profile
-from capar_rules.reasoning import infer
+from capar.pipelines.observation import observe
+from capar_rules.engine.profiles import profile
+from capar_rules.pars.inference import infer
 
 ACTIONS = (
     motions.drink_from_mug,

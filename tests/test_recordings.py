@@ -12,9 +12,9 @@ from scipy.signal import find_peaks
 
 from capar.model.facts import Moving, Touching
 from capar.model.observation import Observation, Segment
-from capar.observe import observe, observe_measured
-from extractors.facts import extract
-from extractors.readers.bundle import read_capture, takes
+from capar.pipelines.observation import observe, observe_measured
+from extractors.measure import extract
+from extractors.readers.bundle.capture_toml import read_capture, takes
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 MOVES = {"MoveObj", "MoveObjTo"}

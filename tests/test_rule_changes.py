@@ -10,9 +10,9 @@ from typer.testing import CliRunner
 
 from capar.cli import app
 from capar.model.errors import CaparError, FileError
-from capar.observe import observe
-from capar.observed_again import observe_again
-from capar.rule_changes import (
+from capar.pipelines.observation import observe
+from capar.pipelines.reobservation import observe_again
+from capar.rulebook.changes import (
     add_reclassifying,
     bearing,
     captured,
@@ -21,8 +21,8 @@ from capar.rule_changes import (
     renamed,
     stored,
 )
-from capar_rules.placing import unbroken
-from capar_rules.profiles import profile
+from capar_rules.authoring.transaction import unbroken
+from capar_rules.engine.profiles import profile
 from kb.actionary import Actionary
 from kb.errors import StoreError
 from kb.lookup.changes import NamedSegment, source_files
@@ -218,7 +218,7 @@ def test_no_rule_is_added_or_removed_where_the_store_fails(kept, monkeypatch, er
 
     added, _ = add_reclassifying(with_examples(kept), **adding(kept))
     remains = added.read_text()
-    monkeypatch.setattr("capar.rule_changes.replace_all", fail)
+    monkeypatch.setattr("capar.rulebook.changes.replace_all", fail)
     with pytest.raises(type(error)):
         remove_reclassifying(
             added, actionary=str(kept / "actionary"), after=profile("thesis"),

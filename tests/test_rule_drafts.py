@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from capar.model.errors import CaparError
-from capar.rule_drafts import rule_from_features, rule_from_segment
-from capar_rules.authoring import try_rule
-from capar_rules.profiles import profile
+from capar.rulebook.drafts import rule_from_features, rule_from_segment
+from capar_rules.authoring.user_primitives import try_rule
+from capar_rules.engine.profiles import profile
 
 DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 

@@ -16,7 +16,7 @@ places = find_spec("extractors").submodule_search_locations
 names = [f"extractors.{each.name}" for each in iter_modules(places) if not each.ispkg]
 names += ["capar.model.geometry", "capar.model.capture"]
 with install_import_hook(names, "beartype.beartype"):
-    from capar.observe import observe
+    from capar.pipelines.observation import observe
     sys.path.insert(0, sys.argv[1])
     import motions
 

@@ -13,21 +13,21 @@ from motions.handing import GIVER, GIVING, STEPS, TAKER, TAKING
 from write_demo import write_tables
 
 from capar.cli import main
-from capar.explanation import explained
 from capar.model.errors import CaptureError, UnknownNameError
 from capar.model.facts import Touching
 from capar.model.json_form import from_json, published_schema, to_json
 from capar.model.observation import Observation
 from capar.model.par import Step
-from capar.observe import observe
-from capar.workbench.picture import draw
-from capar.workbench.script import script
-from capar_rules.profiles import profile
-from extractors.readers.bundle import read_capture
+from capar.pipelines.explanation import explained
+from capar.pipelines.observation import observe
+from capar.views.picture import draw
+from capar.views.script import script
+from capar_rules.engine.profiles import profile
+from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
-from kb.checking import check
-from kb.drawing import as_text
 from kb.language.describe import describe
+from kb.reports.complex_drawing import as_text
+from kb.validation.store_checks import check
 
 BUNDLE = """\
 name = "handing_over"

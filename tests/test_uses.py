@@ -8,7 +8,7 @@ import pytest
 from motions.encounters import ENCOUNTERS, kick
 from motions.uses import USES
 
-from capar.observe import observe
+from capar.pipelines.observation import observe
 
 Act = Callable[..., motions.Trial]
 

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 import typer
 
 if TYPE_CHECKING:
-    from capar.rule_changes import Renamed
-    from capar_rules.auditing import Audit
+    from capar.rulebook.changes import Renamed
+    from capar_rules.lint.audit import Audit
 
 
 def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) -> None:
     """The segments that have another name now, and how many; who was left alone."""
-    from capar.rule_changes import NOTHING
+    from capar.rulebook.changes import NOTHING
 
     for each in changes:
         what = f"{each.before} -> {each.after}"

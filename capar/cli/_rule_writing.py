@@ -37,7 +37,7 @@ def new(
     """Write a rule file for NAME from a segment or a feature set, ready to be edited."""
     from capar.cli._places import written
     from capar.model.errors import FileError, RuleError
-    from capar.rule_drafts import rule_from_features, rule_from_segment
+    from capar.rulebook.drafts import rule_from_features, rule_from_segment
 
     words = {"definition": definition, "general": general, "verb": verb}
     if (source is None) == (features is None):
@@ -71,7 +71,7 @@ def list_words(
     With NAME also where it is defined, and by which rules.
     """
     from capar.cli._words_of_rules import print_glossary, print_word, print_words_json
-    from capar_rules.glossary import glossary
+    from capar_rules.authoring.glossary import glossary
 
     found = glossary(rule_base(profile, rules, opened(actionary)))
     if json:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from capar_rules.profiles import Profile
+    from capar_rules.engine.profiles import Profile
 
 Rules = Annotated[
     Path | None,
@@ -59,8 +59,8 @@ def rule_base(
     Raises:
         CaparError: A folder is none, or a rule file has a fault.
     """
-    from capar_rules.profiles import profile as named_profile
-    from capar_rules.teaching import user_rules
+    from capar_rules.authoring.user_rules import user_rules
+    from capar_rules.engine.profiles import profile as named_profile
 
     added = user_rules(rules, actionary=actionary)
     return named_profile(profile, added=added, steady=steady)
@@ -68,15 +68,15 @@ def rule_base(
 
 def opened(actionary: str | None) -> str:
     """The Actionary that a command opens: the one named, else CAPAR_ACTIONARY, else ./actionary."""
-    from kb.store import place
+    from kb.store.stores import place
 
     return place(actionary)
 
 
 def has_actionary(place: str, *, named: str | None) -> bool:
     """Whether observations can be looked up there: in a folder, or at an address that was named."""
-    from kb.embedded import DATA_FOLDER
-    from kb.store import is_address
+    from kb.store.embedded import DATA_FOLDER
+    from kb.store.stores import is_address
 
     return bool(named) if is_address(place) else (Path(place) / DATA_FOLDER).is_dir()
 
@@ -92,9 +92,9 @@ def require_actionary(actionary: str | None, *, observed: bool = False) -> None:
         FileError: Nothing is there.
     """
     from capar.model.errors import FileError
-    from capar_rules.teaching import FOLDER
-    from kb.embedded import DATA_FOLDER
-    from kb.store import is_address
+    from capar_rules.authoring.user_rules import FOLDER
+    from kb.store.embedded import DATA_FOLDER
+    from kb.store.stores import is_address
 
     place = opened(actionary)
     there = [DATA_FOLDER] if observed else [DATA_FOLDER, FOLDER]

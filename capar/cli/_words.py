@@ -9,13 +9,13 @@ import typer
 
 if TYPE_CHECKING:
     from kb.lexicon.links import PrimitiveWords
-    from kb.store import Store
+    from kb.store.stores import Store
 
 
 def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[PrimitiveWords, ...]":
     """What the primitives that ship, and those that people wrote, are called."""
     from capar.cli._rules import rule_base
-    from capar.report import primitive_files, primitive_words
+    from capar.pipelines.linguistic_report import primitive_files, primitive_words
 
     return primitive_words(primitive_files(rule_base("extended", rules, actionary).added))
 
@@ -23,8 +23,8 @@ def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[Primi
 @contextmanager
 def open_words(where: str | None) -> "Iterator[Store | None]":
     """The store of an Actionary to read; None where none is named and none stands here."""
-    from kb.embedded import DATA_FOLDER
-    from kb.store import is_address, open_store, place
+    from kb.store.embedded import DATA_FOLDER
+    from kb.store.stores import is_address, open_store, place
 
     target = place(where)
     # The folder of an Actionary may hold rules before it holds anything that was observed.

@@ -9,7 +9,7 @@ import typer
 from capar.cli._rule_tables import print_json
 
 if TYPE_CHECKING:
-    from capar_rules.glossary import Glossary, Word
+    from capar_rules.authoring.glossary import Glossary, Word
 
 
 def print_glossary(found: "Glossary") -> None:

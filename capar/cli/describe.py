@@ -36,8 +36,8 @@ def describe(
 ) -> None:
     """Say in plain English what was done in CAPTURE."""
     from capar.cli._words import print_json, rule_words
-    from capar.observe import observe
-    from capar.workbench.notices import reservation_lines, reservations
+    from capar.pipelines.observation import observe
+    from capar.views.notices import reservation_lines, reservations
     from kb.language.describe import describe as told
 
     observation = observe(capture, rules=rule_base(profile, rules, actionary))

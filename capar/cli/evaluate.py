@@ -49,9 +49,9 @@ def evaluate(
             f"{len(pairs)} arguments: each capture is followed by its label file, as in: "
             "capar evaluate TAKE0 LABELS0 TAKE1 LABELS1 --mapping MAPPING"
         )
-    from capar.evaluation.evaluate import evaluate as evaluate_pairs
-    from capar.evaluation.evaluate import report
     from capar.evaluation.mapping import read_mapping
+    from capar.evaluation.scoring import evaluate as evaluate_pairs
+    from capar.evaluation.scoring import report
 
     cases = [(place, Path(labels)) for place, labels in zip(pairs[::2], pairs[1::2], strict=True)]
     base = rule_base(profile, rules, actionary, steady=steady)

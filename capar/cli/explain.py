@@ -10,11 +10,11 @@ from capar.cli._rules import Beside, Rules, Steady, rule_base
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from capar.explanation import Explained
     from capar.model.capture import Notice
     from capar.model.observation import Segment
-    from capar_rules.explaining import Explanation, Reason
-    from capar_rules.why_not import Alternative
+    from capar.pipelines.explanation import Explained
+    from capar_rules.explain.explanation import Explanation, Reason
+    from capar_rules.explain.why_not import Alternative
 
 app = typer.Typer()
 
@@ -48,9 +48,9 @@ def explain(
 ) -> None:
     """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
     from capar.cli._places import prove_place
-    from capar.explanation import explained, segment_named
-    from capar_rules.why_not import why_not as alternatives
-    from extractors.readers.bundle import read_capture
+    from capar.pipelines.explanation import explained, segment_named
+    from capar_rules.explain.why_not import why_not as alternatives
+    from extractors.readers.bundle.capture_toml import read_capture
 
     if svg:
         prove_place(svg, suffixes=(".svg",))
@@ -84,14 +84,14 @@ def explain(
 
 def _notices(segments: "Sequence[Segment]", seen: "Explained") -> "tuple[Notice, ...]":
     """What of the bodies that the segments are about is known with reservations."""
-    from capar.workbench.notices import reservations
+    from capar.views.notices import reservations
 
     about = {name for each in segments for name in (each.ee, *each.objects)}
     return reservations(seen.observation.notices, about=about)
 
 
 def _print_notices(segments: "Sequence[Segment]", seen: "Explained") -> None:
-    from capar.workbench.notices import reservation_lines
+    from capar.views.notices import reservation_lines
 
     for line in reservation_lines(_notices(segments, seen)):
         typer.echo(line)
@@ -158,7 +158,7 @@ def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
 
 def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
     """A tree as JSON, and beside each atom the segments that it speaks of by their ticks."""
-    from capar.explanation import segments_in
+    from capar.pipelines.explanation import segments_in
 
     placed: dict[str, Any] = {}
     for key, value in node.items():
@@ -176,7 +176,7 @@ def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
 
 def _draw(told: "list[Explanation]", path: Path) -> None:
     from capar.cli._places import written
-    from capar.workbench.reasons import reasons_svg
+    from capar.views.reasons import reasons_svg
 
     with written(path) as draft:
         draft.write_text(reasons_svg(told), encoding="utf-8")

@@ -36,9 +36,9 @@ def facts(
 ) -> None:
     """Print the ground facts of CAPTURE as an ASP program, for clingo with the rule files."""
     from capar.model.facts import program
-    from capar.observe import facts_program
-    from capar_rules.engine import rule_file, solve, text_of
-    from extractors.readers.bundle import read_capture
+    from capar.pipelines.observation import facts_program
+    from capar_rules.engine.solver import rule_file, solve, text_of
+    from extractors.readers.bundle.capture_toml import read_capture
 
     base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
@@ -50,7 +50,9 @@ def facts(
         )
         typer.echo(f"% Rules: {' '.join(map(str, base.files))}")
     if derive:
-        answer = solve((*base.files, rule_file("derived.lp")), (*measurements.facts, *borders))
+        answer = solve(
+            (*base.files, rule_file("explain/derived.lp")), (*measurements.facts, *borders)
+        )
         lines = "".join(
             f"{text_of((name, *arguments))}.\n"
             for name in ("contact", "moved", "regrasps")

@@ -33,8 +33,8 @@ def _report(place: str) -> dict[str, Any]:
 
 
 def _of_capture(place: str) -> dict[str, Any]:
-    from extractors.readers.bundle import read_capture
-    from extractors.readers.survey import as_json, near_pairs, survey
+    from extractors.readers.bundle.capture_toml import read_capture
+    from extractors.readers.drafting.survey import as_json, near_pairs, survey
 
     capture = read_capture(place)
     kinds = {each.name: f"sensor, {each.role.value}" for each in capture.sensors}
@@ -58,8 +58,8 @@ def _of_file(path: Path) -> dict[str, Any]:
     import numpy as np
 
     from capar.model.capture import Stream
+    from extractors.readers.drafting.survey import as_json, near_pairs, survey
     from extractors.readers.registry import read_recording
-    from extractors.readers.survey import as_json, near_pairs, survey
 
     recording = read_recording(path)
     unit = recording.unit_m or 1.0

@@ -19,8 +19,8 @@ def new_capture(
     """Write a commented capture.toml that a person then edits; it is read back at once."""
     from capar.cli._places import written
     from capar.model.errors import CaparError, FileError
-    from extractors.readers.bundle import read_capture
-    from extractors.readers.draft import TODO, draft
+    from extractors.readers.bundle.capture_toml import read_capture
+    from extractors.readers.drafting.draft import TODO, draft
     from extractors.readers.registry import read_recording
 
     folder = output.is_dir() or output.suffix != ".toml"

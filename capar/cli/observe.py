@@ -12,7 +12,7 @@ from capar.cli._rules import Rules, Steady, rule_base
 if TYPE_CHECKING:
     from capar.model.capture import Capture
     from capar.model.observation import Observation
-    from extractors.facts import Measurements
+    from extractors.measure import Measurements
 
 app = typer.Typer()
 
@@ -69,10 +69,10 @@ def observe(
     """Say what was done in CAPTURE: segments of each link, and the complex PAR they make."""
     import sys
 
-    from capar.observe import observe_measured
-    from capar_rules.teaching import new_rules_folder
-    from extractors.facts import extract
-    from extractors.readers.bundle import read_capture
+    from capar.pipelines.observation import observe_measured
+    from capar_rules.authoring.user_rules import new_rules_folder
+    from extractors.measure import extract
+    from extractors.readers.bundle.capture_toml import read_capture
 
     _prove_output(json=json, script=script, pars=pars, plot=plot)
     base = rule_base(profile, rules, actionary, steady=steady)
@@ -104,7 +104,7 @@ def _prove_output(*, json: bool, script: bool, pars: bool, plot: Path | None) ->
     if len(named) > 1:
         raise CaparError(f"{' and '.join(named)} print different things; say one of them")
     if plot:
-        from capar.workbench.picture import SUFFIXES
+        from capar.views.picture import SUFFIXES
 
         prove_place(plot, suffixes=SUFFIXES)
 
@@ -127,13 +127,13 @@ def _print(observation: "Observation", *, json: bool, script: bool, pars: bool) 
         typer.echo(to_json(observation), nl=False)
         return
     if script:
-        from capar.workbench.script import script as written
+        from capar.views.script import script as written
 
         typer.echo(written(observation), nl=False)
         return
     _tables(observation)
     if pars:
-        from capar.workbench.text import par_text
+        from capar.views.text import par_text
 
         for par in (observation.complex_par, *observation.upars, *observation.ipars):
             typer.echo()
@@ -144,8 +144,8 @@ def _tables(observation: "Observation") -> None:
     """Tables for a terminal; plain aligned columns for anything else."""
     import sys
 
-    from capar.workbench.notices import note_lines
-    from capar.workbench.tables import (
+    from capar.views.notices import note_lines
+    from capar.views.tables import (
         aligned,
         joint_lines,
         segment_rows,
@@ -177,7 +177,7 @@ def _draw(
     observation: "Observation", capture: "Capture", measurements: "Measurements", path: Path
 ) -> None:
     from capar.cli._places import written
-    from capar.workbench.picture import draw
+    from capar.views.picture import draw
 
     speeds = {
         link.ee: (capture.times, measurements.tracks[link.ee].speed_mps)
@@ -191,7 +191,7 @@ def _draw(
 
 def _refuse(observation: "Observation") -> None:
     from capar.model.errors import RuleError
-    from capar.workbench.tables import unknown_note
+    from capar.views.tables import unknown_note
 
     unknown = [unknown_note(each) for each in observation.segments if not each.known]
     if unknown:
@@ -200,8 +200,8 @@ def _refuse(observation: "Observation") -> None:
 
 def _teach(observation: "Observation", folder: Path) -> bool:
     """Ask for a name for each unknown feature set; whether any was given."""
-    from capar.workbench.tables import unknown_note
-    from capar_rules.teaching import ACTION_NAME, teach
+    from capar.views.tables import unknown_note
+    from capar_rules.authoring.user_rules import ACTION_NAME, teach
 
     unknown = {each.features: each for each in observation.segments if not each.known}
     names = []

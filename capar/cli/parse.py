@@ -27,7 +27,7 @@ def parse(
     without one any noun will do.
     """
     from capar.cli._words import open_words, print_json, rule_words
-    from capar.words import vocabulary
+    from capar.pipelines.language import vocabulary
     from kb.language import Question
     from kb.language import parse as read
 

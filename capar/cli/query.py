@@ -9,21 +9,21 @@ import typer
 from capar.cli._actionary import Place
 
 if TYPE_CHECKING:
-    from kb.answers import Answer
+    from kb.store.answers import Answer
 
 app = typer.Typer()
 
 
 def _names(incomplete: str) -> list[tuple[str, str]]:
     """Names of questions that begin so, for the shell."""
-    from kb.questions import questions
+    from kb.queries.questions import questions
 
     return [(n, q.text) for n, q in questions().items() if n.startswith(incomplete)]
 
 
 def _parameters(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
     """Parameters of the question that was named, for the shell."""
-    from kb.questions import questions
+    from kb.queries.questions import questions
 
     asked = questions().get(str(ctx.params.get("question") or ""))
     found = [(f"{each.name}=", each.meaning) for each in asked.parameters] if asked else []
@@ -59,7 +59,7 @@ def query(
 ) -> None:
     """Ask the Actionary a QUESTION; see --list. It can neither write nor run for ever."""
     from capar.model.errors import UnknownNameError
-    from kb.formats import FORMATS
+    from kb.queries.formats import FORMATS
 
     chosen = "json" if json else format_
     if chosen not in FORMATS:
@@ -71,8 +71,8 @@ def query(
     raw = _raw(question)
     text = _text(question, raw, given)
     from kb import Actionary
-    from kb.questions import prove_known
-    from kb.questions import question as named
+    from kb.queries.questions import prove_known
+    from kb.queries.questions import question as named
 
     with Actionary.open(actionary, read_only=True) as opened:
         answer = opened.store.ask_within(text, seconds=time_limit)
@@ -96,8 +96,8 @@ def _given(parameters: list[str]) -> dict[str, str]:
 def _text(question: str, raw: str | None, given: dict[str, str]) -> str:
     """The SPARQL that is meant."""
     from capar.model.errors import CaparError
-    from kb import sparql
-    from kb.questions import question as named
+    from kb.queries.questions import question as named
+    from kb.store import sparql
 
     if raw is None:
         return named(question).bind(given)
@@ -108,7 +108,7 @@ def _text(question: str, raw: str | None, given: dict[str, str]) -> str:
 
 def _raw(question: str) -> str | None:
     """SPARQL that was given itself, or by a file or standard input."""
-    from kb import sparql
+    from kb.store import sparql
 
     if question == "-":
         return sys.stdin.read()
@@ -133,13 +133,13 @@ def _is_file(path: Path) -> bool:
 
 
 def _list(chosen: str) -> None:
-    from kb.formats import listing
+    from kb.queries.formats import listing
 
     _print(listing(), chosen)
 
 
 def _print(answer: "Answer", chosen: str) -> None:
-    from kb.formats import FORMATS, cells, header
+    from kb.queries.formats import FORMATS, cells, header
 
     if chosen != "table" or not sys.stdout.isatty():
         typer.echo(FORMATS[chosen](answer), nl=False)

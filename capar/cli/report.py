@@ -46,8 +46,8 @@ def linguistics(
     """Which verbs and classes of verbs the system addresses, with what proves it."""
     from capar.cli._places import prove_place, written
     from capar.cli._words import open_words
-    from capar.report import cases_of, primitive_files
-    from capar.report import linguistics as report_of
+    from capar.pipelines.linguistic_report import cases_of, primitive_files
+    from capar.pipelines.linguistic_report import linguistics as report_of
     from kb.reports.writing import write
 
     if out is not None:

@@ -35,7 +35,7 @@ def _root() -> None:
 
 def _others(file: Path, rules: Path | None, actionary: str | None) -> tuple[Path, ...]:
     """The rule files that people wrote, without this one."""
-    from capar_rules.teaching import user_rules
+    from capar_rules.authoring.user_rules import user_rules
 
     files = user_rules(rules, actionary=opened(actionary))
     return tuple(each for each in files if each.resolve() != file.resolve())
@@ -52,7 +52,7 @@ def list_rules(
     """
     from dataclasses import asdict
 
-    from capar_rules.authoring import rules_of
+    from capar_rules.authoring.user_primitives import rules_of
 
     place = opened(actionary)
     found = rules_of(rule_base(profile, rules, place), actionary=place)
@@ -72,7 +72,7 @@ def show(
     actionary: Place = None,
 ) -> None:
     """Print the rule file of a primitive."""
-    from capar_rules.authoring import rule_of
+    from capar_rules.authoring.user_primitives import rule_of
 
     info = rule_of(rule_base(profile, rules, opened(actionary)), name)
     typer.echo(Path(info.file).read_text(encoding="utf-8"), nl=False)
@@ -87,8 +87,8 @@ def check(
     json: Json = False,
 ) -> None:
     """Say what is wrong with FILE, with line and column; nothing of it is run."""
-    from capar_rules.checking import check as checked
-    from capar_rules.findings import errors
+    from capar_rules.lint.checking import check as checked
+    from capar_rules.lint.findings import errors
 
     findings = checked(file, profile=profile, beside=_others(file, rules, actionary))
     if json:
@@ -107,10 +107,10 @@ def test(
     file: File, profile: Base = "extended", rules: Rules = None, actionary: Place = None
 ) -> None:
     """Run the examples that FILE carries: what it must match, and what it must not."""
-    from capar_rules.admitting import admit
-    from capar_rules.authoring import try_rule
-    from capar_rules.checking import check as checked
-    from capar_rules.checking import require
+    from capar_rules.authoring.user_primitives import try_rule
+    from capar_rules.lint.admission import admit
+    from capar_rules.lint.checking import check as checked
+    from capar_rules.lint.checking import require
 
     beside = _others(file, rules, actionary)
     admit(beside, profile=profile)
@@ -141,9 +141,9 @@ def add(
     It goes to the folder that --rules or CAPAR_RULES names, else to the folder rules of the
     Actionary that --actionary or CAPAR_ACTIONARY names, else to ./rules.
     """
-    from capar.rule_changes import add_reclassifying
-    from capar_rules.authoring import add_rule
-    from capar_rules.teaching import actionary_rules, make_folder, new_rules_folder
+    from capar.rulebook.changes import add_reclassifying
+    from capar_rules.authoring.user_primitives import add_rule
+    from capar_rules.authoring.user_rules import actionary_rules, make_folder, new_rules_folder
 
     place = opened(actionary)
     folder = new_rules_folder(rules, actionary=actionary)
@@ -183,10 +183,10 @@ def remove(
     With --rules alone or --actionary alone, only that folder is looked through. A rule on which
     another one rests stays.
     """
-    from capar.rule_changes import bearing, remove_reclassifying
-    from capar_rules.authoring import introduced, removable
-    from capar_rules.profiles import profile as named_profile
-    from capar_rules.teaching import actionary_rules, rule_files, user_rules
+    from capar.rulebook.changes import bearing, remove_reclassifying
+    from capar_rules.authoring.user_primitives import introduced, removable
+    from capar_rules.authoring.user_rules import actionary_rules, rule_files, user_rules
+    from capar_rules.engine.profiles import profile as named_profile
 
     place = opened(actionary)
     mine = actionary_rules(place)
@@ -229,10 +229,10 @@ def diff(
     """
     from dataclasses import asdict
 
-    from capar.rule_changes import captured, renamed, stored
-    from capar_rules.checking import check as checked
-    from capar_rules.checking import require
-    from capar_rules.profiles import profile as named_profile
+    from capar.rulebook.changes import captured, renamed, stored
+    from capar_rules.engine.profiles import profile as named_profile
+    from capar_rules.lint.checking import check as checked
+    from capar_rules.lint.checking import require
 
     before = rule_base(profile, rules, opened(actionary))
     beside = _others(file, rules, actionary)
@@ -260,7 +260,7 @@ def audit(
     """Audit the whole rule base over every segment that there can be."""
     from dataclasses import asdict
 
-    from capar_rules.auditing import audit as audited
+    from capar_rules.lint.audit import audit as audited
 
     found = audited(rule_base(profile, rules, opened(actionary)))
     if json:

@@ -11,7 +11,7 @@ from capar.cli._rules import Beside, Rules
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
-    from capar.claims import Verdict
+    from capar.claims.claims import Verdict
 
 app = typer.Typer()
 
@@ -89,14 +89,14 @@ def test(
 
 
 def _paths(files: Iterable[Path]) -> Iterator[Path]:
-    from capar.motion_tests import SUFFIX
+    from capar.claims.files import SUFFIX
 
     for each in files:
         yield from sorted(each.rglob(f"*{SUFFIX}")) if each.is_dir() else [each]
 
 
 def _judged(path: Path, rules: Path | None, actionary: str | None) -> _Suite:
-    from capar.motion_tests import read_motion_test, run_motion_test
+    from capar.claims.files import read_motion_test, run_motion_test
 
     try:
         claimed = read_motion_test(path)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from kb.lexicon.evidence import Seen
     from kb.lexicon.fitting import Fit
     from kb.lexicon.verbs import VerbAnswer
-    from kb.store import Store
+    from kb.store.stores import Store
 
 app = typer.Typer()
 
@@ -49,7 +49,7 @@ def verb(
     words = rule_words(rules, place)
     with open_words(actionary) as store:
         if segment:
-            from capar.words import verbs_for
+            from capar.pipelines.language import verbs_for
 
             base = rule_base("extended", rules, place)
             _print_fits(verbs_for(segment, words, store=store, rules=base)[:most], json=json)
@@ -60,7 +60,7 @@ def verb(
             names = kinds_of(lemma, keys_of_primitives(words))
             _print_kinds(lemma, names, store, json=json)
         else:
-            from capar.report import answer_verb
+            from capar.pipelines.linguistic_report import answer_verb
             from kb.lexicon.claims import doubts_of
 
             for doubt in doubts_of(words):

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.capture import Capture, Shape, TagObject, TagType
-from capar.observe import observe
+from capar.pipelines.observation import observe
 
 INTO = "into"
 

@@ -13,10 +13,10 @@ from capar.model.capture import Capture
 from capar.model.errors import FileError
 from capar.model.facts import Lies, Moving, Touching
 from capar.model.observation import Observation
-from capar.observe import facts_program, observe_measured
-from capar_rules.engine import rule_file, solve
-from capar_rules.profiles import DEFAULT, profile
-from capar_rules.ticks import Tick
+from capar.pipelines.observation import facts_program, observe_measured
+from capar_rules.borders.ticks import Tick
+from capar_rules.engine.profiles import DEFAULT, profile
+from capar_rules.engine.solver import rule_file, solve
 from extractors.handling import SHIFTS
 
 PASS, OVER_TABLE, REGRASP = "pass", "over_table", "regrasp"
@@ -64,7 +64,7 @@ def changes(capture: Capture) -> tuple[Change, ...]:
     base = profile(DEFAULT)
     measurements, borders = facts_program(capture, rules=base)
     observation = observe_measured(capture, measurements, rules=base)
-    answer = solve((*base.files, rule_file("derived.lp")), (*measurements.facts, *borders))
+    answer = solve((*base.files, rule_file("explain/derived.lp")), (*measurements.facts, *borders))
     frames = {(each.ee, each.tick): each.frame for each in borders if isinstance(each, Tick)}
     told = set()
     for segment, thing in answer.of("regrasps"):

@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.errors import FileError
-from extractors.readers.opening import read_text
+from extractors.readers.files import read_text
 
 BIMACTS = (
     "idle",

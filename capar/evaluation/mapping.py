@@ -25,7 +25,7 @@ from jaxtyping import Float
 from capar.evaluation.metrics import Interval
 from capar.model.errors import FileError, UnknownNameError
 from capar.model.observation import ObservedLink, Segment
-from extractors.readers.toml_table import Table, read_table
+from extractors.readers.bundle.toml_table import Table, read_table
 
 ANY = "*"
 

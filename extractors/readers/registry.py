@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from capar.model.errors import CaparError, CaptureError, FileError, UnknownNameError
-from extractors.readers import (
+from extractors.readers.files import head_of
+from extractors.readers.formats import (
     bvh,
     c3d,
     csv_table,
@@ -16,7 +17,6 @@ from extractors.readers import (
     rosbag,
     trc,
 )
-from extractors.readers.opening import head_of
 from extractors.readers.recording import Recording
 
 Options = Mapping[str, Any]

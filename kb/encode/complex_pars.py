@@ -6,10 +6,10 @@ from pyoxigraph import NamedNode
 
 from capar.model.errors import ParError, UnknownNameError
 from capar.model.par import UNKNOWN, ComplexPar, LinkSteps, Step
-from kb import names
 from kb.encode.scene import GENERATED
 from kb.encode.segments import action, segment_node
-from kb.statements import LABEL, Said, Statements
+from kb.store import names
+from kb.store.statements import LABEL, Said, Statements
 from ontology import CAPAR
 from ontology.vocabularies import ALLEN
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, cast
 
 from pyoxigraph import NamedNode
 
-from kb import names
 from kb.encode.scene import DERIVED
-from kb.statements import Statements, Value
+from kb.store import names
+from kb.store.statements import Statements, Value
 from ontology import CAPAR
 
 if TYPE_CHECKING:

@@ -4,10 +4,10 @@ from typing import TYPE_CHECKING
 
 from pyoxigraph import NamedNode
 
-from kb import names
 from kb.encode.scene import GENERATED
 from kb.encode.segments import action, segment_node
-from kb.statements import LABEL, Said, Statements
+from kb.store import names
+from kb.store.statements import LABEL, Said, Statements
 from ontology import CAPAR
 
 if TYPE_CHECKING:

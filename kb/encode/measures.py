@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 from pyoxigraph import NamedNode
 
 from capar.model.par import ConstraintLocation, Style
-from kb import literals, names
 from kb.encode.scene import GENERATED, kind, kind_of
 from kb.encode.segments import action, segment_node
-from kb.statements import Said, Statements
+from kb.store import literals, names
+from kb.store.statements import Said, Statements
 from ontology import CAPAR
 
 if TYPE_CHECKING:

@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING
 
 from pyoxigraph import NamedNode
 
-from kb import names
 from kb.encode import complex_pars, facts, joint, measures, pars, scene, segments
-from kb.statements import LABEL, Said, Statements
+from kb.store import names
+from kb.store.statements import LABEL, Said, Statements
 from ontology import CAPAR
 
 if TYPE_CHECKING:

@@ -15,10 +15,10 @@ from capar.model.par import (
     Preparation,
     Upar,
 )
-from kb import literals, names
 from kb.encode.scene import DERIVED, GENERATED
 from kb.encode.segments import action, actions, features, segment_node
-from kb.statements import LABEL, Said, Statements
+from kb.store import literals, names
+from kb.store.statements import LABEL, Said, Statements
 from ontology import CAPAR
 
 if TYPE_CHECKING:

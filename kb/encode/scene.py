@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 from pyoxigraph import Literal, NamedNode
 
-from kb import literals, names
-from kb.statements import LABEL, Said, Statements
+from kb.store import literals, names
+from kb.store.statements import LABEL, Said, Statements
 from ontology import CAPAR
 from ontology.vocabularies import PREFIXES, PROV
 

@@ -6,9 +6,9 @@ from pyoxigraph import NamedNode
 
 from capar.model.errors import UnknownNameError
 from capar.model.par import UNKNOWN, FeatureSet
-from kb import names
 from kb.encode.scene import GENERATED
-from kb.statements import LABEL, Said, Statements
+from kb.store import names
+from kb.store.statements import LABEL, Said, Statements
 from ontology import CAPAR
 from ontology.vocabularies import TIME
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from kb.language.english import noun, past
-from kb.language.phrasing import USUAL_PREPOSITION, built
+from kb.language.lexicalisation import USUAL_PREPOSITION, built
 from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.tables import table
 

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from kb.store import Store
+from kb.store.stores import Store
 from ontology import CAPAR, PREFIXES
 
 

@@ -6,7 +6,6 @@ from itertools import islice
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
-from kb.embedded import EmbeddedStore
 from kb.lexicon import terms
 from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.rdf_links import levin_triples, link_triples
@@ -15,7 +14,8 @@ from kb.lexicon.rdf_wordnet import wordnet_triples
 from kb.lexicon.tables import FOLDER
 from kb.lexicon.verbnet import Member, VerbClass
 from kb.lexicon.wordnet import WordNet, wordnet
-from kb.store import Store
+from kb.store.embedded import EmbeddedStore
+from kb.store.stores import Store
 from ontology import CAPAR
 
 BATCH = 20_000

@@ -4,7 +4,6 @@ from collections.abc import Iterable
 
 from pyoxigraph import Literal, NamedNode, Triple
 
-from kb import names
 from kb.lexicon import terms
 from kb.lexicon.levin import levin_classes
 from kb.lexicon.links import (
@@ -18,6 +17,7 @@ from kb.lexicon.links import (
     thesis_senses,
 )
 from kb.lexicon.terms import COMMENT, LABEL, TYPE, Triples
+from kb.store import names
 from ontology import CAPAR, DATA
 
 BROADER = NamedNode(terms.SKOS + "broader")

@@ -4,12 +4,12 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from pyoxigraph import Literal, NamedNode, Triple
 
-from kb import names
 from kb.lexicon import terms
 from kb.lexicon.levin import levin_classes
 from kb.lexicon.terms import LABEL, TYPE, Triples
 from kb.lexicon.verbnet import Frame, Member, Phrase, Predicate, Role, VerbClass
 from kb.lexicon.wordnet import WordNet
+from kb.store import names
 from ontology import CAPAR
 
 BROADER = NamedNode(terms.SKOS + "broader")

@@ -4,16 +4,16 @@ from pyoxigraph import Literal, Quad
 
 from capar.model.errors import UnknownNameError
 from capar.model.par import Condition, Upar
-from kb import names
 from kb.encode import pars as par_encoding
 from kb.encode import segments
 from kb.errors import StoreError
 from kb.findings import Ability
 from kb.lookup import kinds
 from kb.lookup.pars import upars
-from kb.sparql import fill
-from kb.statements import LABEL, TYPE, Statements
-from kb.store import Store
+from kb.store import names
+from kb.store.sparql import fill
+from kb.store.statements import LABEL, TYPE, Statements
+from kb.store.stores import Store
 from ontology import CAPAR
 
 YES = Literal(True)

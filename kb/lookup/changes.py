@@ -9,12 +9,13 @@ from pyoxigraph import Literal, NamedNode
 
 from capar.model.facts import STATED, Fact
 from capar.model.par import UNKNOWN
-from kb import names, writing
 from kb.encode import encode
 from kb.encode.facts import CLASSES, PROPERTIES
-from kb.shapes import prove
-from kb.sparql import fill
-from kb.store import Store
+from kb.store import names
+from kb.store import updates as writing
+from kb.store.sparql import fill
+from kb.store.stores import Store
+from kb.validation.shapes import prove
 from ontology import CAPAR
 
 if TYPE_CHECKING:

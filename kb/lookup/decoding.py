@@ -16,11 +16,11 @@ from capar.model.par import (
     Step,
     Upar,
 )
-from kb import names
 from kb.encode.complex_pars import COMMON
 from kb.encode.pars import MOTIONS
-from kb.literals import numbers
 from kb.lookup.reading import Reading
+from kb.store import names
+from kb.store.literals import numbers
 from ontology import CAPAR
 from ontology.vocabularies import ALLEN
 

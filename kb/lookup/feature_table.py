@@ -6,14 +6,14 @@ from pyoxigraph import Literal, NamedNode, Quad
 
 from capar.model.errors import ParError
 from capar.model.par import FeatureSet
-from kb import names
-from kb.answers import plain
 from kb.encode import segments
 from kb.findings import FeatureRow
 from kb.lookup.decoding import features as decode_features
 from kb.lookup.reading import Reading
-from kb.statements import LABEL, Said, Statements
-from kb.store import Store
+from kb.store import names
+from kb.store.answers import plain
+from kb.store.statements import LABEL, Said, Statements
+from kb.store.stores import Store
 from ontology import CAPAR
 
 _SEEN = f"""SELECT ?features ?name ?general (COUNT(DISTINCT ?segment) AS ?times)

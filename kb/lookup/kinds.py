@@ -2,10 +2,10 @@
 
 from pyoxigraph import Literal, NamedNode, Quad
 
-from kb import names
 from kb.errors import StoreError
-from kb.statements import LABEL, TYPE, insertion
-from kb.store import Store
+from kb.store import names
+from kb.store.statements import LABEL, TYPE, insertion
+from kb.store.stores import Store
 from ontology import CAPAR
 from ontology.files import closure
 

@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 from pyoxigraph import Literal, NamedNode
 
 from capar.model.par import ConstraintLocation, Nlt
-from kb import names
-from kb.answers import Found
 from kb.findings import FoundLocation
-from kb.literals import nlt_of
 from kb.lookup import kinds
-from kb.sparql import fill
-from kb.store import Store
+from kb.store import names
+from kb.store.answers import Found
+from kb.store.literals import nlt_of
+from kb.store.sparql import fill
+from kb.store.stores import Store
 from ontology import CAPAR
 
 OTHER = {"right": "left", "left": "right"}

@@ -6,12 +6,12 @@ from pyoxigraph import Literal, NamedNode
 
 from capar.model.errors import UnknownNameError
 from capar.model.par import Call, ComplexPar, Condition, CoreSemantics, Ipar, Preparation, Upar
-from kb import names
 from kb.findings import Stored
 from kb.lookup import decoding
 from kb.lookup.reading import Reading
 from kb.lookup.stored import observations
-from kb.store import Store
+from kb.store import names
+from kb.store.stores import Store
 from ontology import CAPAR
 
 

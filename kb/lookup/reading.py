@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
-from kb.answers import Plain, plain
-from kb.statements import TYPE
+from kb.store.answers import Plain, plain
+from kb.store.statements import TYPE
 
 
 class Reading:

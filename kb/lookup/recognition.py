@@ -6,7 +6,7 @@ from pyoxigraph import Literal, NamedNode
 
 from capar.model.par import ComplexPar
 from kb.encode.complex_pars import complex_node, is_known
-from kb.store import Store
+from kb.store.stores import Store
 from ontology import CAPAR
 
 

@@ -5,15 +5,16 @@ from typing import TYPE_CHECKING
 from pyoxigraph import Literal
 
 from capar.model.errors import UnknownNameError
-from kb import names, writing
 from kb.encode import encode
 from kb.encode.scene import identity
 from kb.errors import ExistsError
 from kb.findings import Added, Stored
 from kb.lookup import recognition
-from kb.shapes import prove
-from kb.sparql import fill
-from kb.store import Store, is_address
+from kb.store import names
+from kb.store import updates as writing
+from kb.store.sparql import fill
+from kb.store.stores import Store, is_address
+from kb.validation.shapes import prove
 from ontology import CAPAR
 
 if TYPE_CHECKING:

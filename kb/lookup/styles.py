@@ -4,9 +4,9 @@ from pyoxigraph import Literal
 
 from capar.model.par import Style
 from kb.findings import FoundStyle
-from kb.literals import numbers, path_of
-from kb.sparql import fill
-from kb.store import Store
+from kb.store.literals import numbers, path_of
+from kb.store.sparql import fill
+from kb.store.stores import Store
 from ontology import CAPAR
 
 _FIND = f"""SELECT ?agent ?observation ?index ?action ?purpose ?ee ?velocity ?path

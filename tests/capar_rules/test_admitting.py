@@ -6,9 +6,14 @@ import hostile_rules
 import pytest
 
 from capar.model.errors import RuleError
-from capar_rules.admitting import admit, faults
-from capar_rules.profiles import profile
-from capar_rules.teaching import actionary_rules, new_rules_folder, rules_folder, user_rules
+from capar_rules.authoring.user_rules import (
+    actionary_rules,
+    new_rules_folder,
+    rules_folder,
+    user_rules,
+)
+from capar_rules.engine.profiles import profile
+from capar_rules.lint.admission import admit, faults
 
 BY_TEXT = {
     "script_python": "script",

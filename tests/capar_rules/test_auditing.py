@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from capar_rules.auditing import audit
-from capar_rules.profiles import profile
+from capar_rules.engine.profiles import profile
+from capar_rules.lint.audit import audit
 
 
 @pytest.fixture(scope="module", params=["thesis", "extended"])

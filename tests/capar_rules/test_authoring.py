@@ -7,7 +7,8 @@ import pytest
 
 from capar.model.errors import FileError, RuleError, UnknownNameError
 from capar.model.par import FeatureSet
-from capar_rules.authoring import (
+from capar_rules.authoring.examples import Example, read_examples, written
+from capar_rules.authoring.user_primitives import (
     add_rule,
     introduced,
     new_rule,
@@ -18,10 +19,9 @@ from capar_rules.authoring import (
     try_rule,
     user_rules,
 )
-from capar_rules.examples import Example, read_examples, written
-from capar_rules.profiles import profile
-from capar_rules.reasoning import infer
-from extractors.facts import extract
+from capar_rules.engine.profiles import profile
+from capar_rules.pars.inference import infer
+from extractors.measure import extract
 
 SLIDE = FeatureSet("1", "1", "1", "hand", "0")
 

@@ -7,13 +7,13 @@ from pathlib import Path
 import hostile_rules
 import pytest
 
-from capar_rules.checking import check, check_all
-from capar_rules.findings import NOTE, Finding, errors
-from capar_rules.glossary import glossary
-from capar_rules.judging import base_of
-from capar_rules.profiles import profile
-from capar_rules.syntax import parse_text
-from capar_rules.trials import world_findings
+from capar_rules.authoring.glossary import glossary
+from capar_rules.engine.profiles import profile
+from capar_rules.engine.syntax import parse_text
+from capar_rules.lint.checking import check, check_all
+from capar_rules.lint.findings import NOTE, Finding, errors
+from capar_rules.lint.judging import base_of
+from capar_rules.lint.world_checks import world_findings
 
 EXPECTED = {
     "script_python": "script",

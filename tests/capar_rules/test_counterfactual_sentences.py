@@ -5,12 +5,12 @@ from itertools import product
 
 import pytest
 
-from capar_rules.auditing import words_of
-from capar_rules.explaining import rule_base
-from capar_rules.otherwise import counted
-from capar_rules.profiles import profile
-from capar_rules.sentences import Clock
-from capar_rules.syntax import split_arguments
+from capar_rules.engine.profiles import profile
+from capar_rules.engine.syntax import split_arguments
+from capar_rules.explain.counterfactuals import counted
+from capar_rules.explain.explanation import rule_base
+from capar_rules.explain.sentences import Clock
+from capar_rules.lint.audit import words_of
 
 BASE = rule_base(profile())
 CLOCK = Clock(100.0, {"hand": [0, 50, 100]}, {("hand", 1): 2}, objects={"seg(hand,1)": "mug"})

@@ -1,8 +1,8 @@
 """Of what is told as the grounds of an atom, every part holds."""
 
 from capar.model.facts import Tag
-from capar_rules.derivations import Grounds, Recorder
-from capar_rules.syntax import parse_text
+from capar_rules.engine.syntax import parse_text
+from capar_rules.explain.derivations import Grounds, Recorder
 
 RULES = """
 like(Thing, Kind) :- tag(Thing, Kind).

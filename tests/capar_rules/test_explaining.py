@@ -9,13 +9,13 @@ import motions
 import pytest
 from recomputed import STORIES, Known, form, told
 
-from capar.explanation import explained
 from capar.model.facts import Doubted, Fact, Frames, Touching, ZeroCrossing
-from capar_rules.explaining import Explainer, Reason, rule_base
-from capar_rules.profiles import profile
-from capar_rules.reasoning import infer
-from capar_rules.sentences import Key, Template
-from extractors.facts import extract
+from capar.pipelines.explanation import explained
+from capar_rules.engine.profiles import profile
+from capar_rules.explain.explanation import Explainer, Reason, rule_base
+from capar_rules.explain.sentences import Key, Template
+from capar_rules.pars.inference import infer
+from extractors.measure import extract
 
 TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "against", 4, ""): "only prepositions rest on it, and no name on a preposition",

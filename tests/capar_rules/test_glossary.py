@@ -3,11 +3,11 @@
 import pytest
 
 from capar.model.errors import UnknownNameError
-from capar_rules.engine import rule_file
-from capar_rules.glossary import Glossary, glossary, words_of_text
-from capar_rules.profiles import Profile, profile
-from capar_rules.statics import AUTHORED, known
-from capar_rules.syntax import parse
+from capar_rules.authoring.glossary import Glossary, glossary, words_of_text
+from capar_rules.engine.profiles import Profile, profile
+from capar_rules.engine.solver import rule_file
+from capar_rules.engine.syntax import parse
+from capar_rules.lint.text_checks import AUTHORED, known
 
 PROFILES = ("extended", "thesis")
 
@@ -87,7 +87,7 @@ def test_a_word_tells_the_rules_that_define_it(words):
     (word,) = words.find("possesses")
     (place,) = words.rules_of(word.signature)
     assert (word.file, word.arguments) == ("possession.lp", ("Hand", "Object", "Since"))
-    assert place.file == str(rule_file("possession.lp"))
+    assert place.file == str(rule_file("segmentation/possession.lp"))
 
 
 def test_an_unknown_word_tells_the_nearest_alone(words):

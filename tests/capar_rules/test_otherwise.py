@@ -5,9 +5,9 @@ from collections.abc import Callable
 import motions
 import pytest
 
-from capar.explanation import explained
-from capar_rules.profiles import profile
-from capar_rules.why_not import worlds_around
+from capar.pipelines.explanation import explained
+from capar_rules.engine.profiles import profile
+from capar_rules.explain.why_not import worlds_around
 
 TRIALS = (
     motions.drink_from_mug,

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from capar_rules.searching import brave
-from capar_rules.slicing import firing
-from capar_rules.syntax import Signature, parse_text
+from capar_rules.engine.search import brave
+from capar_rules.engine.slicing import firing
+from capar_rules.engine.syntax import Signature, parse_text
 
 RULES = parse_text(
     """

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from capar_rules.checking import check, check_all
-from capar_rules.findings import ERROR, NOTE, Finding, errors
-from capar_rules.judging import base_of
-from capar_rules.slips import slip_findings
-from capar_rules.words import closed
+from capar_rules.lint.checking import check, check_all
+from capar_rules.lint.findings import ERROR, NOTE, Finding, errors
+from capar_rules.lint.judging import base_of
+from capar_rules.lint.word_checks import slip_findings
+from capar_rules.lint.word_places import closed
 
 HEAD = '%* Nip: a slip. *%\nprimitive("Nip").\nspecialises("Nip", "Touch").\n'
 

@@ -10,7 +10,6 @@ from flickering import flickering
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from capar.explanation import explained
 from capar.model.facts import (
     Doubted,
     Fact,
@@ -22,12 +21,13 @@ from capar.model.facts import (
     Tag,
     Touching,
 )
-from capar.observe import observe
-from capar_rules.explaining import Explainer
-from capar_rules.profiles import profile
-from capar_rules.reasoning import infer
-from capar_rules.steadying import steady
-from extractors.facts import extract
+from capar.pipelines.explanation import explained
+from capar.pipelines.observation import observe
+from capar_rules.borders.deflicker import steady
+from capar_rules.engine.profiles import profile
+from capar_rules.explain.explanation import Explainer
+from capar_rules.pars.inference import infer
+from extractors.measure import extract
 
 FLICKER = 15
 """Frames of 150 ms at 100 Hz: nobody lets go and takes again in less."""

@@ -3,13 +3,13 @@
 import motions
 import pytest
 
-from capar.explanation import Explained, explained
 from capar.model.errors import RuleError, UnknownNameError
 from capar.model.facts import Moving
-from capar_rules.profiles import profile
-from capar_rules.reasoning import infer
-from capar_rules.why_not import why_not
-from extractors.facts import extract
+from capar.pipelines.explanation import Explained, explained
+from capar_rules.engine.profiles import profile
+from capar_rules.explain.why_not import why_not
+from capar_rules.pars.inference import infer
+from extractors.measure import extract
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from capar.cli import app
 from capar.model.errors import FileError
-from extractors.readers.bundle import read_capture
+from extractors.readers.bundle.capture_toml import read_capture
 
 RUNNER = CliRunner()
 

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from capar.cli import app
 from capar.model.errors import FileError, UnknownNameError
-from capar.workbench.lettering import width_in
+from capar.views.lettering import width_in
 
 DEMO = str(Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug")
 THESIS = ["--profile", "thesis"]
@@ -122,7 +122,9 @@ def test_the_commands_tell_how_they_are_used(name):
 
 def test_an_end_effector_alone_means_all_of_its_segments_in_order(monkeypatch):
     capture = motions.pick_up_with_both_hands(motions.TALL_MAN).capture
-    monkeypatch.setattr("extractors.readers.bundle.read_capture", lambda place: capture)
+    monkeypatch.setattr(
+        "extractors.readers.bundle.capture_toml.read_capture", lambda place: capture
+    )
     both = [each["ee"] for each in json.loads(answered("--json"))]
     told = json.loads(answered("left_hand", "--json"))
     assert {"left_hand", "right_hand"} == set(both)
@@ -136,7 +138,7 @@ def test_an_end_effector_alone_means_all_of_its_segments_in_order(monkeypatch):
 
 
 def test_a_picture_of_another_format_is_refused_before_anything_is_computed(monkeypatch, tmp_path):
-    monkeypatch.setattr("extractors.readers.bundle.read_capture", pytest.fail)
+    monkeypatch.setattr("extractors.readers.bundle.capture_toml.read_capture", pytest.fail)
     path = tmp_path / "a.png"
     result = CliRunner().invoke(app, ["explain", DEMO, "--svg", str(path)])
     assert isinstance(result.exception, FileError)

@@ -14,7 +14,7 @@ import pytest
 from capar.cli import main
 from capar.model.capture import Capture, Stream
 from capar.model.json_form import from_json, published_schema
-from capar_rules.engine import rule_file, solve
+from capar_rules.engine.solver import rule_file, solve
 
 DEMO = str(resources.files("capar") / "demo" / "drink_from_mug")
 STEPS = ["Reach", "MoveObjTo", "MoveObj", "MoveObjTo", "TouchWith", "ResumePosture"]
@@ -57,7 +57,9 @@ def first_seconds(capture: Capture, seconds: float) -> Capture:
 def lifted(monkeypatch: pytest.MonkeyPatch) -> None:
     """A capture that ends with the mug in the air, which is no row of the published table."""
     capture = first_seconds(motions.drink_from_mug(motions.TALL_MAN).capture, 2.15)
-    monkeypatch.setattr("extractors.readers.bundle.read_capture", lambda place: capture)
+    monkeypatch.setattr(
+        "extractors.readers.bundle.capture_toml.read_capture", lambda place: capture
+    )
 
 
 def test_the_tables_show_segments_and_steps(
@@ -75,7 +77,9 @@ def test_what_both_hands_do_as_one_action_is_told(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     trial = motions.pick_up_with_both_hands(motions.TALL_MAN)
-    monkeypatch.setattr("extractors.readers.bundle.read_capture", lambda place: trial.capture)
+    monkeypatch.setattr(
+        "extractors.readers.bundle.capture_toml.read_capture", lambda place: trial.capture
+    )
     assert run(monkeypatch, "observe", "x") == 0
     lines = [each for each in capsys.readouterr().out.splitlines() if each.startswith("both")]
     told = [each.partition(") ")[0] for each in lines]
@@ -180,6 +184,6 @@ def test_what_cannot_come_out_is_refused_before_anything_is_computed(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr("extractors.readers.bundle.read_capture", pytest.fail)
+    monkeypatch.setattr("extractors.readers.bundle.capture_toml.read_capture", pytest.fail)
     assert run(monkeypatch, "observe", DEMO, *asked) == 2
     assert told in capsys.readouterr().err

@@ -8,8 +8,8 @@ from measured_bodies import eased, stream
 from motion_files import recordings_folder
 
 from capar.evaluation.carries import NEAR_S, Carry, Miss, measure, near
-from extractors.readers.bundle import read_files, takes
-from extractors.readers.place import open_bundle
+from extractors.readers.bundle.capture_toml import read_files, takes
+from extractors.readers.bundle.place import open_bundle
 
 SCENES = Path(__file__).parents[2] / "examples" / "boxed_vr" / "scenes.toml"
 

@@ -9,7 +9,7 @@ from motion_files import recordings_folder
 
 from capar.evaluation.containers import halved, landings
 from capar.model.capture import ShapeSource
-from extractors.readers.bundle import read_capture, takes
+from extractors.readers.bundle.capture_toml import read_capture, takes
 
 SCENES = Path(__file__).parents[2] / "examples" / "boxed_vr" / "scenes.toml"
 

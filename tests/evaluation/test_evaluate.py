@@ -10,9 +10,9 @@ from observations import drink_from_mug, pick_up_with_both_hands
 from typer.testing import CliRunner
 
 from capar.cli.evaluate import app
-from capar.evaluation.evaluate import Case, compare, report
 from capar.evaluation.labels import Label, Labels
 from capar.evaluation.mapping import LabelMapping, Rule
+from capar.evaluation.scoring import Case, compare, report
 from capar.model.errors import CaparError, UnknownNameError
 from capar.model.observation import Observation
 

@@ -16,7 +16,7 @@ from capar.evaluation.grasps import (
     read_seen,
 )
 from capar.model.errors import FileError
-from extractors.readers.bundle import read_capture
+from extractors.readers.bundle.capture_toml import read_capture
 
 HANDS = Path(__file__).parents[2] / "examples" / "manipnet"
 SEEN = HANDS / "seen.toml"

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from capar.evaluation.evaluate import evaluate, report
 from capar.evaluation.mapping import read_mapping
+from capar.evaluation.scoring import evaluate, report
 
 ROOT = Path(__file__).parents[2]
 DATA = Path(os.environ.get("CAPAR_DATA", ROOT.parent / "shared" / "data"))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from observations import drink_from_mug, with_unknown
 
-from capar.evaluation.evaluate import known_names
 from capar.evaluation.mapping import LabelMapping, check_names, labelled, read_mapping
+from capar.evaluation.scoring import known_names
 from capar.model.errors import CaparError, UnknownNameError
 from capar.model.observation import Observation
 

@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from motions import PERFORMERS, TALL_MAN, Performer, standing
 
-from capar.explanation import explained
 from capar.model.capture import Capture
 from capar.model.facts import Bears, LookingAt
-from capar.observe import observe
-from capar_rules.profiles import profile
-from extractors.bearing import share_of_first
-from extractors.facts import extract
+from capar.pipelines.explanation import explained
+from capar.pipelines.observation import observe
+from capar_rules.engine.profiles import profile
+from extractors.measure import extract
+from extractors.relations.weight_bearing import share_of_first
 from extractors.thresholds import Thresholds
 from kb.actionary import Actionary
 

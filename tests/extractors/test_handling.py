@@ -10,18 +10,18 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.model.facts import Wound
-from extractors.arrangement import above, below, beside, between, dips, inside, sides
-from extractors.figures import Figure, figure
-from extractors.impulses import closing_speed, falls
-from extractors.leaning import leaning, spin
-from extractors.motion_edges import motion_edges
-from extractors.normals import contact_normal
-from extractors.object_motion import Floor, moving, stays
-from extractors.places import distances
-from extractors.poses import poses
-from extractors.resting import resting
+from extractors.contact.normals import contact_normal
+from extractors.motion.impacts import closing_speed, falls
+from extractors.motion.leaning import leaning, spin
+from extractors.motion.motion_edges import motion_edges
+from extractors.motion.object_motion import Floor, moving, stays
+from extractors.motion.places import distances
+from extractors.motion.rest import resting
+from extractors.relations.arrangement import above, below, beside, between, dips, inside, sides
+from extractors.relations.body_geometry import Figure, figure
+from extractors.signals.poses import poses
+from extractors.signals.turning_points import reversals, swings, turning_points
 from extractors.thresholds import Thresholds
-from extractors.turning_points import reversals, swings, turning_points
 
 LIMITS = Thresholds()
 RATE_HZ = 100.0

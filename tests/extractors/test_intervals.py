@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from extractors.intervals import NEAREST, first_where, last_where
+from extractors.signals.intervals import NEAREST, first_where, last_where
 
 LONG = 12 * NEAREST
 places = st.lists(st.integers(0, LONG - 1), max_size=4)

@@ -12,12 +12,12 @@ from measured_bodies import ball, box, cup, handle, shape, still, stream
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Shape, Stream
-from extractors.contact import bridged
-from extractors.intervals import intervals
-from extractors.proximity import Body, body, near, nearest
-from extractors.shells import EXACTNESS_M, shell
-from extractors.surfaces import surface
-from extractors.sweep import FEW, sweep
+from extractors.contact.contacts import bridged
+from extractors.contact.offset_surfaces import EXACTNESS_M, shell
+from extractors.contact.proximity import Body, body, near, nearest
+from extractors.contact.surfaces import surface
+from extractors.contact.sweep import FEW, sweep
+from extractors.signals.intervals import intervals
 
 EXACT_M = 0.00005
 

@@ -30,7 +30,7 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
-from extractors.facts import extract
+from extractors.measure import extract
 
 
 def of_kind(capture: Capture, kind: type[Fact]) -> list[Fact]:

@@ -8,9 +8,9 @@ from measured_bodies import eased, pick_and_place
 
 from capar.model.capture import Capture
 from capar.model.par import Nlt
-from extractors.facts import extract
-from extractors.locations import Location, locate, mirrored, normalised, restored
-from extractors.style import STEPS, path_style, velocity_style
+from extractors.measure import extract
+from extractors.segments.locations import Location, locate, mirrored, normalised, restored
+from extractors.segments.styles import STEPS, path_style, velocity_style
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

@@ -12,10 +12,10 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.model.facts import Rolls
-from capar.observe import observe
-from extractors.figures import Figure, figure
-from extractors.poses import poses
-from extractors.rolling import angular_velocity, rolling
+from capar.pipelines.observation import observe
+from extractors.motion.rolling import angular_velocity, rolling
+from extractors.relations.body_geometry import Figure, figure
+from extractors.signals.poses import poses
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

@@ -12,10 +12,10 @@ import pytest
 from actionaries import ACTIONS, STORES, opened, oxigraph_binary
 
 from capar.model.observation import Observation
-from capar.observe import observe
+from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.errors import StoreError
-from kb.remote import RemoteStore
+from kb.store.remote import RemoteStore
 
 
 @pytest.fixture(scope="session")

@@ -14,7 +14,7 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 
 from capar.cli import main
 from kb.actionary import Actionary
-from kb.questions import BEARERS, questions
+from kb.queries.questions import BEARERS, questions
 
 
 @pytest.fixture(scope="module")

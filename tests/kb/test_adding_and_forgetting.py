@@ -11,11 +11,11 @@ from capar.model.capture import Agent
 from capar.model.errors import UnknownNameError
 from capar.model.observation import Observation
 from capar.model.par import Nlt
-from capar.observe import observe
-from kb import names
+from capar.pipelines.observation import observe
 from kb.actionary import Actionary
-from kb.checking import check
 from kb.errors import ExistsError, ShapeError
+from kb.store import names
+from kb.validation.store_checks import check
 
 
 def statements(actionary: Actionary) -> set[str]:

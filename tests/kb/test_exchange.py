@@ -11,12 +11,12 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 from capar.model.errors import FileError, UnknownNameError
 from capar.model.observation import Border, Observation
 from capar.model.par import FeatureSet, Nlt, PathPoint
-from kb import literals, names
 from kb.actionary import Actionary
 from kb.encode.segments import BORDER_KINDS
 from kb.errors import ShapeError
-from kb.exchange import FORMATS, bring_in, export, format_of, misplaced, read
-from kb.literals import LiteralError
+from kb.store import literals, names
+from kb.store.exchange import FORMATS, bring_in, export, format_of, misplaced, read
+from kb.store.literals import LiteralError
 
 PREPOSITIONS = (("away from", "mug", "table"), ("on", "mug", "table"), ("up", "mug", "mug"))
 

@@ -15,9 +15,9 @@ from observations import with_unknown
 from capar.cli.observe import _keep
 from capar.model.observation import Observation
 from kb.actionary import Actionary
-from kb.checking import check
-from kb.exchange import bring_in, export, misplaced, read
-from kb.questions import questions
+from kb.queries.questions import questions
+from kb.store.exchange import bring_in, export, misplaced, read
+from kb.validation.store_checks import check
 
 PERFORMERS = sorted(each.name for each in motions.PERFORMERS)
 FIRST = next(iter(motions.PERFORMERS)).name
@@ -109,7 +109,7 @@ def test_nothing_is_stored_twice_or_wrong(folder: Path) -> None:
     with Actionary.open(folder) as again:
         (part,) = [e for e in again.observations() if e.name == f"touch_cycle_{FIRST}"]
         trial = ACTIONS["TouchCycle"](next(iter(motions.PERFORMERS)))
-        from capar.observe import observe
+        from capar.pipelines.observation import observe
 
         added = again.add(observe(trial.capture, name=part.action))
         assert added.replaced

@@ -11,7 +11,7 @@ from observations import with_unknown
 from capar.model.errors import UnknownNameError
 from capar.model.observation import Observation
 from kb.actionary import Actionary
-from kb.questions import QuestionError, question, questions
+from kb.queries.questions import QuestionError, question, questions
 
 PERFORMERS = sorted(each.name for each in motions.PERFORMERS)
 ASKED_HERE = {

@@ -11,7 +11,7 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 from capar.model.errors import ParError, UnknownNameError
 from capar.model.observation import Observation
 from capar.model.par import FeatureSet, Ipar, Nlt, Upar
-from capar.observe import observe
+from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.errors import StoreError
 from kb.lookup.pars import effective

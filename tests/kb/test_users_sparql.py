@@ -11,10 +11,11 @@ from observations import drink_from_mug
 from pyoxigraph import NamedNode
 from pyoxigraph import Store as Oxigraph
 
-from kb import asker, sparql
 from kb.actionary import Actionary
-from kb.answers import Answer
 from kb.errors import QueryError, StoreError, TimeLimitError
+from kb.store import query_worker as asker
+from kb.store import sparql
+from kb.store.answers import Answer
 
 ENDLESS = "SELECT (COUNT(*) AS ?n) WHERE { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l }"
 

@@ -7,10 +7,10 @@ from typing import TypeVar
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from capar.explanation import Explained
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject
 from capar.model.facts import Fact, LookingAt, Moving, Resting, Touching, ZeroCrossing
 from capar.model.observation import Segment
+from capar.pipelines.explanation import Explained
 
 TIME = r"(\d+\.\d\d) s"
 NAME = r"([\w ]+?)"

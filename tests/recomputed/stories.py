@@ -13,13 +13,13 @@ from motions.paths import Still, pose
 from motions.trials import Body, Trial
 from scipy.spatial.transform import Rotation
 
-from capar.explanation import Explained, distances
 from capar.model.capture import Capture, Role, Sensor, TagType
 from capar.model.facts import Fact, Link, Moving, Resting, Touching
-from capar.observe import observe_measured
-from capar_rules.explaining import Explainer, Explanation
-from capar_rules.profiles import profile
-from extractors.facts import extract
+from capar.pipelines.explanation import Explained, distances
+from capar.pipelines.observation import observe_measured
+from capar_rules.engine.profiles import profile
+from capar_rules.explain.explanation import Explainer, Explanation
+from extractors.measure import extract
 from recomputed.known import Known
 
 Change = Callable[[tuple[Fact, ...], float], tuple[Fact, ...]]

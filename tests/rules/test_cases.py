@@ -11,16 +11,17 @@ from pathlib import Path
 import pytest
 
 from capar.model.facts import read_fact
-from capar_rules.engine import rule_file, solve, text_of
-from capar_rules.profiles import profile
-from capar_rules.ranking import rank
-from capar_rules.steadying import steady
+from capar_rules.borders.deflicker import steady
+from capar_rules.borders.ranking import rank
+from capar_rules.engine.profiles import profile
+from capar_rules.engine.solver import rule_file, solve, text_of
 
 HERE = Path(__file__).parent
 CASES = sorted(HERE.glob("*/*.lp"))
 CONCEPTS = sorted(
     path.stem
-    for path in rule_file(".").glob("*.lp")
+    for room in ("segmentation", "naming", "composition", "explain")
+    for path in rule_file(room).glob("*.lp")
     if path.stem
     not in {
         "inputs",

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from capar_rules.engine import rule_file, solve
-from capar_rules.profiles import profile
+from capar_rules.engine.profiles import profile
+from capar_rules.engine.solver import rule_file, solve
 
 HERE = Path(__file__).parent
 LEAST = 3

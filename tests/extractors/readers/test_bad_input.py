@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from capar.model.errors import CaparError, CaptureError, FileError
-from extractors.readers.mesh import MESH_LIMIT, read_mesh
-from extractors.readers.opening import EXPANDED_LIMIT
+from extractors.readers.bundle.mesh import MESH_LIMIT, read_mesh
+from extractors.readers.files import EXPANDED_LIMIT
 from extractors.readers.registry import read_recording
 
 

@@ -9,7 +9,7 @@ import pytest
 from capar.model import geometry
 from capar.model.capture import Capture, Role, ShapeSource
 from capar.model.errors import CaparError, CaptureError, FileError, UnknownNameError
-from extractors.readers.bundle import frame_times, read_capture, takes
+from extractors.readers.bundle.capture_toml import frame_times, read_capture, takes
 
 BASE = """name = "trial"
 unit = "m"

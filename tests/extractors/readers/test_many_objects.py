@@ -7,7 +7,7 @@ import pytest
 
 from capar.model.capture import PivotContact, ShapeSource
 from capar.model.errors import FileError, UnknownNameError
-from extractors.readers.bundle import read_capture
+from extractors.readers.bundle.capture_toml import read_capture
 
 HEIGHTS = {"can_7": 0.75, "can_9": 0.77, "bowl_3": 0.80, "spoon_1": 0.60}
 

@@ -6,8 +6,8 @@ import motion_files as samples
 import pytest
 
 from capar.model.errors import CaparError, CaptureError, FileError
-from extractors.readers.bundle import read_capture
-from extractors.readers.place import find_place
+from extractors.readers.bundle.capture_toml import read_capture
+from extractors.readers.bundle.place import find_place
 
 TRIAL = """name = "trial"
 unit = "m"

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from capar.model.errors import CaparError
-from extractors.readers.mesh import read_mesh
+from extractors.readers.bundle.mesh import read_mesh
 from extractors.readers.registry import read_recording
 
 EDITS = st.lists(

@@ -7,7 +7,7 @@ import pytest
 from motion_files import recordings_folder
 
 from capar.model.capture import Capture, ShapeSource
-from extractors.readers.bundle import frame_times, read_capture, takes
+from extractors.readers.bundle.capture_toml import frame_times, read_capture, takes
 from extractors.readers.registry import read_recording
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"

@@ -29,7 +29,7 @@ from observations import pick_up_with_both_hands as observed_picking_up
 
 from capar.model.facts import Moving, Touching
 from capar.model.par import FeatureSet
-from capar.observe import observe
+from capar.pipelines.observation import observe
 from kb.language.describe import describe
 from kb.language.english import past
 from kb.lexicon.links import PrimitiveWords

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from capar.observe import observe
-from capar.report import primitive_files, primitive_words
+from capar.pipelines.linguistic_report import primitive_files, primitive_words
+from capar.pipelines.observation import observe
 from kb.language.describe import describe
 
 DATA = Path(os.environ.get("CAPAR_DATA", Path(__file__).parents[4] / "shared/data"))

@@ -7,8 +7,8 @@ from motions import TALL_MAN, drink_from_mug
 
 from capar.model.capture import NAME
 from capar.model.par import Call
-from capar.observe import observe
-from capar.report import primitive_files, primitive_words
+from capar.pipelines.linguistic_report import primitive_files, primitive_words
+from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.language import Instruction, Question, parse, sentence
 from kb.language.english import noun

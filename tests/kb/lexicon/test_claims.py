@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from capar.report import linguistics, primitive_files, primitive_words
+from capar.pipelines.linguistic_report import linguistics, primitive_files, primitive_words
 from kb.lexicon.claims import doubts, doubts_of
 from kb.lexicon.links import sense_links
 from kb.reports.writing import FORMATS, write

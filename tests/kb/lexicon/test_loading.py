@@ -5,7 +5,7 @@ from pyoxigraph import Literal
 from kb.lexicon import terms
 from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.loading import has_source, load_words
-from kb.store import Store, open_store
+from kb.store.stores import Store, open_store
 from ontology import CAPAR, PREFIXES
 
 WORDS = (PrimitiveWords("Hit", ("hit",)), PrimitiveWords("Own", ("nudge",), levin=("20",)))

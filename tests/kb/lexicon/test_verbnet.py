@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from capar.model.errors import FileError
-from capar.report import answer_verb, primitive_files, primitive_words
+from capar.pipelines.linguistic_report import answer_verb, primitive_files, primitive_words
 from kb.lexicon.loading import (
     every_verbnet_member,
     has_source,
@@ -19,7 +19,7 @@ from kb.lexicon.loading import (
 from kb.lexicon.verbnet import Frame, Member, Phrase, Predicate, Role, VerbClass
 from kb.lexicon.verbnet_files import key_rate, read_class, read_verbnet
 from kb.lexicon.wordnet import wordnet
-from kb.store import Store, open_store
+from kb.store.stores import Store, open_store
 
 EXAMPLE = Path(__file__).parent / "example-18.1.xml"
 SHARED = Path(os.environ.get("CAPAR_LINGUISTICS", Path(__file__).parents[4] / "shared/linguistics"))

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import pytest
 
 from capar.model.errors import UnknownNameError
-from capar.report import linguistics
+from capar.pipelines.linguistic_report import linguistics
 from kb.reports.linguistics import LinguisticReport
 from kb.reports.writing import FORMATS, write
 

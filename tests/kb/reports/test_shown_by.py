@@ -6,7 +6,7 @@ from observations import MUG, Piece, observation
 from capar.model.facts import Fact, Intended
 from capar.model.observation import Observation
 from capar.model.par import FeatureSet
-from capar.report import linguistics, primitive_files
+from capar.pipelines.linguistic_report import linguistics, primitive_files
 from kb.actionary import Actionary
 from kb.lexicon.evidence import Case
 from kb.reports.linguistics import ClassReport, How, LinguisticReport

@@ -6,8 +6,14 @@ import pytest
 from motions import TALL_MAN, drink_from_mug, slide_object
 
 from capar.model.errors import RuleError
-from capar.observe import observe
-from capar.report import cases_of, linguistics, primitive_files, primitive_words, standing
+from capar.pipelines.linguistic_report import (
+    cases_of,
+    linguistics,
+    primitive_files,
+    primitive_words,
+    standing,
+)
+from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.lexicon.evidence import Case
 from kb.lexicon.loading import load_verbnet

@@ -1,0 +1,1 @@
+"""From captures to observations, explanations and reports: one short function a stage."""

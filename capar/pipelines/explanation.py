@@ -1,0 +1,79 @@
+"""The pipeline from a capture to reasons: observe it, then say why, and why not."""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from capar.model.capture import Capture
+from capar.model.errors import UnknownNameError
+from capar.model.observation import Observation, Segment
+from capar.pipelines.observation import observe_measured
+from capar_rules.engine.profiles import Profile
+from capar_rules.explain.explanation import Explainer
+from extractors.measure import Measurements, extract
+
+_SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
+
+
+@dataclass(frozen=True, eq=False)
+class Explained:
+    """A capture that was observed, and what explains its segments."""
+
+    observation: Observation
+    explainer: Explainer
+
+
+def explained(capture: Capture, *, rules: Profile) -> Explained:
+    """Observe a capture and make ready to explain it.
+
+    Raises:
+        CaparError: The capture or the rules have a fault.
+    """
+    measurements = extract(capture)
+    observation = observe_measured(capture, measurements, rules=rules)
+    explainer = Explainer(
+        observation.facts, profile=rules, distance_m=distances(capture, measurements)
+    )
+    return Explained(observation, explainer)
+
+
+def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
+    """The segments that an atom speaks of, as a user names them: ``right_hand/3``.
+
+    Rules name a segment by the tick where it begins, which is no index.
+    """
+    known = {(each.ee, each.first): f"{each.ee}/{each.index}" for each in seen.observation.segments}
+    found = []
+    for ee, tick in _SEGMENT.findall(atom):
+        frames = seen.explainer.windows.frames.get(ee, [])
+        name = known.get((ee, frames[int(tick)])) if int(tick) < len(frames) else None
+        found += [name] if name else []
+    return tuple(dict.fromkeys(found))
+
+
+def distances(capture: Capture, measurements: Measurements) -> Callable[[str, int, int], float]:
+    """How far an object's origin is from where it was, between two frames [m]."""
+    names = {each.name for each in capture.objects}
+
+    def distance(name: str, first: int, last: int) -> float:
+        kind = "object" if name in names else "sensor"
+        track = measurements.poses[kind, name].smooth.positions
+        return float(np.linalg.norm(track[last] - track[first]))
+
+    return distance
+
+
+def segment_named(observation: Observation, text: str) -> Segment:
+    """The segment that a user names: ``right_hand/3``, or ``3`` where one end-effector acts.
+
+    Raises:
+        UnknownNameError: There is none.
+    """
+    known = {f"{each.ee}/{each.index}": each for each in observation.segments}
+    if len(observation.links) == 1:
+        known |= {str(each.index): each for each in observation.segments}
+    if text not in known:
+        raise UnknownNameError("segment", text, known, where=observation.capture)
+    return known[text]

@@ -1,0 +1,105 @@
+"""The pipelines from captures to language: tellings, fitting verbs, and what can be said."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from capar.model.errors import CaparError, UnknownNameError
+from capar.model.observation import Observation, Segment
+from kb.language.vocabulary import EFFECTORS, Vocabulary
+from kb.lexicon.fitting import Fit, fitting
+from kb.lexicon.fitting import Seen as SegmentSeen
+from kb.lexicon.levin import levin_classes
+from kb.lexicon.links import PrimitiveWords
+from kb.lexicon.loading import has_source, verbnet_class_of
+from kb.lexicon.verbnet import VerbClass
+from ontology import CAPAR
+
+if TYPE_CHECKING:
+    from capar_rules.engine.profiles import Profile
+    from kb.store.stores import Store
+
+CONTACT_CLASSES = (
+    "9",
+    "10",
+    "11",
+    "12",
+    "13",
+    "15",
+    "16",
+    "17",
+    "18",
+    "19",
+    "20",
+    "22",
+    "39",
+    "40",
+)
+"""Levin's chapters whose verbs say what a body does to things and to itself."""
+
+
+def verbs_for(
+    segment: str,
+    words: Sequence[PrimitiveWords],
+    *,
+    store: "Store | None" = None,
+    rules: "Profile | str" = "extended",
+) -> tuple[Fit, ...]:
+    """The verbs that fit a segment, best first.
+
+    Args:
+        segment: ``CAPTURE:END_EFFECTOR:INDEX``.
+        words: The primitives' words.
+        store: Where VerbNet is, if it was imported.
+        rules: The rule profile to observe with, or its name.
+
+    Raises:
+        CaparError: There is no such segment.
+    """
+    capture, _, index = segment.rpartition(":")
+    capture, _, ee = capture.rpartition(":")
+    if not capture or not index.isdigit():
+        raise CaparError(f"{segment!r} names no segment; write CAPTURE:END_EFFECTOR:INDEX")
+    from capar.pipelines.observation import observe
+
+    found = _segment(observe(capture, rules=rules), ee, int(index))
+    seen = SegmentSeen(found.name, found.general, found.features)
+    return fitting(seen, words, _classes(store) if store else ())
+
+
+def _segment(observation: Observation, ee: str, index: int) -> Segment:
+    links = {link.ee: link.segments for link in observation.links}
+    if ee not in links:
+        raise UnknownNameError("end-effector", ee, links, where=observation.capture)
+    numbers = [str(each.index) for each in links[ee]]
+    if index >= len(links[ee]):
+        raise UnknownNameError(f"segment of {ee}", str(index), numbers, where=observation.capture)
+    return links[ee][index]
+
+
+def _classes(store: "Store") -> tuple[VerbClass, ...]:
+    """VerbNet's classes of the chapters about bodies and things."""
+    if not has_source(store, "verbnet"):
+        return ()
+    numbers = [each for each in levin_classes() if each.partition(".")[0] in CONTACT_CLASSES]
+    return tuple(each for number in numbers for each in verbnet_class_of(store, number))
+
+
+def vocabulary(words: Sequence[PrimitiveWords], store: "Store | None" = None) -> Vocabulary:
+    """What sentences can speak of: with a store, only the objects and agents that it knows."""
+    if store is None:
+        return Vocabulary(tuple(words))
+    objects = _names(store, f"?thing {CAPAR.tag} ?tag ; {CAPAR.name} ?name")
+    kinds = _names(store, f"?thing {CAPAR.kind}/{CAPAR.name} ?name")
+    effectors = _names(store, f"?link {CAPAR.ee} ?name")
+    agents = _names(store, f"?seen {CAPAR.agent}/{CAPAR.name} ?name")
+    return Vocabulary(
+        tuple(words),
+        frozenset(objects | kinds) if objects else None,
+        frozenset({*EFFECTORS, *effectors}),
+        frozenset(agents),
+    )
+
+
+def _names(store: "Store", where: str) -> set[str]:
+    rows = store.ask(f"SELECT DISTINCT ?name WHERE {{ {where} }}").plain()
+    return {str(row["name"]) for row in rows if row["name"]}

@@ -1,0 +1,178 @@
+"""The pipeline of the linguistic report: the rule base's words, the lexical rules, the report."""
+
+import json
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from capar.model.errors import FileError, RuleError
+from capar_rules.authoring.examples import read_examples
+from capar_rules.engine.solver import rule_file, solve
+from kb.lexicon.evidence import Case, Seen, seen_in
+from kb.lexicon.facts import lexical_facts, verbnet_members
+from kb.lexicon.links import PrimitiveWords
+from kb.lexicon.loading import every_verbnet_member, verbnet_of
+from kb.lexicon.verbs import Standing, VerbAnswer, about, keys_of_primitives
+from kb.reports.assembling import Derived, assemble
+from kb.reports.linguistics import LinguisticReport
+
+if TYPE_CHECKING:
+    from kb.store.stores import Store
+
+MAIN = "lexical/main.lp"
+
+_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_TEXT_OR_COMMENT = re.compile(rf"({_TEXT.pattern})|%\*.*?\*%|%[^\n]*", re.DOTALL)
+_NAMED = re.compile(r'^named\(.*,\s*"([^"]+)"\)', re.MULTILINE)
+_SAID = re.compile(rf"{_TEXT.pattern}|0|[1-9]\d*")
+_FACT = re.compile(
+    rf"(?:^|\.)\s*(?P<predicate>[a-z]\w*)\((?P<arguments>\s*{_TEXT.pattern}"
+    rf"(?:\s*,\s*(?:{_SAID.pattern}))*\s*)\)\s*(?=\.)",
+    re.MULTILINE,
+)
+
+
+def primitive_files(added: Iterable[Path] = ()) -> tuple[Path, ...]:
+    """The rule files of primitives that ship, by name, and the user's."""
+    return (*sorted(rule_file("primitives").glob("*.lp")), *sorted(added))
+
+
+def primitive_words(files: Sequence[Path]) -> tuple[PrimitiveWords, ...]:
+    """What the rule files call their primitives: the facts that each states, as they stand.
+
+    Raises:
+        FileError: A rule file that cannot be read.
+        RuleError: Two files state one primitive.
+    """
+    found: dict[str, PrimitiveWords] = {}
+    for path in files:
+        stated = _stated(path)
+        for (name,) in (each for each in stated.get("primitive", ()) if len(each) == 1):
+            if name in found:
+                raise RuleError(
+                    f"{path}: primitive {name!r} is also stated by {found[name].file}; "
+                    "one file states a primitive"
+                )
+            found[name] = _words(stated, name, f"{path.parent.name}/{path.name}")
+    return tuple(sorted(found.values()))
+
+
+def _stated(path: Path) -> dict[str, list[tuple[str, ...]]]:
+    """Facts over texts and numbers that stand in a rule file, by predicate, in their order."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(path, f"cannot be read ({error});", "name a rule file.") from None
+    facts: dict[str, list[tuple[str, ...]]] = {}
+    for match in _FACT.finditer(_TEXT_OR_COMMENT.sub(r"\1", text)):
+        arguments = tuple(str(json.loads(each)) for each in _SAID.findall(match["arguments"]))
+        facts.setdefault(match["predicate"], []).append(arguments)
+    return facts
+
+
+def _words(stated: dict[str, list[tuple[str, ...]]], name: str, file: str) -> PrimitiveWords:
+    def second(predicate: str) -> tuple[str, ...]:
+        rows = stated.get(predicate, [])
+        return tuple(row[1] for row in rows if len(row) == 2 and row[0] == name)
+
+    return PrimitiveWords(
+        name,
+        second("verb"),
+        second("specialises"),
+        second("sense"),
+        second("levin"),
+        second("preposition"),
+        file,
+    )
+
+
+def cases_of(files: Sequence[Path], folder: Path | None = None) -> tuple[Case, ...]:
+    """Cases that show primitives: examples in the rule files, and expectations in a folder.
+
+    Args:
+        files: Rule files of primitives, which may carry examples of their own.
+        folder: A folder of rule cases, whose ``.expected`` files name segments.
+
+    Raises:
+        FileError: The folder is none.
+        RuleError: An example has a fault.
+    """
+    found = set[Case]()
+    for path in files:
+        stories = [
+            each.story
+            for each in read_examples(path.read_text(encoding="utf-8"), file=path)
+            if each.positive
+        ]
+        for words in primitive_words([path]):
+            found |= {Case(words.name, f"{words.file}: {story}") for story in stories}
+    if folder is not None:
+        if not folder.is_dir():
+            raise FileError(folder, "is no folder;", "name one that holds rule cases.")
+        for path in sorted(folder.rglob("*.expected")):
+            place = str(path.relative_to(folder).with_suffix(""))
+            names = _NAMED.findall(path.read_text(encoding="utf-8"))
+            found |= {Case(name, place) for name in names}
+    return tuple(sorted(found))
+
+
+def linguistics(
+    files: Sequence[Path] = (),
+    *,
+    store: "Store | None" = None,
+    cases: Sequence[Case] = (),
+) -> LinguisticReport:
+    """The linguistic report over rule files of primitives and a store's observations.
+
+    Args:
+        files: The rule files of primitives; by default those that ship.
+        store: Where observations are, and VerbNet if it was imported.
+        cases: Shipped cases that show primitives.
+    """
+    chosen = tuple(files) or primitive_files()
+    words = primitive_words(chosen)
+    seen: tuple[Seen, ...] = seen_in(store) if store else ()
+    members = verbnet_members(every_verbnet_member(store)) if store else {}
+    facts = lexical_facts(words, members=members, rules=_stems(chosen), seen=seen, cases=cases)
+    answer = solve([rule_file(MAIN)], facts)
+    rows: dict[str, list[tuple[str, ...]]] = {}
+    for predicate, arguments in answer.atoms:
+        rows.setdefault(predicate, []).append(tuple(map(str, arguments)))
+    return assemble(Derived(rows), words, seen, members)
+
+
+def _stems(files: Sequence[Path]) -> list[str]:
+    """Names of every rule file that counts: what ships beside the primitives, and these."""
+    shipped = {each.stem for each in rule_file("").rglob("*.lp")}
+    return sorted(shipped | {each.stem for each in files})
+
+
+def standing(verb: str, words: Sequence[PrimitiveWords]) -> Standing:
+    """How the rule base stands to a verb, by the lexical rules."""
+    facts = lexical_facts(words, members={}, verbs=(verb,), classes=False)
+    answer = solve([rule_file(MAIN)], facts)
+
+    def primitives(predicate: str) -> tuple[str, ...]:
+        return tuple(str(row[0]) for row in answer.of(predicate) if row[1] == verb)
+
+    represented = primitives("represents")
+    return Standing(represented, () if represented else primitives("generalises"))
+
+
+def answer_verb(
+    verb: str, words: Sequence[PrimitiveWords], *, store: "Store | None" = None
+) -> VerbAnswer:
+    """Everything that is known of a verb.
+
+    Raises:
+        UnknownNameError: Neither WordNet nor the rule base has it.
+    """
+    plain = " ".join(verb.lower().replace("_", " ").split())
+    return about(
+        plain,
+        standing=standing(plain, words),
+        keys_of=keys_of_primitives(words),
+        verbnet=verbnet_of(store, plain.replace(" ", "_")) if store else (),
+        seen=seen_in(store) if store else (),
+    )

@@ -1,0 +1,1 @@
+"""Rules of users and what was observed with them: drafts, and what a change of rules does."""

@@ -1,0 +1,258 @@
+"""What a change of rules does to what was observed: names compared, and segments renamed."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from capar.model.facts import Fact
+from capar.model.observation import Observation
+from capar.pipelines.observation import facts_program
+from capar.pipelines.reobservation import observe_again
+from capar_rules.authoring.transaction import put_back, take_away, unbroken
+from capar_rules.authoring.user_primitives import proven
+from capar_rules.engine.profiles import Profile, profile
+from capar_rules.pars.inference import infer
+from extractors.readers.bundle.capture_toml import read_capture
+from kb.actionary import Actionary
+from kb.lookup.changes import NamedSegment, facts, named_segments, replace_all, source_files
+
+NOTHING = "none"
+"""Stands for the name of a segment that is not there before, or not after."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What a capture's segments are named by."""
+
+    facts: tuple[Fact, ...]
+    names: tuple[NamedSegment, ...] | None = None
+    """The segments as they are stored; None where the rules before are to name them."""
+
+
+Seen = Mapping[str, Trial]
+"""Trials by the capture's name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """The observations of an Actionary that a change of rules concerns, and the others."""
+
+    seen: Seen
+    others: tuple[str, ...]
+    """Those that were made with another profile, which are left alone; sorted."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Renamed:
+    """A segment that two rule bases name differently; ``none`` where one of them has none."""
+
+    capture: str
+    ee: str
+    index: int
+    start_s: float
+    end_s: float
+    before: str
+    after: str
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """What was renamed in an Actionary, and the observations that were left alone."""
+
+    changes: tuple[Renamed, ...]
+    others: tuple[str, ...]
+    """Those that were made with another profile; sorted."""
+
+
+def stored(actionary: str | None, *, profile: str) -> Kept:
+    """The observations in an Actionary that were made with a profile, as they are stored.
+
+    Raises:
+        StoreError: There is nothing to read.
+    """
+    with Actionary.open(actionary, read_only=True) as store:
+        return _kept(store, profile)
+
+
+def captured(captures: Iterable[str], *, rules: Profile) -> Seen:
+    """Captures that are read and measured now, flicker resolved as the rules have it.
+
+    Raises:
+        CaparError: A capture cannot be read.
+    """
+    trials = [read_capture(each) for each in captures]
+    return {each.name: Trial(facts_program(each, rules=rules)[0].facts) for each in trials}
+
+
+def renamed(seen: Seen, *, before: Profile, after: Profile) -> tuple[Renamed, ...]:
+    """The segments that have another name by another rule base, by capture and time.
+
+    Args:
+        seen: Trials; what is stored of one is what its segments are named before.
+        before: The rules that name the segments of the other trials.
+        after: Those that are to name them.
+
+    Raises:
+        RuleError: A rule base has a fault.
+    """
+    changes = []
+    for capture, trial in sorted(seen.items()):
+        names = _names(trial.facts, before) if trial.names is None else trial.names
+        old, new = (
+            {(each.ee, each.first, each.last): each for each in rows}
+            for rows in (names, _names(trial.facts, after))
+        )
+        for key in sorted(old.keys() | new.keys()):
+            was, now = old.get(key), new.get(key)
+            segment = now or old[key]
+            words = [each.name if each else NOTHING for each in (was, now)]
+            if words[0] != words[1]:
+                place = segment.ee, segment.index, segment.start_s, segment.end_s
+                changes.append(Renamed(capture, *place, *words))
+    return tuple(changes)
+
+
+def reclassified(actionary: str | None, *, after: Profile, captures: Sequence[Path]) -> Effect:
+    """Rename what rules change in an Actionary, all of it in one transaction.
+
+    Args:
+        actionary: Its place; None for the usual one.
+        after: The rules that are to name the segments observed with their profile.
+        captures: Folders below which the captures are, as they were when they were observed.
+
+    Each observation that changes is made anew from its capture's files, which must be those that
+    it was made from, and with flicker resolved only if it was; it then says which rules it rests
+    on.
+
+    Raises:
+        FileError: The files of a capture are gone or have changed; nothing is renamed then.
+        StoreError: The Actionary cannot be used.
+    """
+    with Actionary.open(actionary) as store:
+        effect, anew = _planned(store, after, captures)
+        replace_all(store.store, anew)
+    return effect
+
+
+def add_reclassifying(
+    path: Path,
+    *,
+    folder: Path,
+    actionary: str | None,
+    base: str,
+    over: Sequence[str] = (),
+    beside: Sequence[Path],
+    captures: Sequence[Path],
+) -> tuple[Path, Effect]:
+    """Take a rule file among the user's rules and rename what it changes: both, or neither.
+
+    Args:
+        path: The file.
+        folder: The folder of rules that it goes to.
+        actionary: The Actionary's place; None for the usual one.
+        base: The profile that it joins.
+        over: Primitives that it is to be more specific than.
+        beside: Every rule file that counts already.
+        captures: Folders below which the captures are.
+
+    Returns:
+        Where the file now is, and the segments that have another name.
+
+    Raises:
+        CaparError: The rule does not count, or the observations cannot be made anew.
+    """
+    with proven(path, folder=folder, base=base, over=over, beside=beside) as draft:
+        after = profile(base, added=(*beside, draft))
+        with Actionary.open(actionary) as store:
+            effect, anew = _planned(store, after, captures)
+            target = folder / path.name
+            with unbroken():
+                draft.replace(target)
+                try:
+                    replace_all(store.store, anew)
+                except BaseException:
+                    target.unlink()
+                    raise
+    return target, effect
+
+
+def remove_reclassifying(
+    path: Path, *, actionary: str | None, after: Profile, captures: Sequence[Path]
+) -> Effect:
+    """Take a rule file away and rename what it named: both, or neither.
+
+    Args:
+        path: The file.
+        actionary: The Actionary's place; None for the usual one.
+        after: The rules without it.
+        captures: Folders below which the captures are.
+
+    Raises:
+        CaparError: The observations cannot be made anew.
+    """
+    with Actionary.open(actionary) as store:
+        effect, anew = _planned(store, after, captures)
+        with unbroken():
+            aside = take_away(path)
+            try:
+                replace_all(store.store, anew)
+            except BaseException:
+                put_back(aside, path)
+                raise
+            aside.unlink()
+    return effect
+
+
+def bearing(actionary: str | None, names: Iterable[str]) -> int:
+    """How many stored segments, of whatever profile, bear one of some names.
+
+    Raises:
+        StoreError: There is nothing to read.
+    """
+    wanted = set(names)
+    with Actionary.open(actionary, read_only=True) as store:
+        return sum(
+            segment.name in wanted
+            for each in store.observations()
+            for segment in named_segments(store.store, each.name)
+        )
+
+
+def _planned(
+    store: Actionary, after: Profile, captures: Sequence[Path]
+) -> tuple[Effect, list[tuple[Observation, str]]]:
+    """What would be renamed, and the observations that would take the places of others."""
+    kept = _kept(store, after.name)
+    seen = kept.seen
+    changes = renamed(seen, before=after, after=after)
+    there = {each.name: each for each in store.observations()}
+    changed = sorted({each.capture for each in changes})
+    return Effect(changes, kept.others), [
+        (
+            observe_again(
+                source_files(store.store, each), there[each], seen[each].facts, after, captures
+            ),
+            there[each].action,
+        )
+        for each in changed
+    ]  # fmt: skip
+
+
+def _kept(store: Actionary, profile: str) -> Kept:
+    every = store.observations()
+    seen = {
+        each.name: Trial(facts(store.store, each.name), named_segments(store.store, each.name))
+        for each in every
+        if each.profile == profile
+    }
+    return Kept(seen, tuple(sorted(each.name for each in every if each.profile != profile)))
+
+
+def _names(measured: tuple[Fact, ...], rules: Profile) -> tuple[NamedSegment, ...]:
+    return tuple(
+        NamedSegment(
+            each.ee, each.index, each.first, each.last, each.start_s, each.end_s, each.name
+        )
+        for link in infer(measured, profile=rules).links
+        for each in link.segments
+    )

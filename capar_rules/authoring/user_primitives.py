@@ -1,0 +1,236 @@
+"""Rules that people write: new ones from what was seen, trying, adding and removing them."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from capar.model.errors import FileError, RuleError, UnknownNameError
+from capar.model.facts import (
+    Fact,
+    ForceTransfer,
+    Frames,
+    Gap,
+    Link,
+    Moving,
+    RateMhz,
+    Tag,
+    Touching,
+    ZeroCrossing,
+)
+from capar.model.par import FeatureSet
+from capar_rules.authoring.catalogue import RuleInfo as RuleInfo
+from capar_rules.authoring.catalogue import rule_of as rule_of
+from capar_rules.authoring.catalogue import rules_of as rules_of
+from capar_rules.authoring.dependencies import dependants
+from capar_rules.authoring.dependencies import introduced as introduced
+from capar_rules.authoring.examples import Example, lacking, read_examples, try_examples, written
+from capar_rules.authoring.user_rules import make_folder, taught
+from capar_rules.authoring.user_rules import user_rules as user_rules
+from capar_rules.engine.profiles import DEFAULT, profile
+from capar_rules.lint.checking import check, require
+
+TELLING = (Frames, RateMhz, Link, Tag, ZeroCrossing, Touching, Gap, Moving, ForceTransfer)
+"""The facts that an example tells: contacts and motions, without places and courses."""
+
+
+def new_rule(
+    name: str,
+    features: FeatureSet,
+    *,
+    definition: str = "",
+    general: str | Sequence[str] = (),
+    besides: Sequence[str] = (),
+    verb: str = "",
+    examples: Sequence[Example] = (),
+) -> str:
+    """The rule file of a primitive that has these features.
+
+    Args:
+        name: What it is called.
+        features: The feature set that a segment has.
+        definition: What it is, in words.
+        general: The primitives that it specialises, if any.
+        besides: Others that name some of the same segments, and that it is ordered before.
+        verb: The verb for it; its name in small letters if empty.
+        examples: Stories that it must, or must not, match.
+
+    Raises:
+        RuleError: The name is no name of a primitive, or a text would not stay a text.
+    """
+    said = " ".join((definition or "named by a user for this feature set").split())
+    if "%*" in said or "*%" in said or set(verb) & set('"\\\n'):
+        raise RuleError("a definition holds no *% and a verb no quotes; write plain words")
+    _, *lines = taught(name, features, verb=verb).splitlines(keepends=True)
+    over = [general] if isinstance(general, str) else general
+    text = f"%* {name}: {said.rstrip('.')}. *%\n{''.join(lines)}"
+    text += "".join(f'specialises("{name}", "{each}").\n' for each in over if each)
+    if besides:
+        text += "% These name segments with the same features. Keep those that it is a kind of.\n"
+        text += "".join(f'specialises("{name}", "{each}").\n' for each in besides)
+    text += (
+        "% The row fits every segment with these features. To fit fewer, put a rule in its place:\n"
+        f'%   fits(Segment, "{name}") :- fits(Segment, "{next(iter(over), "") or "General"}"), '
+        "further conditions.\n"
+        "% Before it can be added it needs an Example and a Counter-example.\n"
+    )
+    return "\n".join([text, *map(written, examples)])
+
+
+def telling(facts: Sequence[Fact]) -> tuple[Fact, ...]:
+    """Of a capture's facts those that an example tells."""
+    return tuple(each for each in facts if isinstance(each, TELLING))
+
+
+def try_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) -> tuple[str, ...]:
+    """What the examples of a rule file do not show as they say; empty if all is well.
+
+    Raises:
+        RuleError: An example cannot be read, or the rules have a fault.
+    """
+    examples = read_examples(_text(path), file=path)
+    names = introduced(path)
+    failures = []
+    rules = profile(base, added=(*(each for each in beside if each != path), path))
+    for outcome in try_examples(examples, profile=rules):
+        if not outcome.met:
+            found = dict(outcome.found)
+            for ee, expected in outcome.example.names:
+                if found.get(ee) != expected:
+                    failures.append(
+                        f"{path}:{outcome.example.line}: {outcome.example.story!r} expects "
+                        f"{ee}: {', '.join(expected)}; found {', '.join(found.get(ee, ()))}"
+                    )
+    return (
+        *failures,
+        *(f"{path}: it lacks {each}" for name in names for each in lacking(examples, name)),
+    )
+
+
+def add_rule(
+    path: Path,
+    *,
+    folder: Path,
+    base: str = DEFAULT,
+    over: Sequence[str] = (),
+    beside: Sequence[Path] | None = None,
+) -> Path:
+    """Take a rule file among the user's rules, once it is checked and its examples hold.
+
+    Args:
+        path: The file.
+        folder: The folder of rules that it goes to.
+        base: The profile that it joins.
+        over: Primitives that it is to be more specific than, which orders what is ambiguous.
+        beside: Every rule file that counts already; None for those of the folder.
+
+    Returns:
+        Where it now is.
+
+    Raises:
+        RuleError: The check finds errors, an ambiguity among them, or an example fails.
+        FileError: A file of that name is there already.
+    """
+    with proven(path, folder=folder, base=base, over=over, beside=beside) as draft:
+        return draft.replace(folder / path.name)
+
+
+@contextmanager
+def proven(
+    path: Path,
+    *,
+    folder: Path,
+    base: str = DEFAULT,
+    over: Sequence[str] = (),
+    beside: Sequence[Path] | None = None,
+) -> Iterator[Path]:
+    """The same up to the last step: a copy that need only be moved to the folder of rules.
+
+    Raises:
+        RuleError: The check finds errors, an ambiguity among them, or an example fails.
+        FileError: A file of that name is there already.
+    """
+    target = folder / path.name
+    if target.exists():
+        raise FileError(target, "exists already.", "Remove that rule first, or rename this file.")
+    make_folder(folder)
+    others = user_rules(folder) if beside is None else tuple(beside)
+    others = tuple(each for each in others if each.resolve() != path.resolve())
+    with TemporaryDirectory(dir=folder, prefix=".draft") as place:
+        draft = Path(place) / path.name
+        draft.write_text(_text(path) + _ordering(path, over), encoding="utf-8")
+        findings = check(draft, profile=base, beside=others)
+        require(
+            path,
+            [
+                replace(each, place=replace(each.place, file=str(path)))
+                if each.place.file == str(draft)
+                else each
+                for each in findings
+            ],
+        )
+        try:
+            failures = try_rule(draft, base=base, beside=others)
+        except RuleError as error:
+            raise RuleError(str(error).replace(str(draft), str(path))) from None
+        if failures:
+            told = "\n".join(failures).replace(str(draft), str(path))
+            raise RuleError(f"its examples do not hold:\n{told}")
+        yield draft
+
+
+def remove_rule(name: str, *, files: Sequence[Path], every: Sequence[Path] = ()) -> Path:
+    """Take a primitive out of rule files that people wrote.
+
+    Args:
+        name: The primitive.
+        files: The files to look through.
+        every: All rule files that count together, some of which may rest on it.
+
+    Returns:
+        The first file that introduces it, which is gone.
+
+    Raises:
+        UnknownNameError: None of them introduces it.
+        RuleError: Another rule rests on it.
+    """
+    path = removable(name, files=files, every=every)
+    path.unlink()
+    return path
+
+
+def removable(name: str, *, files: Sequence[Path], every: Sequence[Path] = ()) -> Path:
+    """The same, and nothing is removed yet.
+
+    Raises:
+        UnknownNameError: None of them introduces it.
+        RuleError: Another rule rests on it.
+    """
+    info = {each: path for path in reversed(files) for each in introduced(path)}
+    if name not in info:
+        folders = ", ".join(sorted({str(each.parent) for each in files}))
+        raise UnknownNameError("rule of the user's", name, info, where=folders)
+    path = info[name]
+    resting = dependants(path, files=every)
+    if resting:
+        told = ", ".join(f"{each} ({file})" for each, file in sorted(resting.items()))
+        raise RuleError(
+            f"{path} stays: {told} rests on {', '.join(introduced(path))}. Remove that first, or "
+            "have it specialise another primitive."
+        )
+    return path
+
+
+def _ordering(path: Path, over: Sequence[str]) -> str:
+    names = introduced(path) if over else []
+    return "".join(f'specialises("{name}", "{other}").\n' for name in names for other in over)
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise FileError(path, f"cannot be read: {error.strerror}.", "Name a rule file.") from None
+    except UnicodeDecodeError:
+        raise FileError(path, "is no UTF-8 text.", "Save it as UTF-8.") from None

@@ -1,0 +1,1 @@
+"""From frames to numbered borders, so that rules join neighbours."""

@@ -1,0 +1,162 @@
+"""Flicker: contact, motion and rest as the rules take them to have been, and what they doubted."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from capar.model.facts import Doubted, Fact, Frames, Link, Moving, RateMhz, Resting, Tag, Touching
+from capar_rules.engine.solver import best, rule_file
+
+Key = tuple[str, str, str]
+"""A relation: touching, moving or resting, the body, and the other body, or the same."""
+
+TAKEN = {
+    ("touching", 0): "touching",
+    ("touching", 1): "apart",
+    ("moving", 0): "moving",
+    ("moving", 1): "still",
+    ("resting", 0): "resting",
+    ("resting", 1): "going",
+}
+"""What a doubted stretch is taken for, by whether the relation was measured to hold."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Relation(Fact):
+    """A contact, a motion or a rest, by its number."""
+
+    predicate = "relation"
+    number: int
+    how: str
+    body: str
+    other: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Stretch(Fact):
+    """A time between two changes of a relation, throughout which it holds, 1, or does not, 0."""
+
+    predicate = "stretch"
+    number: int
+    place: int
+    holds: int
+    first: int
+    last: int
+
+
+def steady(facts: Sequence[Fact]) -> tuple[Fact, ...]:
+    """The facts, with contact, motion and rest that change as seldom as measurements allow.
+
+    What is doubted is stated beside them, so that the measurements can be told again.
+
+    Args:
+        facts: What the extractors measured.
+
+    Raises:
+        RuleError: The rules have a fault.
+    """
+    measured = _relations(facts)
+    ends = next((each for each in facts if isinstance(each, Frames)), Frames(0, 0))
+    stretches = {key: tuple(_stretches(spans, ends)) for key, spans in measured.items()}
+    keys = sorted(key for key, between in stretches.items() if len(between) > 2)
+    once = [(key, stretches[key]) for key in keys if _turned(key) not in keys or key[1] <= key[2]]
+    doubted = _doubted(facts, once)
+    if not doubted:
+        return tuple(facts)
+    doubted |= {_turned(key): places for key, places in doubted.items() if _turned(key) in keys}
+    mended = {key: _mended(stretches[key], places) for key, places in doubted.items()}
+    told = (
+        Doubted(*key[1:], stretch[1], stretch[2], TAKEN[key[0], stretch[0]])
+        for key, places in doubted.items()
+        for stretch in (stretches[key][place] for place in places)
+    )
+    return (*_restated(facts, mended), *sorted(told))
+
+
+Span = tuple[int, int, int]
+"""Whether the relation holds, first and last frame."""
+
+
+def _relations(facts: Iterable[Fact]) -> dict[Key, list[tuple[int, int]]]:
+    """The intervals of every relation, in order of time."""
+    found: dict[Key, list[tuple[int, int]]] = defaultdict(list)
+    for each in facts:
+        key = _key(each)
+        if key and isinstance(each, Touching | Moving | Resting):
+            found[key].append((each.first, each.last))
+    return {key: sorted(spans) for key, spans in found.items()}
+
+
+def _key(fact: Fact) -> Key | None:
+    if isinstance(fact, Touching):
+        return "touching", fact.body, fact.other
+    if isinstance(fact, Moving):
+        return "moving", fact.object, fact.object
+    if isinstance(fact, Resting):
+        return "resting", fact.ee, fact.ee
+    return None
+
+
+def _stated(key: Key, first: int, last: int) -> Fact:
+    how, body, other = key
+    if how == "touching":
+        return Touching(body, other, first, last)
+    return Moving(body, first, last) if how == "moving" else Resting(body, first, last)
+
+
+def _turned(key: Key) -> Key:
+    """The same relation told from the other body: contacts of two mobile objects are told twice."""
+    how, body, other = key
+    return how, other, body
+
+
+def _stretches(spans: Iterable[tuple[int, int]], ends: Frames) -> Iterator[Span]:
+    """The stretches in which a relation holds and does not, in turn, from the first frame on."""
+    free = ends.first
+    for first, last in spans:
+        if first > free:
+            yield 0, free, first - 1
+        yield 1, first, last
+        free = last + 1
+    if free <= ends.last:
+        yield 0, free, ends.last
+
+
+def _doubted(
+    facts: Iterable[Fact], relations: Sequence[tuple[Key, tuple[Span, ...]]]
+) -> dict[Key, tuple[int, ...]]:
+    """The places of doubted stretches by relation; where none is, no relation."""
+    asked: list[Fact] = [each for each in facts if isinstance(each, Link | RateMhz | Tag)]
+    for number, (key, stretches) in enumerate(relations):
+        asked.append(Relation(number, *key))
+        asked += (Stretch(number, place, *each) for place, each in enumerate(stretches))
+    found: dict[Key, list[int]] = defaultdict(list)
+    for index, place in best([rule_file("segmentation/flicker.lp")], asked).of("doubted"):
+        found[relations[int(str(index))][0]].append(int(str(place)))
+    return {key: tuple(sorted(places)) for key, places in sorted(found.items())}
+
+
+def _mended(stretches: Sequence[Span], doubted: Iterable[int]) -> list[tuple[int, int]]:
+    """The intervals in which a relation is taken to hold."""
+    flipped = set(doubted)
+    spans: list[tuple[int, int]] = []
+    for place, (holds, first, last) in enumerate(stretches):
+        if (holds == 1) == (place in flipped):
+            continue
+        if spans and spans[-1][1] == first - 1:
+            spans[-1] = spans[-1][0], last
+        else:
+            spans.append((first, last))
+    return spans
+
+
+def _restated(facts: Iterable[Fact], mended: dict[Key, list[tuple[int, int]]]) -> Iterator[Fact]:
+    """The facts in their order, those of mended relations in place of the measured ones."""
+    written = set()
+    for each in facts:
+        key = _key(each)
+        if key is None or key not in mended:
+            yield each
+        elif key not in written:
+            written.add(key)
+            yield from (_stated(key, *span) for span in mended[key])

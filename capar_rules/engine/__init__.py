@@ -1,0 +1,1 @@
+"""The solver and the rule files as values: facts in, atoms out."""

@@ -1,0 +1,62 @@
+"""The rule profiles: which main file asks, and at which frames a link has its ticks."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from capar.model.errors import UnknownNameError
+from capar_rules.engine.solver import fingerprint, rule_file
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A rule base to reason with."""
+
+    name: str
+    crossings_only: bool
+    """Whether events can stand at zero crossings alone (thesis 4.3.2)."""
+
+    added: tuple[Path, ...] = ()
+    """Rule files of the user's, beside those that ship."""
+
+    steady: bool = False
+    """Whether flicker is resolved before anything is derived, to the fewest changes."""
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """Every file to load: the main one includes the rest of what ships."""
+        return (rule_file(f"{self.name}.lp"), *self.added)
+
+    @property
+    def fingerprint(self) -> str:
+        """SHA-256 of the rule base."""
+        flicker = (rule_file("segmentation/flicker.lp"),) if self.steady else ()
+        return fingerprint((*self.files, *flicker))
+
+
+DEFAULT = "extended"
+_CROSSINGS_ONLY = {"extended": False, "thesis": True}
+
+
+def profile(
+    name: str = DEFAULT, *, added: tuple[Path, ...] = (), steady: bool | None = None
+) -> Profile:
+    """The profile of that name, with rule files added to it, each judged by its text first.
+
+    Args:
+        name: Of the profile.
+        added: Rule files of the user's.
+        steady: Whether to resolve flicker; None for what is usual in the profile: ``extended``
+            does, and ``thesis`` takes contacts as they were measured.
+
+    Raises:
+        UnknownNameError: There is none.
+        RuleError: An added file has a fault; nothing of it was run.
+    """
+    if name not in _CROSSINGS_ONLY:
+        raise UnknownNameError("profile", name, _CROSSINGS_ONLY)
+    if added:
+        from capar_rules.lint.admission import admit
+
+        admit(added, profile=name)
+    crossings_only = _CROSSINGS_ONLY[name]
+    return Profile(name, crossings_only, added, not crossings_only if steady is None else steady)

@@ -1,0 +1,95 @@
+"""The solver asked about many worlds: which there are, what holds in them, and what is least."""
+
+from collections.abc import Iterable, Sequence
+
+import clingo
+
+from capar.model.errors import RuleError
+from capar_rules.engine.solver import Term, as_term
+from capar_rules.engine.syntax import Signature
+
+Atom = tuple[str, tuple[Term, ...]]
+"""Predicate and arguments."""
+
+
+def worlds(text: str) -> list[tuple[str, ...]]:
+    """The shown atoms of every answer, each as a fact's text; answers in order.
+
+    Raises:
+        RuleError: The program has a fault.
+    """
+    control = _grounded(text, ["--models=0", "--project=show"])
+    found: list[tuple[str, ...]] = []
+    control.solve(on_model=lambda model: found.append(tuple(map(str, model.symbols(shown=True)))))
+    return sorted(tuple(sorted(each)) for each in found)
+
+
+def optima(text: str, shown: Iterable[Signature], *, limit: int = 1) -> list[frozenset[Atom]]:
+    """What is shown in each of the best answers, none twice, at most so many; none if impossible.
+
+    Raises:
+        RuleError: The program has a fault.
+    """
+    control = _grounded(
+        _showing(text, shown), ["--opt-mode=optN", "--project=show", f"--models={limit + 1}"]
+    )
+    found: list[frozenset[Atom]] = []
+    with control.solve(yield_=True) as handle:
+        for model in handle:
+            if model.optimality_proven:
+                found.append(_atoms(model))
+                if len(found) == limit:
+                    break
+    return sorted(set(found), key=lambda each: sorted(map(str, each)))
+
+
+def understand(text: str) -> None:
+    """Have the solver read a program, and judge whether it could ground it; it grounds nothing.
+
+    Raises:
+        RuleError: The program has a fault, such as a variable that nothing binds.
+    """
+    _grounded(text, (), part="nothing")
+
+
+def _grounded(text: str, options: Sequence[str], *, part: str = "base") -> clingo.Control:
+    messages: list[str] = []
+
+    def note(code: clingo.MessageCode, message: str) -> None:
+        if code is clingo.MessageCode.RuntimeError:
+            messages.append(message.strip())
+
+    control = clingo.Control(list(options), logger=note)
+    try:
+        control.add("base", [], text)
+        control.ground([(part, [])])
+    except RuntimeError as error:
+        raise RuleError("\n".join(messages) or str(error)) from None
+    return control
+
+
+def brave(text: str, shown: Iterable[Signature]) -> frozenset[Atom]:
+    """What is shown in at least one answer of a program.
+
+    Raises:
+        RuleError: The program has a fault, or no answer.
+    """
+    control = _grounded(_showing(text, shown), ["--enum-mode=brave", "--models=0"])
+    with control.solve(yield_=True) as handle:
+        for _ in handle:
+            pass  # each answer adds to what the ones before have shown
+        last = handle.last()
+        if last is None:
+            raise RuleError("these rules contradict each other: they have no answer")
+        return _atoms(last)
+
+
+def _showing(text: str, shown: Iterable[Signature]) -> str:
+    shows = "".join(f"#show {name}/{arity}.\n" for name, arity in sorted(shown))
+    return f"{text}\n{shows or '#show.'}\n"
+
+
+def _atoms(model: clingo.Model) -> frozenset[Atom]:
+    return frozenset(
+        (each.name, tuple(map(as_term, each.arguments))) for each in model.symbols(shown=True)
+    )

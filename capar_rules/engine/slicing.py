@@ -1,0 +1,108 @@
+"""The part of a rule base that some predicates rest on."""
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+
+from capar_rules.engine.syntax import Atom, Signature, Statement, split_arguments
+
+
+def towards(
+    statements: Sequence[Statement],
+    targets: Iterable[Signature],
+    *,
+    given: Iterable[Signature] = (),
+) -> list[Statement]:
+    """The rules that targets rest on, and the constants, in their order.
+
+    Args:
+        statements: A rule base.
+        targets: Predicates asked for.
+        given: Predicates that are stated elsewhere, so that their own rules are left out.
+    """
+    heads: dict[Signature, list[Statement]] = defaultdict(list)
+    for each in statements:
+        for head in each.heads:
+            for node in nodes(head):
+                heads[node].append(each)
+    stated, named = set(given), set(heads)
+    wanted, waiting = set(targets), sorted(targets)
+    while waiting:
+        for rule in heads[waiting.pop()]:
+            below = {
+                node
+                for literal in rule.body
+                for atom in literal.atoms
+                if atom.signature not in stated
+                for node in nodes_read(atom, named)
+            }
+            waiting += sorted(below - wanted)
+            wanted |= below
+    return [
+        each
+        for each in statements
+        if each.kind == "definition"
+        or any(node in wanted for head in each.heads for node in nodes(head))
+    ]
+
+
+def firing(statements: Sequence[Statement], measured: Iterable[Signature]) -> list[Statement]:
+    """The rules that can fire at all where only these are measured, and the constants.
+
+    Args:
+        statements: A rule base.
+        measured: Predicates of which there is a fact.
+    """
+    known, fired = set(measured), set[int]()
+    needs = [(number, each, _needed(each)) for number, each in enumerate(statements)]
+    while found := [(number, each) for number, each, needed in needs if needed <= known]:
+        fired |= {number for number, _ in found}
+        known |= heads_of(each for _, each in found)
+        needs = [each for each in needs if each[0] not in fired]
+    return [each for number, each in enumerate(statements) if number in fired]
+
+
+def _needed(statement: Statement) -> set[Signature]:
+    """The predicates that must hold somewhere for a rule to fire."""
+    return {
+        literal.atoms[0].signature
+        for literal in statement.body
+        if literal.kind == "atom" and literal.sign == 0
+    }
+
+
+FITS = ("fits", 2)
+_NAME = re.compile(r'"(\w+)"')
+
+
+def named_node(name: str) -> Signature:
+    """The node that stands for fitting one primitive."""
+    return f"fits {name}", 2
+
+
+def nodes(atom: Atom) -> list[Signature]:
+    """The predicate; fits is one for each name, as a name may well rest on another."""
+    if atom.signature == FITS:
+        names = _NAME.findall(split_arguments(atom.text)[1])
+        return [named_node(each) for each in names] or [FITS]
+    return [atom.signature]
+
+
+def nodes_read(atom: Atom, named: set[Signature]) -> list[Signature]:
+    """What an atom of a body reads: of fits, rules for any name stand for each."""
+    found = nodes(atom)
+    if FITS in found:
+        return sorted({each for each in named if each[0].startswith("fits ")} | {FITS})
+    return [*found, FITS] if found[0][0].startswith("fits ") else found
+
+
+def heads_of(statements: Iterable[Statement]) -> frozenset[Signature]:
+    """The predicates that rules define."""
+    return frozenset(head.signature for each in statements for head in each.heads)
+
+
+def signatures_below(statements: Iterable[Statement]) -> frozenset[Signature]:
+    """The predicates that rules read."""
+    return frozenset(
+        atom.signature for each in statements for literal in each.body for atom in literal.atoms
+    )

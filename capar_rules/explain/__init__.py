@@ -1,0 +1,1 @@
+"""Why a segment has its name, and why not another."""

@@ -1,0 +1,221 @@
+"""The worlds in which a segment might have been otherwise, and what it was in truth."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+
+from capar.model.facts import Fact, program
+from capar.model.observation import Segment
+from capar_rules.engine.search import worlds
+from capar_rules.engine.slicing import heads_of, signatures_below, towards
+from capar_rules.engine.solver import rule_file
+from capar_rules.engine.syntax import Signature, Statement, parse, split_arguments
+from capar_rules.lint.audit import physics, words_of
+
+READ: tuple[Signature, ...] = (("reads", 5), ("holding", 4), ("moved", 2))
+SCENE: tuple[Signature, ...] = (("link", 3), ("tag", 2), ("gap", 4), ("lifted", 2))
+BESIDE: Signature = ("read_beside", 5)
+"""Contacts at the borders of what the end-effector does not possess."""
+
+MOVED: frozenset[Signature] = frozenset((("moves", 2), ("carried_off", 2)))
+"""What some relations presuppose, which are measured all the same."""
+
+BODILY: frozenset[Signature] = frozenset((("figure", 2), ("meets", 5)))
+"""What relations of the body rest on that the segment is about."""
+
+COURSE: frozenset[Signature] = frozenset(
+    (name, 2) for name in ("course", "rises", "comes_down", "sinks", "travels", "stays_near")
+)
+"""Relations of the course of a body; they are one choice, which changes.lp counts."""
+
+MOST_OBJECTS = 5
+"""So many objects a change may speak of, nearest to the segment's own first."""
+
+
+def counted(words: Iterable[Statement]) -> list[Signature]:
+    """The relations beside contacts, possession and motion of which each change counts."""
+    return sorted(heads_of(words) - COURSE - {("member", 3)})
+
+
+def measured(
+    base: Sequence[Statement], facts: Sequence[Fact], segment: Segment, ticks: tuple[int, int]
+) -> list[str]:
+    """What the rules read of a segment, as atoms, and would read of it were it about other bodies.
+
+    Args:
+        base: A rule base.
+        facts: Those around the segment.
+        segment: The segment.
+        ticks: The numbers of its borders.
+    """
+    words = words_of(base)
+    told = [*counted(words), *sorted(COURSE & heads_of(words))]
+    lines = _every_move(segment, ticks)
+    plain = _measured(base, facts, (*READ, *SCENE, BESIDE, *told), MOVED, lines)
+    bodily = heads_of(each for each in words if signatures_below([each]) & BODILY)
+    lines += _every_figure(segment, ticks)
+    wider = _measured(base, facts, sorted(bodily & {*told}), {*MOVED, ("figure", 2)}, lines)
+    return _bearing(sorted({*plain, *wider}), segment, ticks)
+
+
+def _measured(
+    base: Sequence[Statement],
+    facts: Sequence[Fact],
+    shown: Sequence[Signature],
+    instead: Iterable[Signature],
+    lines: Iterable[str],
+) -> tuple[str, ...]:
+    """What follows from facts, where some relations are stated instead of derived."""
+    others = [each for each in base if not {head.signature for head in each.heads} & {*instead}]
+    rules = towards(others, [*shown, ("contact_at", 5)])
+    shows = (f"#show {name}/{arity}." for name, arity in shown)
+    text = [*(each.text for each in rules), *lines, *shows, program(tuple(facts))]
+    (atoms,) = worlds("\n".join(text))[:1]
+    return atoms
+
+
+def _every_move(segment: Segment, ticks: tuple[int, int]) -> list[str]:
+    """The relations of what is moved, of the segment's own object whether or not it is moved.
+
+    Also its contacts with others, possessed or not.
+    """
+    term, ee = f"seg({segment.ee},{ticks[0]})", segment.ee
+    own = [
+        f"{name}({term},{each}) :- tag({each},mobile)."
+        for each in segment.objects[:1]
+        for name, _ in sorted(MOVED)
+    ]
+    return [
+        *own,
+        f"read_beside({ee},Border,Body,Other,Since) :- contact_at({ee},Body,Other,Since,Border); "
+        f"Border = ({ticks[0]};{ticks[1]}); tag(Body,mobile).",
+    ]
+
+
+def _every_figure(segment: Segment, ticks: tuple[int, int]) -> list[str]:
+    """The relations of the body that a segment is about, of every body that it might be about."""
+    term = f"seg({segment.ee},{ticks[0]})"
+    return [
+        f"figure({term},{segment.ee}).",
+        f"figure({term},Object) :- tag(Object,mobile).",
+        *(
+            f"meets({term},{side},Body,Other,Since) :- "
+            f"read_beside({segment.ee},{tick},Body,Other,Since)."
+            for side, tick in zip(("start", "end"), ticks, strict=True)
+        ),
+    ]
+
+
+def _bearing(atoms: Iterable[str], segment: Segment, ticks: tuple[int, int]) -> list[str]:
+    """The atoms that bear on a segment; of what was possessed, its readings are known already."""
+    term, borders = f"seg({segment.ee},{ticks[0]})", {str(each) for each in ticks}
+    kept, beside = [], []
+    for atom in atoms:
+        arguments = split_arguments(atom)
+        if atom.startswith("event(") and "comes_to_rest" not in atom:
+            continue
+        if atom.startswith("read_beside("):
+            beside.append(arguments)
+            continue
+        own = atom.startswith(("link(", "tag(", "gap(")) or term in arguments
+        if own or (arguments[0] == segment.ee and arguments[1:2] and arguments[1] in borders):
+            kept.append(atom)
+    held = {tuple(split_arguments(each)[1:3]) for each in kept if each.startswith("holding(")}
+    kept += [f"reads({','.join(each)})" for each in beside if (each[1], each[2]) not in held]
+    return kept
+
+
+def worlds_of(
+    base: Sequence[Statement],
+    facts: Sequence[Fact],
+    actual: Sequence[str],
+    segment: Segment,
+    ticks: tuple[int, int],
+) -> str:
+    """The rules over what might have been read, with the fewest changes from what was."""
+    changes, words = _changes(), words_of(base)
+    free = [
+        each for each in words if not any(head.signature == ("course", 2) for head in each.heads)
+    ]
+    stated = heads_of([*changes, *words]) | {*SCENE, ("segment", 3), ("tick", 3), ("border", 2)}
+    rules = [each for each in base if not {head.signature for head in each.heads} & stated]
+    targets = [("named", 2), ("unknown", 1), ("dominant", 2), *sorted(heads_of(words))]
+    kept = towards([*rules, *free], targets, given=stated - heads_of(words))
+    lines = [_unfolded(each.text) for each in kept]
+    lines += [each.text for each in (*changes, *physics())]
+    lines += [rule for word in counted(words) for rule in _counting(word)]
+    lines += [*_possible(free), *_scene(actual, segment, ticks), "#defined possesses/3."]
+    lines += [f"{each}." for each in map(str, facts) if each == "force_transfer"]
+    return "\n".join(lines)
+
+
+@cache
+def _changes() -> tuple[Statement, ...]:
+    return tuple(
+        each
+        for each in parse([rule_file("lint/worlds/changes.lp")])
+        if each.kind != "comment" and each.place.file.endswith("changes.lp")
+    )
+
+
+def _counting(word: Signature) -> list[str]:
+    name, arity = word
+    variables = ",".join(f"V{each}" for each in range(arity))
+    atom = f"{name}({variables})" if arity else name
+    return [
+        f"changed(1,{atom}) :- {atom}; not actual({atom}).",
+        f"changed(0,{atom}) :- could({atom}); not {atom}; not instead({atom}).",
+    ]
+
+
+def _possible(words: Iterable[Statement]) -> Iterator[str]:
+    """For each choice, when an atom of it that held could hold again: when its rule's body does."""
+    for each in words:
+        if each.head_kind != "choice":
+            continue
+        body = "; ".join(literal.text for literal in each.body)
+        for head in each.heads:
+            if head.signature in heads_of(words) and head.signature != ("tag", 2):
+                yield f"could(Atom) :- actual(Atom); Atom = {head.text}; {body}."
+
+
+def _scene(actual: Sequence[str], segment: Segment, ticks: tuple[int, int]) -> list[str]:
+    """The segment as it was: what cannot have been otherwise, and what might."""
+    first, last = ticks
+    ee = segment.ee
+    fixed = tuple(f"{name}(" for name, _ in SCENE)
+    return [
+        *(f"{each}." for each in actual if each.startswith(fixed)),
+        *(f"actual({each})." for each in actual),
+        *(f"{{ {each} }}." for each in actual if each.startswith(("lies_at(", "overlaps("))),
+        *(f"candidate({each})." for each in _candidates(actual, segment)),
+        f"segment(seg({ee},{first}),{first},{last}).",
+        f"border({ee},({first};{last})).",
+        f"tick({ee},{first},{segment.first}).",
+        f"tick({ee},{last},{segment.last}).",
+    ]
+
+
+def _unfolded(text: str) -> str:
+    """A rule that reads the four features one by one: together they are too many to ground."""
+    head, sign, body = text.partition(" :- ")
+    if not sign or head.startswith("features("):
+        return "" if head.startswith("features(") else text
+    parts = []
+    for each in body.removesuffix(".").split("; "):
+        if each.startswith("features("):
+            segment, *strings = split_arguments(each)
+            sides = ("start", "end", "change", "force")
+            parts += [
+                f"feature({segment},{side},{string})"
+                for side, string in zip(sides, strings, strict=True)
+            ]
+        else:
+            parts.append(each)
+    return f"{head} :- {'; '.join(parts)}."
+
+
+def _candidates(actual: Sequence[str], segment: Segment) -> list[str]:
+    """The segment's own objects, those that touch them, then others by name."""
+    near = [split_arguments(each)[3] for each in actual if each.startswith("reads(")]
+    others = sorted(split_arguments(each)[0] for each in actual if each.startswith("tag("))
+    return list(dict.fromkeys([*segment.objects, *sorted(near), *others]))[:MOST_OBJECTS]

@@ -1,0 +1,239 @@
+"""Why an atom holds: the rules that derived it, recorded while the solver grounds them."""
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+
+import clingo
+
+from capar.model.errors import RuleError
+from capar.model.facts import Fact
+from capar_rules.engine.slicing import firing, towards
+from capar_rules.engine.syntax import Literal, Place, Signature, Statement
+
+ABSENT = "absent"
+"""Marks, among the grounds of an atom, another that must not hold and does not."""
+
+
+@dataclass(frozen=True)
+class Grounds:
+    """One atom and why it holds."""
+
+    atom: str
+    predicate: str
+    arguments: tuple[str, ...]
+    """Each as it is written; a text without its quotes."""
+
+    rule: Place | None
+    """The rule that derived it; None for a fact, and for what does not hold."""
+
+    absent: bool
+    because: tuple["Grounds", ...]
+
+
+_SHOWN = ("#show because/3.", "#show because_part/3.", "#show also/2.")
+
+
+class Recorder:
+    """A rule base that tells, beside its answer, which instances of its rules fired."""
+
+    def __init__(self, statements: Iterable[Statement], *, targets: Iterable[Signature]) -> None:
+        self.rules = towards(list(statements), targets)
+        recorded = [each for each in self.rules if each.body]
+        self.places = [each.place for each in recorded]
+        self._records = {rule: _records(number, rule) for number, rule in enumerate(recorded)}
+
+    @cache  # noqa: B019 - recorders are few and kept
+    def text(self, measured: frozenset[Signature]) -> str:
+        """The rules that can fire where these are measured, and what records each of them."""
+        rules = firing(self.rules, measured)
+        records = [line for rule in rules for line in self._records.get(rule, ())]
+        return "\n".join([*(each.text for each in rules), *records, *_SHOWN])
+
+    def solve(self, facts: Sequence[Fact]) -> "Derivations":
+        """What follows from facts, and why.
+
+        Raises:
+            RuleError: The rules have a fault over these facts, or no answer.
+        """
+        messages: list[str] = []
+        control = clingo.Control(["--models=1"], logger=lambda _, text: messages.append(text))
+        try:
+            symbols = [each.symbol() for each in facts]
+            measured = frozenset((each.name, len(each.arguments)) for each in symbols)
+            control.add("base", [], self.text(measured))
+            with control.backend() as backend:
+                for each in symbols:
+                    backend.add_rule([backend.add_atom(each)])
+            control.ground([("base", [])])
+        except RuntimeError as error:
+            raise RuleError(f"the rules cannot be explained: {messages or error}") from None
+        return Derivations(self.places, _shown(control))
+
+
+class Derivations:
+    """The recorded instances of one answer, read only as far as they are asked for."""
+
+    def __init__(self, places: Sequence[Place], symbols: Sequence[clingo.Symbol]) -> None:
+        self.places = places
+        self.instances: dict[clingo.Symbol, list[tuple[int, clingo.Symbol]]] = defaultdict(list)
+        self.parts: dict[tuple[int, clingo.Symbol], list[clingo.Symbol]] = defaultdict(list)
+        self.more: dict[clingo.Symbol, list[clingo.Symbol]] = defaultdict(list)
+        for symbol in symbols:
+            name = symbol.name
+            if name == "because":
+                number, head, body = symbol.arguments
+                self.instances[head].append((number.number, body))
+            elif name == "because_part":
+                number, head, body = symbol.arguments
+                self.parts[number.number, head].append(body)
+            else:
+                head, other = symbol.arguments
+                self.more[head].append(other)
+
+    def holding(self, predicate: str) -> list[tuple[str, ...]]:
+        """Arguments of each derived atom of a predicate, sorted."""
+        return [tuple(map(_plain, each.arguments)) for each in sorted(self._derived(predicate))]
+
+    def why(self, atom: str) -> Grounds:
+        """The tree that derives an atom.
+
+        Raises:
+            RuleError: It was not derived.
+        """
+        for symbol in self._derived(atom.partition("(")[0]):
+            if str(symbol) == atom:
+                return self._grounds(symbol, frozenset(), {})
+        raise RuleError(f"{atom} does not hold")
+
+    def _derived(self, predicate: str) -> list[clingo.Symbol]:
+        return self._named.get(predicate, [])
+
+    @cached_property
+    def _named(self) -> dict[str, list[clingo.Symbol]]:
+        """Every derived atom by its predicate."""
+        table: dict[str, list[clingo.Symbol]] = defaultdict(list)
+        for each in self.instances:
+            table[each.name].append(each)
+        return table
+
+    def _grounds(
+        self,
+        symbol: clingo.Symbol,
+        above: frozenset[clingo.Symbol],
+        done: dict[clingo.Symbol, Grounds],
+    ) -> Grounds:
+        if symbol in done:
+            return done[symbol]
+        rule, children = self._instance(symbol, above)
+        below = above | {symbol}
+        because = tuple(
+            self._missing(each.arguments[0])
+            if each.name == ABSENT
+            else self._grounds(each, below, done)
+            for each in children
+        )
+        found = Grounds(
+            str(symbol), symbol.name, tuple(map(_plain, symbol.arguments)), rule, False, because
+        )
+        done[symbol] = found
+        return found
+
+    def _missing(self, symbol: clingo.Symbol) -> Grounds:
+        arguments = tuple(map(_plain, symbol.arguments))
+        return Grounds(f"not {symbol}", symbol.name, arguments, None, True, ())
+
+    def _instance(
+        self, symbol: clingo.Symbol, above: frozenset[clingo.Symbol]
+    ) -> tuple[Place | None, list[clingo.Symbol]]:
+        """The first rule instance that does not rest on what it is to support."""
+        for number, body in sorted(self.instances.get(symbol, ())):
+            children = list(body.arguments)
+            for part in sorted(self.parts.get((number, symbol), ())):
+                children += part.arguments
+            if not above & set(children):
+                children += sorted(self.more.get(symbol, ()))
+                return self.places[number], list(dict.fromkeys(children))
+        told_below = () if symbol in self.instances else self.more.get(symbol, ())
+        return None, sorted(told_below)
+
+
+def _shown(control: clingo.Control) -> list[clingo.Symbol]:
+    with control.solve(yield_=True) as handle:
+        model = handle.model()
+        if model is None:
+            raise RuleError("the rules contradict each other over these facts")
+        return list(model.symbols(shown=True))
+
+
+def _plain(symbol: clingo.Symbol) -> str:
+    return symbol.string if symbol.type is clingo.SymbolType.String else str(symbol)
+
+
+def _records(number: int, rule: Statement) -> list[str]:
+    """Rules that tell each instance of a rule, and each element of its aggregates."""
+    if rule.head_kind != "atom" or (len(rule.heads) != 1 and ";" not in rule.heads[0].text):
+        return []
+    head = rule.heads[0].text
+    literals, choices = _chosen(rule.body)
+    body = "; ".join((*(each.text for each in literals), *choices))
+    lines = [f"because({number},{head},{_tuple(literals)}) :- {body}."]
+    shared = _variables(head).union(*(_variables(each.text) for each in _plainly(rule.body)))
+    for literal in rule.body:
+        for element in filter(None, literal.elements):
+            inside = "; ".join(each.text for each in element)
+            part = f"because_part({number},{head},{_tuple(element)})"
+            own = _variables(inside) - shared
+            lines.append(_renamed(part, own) + f" :- {body}; {_renamed(inside, own)}.")
+    return lines
+
+
+_POOL = re.compile(r"(?<![\w\"])\([^()]*;[^()]*\)")
+
+
+def _chosen(body: Sequence[Literal]) -> tuple[list[Literal], list[str]]:
+    """The body with a variable for each pool of its atoms, and what those variables may be.
+
+    A pool that stood in the head as well would there be expanded on its own, and the grounds told
+    would be of every choice, not of the one that held.
+    """
+    literals: list[Literal] = []
+    choices: list[str] = []
+    for literal in body:
+        text = literal.text
+        while literal.kind == "atom" and literal.sign == 0 and (found := _POOL.search(text)):
+            variable = f"Pool{len(choices)}"
+            choices.append(f"{variable} = {found[0]}")
+            text = text[: found.start()] + variable + text[found.end() :]
+        literals.append(replace(literal, text=text))
+    return literals, choices
+
+
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\b_*[A-Z]\w*')
+
+
+def _plainly(body: Iterable[Literal]) -> Iterable[Literal]:
+    return (each for each in body if each.kind in ("atom", "comparison"))
+
+
+def _variables(text: str) -> set[str]:
+    return {each for each in _TOKEN.findall(text) if not each.startswith('"')}
+
+
+def _renamed(text: str, names: set[str]) -> str:
+    """The text with those variables renamed: outside their aggregate they are others."""
+    return _TOKEN.sub(lambda found: found[0] + "Inner" * (found[0] in names), text)
+
+
+def _tuple(literals: Iterable[Literal]) -> str:
+    """The grounds among the literals as one term."""
+    terms = []
+    for each in literals:
+        if each.kind == "atom" and each.sign == 0:
+            terms.append(each.text)
+        elif each.kind == "atom" and each.sign == 1:
+            text = each.atoms[0].text.replace("(_", "(any").replace(",_", ",any")
+            terms.append(f"{ABSENT}({text})")
+    return f"({','.join(terms)},)" if terms else "()"

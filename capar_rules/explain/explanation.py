@@ -1,0 +1,261 @@
+"""Why a segment has its name: the tree of rules and facts behind it, told in sentences."""
+
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+from capar.model.errors import RuleError
+from capar.model.facts import Fact
+from capar.model.observation import Segment
+from capar.model.par import UNKNOWN
+from capar_rules.borders.ranking import rank
+from capar_rules.engine.profiles import Profile
+from capar_rules.engine.solver import rule_file
+from capar_rules.engine.syntax import Place, Statement, parse, parse_text
+from capar_rules.explain.derivations import Derivations, Grounds, Recorder
+from capar_rules.explain.instants import frames_of, mended
+from capar_rules.explain.sentences import Clock, Sentences
+from capar_rules.explain.summaries import summary
+from capar_rules.explain.windows import Windows
+
+ALWAYS = (("segment", 3), ("also", 2))
+
+
+@dataclass(frozen=True)
+class Reason:
+    """One node of an explanation."""
+
+    sentence: str
+    """Empty where the step is told by the nodes below it."""
+
+    atom: str
+    rule: str
+    """File and line of the rule; empty for a measurement, and for what does not hold."""
+
+    frames: tuple[int, int] | None
+    """Of a measurement, first and last."""
+
+    leading: bool
+    """Whether the sentence belongs in the summary."""
+
+    because: tuple["Reason", ...]
+
+    def told(self) -> "Reason":
+        """The tree of those nodes that have a sentence; what was told is not told again."""
+        return _told(self, set())
+
+    def walk(self) -> Iterator["Reason"]:
+        """This node and all below it, from the top."""
+        yield self
+        for each in self.because:
+            yield from each.walk()
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A segment's name and why it has it."""
+
+    ee: str
+    index: int
+    name: str
+    start_s: float
+    end_s: float
+    summary: str
+    reason: Reason
+
+
+@dataclass(frozen=True, eq=False)
+class RuleBase:
+    """A profile made ready to explain by."""
+
+    sentences: Sentences
+    statements: tuple[Statement, ...]
+
+    @cache  # noqa: B019 - rule bases are few and kept
+    def recorder(self, name: str) -> Recorder:
+        """What tells why a segment has a name, or, for ``Unknown``, why it has none."""
+        if name == UNKNOWN:
+            return Recorder(self.statements, targets=(("parted_at", 2), ("nearest", 2), *ALWAYS))
+        others = [each for each in self.statements if not _names(each) and not _overrules(each)]
+        return Recorder([*others, *_naming(self.statements, name)], targets=(("named", 2), *ALWAYS))
+
+
+def _names(statement: Statement) -> bool:
+    return any(head.signature == ("named", 2) for head in statement.heads)
+
+
+def _overrules(statement: Statement) -> bool:
+    return any(head.signature == ("overruled", 2) for head in statement.heads)
+
+
+def _naming(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
+    """The rule that names segments, for one name: whether others fit better is known by then."""
+    rule = f'named(Segment,"{name}") :- fits(Segment,"{name}"); not overruled(Segment,"{name}").'
+    for each in statements:
+        if _names(each):
+            yield replace(parse_text(rule)[0], place=each.place)
+
+
+def rule_base(profile: Profile) -> RuleBase:
+    """The rules of a profile, parsed once and kept."""
+    return _rule_base(profile.files, profile.fingerprint)
+
+
+@cache
+def _rule_base(files: tuple[Path, ...], fingerprint: str) -> RuleBase:
+    statements = parse((*files, rule_file("explain/explaining.lp")))
+    return RuleBase(Sentences(statements), statements)
+
+
+class Explainer:
+    """Explains the segments of one capture, each at a cost that its length does not change."""
+
+    def __init__(
+        self,
+        facts: Sequence[Fact],
+        *,
+        profile: Profile,
+        distance_m: Callable[[str, int, int], float] | None = None,
+    ) -> None:
+        """Index the facts of a capture.
+
+        Args:
+            facts: What the extractors measured.
+            profile: The rules to explain by.
+            distance_m: How far an object moved between two frames [m], if sentences shall say so.
+        """
+        self.base = rule_base(profile)
+        self.windows = Windows(facts, rank(facts, crossings_only=profile.crossings_only))
+        self.distance_m = distance_m
+        self.mended = mended(facts)
+
+    def explain(self, segment: Segment) -> Explanation:
+        """Why a segment has its name, or why it has none.
+
+        Raises:
+            RuleError: The segment does not follow from these facts and rules.
+        """
+        ticks = self.ticks(segment)
+        term = f"seg({segment.ee},{ticks[0]})"
+        for facts in self.windows_of(segment.ee, ticks):
+            derived = self.base.recorder(segment.name).solve(facts)
+            roots = list(_roots(derived, term, ticks, segment))
+            if roots:
+                clock = self.clock(derived)
+                grounds = [derived.why(each) for each in roots]
+                reasons = [self._reason(each, clock, {}) for each in grounds]
+                return _explanation(segment, reasons)
+        raise RuleError(
+            f"segment {segment.index} of {segment.ee!r} is no {segment.name} by these rules; "
+            "observe the capture anew"
+        )
+
+    def ticks(self, segment: Segment) -> tuple[int, int]:
+        """The numbers of the frames between which a segment lies.
+
+        Raises:
+            RuleError: It lies between others than these rules know.
+        """
+        frames = self.windows.frames.get(segment.ee, [])
+        found = [bisect_left(frames, each) for each in (segment.first, segment.last)]
+        if [frames[each] for each in found if each < len(frames)] != [segment.first, segment.last]:
+            raise RuleError(
+                f"segment {segment.index} of {segment.ee!r} does not lie between frames at which "
+                "these facts change; observe the capture anew"
+            )
+        return found[0], found[1]
+
+    def windows_of(self, ee: str, ticks: tuple[int, int]) -> Iterator[tuple[Fact, ...]]:
+        """Ever wider cuts of the facts; the first nearly always does."""
+        for widen in (0, 3):
+            yield self.windows.around(ee, *ticks, widen=widen)
+        yield self.windows.whole()
+
+    def clock(self, derived: Derivations) -> Clock:
+        """When the ticks and segments of an answer are."""
+        ends = {}
+        for term, first, last in derived.holding("segment"):
+            ends[term[4:].split(",")[0], int(first)] = int(last)
+        return Clock(self.windows.rate, self.windows.frames, ends, self.distance_m)
+
+    def _reason(self, grounds: Grounds, clock: Clock, done: dict[str, Reason]) -> Reason:
+        if grounds.atom in done:
+            return done[grounds.atom]
+        told = grounds.predicate, grounds.arguments
+        mood = self._mood(grounds)
+        template = self.base.sentences.template(*told, mood=mood)
+        done[grounds.atom] = found = Reason(
+            self.base.sentences.tell(*told, clock, mood=mood),
+            grounds.atom,
+            _where(grounds.rule),
+            None if grounds.absent else frames_of(*told, clock),
+            template is not None and template.leading,
+            tuple(self._reason(each, clock, done) for each in grounds.because),
+        )
+        return found
+
+    def _mood(self, grounds: Grounds) -> str:
+        """How an atom is told: it does not hold, it was mended, or else it holds as measured."""
+        if grounds.absent:
+            return "not"
+        doubted = any(each.predicate == "doubted" for each in grounds.because)
+        return "mended" if doubted or grounds.atom in self.mended else ""
+
+
+def _roots(
+    derived: Derivations, term: str, ticks: tuple[int, int], segment: Segment
+) -> Iterator[str]:
+    if (term, *map(str, ticks)) not in derived.holding("segment"):
+        return
+    if segment.known:
+        if (term, segment.name) in derived.holding("named"):
+            yield f'named({term},"{segment.name}")'
+        return
+    for predicate in ("parted_at", "nearest"):
+        for place, value in derived.holding(predicate):
+            if place == term:
+                yield (
+                    f"{predicate}({term},{value})"
+                    if value.isdigit()
+                    else (f'{predicate}({term},"{value}")')
+                )
+
+
+def _explanation(segment: Segment, reasons: Sequence[Reason]) -> Explanation:
+    top = reasons[0]
+    if len(reasons) > 1:
+        below = (*top.because, *reasons[1:])
+        top = Reason(top.sentence, top.atom, top.rule, top.frames, top.leading, below)
+    told = summary(segment.name, top)
+    return Explanation(
+        segment.ee, segment.index, segment.name, segment.start_s, segment.end_s, told, top
+    )
+
+
+def _told(reason: Reason, known: set[str]) -> Reason:
+    """The tree of sentences; one that is known already has nothing below it."""
+    below: list[Reason] = []
+    if reason.sentence not in known:
+        known.add(reason.sentence)
+        below = [_told(each, known) for each in _nearest(reason)]
+    return replace(reason, because=tuple(below))
+
+
+def _nearest(reason: Reason) -> list[Reason]:
+    """The nearest nodes with a sentence, in order, each sentence once."""
+    found: dict[str, Reason] = {}
+    waiting, passed = list(reversed(reason.because)), set()
+    while waiting:
+        each = waiting.pop()
+        if each.sentence:
+            found.setdefault(each.sentence, each)
+        elif each.atom not in passed:
+            passed.add(each.atom)
+            waiting += reversed(each.because)
+    return list(found.values())
+
+
+def _where(place: Place | None) -> str:
+    return "" if place is None else f"{Path(place.file).name}:{place.line}"

@@ -1,0 +1,150 @@
+"""Sentences for atoms, from the templates that rule files carry in comments ``%! name/2: text``."""
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from capar_rules.engine.syntax import Statement
+
+_TEMPLATE = re.compile(r"%!(!?)\s*(?:(had not|had|not|mended) )?(\w+)/(\d+)(?: (\w+))?:\s*(.+)")
+_SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """How one predicate is told."""
+
+    text: str
+    leading: bool
+    """Whether it belongs in the one sentence that sums up an explanation."""
+
+
+Key = tuple[str, str, int, str]
+"""Mood, predicate, arity and an argument.
+
+Moods: it holds, ""; it does "not"; "had" it held, "had not"; it was "mended": taken to hold,
+though not all of it was measured so.
+"""
+
+LEAST_M = 0.01
+"""The least distance that is told of a motion [m]: nearer than that it ended where it began."""
+
+
+@dataclass(frozen=True)
+class Clock:
+    """When the ticks of links are, and where their segments end."""
+
+    rate_hz: float
+    frames: Mapping[str, Sequence[int]]
+    """Frames of the ticks, by end-effector."""
+
+    ends: Mapping[tuple[str, int], int] = field(default_factory=dict)
+    """The tick where the segment ends that begins at a tick."""
+
+    distance_m: Callable[[str, int, int], float] | None = None
+    """How far an object moved between two frames [m], where that was measured."""
+
+    objects: Mapping[str, str] = field(default_factory=dict)
+    """What segments are about, by their terms."""
+
+    def at(self, frame: int) -> str:
+        """A frame as a time."""
+        return f"{frame / self.rate_hz:.2f} s"
+
+    def border(self, segment: str, side: str) -> str:
+        """When a segment starts or ends."""
+        span = self.span(segment)
+        return f"its {side}" if span is None else self.at(span[side == "end"])
+
+    def about(self, segment: str) -> str:
+        """The object that a segment is about."""
+        return self.objects.get(segment, "object").replace("_", " ")
+
+    def span(self, segment: str) -> tuple[int, int] | None:
+        """First and last frame of the segment that a term names."""
+        found = _SEGMENT.fullmatch(segment)
+        if found is None:
+            return None
+        ee, first = found[1], int(found[2])
+        last = self.ends.get((ee, first))
+        return None if last is None else (self.frames[ee][first], self.frames[ee][last])
+
+
+class Sentences:
+    """The templates of a rule base."""
+
+    def __init__(self, statements: Iterable[Statement]) -> None:
+        self.templates: dict[Key, Template] = {}
+        for each in statements:
+            for line in each.text.splitlines() if each.kind == "comment" else ():
+                found = _TEMPLATE.match(line.strip())
+                if found:
+                    leading, mood, name, arity, kind, text = found.groups()
+                    key = mood or "", name, int(arity), kind or ""
+                    self.templates[key] = Template(text, bool(leading))
+
+    def template(
+        self, predicate: str, arguments: Sequence[str], *, mood: str = ""
+    ) -> Template | None:
+        """The template for an atom; the one for a certain argument before the general one.
+
+        What was mended is told like what was measured, where no template tells it otherwise.
+        """
+        if mood == "mended" and (mood, predicate, len(arguments), "") not in self.templates:
+            mood = ""
+        key = mood, predicate, len(arguments)
+        for each in arguments:
+            if (*key, each) in self.templates:
+                return self.templates[*key, each]
+        return self.templates.get((*key, ""))
+
+    def tell(
+        self, predicate: str, arguments: Sequence[str], clock: Clock, *, mood: str = ""
+    ) -> str:
+        """The sentence for an atom; empty where nothing tells it."""
+        template = self.template(predicate, arguments, mood=mood)
+        if template is None:
+            return ""
+        values = [_Value(each, arguments, clock) for each in arguments]
+        return template.text.format(*values)
+
+
+class _Value:
+    """An argument that a template shows as a name, a time or a distance."""
+
+    def __init__(self, text: str, beside: Sequence[str], clock: Clock) -> None:
+        self.text, self.beside, self.clock = text, beside, clock
+
+    def __format__(self, form: str) -> str:
+        if form == "frame":
+            return self.clock.at(int(self.text))
+        if form == "tick":
+            return self.clock.at(self.clock.frames[self.beside[0]][int(self.text)])
+        told = self._of_segment(form)
+        return self.text.replace("_", " ") if told is None else told
+
+    def _of_segment(self, form: str) -> str | None:
+        """What is told of the segment that this argument names, or else the first one."""
+        if form in ("start", "end"):
+            return self.clock.border(self.text, form)
+        if form == "border":
+            return self.clock.border(self.beside[0], self.text)
+        if form == "object":
+            return self.clock.about(self.text)
+        if form == "hand":
+            return self.text.removeprefix("seg(").split(",")[0].replace("_", " ")
+        return self._of_span(form) if form in ("segment", "distance") else None
+
+    def _of_span(self, form: str) -> str:
+        span = self.clock.span(self.text)
+        if span is None:
+            return "its start and its end" * (form == "segment")
+        if form == "segment":
+            return f"{self.clock.at(span[0])} and {self.clock.at(span[1])}"
+        return self._distance(span)
+
+    def _distance(self, span: tuple[int, int]) -> str:
+        if self.clock.distance_m is None:
+            return ""
+        distance = self.clock.distance_m(self.beside[0], *span)
+        return f" {distance:.2f} m" if distance >= LEAST_M else ""

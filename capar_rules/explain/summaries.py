@@ -1,0 +1,91 @@
+"""The one sentence that sums up an explanation: a name's own conditions first."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from capar_rules.engine.syntax import split_arguments
+
+if TYPE_CHECKING:
+    from capar_rules.explain.explanation import Reason
+
+BESIDE = ("joins_in(", "looks(")
+"""How what begins that is told beside a name, and is no reason for it."""
+
+FEATURES = "features("
+"""How what begins that a primitive shares with others, which its own conditions come before."""
+
+BORDERS = ("segment(", "border(", "member(")
+"""How what begins that says where a segment begins and ends, and not what it is."""
+
+
+def summary(name: str, reason: "Reason") -> str:
+    """Why a segment has a name, in one sentence."""
+    return f"{name}, because {_listed(_leading(reason))}."
+
+
+def _leading(reason: "Reason") -> list[str]:
+    """The telling sentences, each once; of the same at several times, one."""
+    places: dict[str, list[str]] = {}
+    for each in _deciding(reason):
+        if each.leading:
+            text, at, time = each.sentence.rpartition(" at ")
+            timed = at and time[:1].isdigit()
+            times = places.setdefault(text if timed else each.sentence, [])
+            if timed and time not in times:
+                times.append(time)
+    return [
+        f"{text} at {' and '.join(sorted(times, key=_seconds))}" if times else text
+        for text, times in places.items()
+    ]
+
+
+def _deciding(reason: "Reason") -> "list[Reason]":
+    """The nodes on which the name rests: first its own conditions, then its features."""
+    passed = set[int]()
+    own = list(_resting_on([reason], passed))
+    shared = [each for each in own if each.atom.startswith(FEATURES)]
+    features = [each for top in shared for each in _resting_on(top.because, passed)]
+    features += [each for each in own if _rank(each) == 0]
+    return [*(each for each in own if _rank(each)), *sorted(features, key=_rank)]
+
+
+def _resting_on(tops: "Iterable[Reason]", passed: set[int]) -> "Iterator[Reason]":
+    """Nodes from the top, each once, as far down as the features."""
+    waiting = list(reversed(list(tops)))
+    while waiting:
+        each = waiting.pop()
+        if each.atom.startswith(BESIDE) or id(each) in passed:
+            continue
+        passed.add(id(each))
+        yield each
+        if not each.atom.startswith(FEATURES):
+            waiting += [below for below in reversed(each.because) if _bears(each, below)]
+
+
+def _bears(reason: "Reason", below: "Reason") -> bool:
+    """Whether what is below a node bears on the name, and not on where a border is alone.
+
+    Doubts count there too, but none of a measurement at whatever time.
+    """
+    if below.atom.startswith("doubted("):
+        return bool(reason.rule)
+    return not reason.atom.startswith(BORDERS)
+
+
+def _rank(reason: "Reason") -> int:
+    """Features in the order in which they are told: what the end-effector touches comes first."""
+    predicate = reason.atom.partition("(")[0]
+    if predicate == "contact_at":
+        hand, body = split_arguments(reason.atom)[:2]
+        return 0 if hand == body else 2
+    return {"moved": 1, "stays": 1}.get(predicate, 3)
+
+
+def _seconds(time: str) -> float:
+    return float(time.removesuffix(" s"))
+
+
+def _listed(parts: Sequence[str]) -> str:
+    if len(parts) < 2:
+        return "".join(parts) or "the rules say so"
+    return f"{', '.join(parts[:-1])}, and {parts[-1]}"

@@ -1,0 +1,44 @@
+"""Rule files of users, read with care by every command before any of them counts."""
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from capar.model.errors import RuleError
+from capar_rules.lint.findings import Finding, errors
+from capar_rules.lint.judging import base_of, judge
+from capar_rules.lint.sandbox import guarded
+
+HARMLESS = {"no-primitive"}
+"""What keeps a file from being added, and yet may stand among rules: it only helps others."""
+
+
+def admit(files: Sequence[Path], *, profile: str) -> None:
+    """Let rule files count, unless their text alone tells of a fault; nothing of them is run.
+
+    That is syntax, words and names, what could run code or reach elsewhere, choices, circles and
+    growth without end. It takes milliseconds a file, in a process of its own that can come to no
+    harm. What the solver has to say of them is for the full check.
+
+    Args:
+        files: Rule files that are to count together.
+        profile: The rule base that they join.
+
+    Raises:
+        RuleError: There is a fault; it tells each with file, line, column, and what would be right.
+    """
+    wrong = faults(files, profile=profile)
+    if wrong:
+        lines = "\n".join(map(str, wrong))
+        raise RuleError(
+            f"rules that cannot count, so nothing was done:\n{lines}\n"
+            "Mend them, or take them out of their folder; `capar rules check FILE` says more."
+        )
+
+
+def faults(files: Sequence[Path], *, profile: str) -> tuple[Finding, ...]:
+    """What keeps rule files from counting, by place."""
+    if not files:
+        return ()
+    found = guarded(files[0], partial(judge, files, base_of(profile)))
+    return tuple(sorted({each for each in errors(tuple(found)) if each.code not in HARMLESS}))

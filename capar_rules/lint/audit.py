@@ -1,0 +1,175 @@
+"""The rule base over every segment that can be: uncovered, ambiguous and shadowed cases."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from capar_rules.engine.profiles import Profile
+from capar_rules.engine.search import Atom, brave, worlds
+from capar_rules.engine.slicing import heads_of, signatures_below, towards
+from capar_rules.engine.solver import rule_file
+from capar_rules.engine.syntax import Signature, Statement, parse
+
+ASKED: tuple[Signature, ...] = (
+    ("nameless", 4),
+    ("clash", 6),
+    ("fitting", 1),
+    ("winning", 1),
+    ("possible", 4),
+    ("primitive", 1),
+    ("excused", 5),
+)
+
+Features = tuple[str, str, str, str]
+"""Relations at the start and at the end, change of location, and force."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Clash:
+    """Two names that one segment can have, without order between them."""
+
+    first: str
+    second: str
+    features: tuple[Features, ...]
+    """Feature sets at which they meet, sorted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Audit:
+    """What the solver found over every segment that can be."""
+
+    possible: int
+    """How many feature sets there can be."""
+
+    uncovered: tuple[Features, ...]
+    """Those that no rule names, sorted."""
+
+    excused: tuple[tuple[Features, str], ...]
+    """Of the uncovered ones, those for which ``audit/uncovered.lp`` gives a reason."""
+
+    ambiguous: tuple[Clash, ...]
+    shadowed: tuple[str, ...]
+    """Primitives that can fit and never win."""
+
+    unreachable: tuple[str, ...]
+    """Primitives that fit no segment of the audit's world."""
+
+    @property
+    def clean(self) -> bool:
+        """Whether nothing is ambiguous or shadowed, and every uncovered case has a reason."""
+        reasoned = {features for features, _ in self.excused}
+        return not (self.ambiguous or self.shadowed or set(self.uncovered) - reasoned)
+
+
+def audit(profile: Profile) -> Audit:
+    """Audit the rules of a profile.
+
+    Raises:
+        RuleError: The rules have a fault.
+    """
+    return summarise(evaluate(parse(profile.files), ASKED))
+
+
+def summarise(atoms: frozenset[Atom]) -> Audit:
+    """What the answers over all worlds come to."""
+    primitives = {str(each) for (each,) in _rows(atoms, "primitive")}
+    fitting = {str(each) for (each,) in _rows(atoms, "fitting")}
+    winning = {str(each) for (each,) in _rows(atoms, "winning")}
+    return Audit(
+        possible=len(_rows(atoms, "possible")),
+        uncovered=tuple(sorted(map(_features, _rows(atoms, "nameless")))),
+        excused=tuple(sorted((_features(each), str(each[4])) for each in _rows(atoms, "excused"))),
+        ambiguous=_clashes(_rows(atoms, "clash")),
+        shadowed=tuple(sorted(fitting - winning)),
+        unreachable=tuple(sorted(primitives - fitting)),
+    )
+
+
+def given_in_audit() -> frozenset[Signature]:
+    """The predicates that the audit's world states itself."""
+    return heads_of([*_own("space.lp"), *_own("scene.lp"), *_own("words.lp")]) | {
+        ("force_transfer", 0),
+        ("gap", 4),
+    }
+
+
+def evaluate(rules: Sequence[Statement], asked: Iterable[Signature]) -> frozenset[Atom]:
+    """What rules derive over all segments that can be: each stands in the world beside the others.
+
+    Raises:
+        RuleError: The rules have a fault.
+    """
+    words = [*_own("scene.lp"), *words_of(rules)]
+    given = heads_of([*_own("space.lp"), *words])
+    base = [each for each in rules if not {head.signature for head in each.heads} & given]
+    questions = [*_own("cases.lp"), *_own("uncovered.lp")]
+    stated = heads_of(_own("space.lp")) - heads_of(words)
+    kept = towards([*base, *words, *questions], asked, given=stated)
+    program = "\n".join(each.text for each in kept)
+    found: set[Atom] = set()
+    for facts in _worlds():
+        found |= brave(f"{program}\n{facts}\n{{ force_transfer }}.", asked)
+    return frozenset(found)
+
+
+def words_of(rules: Sequence[Statement]) -> list[Statement]:
+    """The free relations of the audit's world, as far as a rule base speaks of them."""
+    words = _own("words.lp")
+    spoken = heads_of([*rules, *_own("space.lp")]) | {("course", 2), ("member", 3)}
+    return [each for each in words if signatures_below([each]) | heads_of([each]) <= spoken]
+
+
+def chosen_in_audit() -> frozenset[Signature]:
+    """The relations that the audit's world leaves free, some only for a few of their words."""
+    return heads_of(each for each in _own("words.lp") if each.head_kind == "choice")
+
+
+def physics() -> tuple[Statement, ...]:
+    """What no segment can be."""
+    return _own("physical.lp")
+
+
+@cache
+def _worlds() -> tuple[str, ...]:
+    """Every world of the audit as facts about an end-effector of its own, in batches."""
+    rules = (*_own("space.lp"), *_own("physical.lp"))
+    fixed = "\n".join(each.text for each in rules if not each.body and each.head_kind == "atom")
+    texts = []
+    for number, atoms in enumerate(worlds("\n".join(each.text for each in rules))):
+        own = " ".join(f"{each}." for each in atoms)
+        texts.append(_LIMB.sub(f"limb{number}", f"{own} {fixed}"))
+    return tuple("\n".join(texts[at : at + BATCH]) for at in range(0, len(texts), BATCH))
+
+
+BATCH = 30
+"""How many worlds one call of the solver holds: fewer read the rules more often, more take longer
+to search; this many cost least of 10 to 200."""
+
+_LIMB = re.compile(r"\blimb\b")
+
+
+@cache
+def _own(name: str) -> tuple[Statement, ...]:
+    """The rules of one file of the audit, without what it includes."""
+    path = rule_file("lint/worlds") / name
+    return tuple(
+        each for each in parse([path]) if Path(each.place.file).name == name and each.kind == "rule"
+    )
+
+
+def _rows(atoms: Iterable[Atom], predicate: str) -> list[tuple[object, ...]]:
+    return [arguments for name, arguments in atoms if name == predicate]
+
+
+def _features(row: Sequence[object]) -> Features:
+    start, end, change, force = map(str, row[:4])
+    return start, end, change, force
+
+
+def _clashes(rows: Iterable[tuple[object, ...]]) -> tuple[Clash, ...]:
+    found: dict[tuple[str, str], set[Features]] = {}
+    for first, second, *features in rows:
+        found.setdefault((str(first), str(second)), set()).add(_features(features))
+    return tuple(Clash(*pair, tuple(sorted(found[pair]))) for pair in sorted(found))

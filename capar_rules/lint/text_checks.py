@@ -1,0 +1,276 @@
+"""Checks that read a rule file and never run it: what it may hold, and what it speaks of."""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from capar_rules.engine.slicing import heads_of
+from capar_rules.engine.syntax import Atom, Place, Signature, Statement, split_arguments
+from capar_rules.lint.findings import NOTE, Finding
+
+AUTHORED: dict[Signature, str] = {
+    ("primitive", 1): 'primitive("Lift")',
+    ("specialises", 2): 'specialises("Lift", "MoveObj")',
+    ("verb", 2): 'verb("Lift", "lift")',
+    ("sense", 2): 'sense("Lift", 1)',
+    ("levin", 2): 'levin("Lift", "9.4")',
+    ("purpose_of", 2): 'purpose_of("Lift", "Carry")',
+    ("feature_row", 6): 'feature_row("Lift", any, "1", "1", "1", "0")',
+    ("fits", 2): 'fits(Segment, "Lift") :- ...',
+    ("also", 2): "also(Atom, Other) :- ...",
+}
+"""What a user's file may state, each with an example, beside predicates of its own."""
+
+HARMLESS = {"rule", "comment", "defined", "definition"}
+REFUSED = {
+    "script": "scripts run code; rules are logic alone",
+    "external": "what is external could be set from outside",
+    "theoryatom": "theories are not known here",
+    "theorydefinition": "theories are not known here",
+    "minimize": "rules derive and do not optimise",
+    "showsignature": "what is shown is for the rule base to say",
+    "showterm": "what is shown is for the rule base to say",
+    "projectatom": "what is shown is for the rule base to say",
+    "projectsignature": "what is shown is for the rule base to say",
+    "heuristic": "rules derive and do not steer the solver",
+    "edge": "rules derive and do not steer the solver",
+    "program": "rules stand in one program, base",
+}
+HEADS = {
+    "choice": ("a rule that chooses makes several answers", "State what follows, without braces."),
+    "disjunction": ("alternatives make several answers", "State one head; write a rule for each."),
+    "theory": ("theories are not known here", "State an atom."),
+    "constraint": (
+        "a rule without a head would forbid what was observed",
+        "Derive the cases that fit instead.",
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Known:
+    """What a rule base already speaks of."""
+
+    rules: tuple[Statement, ...]
+    heads: frozenset[Signature]
+    inputs: frozenset[Signature]
+    """Predicates that may have no rule: measurements, and what a profile leaves out."""
+
+    measured: frozenset[Signature]
+    """Of those, the measurements."""
+
+    primitives: Mapping[str, str]
+    """Names of primitives, each with the file that introduces it."""
+
+    constants: frozenset[str]
+
+
+def known(rules: Sequence[Statement]) -> Known:
+    """The words of a rule base."""
+    return Known(
+        tuple(rules),
+        heads_of(rules),
+        frozenset(each.defines for each in rules if isinstance(each.defines, tuple)),
+        frozenset(
+            each.defines
+            for each in rules
+            if isinstance(each.defines, tuple) and each.place.file.endswith("inputs.lp")
+        ),
+        dict(_named(rules, "primitive")),
+        frozenset(each.defines for each in rules if isinstance(each.defines, str)),
+    )
+
+
+def static_findings(own: Sequence[Statement], base: Known, *, file: str) -> Iterator[Finding]:
+    """Every finding that needs no solver."""
+    yield from _statements(own, base)
+    yield from _heads(own, base)
+    yield from _bodies(own, base)
+    yield from _primitives(own, base, file)
+    yield from _documentation(own)
+
+
+def _statements(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
+    for each in own:
+        if each.kind not in HARMLESS:
+            why = REFUSED.get(each.kind, "a rule file holds rules and facts alone")
+            yield Finding(
+                each.place, "refused-statement", f"#{each.kind} is refused: {why}.",
+                "Remove it; write rules as head :- body.",
+            )  # fmt: skip
+        for place in each.external:
+            yield Finding(
+                place, "external-function", "an @function calls code; rules are logic alone.",
+                "Compute with + - * / and comparisons, or take a measurement of the extractors.",
+            )  # fmt: skip
+        if each.kind == "definition" and each.defines in base.constants:
+            yield Finding(
+                each.place, "taken-constant", f"constant {each.defines} is set by the rule base.",
+                "Give yours another name.",
+            )  # fmt: skip
+        if each.head_kind in HEADS:
+            message, remedy = HEADS[each.head_kind]
+            yield Finding(each.place, f"{each.head_kind}-head", f"{message}.", remedy)
+        for literal in each.body:
+            if literal.kind == "theory":
+                yield Finding(
+                    literal.place, "refused-statement", "theories are not known here.",
+                    "Compare numbers with < <= = != >= >.",
+                )  # fmt: skip
+
+
+def _heads(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
+    taken = base.heads | base.inputs
+    arities = dict(AUTHORED.keys())
+    for each in own:
+        for head in each.heads:
+            if head.signature in AUTHORED:
+                continue
+            name, arity = head.signature
+            if head.signature in taken:
+                yield Finding(
+                    head.place, "redefined-predicate",
+                    f"{name}/{arity} is the rule base's own; a file may not add to it.",
+                    f"Give yours another name, or state one of {_listed(AUTHORED)}.",
+                )  # fmt: skip
+            elif name in arities:
+                yield Finding(
+                    head.place, "wrong-arity",
+                    f"{name} has {arities[name]} arguments, not {arity}.",
+                    f"Write it like {AUTHORED[name, arities[name]]}.",
+                )  # fmt: skip
+
+
+def _bodies(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
+    words = base.heads | base.inputs | heads_of(own) | set(AUTHORED)
+    words -= {("because", 3), ("because_part", 3)}
+    for each in own:
+        for literal in each.body:
+            for atom in literal.atoms:
+                if atom.signature not in words:
+                    yield _unknown(atom, words)
+
+
+def _unknown(atom: Atom, words: Iterable[Signature]) -> Finding:
+    name, arity = atom.signature
+    arities = sorted(count for word, count in words if word == name)
+    if arities:
+        allowed = " or ".join(map(str, arities))
+        return Finding(
+            atom.place, "wrong-arity", f"{name} has {allowed} arguments, not {arity}.",
+            "`capar rules show` of a primitive that uses it shows their order.",
+        )  # fmt: skip
+    near = get_close_matches(name, sorted({word for word, _ in words}), n=3, cutoff=0.5)
+    hint = (
+        f"The nearest are {', '.join(near)}."
+        if near
+        else (f"There are {', '.join(sorted({word for word, _ in words})[:12])} and more.")
+    )
+    return Finding(atom.place, "unknown-predicate", f"there is no predicate {name}/{arity}.", hint)
+
+
+def introduced_names(own: Iterable[Statement]) -> set[str]:
+    """The primitives that rules state."""
+    return {name for name, _ in _named(own, "primitive")}
+
+
+def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Finding]:
+    mine = introduced_names(own)
+    for each in own:
+        for head in each.heads:
+            arguments = split_arguments(head.text)
+            name = head.signature[0]
+            taken = base.primitives.get(arguments[0].strip('"')) if name == "primitive" else None
+            if taken:
+                yield Finding(
+                    head.place, "taken-name",
+                    f"there is a primitive {arguments[0]} already, in {taken}.",
+                    "Choose another name, or take one of the two files away.",
+                )  # fmt: skip
+            at = {"fits": 1, "feature_row": 0, "specialises": 0, "verb": 0}.get(name)
+            if at is None or (name, len(arguments)) not in AUTHORED:
+                continue
+            subjects = arguments if name == "specialises" else [arguments[at]]
+            quoted = all(each.startswith('"') for each in subjects)
+            if name == "fits" and not quoted:
+                continue  # The quotes that are missing are told with other slips.
+            if not quoted or not {each.strip('"') for each in subjects} & mine:
+                yield Finding(
+                    head.place, "foreign-name",
+                    f"{name} is stated of {arguments[at]}, which this file does not introduce.",
+                    f'It may speak of {", ".join(sorted(mine)) or "what it introduces"}; '
+                    f'state primitive("Name") first.',
+                )  # fmt: skip
+            if name == "specialises":
+                yield from _ordered(head, arguments, mine | set(base.primitives))
+                if _circular(arguments, [*base.rules, *own]):
+                    yield Finding(
+                        head.place, "circular", f"{head.text} makes a circle: neither would ever "
+                        "be named.", "State only which is the more specific.",
+                    )  # fmt: skip
+            if name == "feature_row":
+                yield from _row(head, arguments)
+    if not mine:
+        yield Finding(
+            Place(file, 1, 1), "no-primitive", "the file introduces no primitive.",
+            'State one, such as primitive("Lift").',
+        )  # fmt: skip
+
+
+def _circular(arguments: Sequence[str], rules: Iterable[Statement]) -> bool:
+    """Whether what is said to be more general comes to specialise it."""
+    general: dict[str, set[str]] = {}
+    for each in rules:
+        for head in each.heads:
+            if head.signature == ("specialises", 2):
+                name, other = split_arguments(head.text)
+                general.setdefault(name, set()).add(other)
+    seen, waiting = set(), [arguments[1]]
+    while waiting:
+        name = waiting.pop()
+        if name not in seen:
+            seen.add(name)
+            waiting += sorted(general.get(name, ()))
+    return arguments[0] in seen
+
+
+def _ordered(head: Atom, arguments: Sequence[str], names: set[str]) -> Iterator[Finding]:
+    for each in arguments:
+        if each.strip('"') not in names:
+            close = get_close_matches(each.strip('"'), sorted(names), n=1)
+            yield Finding(
+                head.place, "unknown-primitive", f"there is no primitive {each}.",
+                f"Did you mean {close[0]}?" if close else f"There are {', '.join(sorted(names))}.",
+            )  # fmt: skip
+
+
+def _row(head: Atom, arguments: Sequence[str]) -> Iterator[Finding]:
+    strings = [each.strip('"') for each in arguments[2:]]
+    count = len(strings[2])
+    right = (max(2 * count - 1, 0), max(2 * count - 1, 0), count, count)
+    if tuple(map(len, strings)) != right or set("".join(strings)) - {"0", "1"}:
+        yield Finding(
+            head.place, "wrong-bits", f"{head.text} is no feature set.",
+            f"Over {count} objects the strings have {', '.join(map(str, right))} bits, 0 or 1.",
+        )  # fmt: skip
+
+
+def _documentation(own: Sequence[Statement]) -> Iterator[Finding]:
+    if own and not (own[0].kind == "comment" and re.match(r"%\*\s*\w+:\s+\S", own[0].text)):
+        yield Finding(
+            own[0].place, "no-definition", "the file does not open with its definition in words.",
+            "Begin it with a line such as %* Lift: a possessed object goes up. *%", NOTE,
+        )  # fmt: skip
+
+
+def _named(rules: Iterable[Statement], predicate: str) -> Iterator[tuple[str, str]]:
+    """What facts of a predicate of one argument name, each with the file that says so."""
+    for each in rules:
+        for head in each.heads:
+            if head.signature == (predicate, 1):
+                yield split_arguments(head.text)[0].strip('"'), each.place.file
+
+
+def _listed(signatures: Iterable[Signature]) -> str:
+    return ", ".join(f"{name}/{arity}" for name, arity in signatures)

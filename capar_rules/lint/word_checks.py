@@ -1,0 +1,196 @@
+"""Slips of the pen that are no mistakes of logic: constants for variables, words that are none."""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from difflib import get_close_matches
+
+from capar_rules.authoring.user_rules import ACTION_NAME
+from capar_rules.engine.slicing import FITS
+from capar_rules.engine.syntax import Atom, Statement, split_arguments
+from capar_rules.lint.findings import ERROR, NOTE, Finding
+from capar_rules.lint.text_checks import AUTHORED, Known, introduced_names
+from capar_rules.lint.word_places import (
+    CONSTANT,
+    KINDS,
+    STRING,
+    VARIABLE,
+    Slot,
+    arguments_of,
+    closed,
+)
+
+MOST = 12
+"""How many words a finding lists where none is near."""
+
+_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_OWN_NAME = re.compile(r"Any\d+")
+_ANY_VARIABLE = re.compile(r"(?<!\w)[A-Z]\w*'*")
+
+
+def slip_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
+    """Every finding on the words that rules use."""
+    mine = introduced_names(own)
+    names = mine | set(base.primitives)
+    words = closed([*base.rules, *(each for each in own if not _authored(each))])
+    yield from _names(own)
+    constants = base.constants | {each.defines for each in own if isinstance(each.defines, str)}
+    for each in own:
+        if each.kind != "rule":
+            continue
+        yield from _heads(each, mine)
+        for literal in each.body:
+            for atom in literal.atoms:
+                if atom.signature == FITS:
+                    yield from _fits(atom, names)
+                yield from _foreign(atom, words, constants, names)
+
+
+def _authored(rule: Statement) -> bool:
+    """Whether it states fits: what a file says of that must not widen what segments are."""
+    return any(head.signature == FITS for head in rule.heads)
+
+
+def _heads(rule: Statement, mine: set[str]) -> Iterator[Finding]:
+    for head in rule.heads:
+        if head.signature == FITS:
+            segment, name = arguments_of(head)
+            if CONSTANT.fullmatch(segment):
+                yield Finding(
+                    head.place, "constant-segment",
+                    f"{segment} is a constant here, and no segment is called that.",
+                    f"Variables begin with a capital: fits({segment.capitalize()}, {name}).",
+                )  # fmt: skip
+            if not name.startswith('"'):
+                yield _unquoted(head, name, mine)
+
+
+def _fits(atom: Atom, names: set[str]) -> Iterator[Finding]:
+    name = arguments_of(atom)[1]
+    if VARIABLE.fullmatch(name) and not _OWN_NAME.fullmatch(name):
+        if name in names:
+            yield _unquoted(atom, name, names)
+    elif CONSTANT.fullmatch(name):
+        yield _unquoted(atom, name, names)
+    elif STRING.fullmatch(name) and name.strip('"') not in names:
+        yield Finding(
+            atom.place, "unknown-primitive", f"there is no primitive {name}.",
+            _nearest(name.strip('"'), names),
+        )  # fmt: skip
+
+
+def _unquoted(atom: Atom, name: str, names: set[str]) -> Finding:
+    close = get_close_matches(name.lower(), [each.lower() for each in names], n=1)
+    meant = next((each for each in sorted(names) if [each.lower()] == close), name)
+    return Finding(
+        atom.place, "missing-quotes", f"the quotes are missing about {name}.",
+        f'Names of primitives are texts: "{meant}".',
+    )  # fmt: skip
+
+
+def _foreign(
+    atom: Atom,
+    words: Mapping[Slot, frozenset[str]],
+    constants: frozenset[str],
+    names: set[str],
+) -> Iterator[Finding]:
+    """Words at places where they can never stand, or of kinds that captures rarely have."""
+    if atom.signature in AUTHORED and atom.signature != FITS:
+        return
+    for place, text in enumerate(arguments_of(atom)):
+        known = words.get((atom.signature, place))
+        word = bool(CONSTANT.fullmatch(text) or STRING.fullmatch(text))
+        if known is None or not word or text in known or text in constants:
+            continue
+        primitives = frozenset(f'"{each}"' for each in names)
+        if known & primitives:
+            known |= primitives
+        if text in known or (atom.signature == FITS and place == 1):
+            continue
+        bare = sorted(each.strip('"') for each in known if not each.endswith("("))
+        if f'"{text}"' in known:
+            code, message, remedy = (
+                "missing-quotes", f"the quotes are missing about {text}.", f'Write "{text}".'
+            )  # fmt: skip
+        elif text.strip('"') in known:
+            code, message, remedy = (
+                "needless-quotes", f"{text} stands without quotes in {atom.signature[0]}.",
+                f"Write {text.strip(chr(34))}.",
+            )  # fmt: skip
+        elif not bare:
+            code, message, remedy = (
+                "constant-argument", f"{text} is a constant in {atom.text}, and can never stand "
+                "there.", f"Variables begin with a capital: {text.capitalize()}.",
+            )  # fmt: skip
+        else:
+            code, message, remedy = (
+                "unknown-word", f"{text} is no word that {atom.signature[0]} has in place "
+                f"{place + 1}.",
+                _nearest(text.strip('"'), bare),
+            )  # fmt: skip
+        yield Finding(atom.place, code, message, remedy, NOTE if known == KINDS else ERROR)
+
+
+def _names(own: Iterable[Statement]) -> Iterator[Finding]:
+    """Names that no primitive may bear."""
+    for each in own:
+        for head in each.heads:
+            if head.signature == ("primitive", 1):
+                (argument,) = split_arguments(head.text)
+                name = argument.strip('"')
+                if not argument.startswith('"'):
+                    yield Finding(
+                        head.place, "missing-quotes", f"the quotes are missing about {argument}.",
+                        f'Names of primitives are texts: primitive("{argument.capitalize()}").',
+                    )  # fmt: skip
+                elif not ACTION_NAME.fullmatch(name):
+                    yield Finding(
+                        head.place, "bad-name", f"{argument} is no name of a primitive.",
+                        "A capital comes first, then letters and digits alone: MoveObjTo.",
+                    )  # fmt: skip
+
+
+def fitting_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
+    """Primitives that no segment can fit, as nothing says when; others may yet specialise them."""
+    heads = [head for each in (*base.rules, *own) for head in each.heads]
+    where = {("fits", 2): 1, ("feature_row", 6): 0, ("specialises", 2): 1}
+    spoken = {
+        split_arguments(each.text)[where[each.signature]].strip('"')
+        for each in heads
+        if each.signature in where
+    }
+    for each in own:
+        for head in each.heads:
+            if head.signature == ("primitive", 1):
+                (argument,) = split_arguments(head.text)
+                if argument.strip('"') not in spoken:
+                    yield Finding(
+                        head.place, "nothing-fits", f"nothing says which segments fit {argument}.",
+                        f"State a feature_row of it, or fits(Segment, {argument}) :- conditions.",
+                    )  # fmt: skip
+
+
+def single_findings(own: Iterable[Statement]) -> Iterator[Finding]:
+    """Variables that join nothing, as they occur once in their rule."""
+    for rule in own:
+        counts = Counter(_ANY_VARIABLE.findall(_TEXT.sub('""', rule.text)))
+        once = [
+            each
+            for each, count in sorted(counts.items())
+            if rule.kind == "rule" and count == 1 and not _OWN_NAME.fullmatch(each)
+        ]
+        if once:
+            several = len(once) > 1
+            yield Finding(
+                rule.place, "single-variable",
+                f"{', '.join(once)} {'occur' if several else 'occurs'} once alone in this rule.",
+                "If that is meant, write _ instead; if not, look for a slip of the pen.", NOTE,
+            )  # fmt: skip
+
+
+def _nearest(name: str, known: Iterable[str]) -> str:
+    words = sorted(known)
+    close = get_close_matches(name, words, n=1, cutoff=0.5)
+    more = f" and {len(words) - MOST} more" if len(words) > MOST else ""
+    there = f"There are {', '.join(words[:MOST])}{more}."
+    return f"Did you mean {close[0]}?" if close else there

@@ -1,0 +1,1 @@
+"""From atoms to segments, PARs and one complex PAR."""

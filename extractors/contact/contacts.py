@@ -1,0 +1,155 @@
+"""Which bodies touch, from which frame to which, at every frame of a capture (thesis 3.2)."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from capar.model import geometry
+from capar.model.capture import Capture, PivotContact, Sensor, TagObject, TagType
+from extractors.contact.proximity import Body, body, near, nearest
+from extractors.contact.surfaces import surface
+from extractors.signals.filters import gains
+from extractors.signals.intervals import Interval, intervals
+from extractors.signals.poses import Poses
+from extractors.thresholds import Thresholds
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Two bodies that touch through a closed interval of frames; an end-effector is first."""
+
+    first: str
+    second: str
+    interval: Interval
+    gap_m: float
+    """How far they are apart at its first frame [m]; zero where they cut each other."""
+
+
+def contact_tolerance(
+    capture: Capture, noises_m: Mapping[str, float], thresholds: Thresholds
+) -> float:
+    """Distance up to which bodies count as touching [m].
+
+    The capture's own, else three deviations of the noisiest acting sensor, between 5 and 10 mm.
+    """
+    if capture.contact_tolerance_m is not None:
+        return capture.contact_tolerance_m
+    noise = max((noises_m[each.name] for each in capture.acting), default=0.0)
+    wide = thresholds.tolerance_sigmas * noise
+    return min(max(wide, thresholds.tolerance_least_m), thresholds.tolerance_most_m)
+
+
+def contacts(
+    capture: Capture,
+    where: Mapping[tuple[str, str], Poses],
+    *,
+    tolerance_m: float,
+    thresholds: Thresholds,
+) -> tuple[Contact, ...]:
+    """Every contact that is watched for: acting sensors and mobile objects with tag objects.
+
+    A contact that is there before and after a body was lost is taken to last in between, however
+    long; one that is there on one side alone ends, or begins, where the body was last, or first,
+    seen (spec 3).
+
+    Args:
+        capture: The trial.
+        where: Poses by ``("sensor", name)`` and ``("object", name)``.
+        tolerance_m: Distance up to which bodies count as touching [m].
+        thresholds: Least durations of contacts and of their interruptions.
+    """
+    bodies = {key: _body(capture, key, each) for key, each in where.items()}
+    found: list[Contact] = []
+    for first, second in watched(capture):
+        pivot = _pivot(capture, first[1], second[1])
+        one, two = bodies[first], bodies[second]
+        if pivot is not None:
+            apart = _apart(where[first], where[second])
+            touching = np.nan_to_num(apart, nan=np.inf) <= pivot.distance_m
+        elif one is not None and two is not None:
+            touching = near(one, two, distance_m=tolerance_m)
+            margin = _margin(where[first], where[second], capture.rate_hz, thresholds)
+            if margin > 0.0 and touching.any():
+                release = tolerance_m + min(margin, tolerance_m)
+                touching = bridged(touching, near(one, two, distance_m=release))
+        else:
+            continue
+        # Where a body was lost nothing begins or ends: what touched before and after has touched.
+        touching = bridged(touching, where[first].lost | where[second].lost)
+        for interval in intervals(
+            touching,
+            capture.times,
+            dropout_s=thresholds.dropout_s,
+            minimum_s=thresholds.contact_minimum_s,
+        ):
+            if pivot is not None or one is None or two is None:
+                gap = float(_apart(where[first], where[second])[interval[0]])
+            else:
+                gap = nearest(one, two, interval[0])[0]
+            found.append(Contact(first[1], second[1], interval, gap))
+    return tuple(found)
+
+
+def watched(capture: Capture) -> Iterator[tuple[tuple[str, str], tuple[str, str]]]:
+    """Pairs of bodies whose contact matters, by kind and name, each once.
+
+    Each acting sensor with each tag object but itself; each mobile object with each other tag
+    object. Of an object that is also an acting sensor both are watched: it may be handled too.
+    """
+    for sensor in capture.acting:
+        for each in capture.objects:
+            if each.name != sensor.name:
+                yield ("sensor", sensor.name), ("object", each.name)
+    mobile = sorted(each.name for each in capture.objects if each.tag is TagType.MOBILE)
+    for name in mobile:
+        for each in sorted(capture.objects, key=lambda other: other.name):
+            if each.name != name and not (each.tag is TagType.MOBILE and each.name < name):
+                yield ("object", name), ("object", each.name)
+
+
+def bridged(
+    touching: Bool[np.ndarray, "frames"], near_by: Bool[np.ndarray, "frames"]
+) -> Bool[np.ndarray, "frames"]:
+    """Contact that also lasts between two of its frames if the bodies stay near by throughout."""
+    out = touching.copy()
+    for first, last in geometry.gaps(near_by | touching):
+        inside = np.flatnonzero(touching[first : last + 1])
+        if inside.size:
+            out[first + inside[0] : first + inside[-1] + 1] = True
+    return out
+
+
+def _margin(first: Poses, second: Poses, rate_hz: float, thresholds: Thresholds) -> float:
+    """Room for what noise is left in the distance of two bodies [m]; none for quiet ones."""
+    noises = [each.noise.position_m for each in (first, second) if not each.rests]
+    noisy = [each for each in noises if each > thresholds.smoothing_noise_m]
+    left = thresholds.release_sigmas * gains(rate_hz, thresholds)[0]
+    return left * float(np.linalg.norm(noisy)) if noisy else 0.0
+
+
+def shaped(capture: Capture, key: tuple[str, str], where: Poses) -> Body | None:
+    """The surface of a sensor or object at its poses; None if it has no shape."""
+    return _body(capture, key, where)
+
+
+def _body(capture: Capture, key: tuple[str, str], where: Poses) -> Body | None:
+    kind, name = key
+    each: Sensor | TagObject
+    each = capture.sensor(name) if kind == "sensor" else capture.tag_object(name)
+    if each.shape is None:
+        return None
+    return body(surface(each.shape), where.settled, rests=where.rests)
+
+
+def _pivot(capture: Capture, first: str, second: str) -> PivotContact | None:
+    for each in capture.pivot_contacts:
+        if {each.first, each.second} == {first, second}:
+            return each
+    return None
+
+
+def _apart(first: Poses, second: Poses) -> Float[np.ndarray, "frames"]:
+    """Distance of two bodies' origins [m]; NaN where either is lost."""
+    return np.linalg.norm(first.settled.positions - second.settled.positions, axis=1)

@@ -1,0 +1,122 @@
+"""Surfaces ready for questions of contact: trees of triangles, shells, and what lies inside."""
+
+from collections import OrderedDict
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+
+import fcl
+import numpy as np
+import trimesh
+from jaxtyping import Bool, Float, Int
+
+from capar.model.capture import Shape
+from extractors.contact.offset_surfaces import EXACTNESS_M, shell
+
+
+@dataclass(frozen=True, eq=False)
+class Shell:
+    """Triangles at a distance of a surface, and their tree for the proximity library."""
+
+    tree: fcl.BVHModel
+    triangles: Float[np.ndarray, "triangles 3 3"]
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A shape's triangles with what questions of contact need of them, made once."""
+
+    shape: Shape
+
+    @cached_property
+    def mesh(self) -> trimesh.Trimesh:
+        """The triangles, corners that coincide joined."""
+        out = trimesh.Trimesh(
+            np.array(self.shape.vertices), np.array(self.shape.faces), process=False
+        )
+        out.merge_vertices()
+        return out
+
+    @cached_property
+    def tree(self) -> fcl.BVHModel:
+        """The triangles for the proximity library."""
+        return tree(np.asarray(self.mesh.vertices), np.asarray(self.mesh.faces))
+
+    @cached_property
+    def triangles(self) -> Float[np.ndarray, "faces 3 3"]:
+        """Corners of each triangle of that tree [m]."""
+        return np.array(self.mesh.triangles, float)
+
+    @cached_property
+    def closed(self) -> bool:
+        """Whether it bounds a solid."""
+        return bool(self.mesh.is_watertight and self.mesh.is_winding_consistent)
+
+    @cached_property
+    def centre(self) -> Float[np.ndarray, "3"]:
+        """Middle of its box [m], in the body's frame."""
+        return np.asarray(self.shape.bounds.mean(axis=0))
+
+    @cached_property
+    def radius(self) -> float:
+        """Distance of the corner furthest from that middle [m]."""
+        return float(np.linalg.norm(self.shape.vertices - self.centre, axis=1).max())
+
+    @cached_property
+    def faces(self) -> int:
+        """The number of triangles."""
+        return len(self.shape.faces)
+
+    @cached_property
+    def _shells(self) -> dict[tuple[float, float], Shell]:
+        return {}
+
+    def shell(self, distance_m: float, *, exactness_m: float = EXACTNESS_M) -> Shell:
+        """The shell at that distance [m], made when first asked for; at none, the surface."""
+        key = distance_m, exactness_m
+        if key not in self._shells:
+            self._shells[key] = self._shell(distance_m, exactness_m)
+        return self._shells[key]
+
+    def _shell(self, distance_m: float, exactness_m: float) -> Shell:
+        if distance_m <= 0.0:
+            return Shell(self.tree, self.triangles)
+        parts = shell(self.mesh, distance_m, closed=self.closed, exactness_m=exactness_m)
+        faces = np.arange(3 * len(parts)).reshape(-1, 3)
+        return Shell(tree(parts.reshape(-1, 3), faces), parts)
+
+    def contains(self, points: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, "points"]:
+        """Whether points [m, body's frame] lie in the solid; never, if it bounds none."""
+        low, high = self.shape.bounds
+        inside = ((points >= low) & (points <= high)).all(axis=1)
+        if self.closed and inside.any():
+            inside[inside] = self.mesh.contains(points[inside])
+            return np.asarray(inside)
+        return np.zeros(len(points), dtype=bool)
+
+
+_KEPT: OrderedDict[bytes, Surface] = OrderedDict()
+"""Surfaces by what they are made of, the latest last."""
+
+_MOST_KEPT = 256
+
+
+def surface(shape: Shape) -> Surface:
+    """The surface of a shape; equal triangles share one, with its trees and shells."""
+    digest = sha256(shape.vertices.tobytes() + b"/" + shape.faces.tobytes()).digest()
+    found = _KEPT.pop(digest, None) or Surface(shape)
+    _KEPT[digest] = found
+    while len(_KEPT) > _MOST_KEPT:
+        _KEPT.popitem(last=False)
+    return found
+
+
+def tree(
+    vertices: Float[np.ndarray, "vertices 3"], faces: Int[np.ndarray, "faces 3"]
+) -> fcl.BVHModel:
+    """Triangles for the proximity library."""
+    model = fcl.BVHModel()
+    model.beginModel(len(faces), len(vertices))
+    model.addSubModel(np.ascontiguousarray(vertices, float), np.ascontiguousarray(faces))
+    model.endModel()
+    return model

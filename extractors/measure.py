@@ -1,0 +1,270 @@
+"""All measurements of a capture, as ground facts and the arrays that later stages need."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from capar.model.capture import Capture, Notice, Purpose, Sensor, ShapeSource, TagObject, TagType
+from capar.model.facts import (
+    MEASURED,
+    Displaced,
+    Fact,
+    ForceTransfer,
+    Frames,
+    Gap,
+    Intended,
+    Link,
+    LookingAt,
+    Moving,
+    OfAgent,
+    Pause,
+    RateMhz,
+    Tag,
+    Touching,
+    ZeroCrossing,
+)
+from extractors.contact.contacts import Contact, contact_tolerance, contacts
+from extractors.handling import handling
+from extractors.motion.motion_edges import motion_edges
+from extractors.motion.object_motion import motion_floor, moving, stays
+from extractors.relations.attention import Attention, attention
+from extractors.relations.weight_bearing import TRUNK
+from extractors.signals.filters import speed
+from extractors.signals.gaps import long_gaps
+from extractors.signals.poses import Poses, poses
+from extractors.signals.zero_crossings import pauses, zero_crossings
+from extractors.thresholds import Thresholds
+
+ANY = "any"
+"""What an empty field of a purpose is in a fact."""
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """The low-passed motion of one tracking sensor."""
+
+    positions: Float[np.ndarray, "frames 3"]
+    """World positions [m]; NaN where lost."""
+
+    speed_mps: Float[np.ndarray, "frames"]
+    crossings: Int[np.ndarray, "crossings"]
+    """Frames at which its acceleration crosses zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class Measurements:
+    """What was measured in a capture; no word of what was done."""
+
+    facts: tuple[Fact, ...]
+    """In the order of ``capar.model.facts.MEASURED``, then by value."""
+
+    notices: tuple[Notice, ...]
+    """What the capture's user ought to know, the capture's own first."""
+
+    tolerance_m: float
+    """Distance up to which bodies counted as touching [m]."""
+
+    tracks: Mapping[str, Track]
+    """By sensor, acting or attending."""
+
+    attention: Mapping[str, Attention]
+    """By sensor that attends, and by head that acts."""
+
+    poses: Mapping[tuple[str, str], Poses]
+    """By ``("sensor", name)`` and ``("object", name)``."""
+
+
+def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measurements:
+    """Measure a capture: zero crossings, contacts, motions and looks, as facts.
+
+    Args:
+        capture: The trial.
+        thresholds: What separates motion from rest and contact from nearness; None for the
+            usual ones.
+    """
+    limits = thresholds or Thresholds()
+    where = {("sensor", each.name): poses(each, limits) for each in capture.sensors}
+    where |= {("object", each.name): poses(each, limits) for each in capture.objects}
+    noises = {each.name: where["sensor", each.name].noise.position_m for each in capture.sensors}
+    tolerance = contact_tolerance(capture, noises, limits)
+    tracks = {each.name: _track(where["sensor", each.name], limits) for each in capture.sensors}
+    looks = {each.name: attention(capture, each, where, limits) for each in _seeing(capture)}
+    touches = contacts(
+        capture, where, tolerance_m=tolerance, thresholds=_of_contact(capture, limits)
+    )
+    facts = [
+        *_scene(capture),
+        *(
+            ZeroCrossing(each.name, int(frame))
+            for each in capture.acting
+            for frame in tracks[each.name].crossings
+        ),
+        *(
+            Pause(each.name, int(frame))
+            for each in capture.acting
+            for frame in pauses(tracks[each.name].speed_mps, tracks[each.name].crossings)
+        ),
+        *_touching(capture, touches),
+        *_moving(capture, where, limits),
+        *(
+            LookingAt(sensor, name, *interval)
+            for sensor, look in looks.items()
+            for name, interval in look.looks
+        ),
+    ]
+    facts += handling(capture, where, facts, limits)
+    own = [each for each in capture.notices if each.code != LOSS]
+    notices = (*own, *_notices(capture, tolerance, limits))
+    return Measurements(_ordered(facts), notices, tolerance, tracks, looks, where)
+
+
+LOSS = "long-gap"
+"""The notice of a body that was lost for long: one a body, in place of the reader's one a gap."""
+
+HEAD = "head"
+"""The general type of an end-effector that carries the eyes, whether it attends or acts."""
+
+
+def _seeing(capture: Capture) -> tuple[Sensor, ...]:
+    """Every sensor with a line of sight: heads, and what attends and is no trunk."""
+    attending = {each.name for each in capture.attending if each.end_effector not in TRUNK}
+    return tuple(
+        each for each in capture.sensors if each.name in attending or each.end_effector == HEAD
+    )
+
+
+def _of_contact(capture: Capture, thresholds: Thresholds) -> Thresholds:
+    """The thresholds of contact, where the capture states its own."""
+    dropout, minimum = capture.contact_dropout_s, capture.contact_minimum_s
+    return replace(
+        thresholds,
+        dropout_s=thresholds.dropout_s if dropout is None else dropout,
+        contact_minimum_s=thresholds.contact_minimum_s if minimum is None else minimum,
+    )
+
+
+def _track(where: Poses, thresholds: Thresholds) -> Track:
+    stream = where.smooth
+    pace = speed(stream.positions, stream.times)
+    crossings = zero_crossings(
+        pace, stream.times, noise_m=where.noise.position_m, thresholds=thresholds
+    )
+    return Track(stream.positions, pace, crossings)
+
+
+def _scene(capture: Capture) -> Iterator[Fact]:
+    yield Frames(0, len(capture.times) - 1)
+    yield RateMhz(round(1000.0 * capture.rate_hz))
+    for sensor in capture.acting:
+        yield Link(sensor.name, sensor.end_effector, sensor.side)
+    for each in capture.objects:
+        yield Tag(each.name, each.tag.value)
+    if capture.others:
+        own = [each for each in capture.objects if each.tag is TagType.SELF]
+        bodies: tuple[Sensor | TagObject, ...] = (*capture.acting, *_seeing(capture), *own)
+        for body in bodies:
+            yield OfAgent(body.name, capture.agent_of(body))
+    if capture.force_transfer:
+        yield ForceTransfer()
+    for rank, purpose in enumerate(capture.purposes):
+        yield _intended(rank, purpose)
+
+
+def _intended(rank: int, purpose: Purpose) -> Intended:
+    return Intended(
+        rank, purpose.action or ANY, purpose.object or ANY, purpose.goal or ANY, purpose.purpose
+    )
+
+
+def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
+    """Each contact; of two mobile objects either may be the dominant one: stated both ways."""
+    mobile = {each.name for each in capture.objects if each.tag is TagType.MOBILE}
+    acting = {each.name for each in capture.acting}
+    for each in touches:
+        orders = [(each.first, each.second)]
+        if each.first in mobile - acting and each.second in mobile - acting:
+            orders.append((each.second, each.first))
+        for first, second in orders:
+            yield Touching(first, second, *each.interval)
+            yield Gap(first, second, each.interval[0], round(1e6 * each.gap_m))
+
+
+def _moving(
+    capture: Capture, where: Mapping[tuple[str, str], Poses], thresholds: Thresholds
+) -> Iterator[Fact]:
+    """When each object moves, as its floor tells, and when that truly began and ended."""
+    for each in capture.objects:
+        if each.tag is TagType.MOBILE:
+            pose = where["object", each.name]
+            floor = motion_floor(
+                pose.noise, capture.rate_hz, own_m=each.motion_floor_m, thresholds=thresholds
+            )
+            rests = stays(pose, floor, thresholds)
+            for interval in moving(pose, floor, thresholds):
+                yield Moving(each.name, *interval)
+                yield Displaced(each.name, *motion_edges(pose, interval, rests, thresholds))
+
+
+def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:
+    """Facts by kind, then by value, each once."""
+    rank = {kind: index for index, kind in enumerate(MEASURED)}
+    return tuple(
+        fact
+        for kind in sorted({type(each) for each in facts}, key=rank.__getitem__)
+        for fact in sorted({each for each in facts if type(each) is kind})
+    )
+
+
+def _notices(capture: Capture, tolerance_m: float, thresholds: Thresholds) -> Iterator[Notice]:
+    source = (
+        "as the capture states"
+        if capture.contact_tolerance_m is not None
+        else ("from the sensors' noise at rest")
+    )
+    yield Notice(
+        "contact-tolerance", f"bodies count as touching within {1e3 * tolerance_m:.1f} mm, {source}"
+    )
+    for pair in capture.pivot_contacts:
+        yield Notice(
+            "pivot-distance",
+            f"{pair.first!r} and {pair.second!r} count as touching while their origins are "
+            f"within {1e3 * pair.distance_m:.0f} mm",
+        )
+    pivots = {name for pair in capture.pivot_contacts for name in (pair.first, pair.second)}
+    touching: tuple[Sensor | TagObject, ...] = (*capture.acting, *capture.objects)
+    for each in touching:
+        if each.shape is None and each.name not in pivots:
+            yield Notice("no-shape", f"{each.name!r} has no shape, so no contact of it is known")
+        elif each.shape is not None and each.shape.source is ShapeSource.STAND_IN:
+            yield Notice("stand-in-shape", f"{each.name!r} is a stand-in: {each.shape.description}")
+    yield from _pose_notices(capture, thresholds)
+
+
+def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
+    everything: tuple[Sensor | TagObject, ...] = (*capture.sensors, *capture.objects)
+    for each in everything:
+        if isinstance(each, TagObject) and each.assumed:
+            yield Notice("assumed-support", f"{each.name!r} is assumed: {each.assumed}")
+        lost = [
+            (first, last)
+            for first, last in long_gaps(each.stream, gap_s=thresholds.gap_s)
+            if last - first + 1 >= thresholds.gap_s * capture.rate_hz
+        ]
+        if lost:
+            fixed = isinstance(each, TagObject) and each.tag is TagType.FIXED
+            told = _when(lost, capture, fixed=fixed)
+            yield Notice(LOSS, f"{each.name!r} was lost {told}")
+
+
+def _when(lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> str:
+    """How often a body was lost for long, when at most, and what follows."""
+    first, last = max(lost, key=lambda gap: gap[1] - gap[0])
+    if last - first + 1 == len(capture.times):
+        return "throughout; no contact of it is known"
+    often = {1: "once", 2: "twice"}.get(len(lost), f"{len(lost)} times")
+    most = " at most" if len(lost) > 1 else ""
+    span = f"{capture.times[first]:.2f} to {capture.times[last]:.2f} s"
+    follows = "it is held to stay" if fixed else "a contact before and after is taken to last"
+    return f"{often} for long,{most} from {span}; {follows}"

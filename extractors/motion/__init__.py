@@ -1,0 +1,1 @@
+"""When and how bodies move and rest."""

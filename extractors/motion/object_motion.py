@@ -1,0 +1,194 @@
+"""When an object is away from each place where it rests (thesis 4.4.1)."""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.ndimage import uniform_filter1d
+
+from capar.model import geometry
+from capar.model.capture import Stream
+from extractors.signals.filters import gains
+from extractors.signals.intervals import Interval, first_where, intervals, last_where, mask
+from extractors.signals.noise import Noise
+from extractors.signals.poses import Poses, median_pose
+from extractors.thresholds import Thresholds
+
+
+@dataclass(frozen=True, eq=False)
+class Stay:
+    """A place where an object rests, and the frames through which it is there."""
+
+    interval: Interval
+    position: Float[np.ndarray, "3"]
+    """World position [m]."""
+
+    orientation: Float[np.ndarray, "4"]
+    """Unit quaternion w x y z."""
+
+
+@dataclass(frozen=True, slots=True)
+class Floor:
+    """Displacement from a place below which an object is still there."""
+
+    position_m: float
+    rotation_rad: float
+
+
+def motion_floor(
+    noise: Noise, rate_hz: float, *, own_m: float | None, thresholds: Thresholds
+) -> Floor:
+    """The floor of an object's motion: its own if it has one, else above the noise.
+
+    Args:
+        noise: Noise of the object's unfiltered stream.
+        rate_hz: Frames a second [Hz].
+        own_m: The floor that the capture states for this object [m], which holds as it is.
+        thresholds: Least floors, and deviations of noise that they must exceed.
+    """
+    left = thresholds.motion_sigmas * gains(rate_hz, thresholds)[0]
+    place = max(thresholds.motion_floor_m, left * noise.position_m)
+    turn = max(thresholds.motion_floor_rad, left * noise.orientation_rad)
+    if own_m is None:
+        return Floor(place, turn)
+    # What gives way under a hand also turns: the angle grows as the length does.
+    return Floor(own_m, max(turn, thresholds.motion_floor_rad * own_m / thresholds.motion_floor_m))
+
+
+def stays(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Stay, ...]:
+    """Places where the object rests, in time, with all frames at which it is not beyond the floor.
+
+    A stay grows from a stretch in which the object is slow for the least duration of rest; its
+    place is the middle of the poses there; it holds all contiguous frames within the floor of
+    that place, so the last millimetres of a landing belong to it.
+    """
+    stream = where.smooth
+    times = stream.times
+    rate_hz = 1.0 / float(np.median(np.diff(times)))
+    calm = slow(stream, where.noise, rate_hz, thresholds)
+    found: list[Stay] = []
+    for first, last in intervals(calm, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
+        if found and last <= found[-1].interval[1]:
+            continue
+        found.append(_stay(stream, (first, last), floor))
+    return tuple(found)
+
+
+def moving(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Interval, ...]:
+    """Closed intervals of frames in which the object is at none of the places where it rests.
+
+    An absence from a place counts if it lasts, or if the next place is beyond the floor from it:
+    what rests here and then there has moved in between, however quickly. Frames in which it was
+    lost count as motion only if it lies elsewhere afterwards.
+    """
+    stream = where.smooth
+    rests = stays(where, floor, thresholds)
+    away = ~mask([each.interval for each in rests], len(stream.times)) & ~stream.lost
+    for first, last in geometry.gaps(stream.lost):
+        if first > 0 and last < len(stream.times) - 1 and _moved(stream, first, last, floor):
+            away[first : last + 1] = True
+    changes = _changes(rests, floor)
+    lasting = set(
+        intervals(away, stream.times, dropout_s=0.0, minimum_s=thresholds.moving_minimum_s)
+    )
+    return tuple(
+        each
+        for each in geometry.gaps(away)
+        if each in lasting or any(_meet(each, change) for change in changes)
+    )
+
+
+def _changes(rests: tuple[Stay, ...], floor: Floor) -> list[Interval]:
+    """The frames between two places of rest that are farther apart than the floor."""
+    out: list[Interval] = []
+    for one, two in pairwise(rests):
+        apart = float(np.linalg.norm(two.position - one.position))
+        angle = float(geometry.angle_between(two.orientation[None], one.orientation[None])[0])
+        if apart > floor.position_m or angle > floor.rotation_rad:
+            left, come = one.interval[1], two.interval[0]
+            if come > left + 1:
+                out.append((left + 1, come - 1))
+    return out
+
+
+def _meet(one: Interval, other: Interval) -> bool:
+    return one[0] <= other[1] and other[0] <= one[1]
+
+
+def slow(
+    stream: Stream, noise: Noise, rate_hz: float, thresholds: Thresholds
+) -> Bool[np.ndarray, "frames"]:
+    """Whether the way's slope over the window of rest is no more than noise makes it."""
+    half = max(1, round(0.5 * thresholds.rest_window_s * rate_hz))
+    # Least squares over n samples: the slope's deviation is sigma sqrt(12 / n^3) a step.
+    left = thresholds.rest_sigmas * rate_hz * np.sqrt(3.0 * 12.0 / (2 * half + 1) ** 3)
+    slow = np.zeros(len(stream.times), dtype=bool)
+    for first, last in geometry.gaps(~stream.lost):
+        part = slice(first, last + 1)
+        speed = _slope(stream.positions[part], half) * rate_hz
+        # A quaternion changes by half of the angle.
+        turning = 2.0 * _slope(stream.orientations[part], half) * rate_hz
+        slow[part] = (speed < max(thresholds.rest_speed_mps, left * noise.position_m)) & (
+            turning < max(thresholds.rest_speed_radps, left * noise.orientation_rad)
+        )
+    return slow
+
+
+def _slope(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.ndarray, "frames"]:
+    """Length of the slope of a straight line fitted to the frames around each, a frame."""
+    count = len(positions)
+    half = min(half, (count - 1) // 2)
+    if half < 1:
+        return np.zeros(count)
+    index = np.arange(count, dtype=float)[:, None]
+    size = 2 * half + 1
+    centred = positions - positions.mean(axis=0)
+    mean = uniform_filter1d(centred, size, axis=0, mode="nearest")
+    moment = uniform_filter1d(centred * index, size, axis=0, mode="nearest")
+    slope = (moment - mean * index) * 3.0 / (half * (half + 1))
+    length = np.linalg.norm(slope, axis=1)
+    length[:half] = length[half]
+    length[count - half :] = length[count - half - 1]
+    return np.asarray(length)
+
+
+def _stay(stream: Stream, seed: Interval, floor: Floor) -> Stay:
+    first, last = seed
+    place, turn = median_pose(stream, slice(first, last + 1))
+    stay = Stay(seed, place, turn)
+
+    def gone(frames: slice) -> Bool[np.ndarray, "some"]:
+        return ~stands(stream, frames, stay, floor)
+
+    middle = _middle(~gone(slice(first, last + 1)), seed)
+    before, after = last_where(gone, middle - 1), first_where(gone, middle + 1, len(stream.times))
+    begin = 0 if before is None else before + 1
+    end = len(stream.times) - 1 if after is None else after - 1
+    return replace(stay, interval=(begin, end))
+
+
+def stands(stream: Stream, frames: slice, stay: Stay, floor: Floor) -> Bool[np.ndarray, "some"]:
+    """Whether an object is at a place within a floor, at each of some frames; not where lost."""
+    distance = np.linalg.norm(stream.positions[frames] - stay.position, axis=1)
+    angle = geometry.angle_between(stream.orientations[frames], stay.orientation[None])
+    with np.errstate(invalid="ignore"):
+        return np.asarray((distance <= floor.position_m) & (angle <= floor.rotation_rad))
+
+
+def _middle(there: Bool[np.ndarray, "some"], seed: Interval) -> int:
+    """A frame of the seed at which the object is at its place, the nearest to its middle."""
+    first, last = seed
+    inside = np.flatnonzero(there)
+    centre = (last - first) // 2
+    return first + int(inside[np.argmin(np.abs(inside - centre))] if inside.size else centre)
+
+
+def _moved(stream: Stream, first: int, last: int, floor: Floor) -> bool:
+    """Whether an object lies elsewhere after a loss than before."""
+    ends = [first - 1, last + 1]
+    way = float(np.linalg.norm(np.diff(stream.positions[ends], axis=0)))
+    turns = stream.orientations[ends]
+    return way > floor.position_m or bool(
+        geometry.angle_between(turns[:1], turns[1:])[0] > floor.rotation_rad
+    )

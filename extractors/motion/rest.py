@@ -1,0 +1,30 @@
+"""When an end-effector is at rest."""
+
+import numpy as np
+
+from extractors.motion.object_motion import motion_floor, slow, stays
+from extractors.signals.intervals import Interval
+from extractors.signals.poses import Poses
+from extractors.thresholds import Thresholds
+
+
+def resting(where: Poses, thresholds: Thresholds) -> tuple[Interval, ...]:
+    """Closed intervals of frames from the first to the last slow one at a place of rest.
+
+    A body that stirs a little within the floor of motion of its place rests on; its last
+    millimetres of settling and its first of leaving are motion.
+    """
+    stream = where.smooth
+    rate_hz = 1.0 / float(np.median(np.diff(stream.times)))
+    floor = motion_floor(where.noise, rate_hz, own_m=None, thresholds=thresholds)
+    calm = slow(stream, where.noise, rate_hz, thresholds)
+    found: list[Interval] = []
+    for each in stays(where, floor, thresholds):
+        first, last = each.interval
+        inside = first + np.flatnonzero(calm[first : last + 1])
+        if inside.size:
+            span = int(inside[0]), int(inside[-1])
+            if found and span[0] <= found[-1][1] + 1:
+                span = found.pop()[0], span[1]
+            found.append(span)
+    return tuple(found)

@@ -1,0 +1,1 @@
+"""A first capture.toml from what files hold."""

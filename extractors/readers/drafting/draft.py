@@ -1,0 +1,134 @@
+"""A first capture.toml from what files hold, for a person to edit."""
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from extractors.readers.bundle.names import constant_name
+from extractors.readers.drafting.clusters import limb_of, marker_sets, side_of
+from extractors.readers.recording import Recording
+
+TODO = "# EDIT:"
+"""What marks a line that a person must look at."""
+
+
+@dataclass(frozen=True)
+class _Found:
+    """A body or marker set, and where it is."""
+
+    name: str
+    file: str
+    key: str
+    """The line of TOML that names it."""
+
+
+def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
+    """A commented capture.toml for files, with paths relative to a folder."""
+    files = _files(recordings, folder)
+    lines = [f"name = {_quoted(constant_name(name))}", *_frame_lines(recordings), "", "[files]"]
+    lines += [f"{key} = {_quoted(path)}" for key, path in files.items()]
+    found = [
+        each
+        for key, recording in zip(files, recordings, strict=True)
+        for each in _found(key, recording)
+    ]
+    used: set[str] = set()
+    sensors = [each for each in found if limb_of(each.name)]
+    if not sensors and found:
+        lines += ["", f"{TODO} no name tells of a hand, head or foot; the first body is taken."]
+        sensors = found[:1]
+    for each in sensors:
+        lines += ["", *_sensor(each, used)]
+    for each in [other for other in found if other not in sensors]:
+        lines += ["", *_object(each, used)]
+    if not found:
+        lines += ["", *_nothing(recordings)]
+    return "\n".join(lines) + "\n"
+
+
+def _files(recordings: Sequence[Recording], folder: Path) -> dict[str, str]:
+    out: dict[str, str] = {}
+    for each in recordings:
+        path = Path(each.source.path)
+        key = constant_name(path.name.split(".")[0])
+        while key in out:
+            key += "_2"
+        out[key] = Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
+    return out
+
+
+def _frame_lines(recordings: Sequence[Recording]) -> list[str]:
+    lines = []
+    if any(each.unit_m is None for each in recordings):
+        lines.append(f'unit = "m"                      {TODO} m, dm, cm, mm, in or ft')
+    if any(each.up is None for each in recordings):
+        lines.append(f'up = "z"                        {TODO} the axis that points up: x, y or z')
+    lines.append('handedness = "right"            # "left" if the world is mirrored')
+    if len(recordings) > 1:
+        rate = 1.0 / min(float(each.times[1] - each.times[0]) for each in recordings)
+        lines.append(f"rate_hz = {rate:.4g}                 # every stream is brought to this")
+    return lines
+
+
+def _found(file: str, recording: Recording) -> list[_Found]:
+    bodies = [_Found(name, file, f"body = {_quoted(name)}") for name in recording.bodies]
+    unit = recording.unit_m or 1.0
+    metres = {name: points * unit for name, points in recording.markers.items()}
+    sets = marker_sets(metres)
+    return bodies + [
+        _Found(name, file, f"markers = [{', '.join(map(_quoted, members))}]")
+        for name, members in sets.items()
+    ]
+
+
+def _free_name(text: str, used: set[str]) -> str:
+    name = constant_name(text)
+    while name in used:
+        name += "_2"
+    used.add(name)
+    return name
+
+
+def _sensor(found: _Found, used: set[str]) -> list[str]:
+    limb, side = limb_of(found.name) or "hand", side_of(found.name)
+    return [
+        "[[sensor]]",
+        f"name = {_quoted(_free_name(found.name, used))}",
+        f"end_effector = {_quoted(limb)}",
+        f"side = {_quoted(side)}",
+        f"file = {_quoted(found.file)}",
+        found.key,
+        '# shape = { sphere = 0.05 }     # a stand-in, or { mesh = "..." }: contact needs one',
+    ]
+
+
+def _object(found: _Found, used: set[str]) -> list[str]:
+    name = _free_name(found.name, used)
+    return [
+        "[[object]]",
+        f"name = {_quoted(name)}",
+        f"kind = {_quoted(name)}         # its noun",
+        f'tag = "mobile"                  {TODO} self, fixed or mobile',
+        f"file = {_quoted(found.file)}",
+        found.key,
+        '# shape = { box = [0.1, 0.1, 0.1] }   # or { mesh = "mug.stl", unit = "mm" }',
+    ]
+
+
+def _nothing(recordings: Sequence[Recording]) -> list[str]:
+    names = ", ".join(name for each in recordings for name in each.names)
+    return [
+        f"{TODO} no three markers keep their distances. Say which are one body:",
+        f"# the files hold: {names}",
+        "# [[sensor]]",
+        '# name = "right_hand"',
+        '# end_effector = "hand"',
+        '# markers = ["...", "...", "..."]',
+    ]
+
+
+def _quoted(text: str) -> str:
+    """A string as TOML writes it; JSON's escapes are TOML's."""
+    return json.dumps(text, ensure_ascii=False)

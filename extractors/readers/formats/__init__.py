@@ -1,0 +1,1 @@
+"""The file formats that motion is read from, one module each."""

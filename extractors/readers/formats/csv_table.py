@@ -1,0 +1,155 @@
+"""CSV: poses and points in columns named after their bodies."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.model.errors import FileError, UnknownNameError
+from extractors.readers.files import read_text, source_of
+from extractors.readers.formats.numbers import read_rows
+from extractors.readers.recording import Recording, track, uniform_clock
+
+OPTIONS = frozenset({"time", "columns", "order", "rate_hz", "delimiter"})
+"""``time``: the column of seconds; ``columns``: body to its 3 or 7 columns; ``order``: of its
+quaternions (``xyzw``); ``rate_hz``: where there is no column of time."""
+
+TIMES = ("t_s", "time_s", "time", "t", "timestamp")
+POSE = ("x", "y", "z", "qx", "qy", "qz", "qw")
+ORDERS = {"xyzw": [3, 0, 1, 2], "wxyz": [0, 1, 2, 3]}
+"""Where w x y z stand in quaternions of each order."""
+
+
+def recognises(path: Path, head: bytes) -> bool:
+    """Whether the first line names columns and the second, if there is one, holds numbers."""
+    try:
+        lines = [each for each in head.decode("utf-8-sig", "ignore").splitlines() if each.strip()]
+    except UnicodeDecodeError:
+        return False
+    if not lines or "\0" in lines[0]:
+        return False
+    delimiter = _delimiter(lines[0])
+    names = _names(lines[0], delimiter)
+    if len(lines) == 1:
+        return len(names) > 2 and bool(_groups(names) or {*TIMES} & {n.lower() for n in names})
+    cells = lines[1].split(delimiter)
+    return (
+        len(cells) > 2
+        and any(map(_is_number, cells))
+        and not _is_number(lines[0].split(delimiter)[0])
+    )
+
+
+def read(path: Path, options: Mapping[str, Any]) -> Recording:
+    """The bodies (seven columns) and markers (three) of a table.
+
+    Raises:
+        FileError: No column of time and no rate, no row, or a row is damaged.
+        UnknownNameError: The options name a column that is not there.
+    """
+    lines = read_text(path).splitlines()
+    start = next((n for n, each in enumerate(lines) if each.strip()), 0)
+    delimiter = str(options.get("delimiter", _delimiter(lines[start])))
+    names = _names(lines[start], delimiter)
+    if len(set(names)) != len(names):
+        raise FileError(path, "names a column twice.")
+    if not any(each.strip() for each in lines[start + 1 :]):
+        raise FileError(
+            path, "holds no frames: a header, and no rows under it.", "Export it again."
+        )
+    rows = read_rows(
+        lines[start + 1 :], path=path, first_line=start + 2, columns=len(names), delimiter=delimiter
+    )
+    table = dict(zip(names, rows.T, strict=True))
+    times = _times(path, table, options)
+    groups = options.get("columns") or _groups(names)
+    return _recording(path, table, times, groups, str(options.get("order", "xyzw")))
+
+
+def _recording(
+    path: Path,
+    table: dict[str, Float[np.ndarray, "frames"]],
+    times: Float[np.ndarray, "frames"],
+    groups: Mapping[str, list[str]],
+    order: str,
+) -> Recording:
+    if order not in ORDERS:
+        raise UnknownNameError("order of quaternions", order, ORDERS, where=str(path))
+    bodies, markers = {}, {}
+    for body, columns in groups.items():
+        for column in columns:
+            if column not in table:
+                raise UnknownNameError("column", column, table, where=str(path))
+        values = np.stack([table[each] for each in columns], axis=1)
+        valid = table.get(f"{body}_valid")
+        if valid is not None:
+            values = np.where((valid > 0.5)[:, None], values, np.nan)
+        if len(columns) == 7:
+            bodies[body] = track(body, times, values[:, :3], values[:, 3:][:, ORDERS[order]])
+        elif len(columns) == 3:
+            markers[body] = values
+        else:
+            raise FileError(path, f"{body!r} has {len(columns)} columns; a body has 7, a point 3.")
+    if not bodies and not markers:
+        raise FileError(
+            path,
+            f"no columns like <body>_x,_y,_z,_qx,_qy,_qz,_qw among {sorted(table)[:12]}.",
+            "Name them in capture.toml: columns = { hand = [seven names] }.",
+        )
+    clock = times if markers else np.empty(0)
+    return Recording(
+        source=source_of(path, "csv"), bodies=bodies, markers=markers, marker_times=clock
+    )
+
+
+def _groups(names: list[str]) -> dict[str, list[str]]:
+    """Bodies and points that the columns' names tell, in their order."""
+    present = set(names)
+    out: dict[str, list[str]] = {}
+    for name in names:
+        if not name.endswith("_x"):
+            continue
+        body = name[:-2]
+        columns = [f"{body}_{each}" for each in POSE]
+        if present.issuperset(columns):
+            out[body] = columns
+        elif present.issuperset(columns[:3]):
+            out[body] = columns[:3]
+    return out
+
+
+def _times(
+    path: Path, table: dict[str, Float[np.ndarray, "frames"]], options: Mapping[str, Any]
+) -> Float[np.ndarray, "frames"]:
+    wanted = options.get("time")
+    if wanted is not None and wanted not in table:
+        raise UnknownNameError("column", str(wanted), table, where=str(path))
+    lowered = {each.lower(): each for each in reversed(list(table))}
+    name = wanted or next((lowered[each] for each in TIMES if each in lowered), None)
+    if name is not None:
+        return table[str(name)]
+    if "rate_hz" in options:
+        return uniform_clock(len(next(iter(table.values()))), float(options["rate_hz"]))
+    raise FileError(
+        path,
+        f"no column of time among {sorted(table)[:12]}.",
+        'Name it in capture.toml (time = "column") or state rate_hz.',
+    )
+
+
+def _names(line: str, delimiter: str) -> list[str]:
+    return [each.strip().strip('"') for each in line.split(delimiter)]
+
+
+def _delimiter(line: str) -> str:
+    return max(",;\t", key=line.count)
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True

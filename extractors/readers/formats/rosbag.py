@@ -1,0 +1,120 @@
+"""ROS 1 and ROS 2 bags: stamped poses, transforms and the rigid bodies of optical trackers."""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from capar.model.capture import Notice, Source, Stream
+from capar.model.errors import FileError
+from extractors.readers.files import source_of
+from extractors.readers.recording import Recording, track
+
+Sample = tuple[str, int, tuple[float, ...]]
+"""A body's name, its time stamp [ns], and x y z then w x y z; NaN where it was lost."""
+
+_LOST = (float("nan"),) * 7
+
+
+def recognises(path: Path, head: bytes) -> bool:
+    """Whether it is a ROS 1 bag, a folder with a ROS 2 bag, or a file of such a folder."""
+    if path.is_dir():
+        return (path / "metadata.yaml").is_file()
+    storage = head.startswith((b"\x89MCAP0\r\n", b"SQLite format 3\0"))
+    return head.startswith(b"#ROSBAG V2") or (storage and _folder(path).is_dir())
+
+
+def _folder(path: Path) -> Path:
+    return path.parent if (path.parent / "metadata.yaml").is_file() else path
+
+
+def read(path: Path, options: Any) -> Recording:
+    """The bodies of a bag, in metres; time starts at the earliest stamp.
+
+    Raises:
+        FileError: The bag is damaged or holds no message of a kind that is read.
+    """
+    samples: dict[str, dict[int, tuple[float, ...]]] = defaultdict(dict)
+    doubled = 0
+    for name, stamp, pose in _samples(path):
+        doubled += stamp in samples[name]
+        if stamp not in samples[name] or pose is not _LOST:
+            samples[name][stamp] = pose
+    if not samples:
+        kinds = ", ".join(sorted(_KINDS))
+        raise FileError(path, f"no message of a kind that is read here: {kinds}.")
+    start = min(min(each) for each in samples.values())
+    bodies = {name: _stream(name, each, start) for name, each in sorted(samples.items())}
+    notice = Notice("doubled-stamps", f"{doubled} samples repeat a stamp; the last of each is kept")
+    return Recording(
+        source=_source(path),
+        bodies=bodies,
+        unit_m=1.0,
+        notices=(notice,) if doubled else (),
+    )
+
+
+def _source(path: Path) -> Source:
+    if not path.is_dir():
+        return source_of(path, "rosbag")
+    storage = sorted(each for each in path.iterdir() if each.suffix in {".db3", ".mcap"})
+    return source_of(storage[0] if storage else path / "metadata.yaml", "rosbag")
+
+
+def _stream(name: str, samples: dict[int, tuple[float, ...]], start: int) -> Stream:
+    times = np.array([(stamp - start) * 1e-9 for stamp in samples])
+    values = np.array(list(samples.values()))
+    return track(name, times, values[:, :3], values[:, 3:])
+
+
+def _samples(path: Path) -> Iterator[Sample]:
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
+
+    place = path if path.is_dir() or path.suffix == ".bag" else _folder(path)
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    with AnyReader([place], default_typestore=store) as bag:
+        wanted = [each for each in bag.connections if each.msgtype in _KINDS]
+        for connection, _, data in bag.messages(connections=wanted):
+            message = bag.deserialize(data, connection.msgtype)
+            yield from _KINDS[connection.msgtype](connection.topic, message)
+
+
+def _stamp(header: Any) -> int:
+    return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
+
+
+def _pose(position: Any, turn: Any) -> tuple[float, ...]:
+    return (position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z)
+
+
+def _stamped_pose(topic: str, message: Any) -> Iterator[Sample]:
+    pose = message.pose
+    yield topic, _stamp(message.header), _pose(pose.position, pose.orientation)
+
+
+def _transforms(topic: str, message: Any) -> Iterator[Sample]:
+    for each in message.transforms:
+        yield from _transform(topic, each)
+
+
+def _transform(topic: str, message: Any) -> Iterator[Sample]:
+    part = message.transform
+    yield message.child_frame_id, _stamp(message.header), _pose(part.translation, part.rotation)
+
+
+def _rigid_bodies(topic: str, message: Any) -> Iterator[Sample]:
+    for body in message.rigid_bodies:
+        pose = _pose(body.pose.position, body.pose.orientation) if body.track_valid else _LOST
+        yield body.name, _stamp(message.header), pose
+
+
+_KINDS: dict[str, Callable[[str, Any], Iterator[Sample]]] = {
+    "geometry_msgs/msg/PoseStamped": _stamped_pose,
+    "geometry_msgs/msg/TransformStamped": _transform,
+    "natnet_bridge/msg/NatNetFrame": _rigid_bodies,
+    "tf2_msgs/msg/TFMessage": _transforms,
+    "tf/msg/tfMessage": _transforms,
+}

@@ -1,0 +1,1 @@
+"""How bodies stand to each other: arrangement, bearing, grips and attention."""

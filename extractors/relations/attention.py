@@ -1,0 +1,150 @@
+"""What the performer looks at: the nearest tag object on the line of sight (thesis 3.5)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from capar.model.capture import Capture, Sensor
+from extractors.contact.surfaces import Surface, surface
+from extractors.signals.intervals import Interval, intervals
+from extractors.signals.poses import Poses, rotation_matrices
+from extractors.thresholds import Thresholds
+
+NOTHING = -1
+"""Stands for an object where none is looked at."""
+
+BEHIND_M = 1e-6
+"""A ray begins this far from the eye [m], so that it does not meet what it starts on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Attention:
+    """What one attending sensor looks at."""
+
+    objects: tuple[str, ...]
+    """The names that ``seen`` counts."""
+
+    seen: Int[np.ndarray, "frames"]
+    """Index of the object met first at each frame, or ``NOTHING``."""
+
+    points: Float[np.ndarray, "frames 3"]
+    """Where it is met, in the world [m]; NaN where nothing is."""
+
+    looks: tuple[tuple[str, Interval], ...]
+    """Objects looked at and how long, in time."""
+
+
+def attention(
+    capture: Capture,
+    sensor: Sensor,
+    where: Mapping[tuple[str, str], Poses],
+    thresholds: Thresholds,
+) -> Attention:
+    """The line of sight of an attending sensor, against boxes first and then surfaces.
+
+    Args:
+        capture: The trial, whose tag objects with a shape can be seen.
+        sensor: The sensor, with the eye [m] and the gaze in its own frame. It does not see the
+            object of its own name, in which its eye may lie.
+        where: Poses by ``("sensor", name)`` and ``("object", name)``.
+        thresholds: Least durations of a look and of its interruptions.
+    """
+    origins, rays = _sight(sensor, where["sensor", sensor.name])
+    names = sorted(each.name for each in capture.objects if each.shape and each.name != sensor.name)
+    seen = np.full(len(origins), NOTHING)
+    nearest = np.full(len(origins), np.inf)
+    for index, name in enumerate(names):
+        shape = capture.tag_object(name).shape
+        if shape is None:
+            continue
+        reach = _distances(surface(shape), where["object", name], origins, rays, nearest)
+        closer = reach < nearest
+        seen[closer], nearest[closer] = index, reach[closer]
+    hit = seen != NOTHING
+    points = np.full(origins.shape, np.nan)
+    points[hit] = origins[hit] + nearest[hit, None] * rays[hit]
+    looks = [
+        (name, interval)
+        for index, name in enumerate(names)
+        for interval in _looks(seen, index, capture.times, thresholds)
+    ]
+    looks.sort(key=lambda look: (look[1], look[0]))
+    return Attention(tuple(names), seen, points, tuple(looks))
+
+
+def _looks(
+    seen: Int[np.ndarray, "frames"],
+    index: int,
+    times: Float[np.ndarray, "frames"],
+    thresholds: Thresholds,
+) -> list[Interval]:
+    return intervals(
+        seen == index,
+        times,
+        dropout_s=thresholds.dropout_s,
+        minimum_s=thresholds.contact_minimum_s,
+    )
+
+
+def _sight(
+    sensor: Sensor, where: Poses
+) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
+    """The eye's place [m] and the direction of sight [1] at each frame, in the world."""
+    turns = rotation_matrices(where.settled.orientations)
+    gaze = np.asarray(sensor.gaze, float)
+    rays = turns @ (gaze / np.linalg.norm(gaze))
+    return where.settled.positions + turns @ np.asarray(sensor.eye, float), rays
+
+
+def _distances(
+    seen: Surface,
+    where: Poses,
+    origins: Float[np.ndarray, "frames 3"],
+    rays: Float[np.ndarray, "frames 3"],
+    limit: Float[np.ndarray, "frames"],
+) -> Float[np.ndarray, "frames"]:
+    """How far along each ray it meets a surface [m]; infinite where it does not, or not sooner."""
+    out = np.full(len(origins), np.inf)
+    offset = seen.centre
+    back = np.swapaxes(rotation_matrices(where.settled.orientations), 1, 2)
+    centres = where.settled.positions + np.swapaxes(back, 1, 2) @ offset
+    aside = np.cross(centres - origins, rays)
+    with np.errstate(invalid="ignore"):
+        may = np.flatnonzero(np.einsum("ij,ij->i", aside, aside) <= seen.radius**2)
+    if not may.size:
+        return out
+    start = (back[may] @ (origins[may] - where.settled.positions[may])[..., None])[..., 0]
+    ray = (back[may] @ rays[may][..., None])[..., 0]
+    enters = _box(seen, start, ray)
+    keep = enters < limit[may]
+    may, start, ray = may[keep], start[keep], ray[keep]
+    if may.size:
+        out[may] = _surface_distances(seen, start, ray)
+    return out
+
+
+def _box(
+    seen: Surface, start: Float[np.ndarray, "rays 3"], ray: Float[np.ndarray, "rays 3"]
+) -> Float[np.ndarray, "rays"]:
+    """Where rays enter the object's box [m]; infinite if they miss it."""
+    low, high = seen.shape.bounds
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        one, two = (low - start) / ray, (high - start) / ray
+    one, two = np.where(np.isnan(one), -np.inf, one), np.where(np.isnan(two), np.inf, two)
+    enters = np.minimum(one, two).max(axis=1)
+    leaves = np.maximum(one, two).min(axis=1)
+    return np.where((enters <= leaves) & (leaves >= 0.0), np.maximum(enters, 0.0), np.inf)
+
+
+def _surface_distances(
+    seen: Surface, start: Float[np.ndarray, "rays 3"], ray: Float[np.ndarray, "rays 3"]
+) -> Float[np.ndarray, "rays"]:
+    out = np.full(len(start), np.inf)
+    points, index, _ = seen.mesh.ray.intersects_location(
+        start + BEHIND_M * ray, ray, multiple_hits=False
+    )
+    if len(index):
+        out[index] = np.einsum("ij,ij->i", points - start[index], ray[index])
+    return out

@@ -1,0 +1,119 @@
+"""A body as seen from outside: its middle, its outermost points and its box in the world."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import trimesh
+from jaxtyping import Float, Int
+from scipy.spatial import ConvexHull, QhullError
+
+from capar.model.capture import Sensor, Shape, TagObject
+from extractors.signals.poses import Poses, rotation_matrices
+
+DIRECTIONS = 64
+"""Directions in which a body's outermost corners are taken [1]: 25 degrees lie between them."""
+
+
+BLOCK = 4096
+"""How many frames are worked on at once where each takes kilobytes."""
+
+AROUND = np.asarray(trimesh.creation.icosphere(subdivisions=2).vertices)
+"""Unit directions all around, evenly."""
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """A body that may stand in some arrangement to others."""
+
+    name: str
+    shape: Shape | None
+    where: Poses
+
+    @cached_property
+    def orientations(self) -> Float[np.ndarray, "frames 4"]:
+        """Unit quaternions w x y z, low-passed."""
+        return self.where.settled.orientations if self.where.rests else self._smooth[1]
+
+    @cached_property
+    def middles(self) -> Float[np.ndarray, "frames 3"]:
+        """The middle of its box in the world [m], or its origin where it has no shape."""
+        places = self.where.settled.positions if self.where.rests else self._smooth[0]
+        if self.shape is None:
+            return places
+        offset = self.shape.bounds.mean(axis=0)
+        return np.asarray(places + rotation_matrices(self.orientations) @ offset)
+
+    @property
+    def _smooth(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.where.smooth.positions, self.where.smooth.orientations
+
+    def turns_at(self, frames: Int[np.ndarray, "some"] | slice) -> Float[np.ndarray, "some 3 3"]:
+        """Rotation matrices from the body's axes to the world's; made anew, being large."""
+        return rotation_matrices(self.orientations[frames])
+
+    def turn(self, frame: int) -> Float[np.ndarray, "3 3"]:
+        """That matrix at one frame."""
+        return self.turns_at(slice(frame, frame + 1))[0]
+
+    @cached_property
+    def corners(self) -> Float[np.ndarray, "corners 3"]:
+        """Its outermost points from its middle [m], in its own axes; one point without a shape."""
+        if self.shape is None:
+            return np.zeros((1, 3))
+        points = np.asarray(self.shape.vertices) - self.shape.bounds.mean(axis=0)
+        best = np.argmax(_directions() @ points.T, axis=1)
+        return points[np.unique(best)]
+
+    @cached_property
+    def planes(self) -> Float[np.ndarray, "planes 4"] | None:
+        """Its convex hull as outward normals and offsets from its middle; None without volume.
+
+        A hull of very many sides, as of a scan, is told by the planes that lean on it from
+        directions all around, which stand off it by no more than a hundredth of its size.
+        """
+        if self.shape is None:
+            return None
+        points = np.asarray(self.shape.vertices) - self.shape.bounds.mean(axis=0)
+        try:
+            equations = ConvexHull(points).equations
+        except (QhullError, ValueError):
+            return None
+        planes = np.unique(equations.round(6), axis=0)
+        if len(planes) <= len(AROUND):
+            return planes
+        return np.hstack([AROUND, -(points @ AROUND.T).max(axis=0)[:, None]])
+
+    @cached_property
+    def boxes(self) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
+        """Lowest and highest corner of its box along the world's axes at each frame [m]."""
+        low, high = self.middles.copy(), self.middles.copy()
+        for block in [slice(None)] if self.where.rests else blocks(len(low)):
+            poses = slice(0, 1) if self.where.rests else block
+            spread = self.turns_at(poses) @ self.corners.T
+            low[block] += spread.min(axis=2)
+            high[block] += spread.max(axis=2)
+        return low, high
+
+
+def figure(body: Sensor | TagObject, where: Poses) -> Figure:
+    """The figure of a sensor's or an object's body."""
+    return Figure(body.name, body.shape, where)
+
+
+def blocks(count: int) -> Iterator[slice]:
+    """So many things in few at a time, for what takes much memory for each."""
+    for first in range(0, count, BLOCK):
+        yield slice(first, first + BLOCK)
+
+
+def _directions() -> Float[np.ndarray, "directions 3"]:
+    """Directions spread evenly over a ball (a spiral of equal areas), and the six of the axes."""
+    index = np.arange(DIRECTIONS) + 0.5
+    height = 1.0 - 2.0 * index / DIRECTIONS
+    angle = np.pi * (1.0 + np.sqrt(5.0)) * index
+    radius = np.sqrt(1.0 - height**2)
+    ball = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    return np.concatenate([ball, np.eye(3), -np.eye(3), corners / np.sqrt(3.0)])

@@ -1,0 +1,50 @@
+"""When an end-effector changes the place at which it touches an object."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from extractors.relations.body_geometry import Figure
+from extractors.signals.filters import speed
+from extractors.signals.intervals import Interval
+from extractors.signals.zero_crossings import pauses, zero_crossings
+from extractors.thresholds import Thresholds
+
+SHORTEST = 5
+"""Fewest frames of a contact in which a change of place can be told [1]."""
+
+
+def shifts(
+    hand: Figure, thing: Figure, touching: Interval, thresholds: Thresholds
+) -> Iterator[Interval]:
+    """From the last pause at one place on an object to the first at another, as closed intervals.
+
+    The place is where the end-effector's middle is in the object's own frame. It pauses there
+    where it is slowest in that frame, while hand and object may move together. Another place is
+    farther from the first pause at the old one than a hand is wide.
+
+    Args:
+        hand: The end-effector.
+        thing: The object that it touches.
+        touching: Frames through which it does.
+        thresholds: Width of a hand, and what makes a pause.
+    """
+    first, last = touching
+    if last - first + 1 < SHORTEST:
+        return
+    part = slice(first, last + 1)
+    offset = hand.middles[part] - thing.middles[part]
+    place = np.einsum("fij,fi->fj", thing.turns_at(part), offset)
+    times = hand.where.smooth.times[part]
+    pace = speed(place, times)
+    noise = max(hand.where.noise.position_m, thing.where.noise.position_m)
+    crossings = zero_crossings(pace, times, noise_m=noise, thresholds=thresholds)
+    seats = [int(each) for each in pauses(pace, crossings)]
+    if not seats:
+        return
+    anchor = latest = seats[0]
+    for seat in seats[1:]:
+        if float(np.linalg.norm(place[seat] - place[anchor])) > thresholds.hand_width_m:
+            yield first + latest, first + seat
+            anchor = seat
+        latest = seat

@@ -1,0 +1,176 @@
+"""Which foot bears the body's weight, from where the feet and the body's middle are."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from capar.model.capture import Capture, Sensor
+from capar.model.facts import Bears, Touching
+from extractors.contact.normals import contact_normal
+from extractors.motion.rest import resting
+from extractors.relations.body_geometry import Figure, figure
+from extractors.signals.intervals import Interval, intervals, mask
+from extractors.signals.poses import Poses
+from extractors.thresholds import Thresholds
+
+FOOT = "foot"
+"""The general type of an end-effector that may bear the body."""
+
+TRUNK = ("pelvis", "l5", "hips", "waist", "spine", "torso", "trunk", "chest", "neck")
+"""General types of sensors on the trunk, those first that are nearest to the body's middle."""
+
+WHOLE, PART, NONE = "whole", "part", "none"
+
+
+def bearing(
+    capture: Capture,
+    where: Mapping[tuple[str, str], Poses],
+    touches: Iterable[Touching],
+    thresholds: Thresholds,
+) -> Iterator[Bears]:
+    """When each foot that is down bears the whole weight, part of it, or none.
+
+    A foot is down while it touches what is below it, and while it rests about as low as feet ever
+    do: contact may be missed by millimetres, and no floor be known. A foot that alone is down
+    bears the whole weight. Of two, each bears the share that holds a body at rest whose middle
+    stands between them where the sensor nearest to it does.
+
+    What cannot be seen so: the weight that hands, a seat or a stick bear, unless the body's
+    middle is too far off its feet for them alone; pushing off and landing, whose forces exceed the
+    weight; and anything of an agent of whom not exactly two feet are tracked, or, while both are
+    down, no trunk.
+
+    Args:
+        capture: The trial.
+        where: Poses by ``("sensor", name)`` and ``("object", name)``.
+        touches: Contacts, as facts.
+        thresholds: Shares and distances that the measurement decides by.
+    """
+    known = list(touches)
+    for agent in capture.agents:
+        own = [each for each in capture.sensors if capture.agent_of(each) == agent.name]
+        feet = [each for each in own if each.end_effector == FOOT]
+        if len(feet) == 2:
+            yield from _borne(capture, where, feet, _middle(own, where), known, thresholds)
+
+
+def _borne(
+    capture: Capture,
+    where: Mapping[tuple[str, str], Poses],
+    feet: Sequence[Sensor],
+    middle: Float[np.ndarray, "frames 3"] | None,
+    touches: Sequence[Touching],
+    thresholds: Thresholds,
+) -> Iterator[Bears]:
+    """What the two feet of one agent bear."""
+    figures = [figure(each, where["sensor", each.name]) for each in feet]
+    down = _down(capture, where, figures, touches, thresholds)
+    share = share_of_first(
+        figures[0].middles, figures[1].middles, down[0], down[1], middle, thresholds
+    )
+    for foot, standing, own in zip(feet, down, (share, 1.0 - share), strict=True):
+        for how, holds in _shares(own, standing, thresholds).items():
+            for span in _spans(holds, capture.times, thresholds):
+                yield Bears(foot.name, how, *span)
+
+
+def share_of_first(
+    first: Float[np.ndarray, "frames 3"],
+    second: Float[np.ndarray, "frames 3"],
+    first_down: Bool[np.ndarray, "frames"],
+    second_down: Bool[np.ndarray, "frames"],
+    middle: Float[np.ndarray, "frames 3"] | None,
+    thresholds: Thresholds,
+) -> Float[np.ndarray, "frames"]:
+    """Share of the weight that the first of two feet bears [1]; NaN where it cannot be known.
+
+    Args:
+        first: The middle of that foot [m].
+        second: The middle of the other one [m].
+        first_down: Whether that foot is down.
+        second_down: Whether the other one is.
+        middle: A place near the middle of the body [m]; None where none is tracked.
+        thresholds: How far the feet must be apart, and how far off the middle may be.
+    """
+    out = np.where(first_down, 1.0, np.where(second_down, 0.0, np.nan))
+    line = (second - first)[:, :2]
+    apart = np.linalg.norm(line, axis=1)
+    both = first_down & second_down
+    out[np.isnan(apart)] = np.nan
+    if middle is None:
+        out[both] = np.nan
+        return out
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = np.einsum("ij,ij->i", (middle - first)[:, :2], line) / apart**2
+        between = np.clip(along, 0.0, 1.0)
+        out = np.where(both, 1.0 - between, out)
+        base = first[:, :2] + np.where(both, between, 1.0 - out)[:, None] * line
+        off = np.linalg.norm(middle[:, :2] - base, axis=1)
+        unknown = (both & ~(apart >= thresholds.feet_apart_m)) | (off > thresholds.off_feet_m)
+    out[unknown | (both & np.isnan(off))] = np.nan
+    return np.asarray(out)
+
+
+def _shares(
+    share: Float[np.ndarray, "frames"], down: Bool[np.ndarray, "frames"], thresholds: Thresholds
+) -> dict[str, Bool[np.ndarray, "frames"]]:
+    """By word, the frames in which a foot that is down bears so much."""
+    with np.errstate(invalid="ignore"):
+        whole = down & (share >= 1.0 - thresholds.touch_load_share)
+        none = down & (share <= thresholds.touch_load_share)
+        return {WHOLE: whole, PART: down & ~np.isnan(share) & ~whole & ~none, NONE: none}
+
+
+def _spans(
+    holds: Bool[np.ndarray, "frames"], times: Float[np.ndarray, "frames"], thresholds: Thresholds
+) -> Sequence[Interval]:
+    return intervals(
+        holds, times, dropout_s=thresholds.dropout_s, minimum_s=thresholds.rest_minimum_s
+    )
+
+
+def _middle(
+    sensors: Iterable[Sensor], where: Mapping[tuple[str, str], Poses]
+) -> Float[np.ndarray, "frames 3"] | None:
+    """Where the trunk's sensor nearest to the body's middle is, if there is one."""
+    trunk = {each.end_effector: each.name for each in sensors if each.end_effector in TRUNK}
+    name = next((trunk[kind] for kind in TRUNK if kind in trunk), None)
+    return None if name is None else where["sensor", name].smooth.positions
+
+
+def _down(
+    capture: Capture,
+    where: Mapping[tuple[str, str], Poses],
+    feet: Sequence[Figure],
+    touches: Sequence[Touching],
+    thresholds: Thresholds,
+) -> list[Bool[np.ndarray, "frames"]]:
+    """Frames in which each foot is down."""
+    things = {each.name: figure(each, where["object", each.name]) for each in capture.objects}
+    frames = len(capture.times)
+    out, resting_low = [], []
+    for foot in feet:
+        spans = [
+            (each.first, each.last)
+            for each in touches
+            if each.body == foot.name
+            and each.other in things
+            and _bears(foot, things[each.other], each.first, thresholds)
+        ]
+        still = mask(list(resting(foot.where, thresholds)), frames)
+        out.append(mask(spans, frames))
+        resting_low.append(np.where(still, foot.boxes[0][:, 2], np.nan))
+    heights = np.concatenate(resting_low)
+    level = np.min(heights, where=~np.isnan(heights), initial=np.inf)
+    with np.errstate(invalid="ignore"):
+        return [
+            borne | (low <= level + thresholds.level_m)
+            for borne, low in zip(out, resting_low, strict=True)
+        ]
+
+
+def _bears(foot: Figure, thing: Figure, frame: int, thresholds: Thresholds) -> bool:
+    """Whether a thing that a foot begins to touch bears it from below."""
+    normal = contact_normal(foot, thing, frame)
+    return normal is not None and bool(normal[2] >= thresholds.steep)

@@ -1,0 +1,1 @@
+"""What is measured of a segment once it has a name: places, styles and kinds of motion."""

@@ -1,0 +1,1 @@
+"""Sampled motion: gaps, noise, filters, zero crossings and turning points."""

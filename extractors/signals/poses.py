@@ -1,0 +1,110 @@
+"""A body's pose at every frame as extraction uses it: gaps filled, noise taken out, fixed held."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.spatial.transform import Rotation
+
+from capar.model.capture import Sensor, Stream, TagObject, TagType
+from extractors.signals.filters import lowpass, lowpass_orientations
+from extractors.signals.gaps import fill_gaps
+from extractors.signals.noise import Noise, noise_at_rest
+from extractors.thresholds import Thresholds
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """One body through the capture."""
+
+    name: str
+    filled: Stream
+    """As recorded, short gaps filled."""
+
+    smooth: Stream
+    """Low-passed."""
+
+    settled: Stream
+    """For contact and sight: smooth if the stream is noisy, else filled; fixed bodies stand."""
+
+    noise: Noise
+    rests: bool
+    """Whether ``settled`` is one pose throughout."""
+
+    @property
+    def lost(self) -> Bool[np.ndarray, "frames"]:
+        """Where the pose is not known, even so."""
+        return self.settled.lost
+
+
+def poses(body: Sensor | TagObject, thresholds: Thresholds) -> Poses:
+    """The poses of a sensor or an object.
+
+    A fixed object stands at the median of its places throughout: what its tracker shows besides
+    is noise, which at the rim of a large table would exceed any tolerance.
+    """
+    filled = fill_gaps(body.stream, gap_s=thresholds.gap_s)
+    noise = noise_at_rest(filled, thresholds)
+    smooth = _smooth(filled, thresholds)
+    fixed = isinstance(body, TagObject) and body.tag is TagType.FIXED
+    if fixed and not filled.lost.all():
+        settled = _held(filled)
+    else:
+        settled = smooth if noise.position_m > thresholds.smoothing_noise_m else filled
+    return Poses(body.name, filled, smooth, settled, noise, fixed or _still(settled))
+
+
+def median_pose(
+    stream: Stream, frames: slice
+) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]:
+    """The middle of the known poses of some frames in a row: median place [m], mean orientation.
+
+    The median is taken about each axis of the world's own frame, its middle half averaged; it
+    hardly depends on how the axes lie.
+    """
+    known = ~stream.lost[frames]
+    places, turns = stream.positions[frames][known], stream.orientations[frames][known]
+    centre = np.median(places, axis=0)
+    near = np.linalg.norm(places - centre, axis=1)
+    core = near <= np.median(near)
+    mean = Rotation.from_quat(turns[core], scalar_first=True).mean()
+    return places[core].mean(axis=0), mean.as_quat(scalar_first=True)
+
+
+def _smooth(stream: Stream, thresholds: Thresholds) -> Stream:
+    if stream.lost.all() or _still(stream):
+        return stream
+    return Stream(
+        stream.times,
+        lowpass(stream.positions, stream.times, thresholds),
+        lowpass_orientations(stream.orientations, stream.times, thresholds),
+    )
+
+
+def _held(stream: Stream) -> Stream:
+    place, turn = median_pose(stream, slice(None))
+    frames = len(stream.times)
+    return Stream(stream.times, np.tile(place, (frames, 1)), np.tile(turn, (frames, 1)))
+
+
+def _still(stream: Stream) -> bool:
+    """Whether the recorded pose is one and the same in every frame."""
+    first = stream.positions[0], stream.orientations[0]
+    return bool((stream.positions == first[0]).all() and (stream.orientations == first[1]).all())
+
+
+def rotation_matrices(
+    orientations: Float[np.ndarray, "frames 4"],
+) -> Float[np.ndarray, "frames 3 3"]:
+    """Rotation matrices of unit quaternions; those of lost frames are NaN."""
+    w, x, y, z = orientations.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    out = np.empty((len(orientations), 3, 3))
+    for i, row in enumerate(rows):
+        for j, entry in enumerate(row):
+            out[:, i, j] = entry
+    return out

@@ -1,0 +1,120 @@
+"""Where motion turns back: extrema of height, and motion to and fro."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from capar.model import geometry
+from capar.model.capture import Stream
+from extractors.signals.intervals import Interval
+from extractors.signals.poses import Poses
+from extractors.thresholds import Thresholds
+
+
+def turning_points(values: Float[np.ndarray, "frames"], least: float) -> Int[np.ndarray, "turns"]:
+    """Frames of extrema that lie at least so far from the extremum before and the one after.
+
+    Args:
+        values: A coordinate over time, known throughout.
+        least: The least way between neighbouring extrema, in the coordinate's unit.
+    """
+    found: list[int] = []
+    low = high = direction = 0
+    for frame, value in enumerate(values):
+        if direction >= 0 and value > values[high]:
+            high = frame
+        if direction <= 0 and value < values[low]:
+            low = frame
+        if direction >= 0 and values[high] - value >= least:
+            found += [high] if direction else []
+            direction, low = -1, frame
+        elif direction <= 0 and value - values[low] >= least:
+            found += [low] if direction else []
+            direction, high = 1, frame
+    return np.array(found, dtype=np.int64)
+
+
+def reversals(
+    where: Poses, moving: tuple[Interval, ...], thresholds: Thresholds
+) -> tuple[int, ...]:
+    """Frames at which the height of a moving body has an extremum after and before a real way."""
+    height = where.smooth.positions[:, 2]
+    found: list[int] = []
+    for first, last in _known(where.smooth, moving):
+        turns = turning_points(height[first : last + 1], thresholds.reversal_m)
+        found += [first + int(each) for each in turns]
+    return tuple(found)
+
+
+def swings(
+    where: Poses, moving: tuple[Interval, ...], thresholds: Thresholds
+) -> tuple[Interval, ...]:
+    """Closed intervals of frames in which a body moves to and fro along an axis of the world.
+
+    To and fro is a chain of turning points, each soon after the one before, whose strokes add up
+    to more than the way from the first to the last: what bobs as it is carried along does not
+    swing. Several axes that swing at a time are one swinging. It begins and ends with the motion
+    itself, if that is soon before or after and no further than one stroke.
+    """
+    stream = where.smooth
+    chains: list[Interval] = []
+    for first, last in _known(stream, moving):
+        part = stream.positions[first : last + 1]
+        for axis in range(3):
+            turns = first + turning_points(part[:, axis], thresholds.swing_m)
+            for chain in _chains(turns, stream.times, thresholds):
+                if _outweighs(chain, stream, axis):
+                    chains.append(_whole(chain, (first, last), stream, axis, thresholds))
+    out: list[Interval] = []
+    for first, last in sorted(chains):
+        if out and first <= out[-1][1]:
+            out[-1] = (out[-1][0], max(last, out[-1][1]))
+        else:
+            out.append((first, last))
+    return tuple(out)
+
+
+def _known(stream: Stream, moving: tuple[Interval, ...]) -> Iterator[Interval]:
+    """The parts of the motions in which the body was not lost."""
+    for first, last in moving:
+        for begin, end in geometry.gaps(~stream.lost[first : last + 1]):
+            yield first + begin, first + end
+
+
+def _chains(
+    turns: Int[np.ndarray, "turns"], times: Float[np.ndarray, "frames"], thresholds: Thresholds
+) -> list[Int[np.ndarray, "turns"]]:
+    if not len(turns):
+        return []
+    breaks = np.flatnonzero(np.diff(times[turns]) > thresholds.swing_s) + 1
+    groups = np.split(turns, breaks)
+    return [each for each in groups if len(each) >= thresholds.swing_turns]
+
+
+def _outweighs(turns: Int[np.ndarray, "turns"], stream: Stream, axis: int) -> bool:
+    """Whether the strokes add up to more than the way from the first turn to the last."""
+    way = np.linalg.norm(stream.positions[turns[-1]] - stream.positions[turns[0]])
+    return bool(np.abs(np.diff(stream.positions[turns, axis])).sum() > way)
+
+
+def _whole(
+    turns: Int[np.ndarray, "turns"],
+    moving: Interval,
+    stream: Stream,
+    axis: int,
+    thresholds: Thresholds,
+) -> Interval:
+    """Between its first and last turning point, or the rest that is no more than a stroke away."""
+    stroke = np.abs(np.diff(stream.positions[turns, axis])).max()
+
+    def near(edge: int, turn: int) -> bool:
+        way = np.linalg.norm(stream.positions[edge] - stream.positions[turn])
+        soon = abs(stream.times[edge] - stream.times[turn]) <= thresholds.swing_s
+        return bool(soon and way <= stroke)
+
+    first, last = int(turns[0]), int(turns[-1])
+    return (
+        moving[0] if near(moving[0], first) else first,
+        moving[1] if near(moving[1], last) else last,
+    )

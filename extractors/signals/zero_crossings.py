@@ -1,0 +1,142 @@
+"""Frames at which acceleration crosses zero: starts, stops and extrema of speed (thesis 3.2.1).
+
+The acceleration of a path in space is taken along the path: it crosses zero where speed has a
+local extremum. That does not depend on how the world's axes lie, as crossings of each axis by
+itself would. A change of direction shows as a minimum of speed, since the low-passed path rounds
+each corner, and a start from rest and a stop as the ends of a stretch of rest.
+"""
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy.signal import find_peaks
+
+from capar.model import geometry
+from extractors.signals.filters import gains
+from extractors.signals.intervals import duration, intervals
+from extractors.thresholds import Thresholds
+
+
+def zero_crossings(
+    speed_mps: Float[np.ndarray, "frames"],
+    times: Float[np.ndarray, "frames"],
+    *,
+    noise_m: float,
+    thresholds: Thresholds,
+) -> Int[np.ndarray, "crossings"]:
+    """Frames, ascending, at which the speed of a low-passed stream starts, stops or turns.
+
+    The first and the last frame count. Frames at which the stream was lost do not.
+
+    Args:
+        speed_mps: Speed of the low-passed stream [m/s]; NaN where it was lost.
+        times: Clock [s].
+        noise_m: Deviation of one unfiltered coordinate at rest [m].
+        thresholds: Prominence and rest.
+    """
+    rate_hz = 1.0 / float(np.median(np.diff(times)))
+    noise_mps = gains(rate_hz, thresholds)[1] * noise_m * np.sqrt(3.0)
+    found: set[int] = {0, len(times) - 1}
+    known = ~np.isnan(speed_mps)
+    if known.any():
+        prominence = max(
+            thresholds.crossing_speed_mps,
+            thresholds.crossing_sigmas * noise_mps,
+            thresholds.crossing_speed_share * float(np.nanmax(speed_mps)),
+        )
+        resting = rests(speed_mps, times, noise_mps=noise_mps, thresholds=thresholds)
+        for first, last in geometry.gaps(known):
+            part = slice(first, last + 1)
+            turns = _extrema(speed_mps[part], prominence, resting[part])
+            found.update(first + each for each in turns)
+    return np.array(sorted(found), dtype=np.int64)
+
+
+def pauses(
+    speed_mps: Float[np.ndarray, "frames"], crossings: Int[np.ndarray, "crossings"]
+) -> Int[np.ndarray, "pauses"]:
+    """Those crossings, the capture's first and last frame aside, that are no maximum of speed.
+
+    Args:
+        speed_mps: Speed of the low-passed stream [m/s].
+        crossings: Zero crossings, ascending.
+    """
+    if len(crossings) < 3:
+        return crossings[:0]
+    here, before, after = (speed_mps[crossings[each]] for each in (_INNER, _EARLIER, _LATER))
+    return crossings[1:-1][~((here > before) & (here > after))]
+
+
+_INNER, _EARLIER, _LATER = slice(1, -1), slice(None, -2), slice(2, None)
+
+
+def rests(
+    speed_mps: Float[np.ndarray, "frames"],
+    times: Float[np.ndarray, "frames"],
+    *,
+    noise_mps: float,
+    thresholds: Thresholds,
+) -> Bool[np.ndarray, "frames"]:
+    """Whether each frame lies in a stretch of rest, from where speed ceased to fall.
+
+    Args:
+        speed_mps: Speed [m/s]; NaN where it is not known, and there is no rest.
+        times: Clock [s].
+        noise_mps: Size of the speed that noise alone makes [m/s].
+        thresholds: Speed and least duration of rest.
+    """
+    limit = max(thresholds.rest_speed_mps, thresholds.rest_sigmas * noise_mps)
+    slow = _to_the_ends(np.nan_to_num(speed_mps, nan=np.inf) < limit, speed_mps, times, thresholds)
+    out = np.zeros(len(speed_mps), dtype=bool)
+    step = float(np.median(np.diff(times)))
+    for first, last in intervals(slow, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
+        begin, end = _trimmed(speed_mps, first, last)
+        if duration((begin, end), times, step) < thresholds.rest_minimum_s:
+            begin, end = first, last
+        out[begin : end + 1] = True
+    return out
+
+
+def _to_the_ends(
+    slow: Bool[np.ndarray, "frames"],
+    speed_mps: Float[np.ndarray, "frames"],
+    times: Float[np.ndarray, "frames"],
+    thresholds: Thresholds,
+) -> Bool[np.ndarray, "frames"]:
+    """Slowness that begins or ends near the end of a known stretch reaches it.
+
+    A filter knows a stretch's end from one side only, and makes more of the noise there.
+    """
+    out = slow.copy()
+    reach = int(0.5 * thresholds.rest_minimum_s / float(np.median(np.diff(times)))) + 1
+    for first, last in geometry.gaps(~np.isnan(speed_mps)):
+        inside = np.flatnonzero(slow[first : last + 1]) + first
+        if inside.size and inside[0] - first <= reach:
+            out[first : inside[0]] = True
+        if inside.size and last - inside[-1] <= reach:
+            out[inside[-1] : last + 1] = True
+    return out
+
+
+def _trimmed(speed_mps: Float[np.ndarray, "frames"], first: int, last: int) -> tuple[int, int]:
+    """The stretch between the first and the last local minimum of speed in it."""
+    begin, end = first, last
+    if first > 0:
+        while begin < last and speed_mps[begin + 1] < speed_mps[begin]:
+            begin += 1
+    if last < len(speed_mps) - 1:
+        while end > first and speed_mps[end - 1] < speed_mps[end]:
+            end -= 1
+    return (begin, end) if begin <= end else (first, last)
+
+
+def _extrema(
+    speed: Float[np.ndarray, "frames"], prominence: float, resting: Bool[np.ndarray, "frames"]
+) -> set[int]:
+    """Prominent maxima and minima outside rest, and the ends of rest."""
+    found: set[int] = set()
+    for signal in (speed, -speed):
+        peaks, _ = find_peaks(signal, prominence=prominence)
+        found.update(int(each) for each in peaks if not resting[each])
+    for first, last in geometry.gaps(resting):
+        found.update({first, last} - {0, len(speed) - 1})
+    return found

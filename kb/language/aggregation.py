@@ -1,0 +1,147 @@
+"""Clauses as a writer would leave them: repetition counted, verbs of one thing joined."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import groupby
+
+from kb.language.clauses import Clause, in_time
+from kb.language.lexicalisation import JOINT
+from kb.language.repeating import repetition, whole, with_pauses
+
+OVER_AND_OVER = "again and again"
+"""How often, where a summary does not count."""
+
+MOST_VERBS = 4
+"""The most verbs that share their object."""
+
+RECALLED = 2
+"""After how many other clauses one that says the same is no longer said to be done again."""
+
+
+def edited(steps: Sequence[Clause], *, summary: bool) -> tuple[Clause, ...]:
+    """The clauses without monotony; none of them is left untold.
+
+    What a hand does to one thing alone is joined (``raised, tilted, and lowered it``), and what
+    recurs is counted. A summary of many such clauses names each verb once. What both hands do
+    together is joined only with what they do together next.
+    """
+    joint = _summed_run if summary else _joined_run
+    out: list[Clause] = []
+    for _, part in groupby(steps, key=lambda each: len(each.ees) > 1):
+        streams: dict[tuple[str, ...], list[Clause]] = {}
+        for each in part:
+            streams.setdefault(each.ees, []).append(each)
+        found = [clause for told in streams.values() for clause in _stream(told, joint)]
+        out += sorted(found, key=in_time)
+    return _again(out)
+
+
+def _stream(told: Sequence[Clause], joint: Callable[[list[Clause]], list[Clause]]) -> list[Clause]:
+    return _plain_runs(with_pauses(_leading_up(told)), joint)
+
+
+def _leading_up(told: Sequence[Clause]) -> list[Clause]:
+    """The clauses, without one that the next says more of: ``move it``, ``move it to the bowl``."""
+    out: list[Clause] = []
+    for clause in told:
+        same = bool(out) and _more_of(clause, out[-1]) and out[-1].count == 1
+        out.append(replace(clause, start_s=out.pop().start_s) if same else clause)
+    return out
+
+
+def _more_of(clause: Clause, other: Clause) -> bool:
+    """Whether it says what the other says, and where to."""
+    longer = clause.pattern.startswith(f"{other.pattern} ")
+    return longer and clause.objects[:1] == other.objects[:1] and not other.purpose
+
+
+def _plain_runs(
+    told: Sequence[Clause], joint: Callable[[list[Clause]], list[Clause]]
+) -> list[Clause]:
+    """The clauses, with each run of bare verbs over one thing joined."""
+    out: list[Clause] = []
+    for (plain, _), same in groupby(told, key=lambda each: (_plain(each), each.objects)):
+        run = list(same)
+        out += joint(run) if plain else run
+    return out
+
+
+def _plain(clause: Clause) -> bool:
+    """Whether it says a single verb of a single thing: ``turn {1}``."""
+    verb, _, rest = clause.pattern.partition(" ")
+    return bool(verb) and rest == "{1}" and not clause.purpose and not clause.often
+
+
+def _verb(clause: Clause) -> str:
+    return clause.pattern.partition(" ")[0]
+
+
+def _joined_run(run: list[Clause]) -> list[Clause]:
+    """Blocks that recur, counted; between them, verbs that share their object."""
+    out: list[Clause] = []
+    loose: list[Clause] = []
+    at = 0
+    while at < len(run):
+        size, count = repetition(run, at, longest=MOST_VERBS)
+        if size > 1 and any(each.count > 1 for each in run[at : at + size]):
+            size, count = 1, 1
+        block = run[at : at + size * count]
+        if count > 1 or run[at].count > 1:
+            out += [*_shared(loose), _repeated(block, size, count)]
+            loose = []
+        else:
+            loose += block
+        at += size * count
+    return [*out, *_shared(loose)]
+
+
+def _repeated(block: Sequence[Clause], size: int, count: int) -> Clause:
+    if count == 1:
+        return block[0]
+    verbs = JOINT.join(map(_verb, block[:size]))
+    return whole(block, count=count, pattern=f"{verbs} {{1}}")
+
+
+def _shared(loose: Sequence[Clause]) -> list[Clause]:
+    """Three different verbs or more on end, in groups whose object is said once."""
+    groups: list[list[Clause]] = []
+    for clause in loose:
+        current = groups[-1] if groups else []
+        known = _verb(clause) in map(_verb, current)
+        if not current or known or len(current) == MOST_VERBS:
+            groups.append([clause])
+        else:
+            current.append(clause)
+    return [clause for group in groups for clause in _sharing(group)]
+
+
+def _sharing(group: Sequence[Clause]) -> list[Clause]:
+    if len(group) < 3:
+        return list(group)
+    return [whole(group, pattern=f"{JOINT.join(map(_verb, group))} {{1}}")]
+
+
+def _summed_run(run: list[Clause]) -> list[Clause]:
+    """Many clauses of one thing as one that names each verb once, in order."""
+    if len(run) <= MOST_VERBS:
+        return _joined_run(run)
+    verbs = list(dict.fromkeys(map(_verb, run)))
+    often = "" if len(verbs) == sum(each.count for each in run) else OVER_AND_OVER
+    return [replace(whole(run, pattern=f"{JOINT.join(verbs)} {{1}}"), often=often)]
+
+
+def _again(told: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses, with what a hand did shortly before said to be done again."""
+    out: list[Clause] = []
+    for clause in told:
+        own = [each for each in out if each.ees == clause.ees][-RECALLED:]
+        once = clause.changes and clause.known and clause.count == 1 and not clause.often
+        again = once and any(_same_deed(each, clause) for each in own)
+        out.append(replace(clause, often="again") if again else clause)
+    return tuple(out)
+
+
+def _same_deed(one: Clause, other: Clause) -> bool:
+    if one.pattern == other.pattern:
+        return one.objects == other.objects
+    return _more_of(one, other) or _more_of(other, one)

@@ -1,0 +1,185 @@
+"""Named questions: each is a file of SPARQL whose first comments say what it asks and of what."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+from pyoxigraph import Literal
+
+from capar.model.errors import CaparError, UnknownNameError
+from kb.store import sparql
+
+if TYPE_CHECKING:
+    from kb.store.stores import Store
+
+_PARAMETER = re.compile(
+    r"(?P<name>\w+) \((?P<kind>text|number)"
+    r"(?:, (?:(?P<required>required)|default (?P<default>\w+)))?\): (?P<meaning>[^;]+)"
+)
+
+_OBJECT = ("object", "?of a capar:TagObject ; capar:name|(capar:kind/capar:isA/capar:name) ?name")
+_WHOLE = ("whole action", "?of a capar:Observation ; capar:name ?name")
+BEARERS = {
+    "action": (
+        "action",
+        "{ ?of a capar:Observation ; rdfs:label ?name } UNION { ?of a ?kind ; capar:name ?name "
+        "VALUES ?kind { capar:Action capar:Upar capar:JointAction capar:Observation } }",
+    ),
+    "body": ("body", "?of capar:body ?name"),
+    "capture": ("capture", "?of a capar:Capture ; capar:name ?name"),
+    "first": _WHOLE,
+    "goal": _OBJECT,
+    "object": _OBJECT,
+    "observation": ("observation", "?of a capar:Observation ; rdfs:label ?name"),
+    "performer": ("performer", "?of a capar:Agent ; capar:name ?name"),
+    "preposition": ("preposition", "?of capar:preposition ?name"),
+    "purpose": ("purpose", "?of capar:purpose ?name"),
+    "second": _WHOLE,
+}
+"""What each parameter that is a text names, and the pattern of those that bear such a name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """Something that a question is asked of."""
+
+    name: str
+    kind: str
+    """``text`` or ``number``."""
+
+    required: bool
+    default: str
+    """What is meant when nothing is given; empty: anything."""
+
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A question with a name."""
+
+    name: str
+    text: str
+    """The question in words."""
+
+    parameters: tuple[Parameter, ...]
+    query: str
+
+    def bind(self, given: Mapping[str, object]) -> str:
+        """The query with its parameters set.
+
+        Raises:
+            UnknownNameError: A parameter that the question has not; the message lists those it has.
+            QuestionError: A required one is missing, or a number is none.
+        """
+        names = [each.name for each in self.parameters]
+        for name in given:
+            if name not in names:
+                raise UnknownNameError(f"parameter of the question {self.name!r}", name, names)
+        query = self.query
+        for each in self.parameters:
+            query = _set(query, each, self._value(each, given))
+        return sparql.complete(query)
+
+    def _value(self, parameter: Parameter, given: Mapping[str, object]) -> Literal | None:
+        value = given.get(parameter.name)
+        text = parameter.default if value is None else str(value)
+        if not text:
+            if parameter.required:
+                raise QuestionError(self, parameter)
+            return None
+        if parameter.kind == "text":
+            return Literal(text)
+        try:
+            return Literal(float(text))
+        except ValueError:
+            raise QuestionError(self, parameter, text) from None
+
+
+class QuestionError(CaparError):
+    """A question that is asked without what it needs, or of something that is no number."""
+
+    def __init__(self, question: Question, parameter: Parameter, text: str = "") -> None:
+        self.question = question.name
+        self.parameter = parameter.name
+        problem = f"is a number, not {text!r}" if text else "must be given"
+        listed = "; ".join(f"{each.name}: {each.meaning}" for each in question.parameters)
+        super().__init__(
+            f"question {question.name!r}: {parameter.name} {problem}. Its parameters: {listed}"
+        )
+
+
+def _set(query: str, parameter: Parameter, value: Literal | None) -> str:
+    line = f"VALUES ?{parameter.name} {{ UNDEF }}"
+    return query.replace(line, f"VALUES ?{parameter.name} {{ {value} }}" if value else "")
+
+
+@cache
+def questions() -> Mapping[str, Question]:
+    """Every question by name, sorted."""
+    folder = files("kb") / "queries"
+    found = sorted(
+        (each for each in folder.iterdir() if each.name.endswith(".rq")), key=lambda at: at.name
+    )
+    read = [_read(each.name.removesuffix(".rq"), each.read_text("utf-8")) for each in found]
+    return {each.name: each for each in read}
+
+
+def question(name: str) -> Question:
+    """The question of that name.
+
+    Raises:
+        UnknownNameError: There is none; the message lists those that exist.
+    """
+    if name not in questions():
+        raise UnknownNameError("question", name, questions())
+    return questions()[name]
+
+
+def prove_known(store: "Store", asked: Question, given: Mapping[str, object]) -> None:
+    """Prove of a question that nothing answers that what it is asked of is there at all.
+
+    Raises:
+        UnknownNameError: Nothing that was observed bears a name; the message lists those there are.
+        CaparError: The capture has no such time.
+    """
+    for each in asked.parameters:
+        value = str(given.get(each.name) or "")
+        if each.kind != "text" or not value:
+            continue
+        kind, pattern = BEARERS[each.name]
+        known = _texts(store, pattern)
+        if value not in known:
+            raise UnknownNameError(kind, value, known, where=store.place)
+    if {"capture", "time"} <= given.keys():
+        name, time = Literal(str(given["capture"])), float(str(given["time"]))
+        lasts = f"?of a capar:Capture ; capar:name {name} ; capar:duration ?name"
+        end = max(map(float, _texts(store, lasts)))
+        if not 0.0 <= time <= max(end, round(end, 3)):
+            raise CaparError(
+                f"{store.place}: {name.value} lasts from 0 to {end:.3f} s; {time:g} s lies outside"
+            )
+
+
+def _texts(store: "Store", pattern: str) -> set[str]:
+    query = sparql.complete(f"SELECT DISTINCT ?name WHERE {{ {pattern} }}")
+    found = (row[0] for row in store.ask(query).rows)
+    return {each.value for each in found if isinstance(each, Literal)}
+
+
+def _read(name: str, query: str) -> Question:
+    first, second, *_ = query.splitlines()
+    parameters = tuple(
+        Parameter(
+            each["name"],
+            each["kind"],
+            bool(each["required"]),
+            each["default"] or "",
+            each["meaning"].strip(),
+        )
+        for each in _PARAMETER.finditer(second)
+    )
+    return Question(name, first.removeprefix("#").strip(), parameters, query)

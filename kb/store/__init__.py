@@ -1,0 +1,1 @@
+"""Where statements are kept, and how they are read, written and asked."""

@@ -1,0 +1,196 @@
+"""The Actionary in and out: Turtle, TriG, N-Quads and JSON-LD."""
+
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+from pyoxigraph import (
+    BlankNode,
+    CanonicalizationAlgorithm,
+    Dataset,
+    DefaultGraph,
+    NamedNode,
+    Quad,
+    RdfFormat,
+    Triple,
+    parse,
+    serialize,
+)
+
+from capar.model.errors import FileError, UnknownNameError
+from kb.errors import ShapeError
+from kb.lookup.stored import observations
+from kb.store import names
+from kb.store import updates as writing
+from kb.store.answers import turtle
+from kb.store.statements import insertion
+from kb.store.stores import Store
+from kb.validation import shapes
+from ontology import DATA, PREFIXES
+from ontology import files as ontology_files
+
+FORMATS = {
+    "turtle": RdfFormat.TURTLE,
+    "trig": RdfFormat.TRIG,
+    "nquads": RdfFormat.N_QUADS,
+    "jsonld": RdfFormat.JSON_LD,
+}
+"""Formats by name; Turtle has no graphs, and gets them back by what its statements are about."""
+
+SUFFIXES = {
+    ".ttl": "turtle",
+    ".turtle": "turtle",
+    ".trig": "trig",
+    ".nq": "nquads",
+    ".nquads": "nquads",
+    ".jsonld": "jsonld",
+    ".json": "jsonld",
+}
+"""Formats by a file's ending."""
+
+
+def format_of(path: Path | str, given: str | None = None) -> str:
+    """The format of a file: what is given, else what its name says.
+
+    Raises:
+        UnknownNameError: No such format, or none that the name tells.
+        FileError: The name has no ending that could tell one.
+    """
+    name = given or SUFFIXES.get(Path(path).suffix.lower(), Path(path).suffix)
+    if not name:
+        *some, last = sorted(FORMATS)
+        raise FileError(
+            path, "its name tells no format;", f"add --format: {', '.join(some)} or {last}."
+        )
+    if name not in FORMATS:
+        raise UnknownNameError("format", name, FORMATS)
+    return name
+
+
+def export(store: Store, format_name: str, *, observation: str | None = None) -> bytes:
+    """Everything, or an observation with what it mentions, as bytes that are always the same.
+
+    Raises:
+        UnknownNameError: There is no such format or observation.
+    """
+    if format_name not in FORMATS:
+        raise UnknownNameError("format", format_name, FORMATS)
+    quads = sorted(set(store.quads() if observation is None else part(store, observation)), key=str)
+    form = FORMATS[format_name]
+    if form == RdfFormat.TURTLE:
+        return turtle(dict.fromkeys(each.triple for each in quads), form=form).encode()
+    if form == RdfFormat.TRIG:
+        return turtle(quads, form=form).encode()
+    return serialize(quads, format=form) or b""
+
+
+def misplaced(store: Store) -> int:
+    """How many statements Turtle would put into another graph than theirs."""
+    return sum(
+        1
+        for each in store.quads()
+        if isinstance(each.subject, NamedNode) and home(each.triple) != each.graph_name
+    )
+
+
+def part(store: Store, observation: str) -> list[Quad]:
+    """An observation's statements and those of everything that it mentions.
+
+    Raises:
+        UnknownNameError: There is no such observation.
+    """
+    graph = names.observation(observation)
+    own = store.graph(graph)
+    if not own:
+        known = [each.name for each in observations(store)]
+        raise UnknownNameError("observation", observation, known, where=store.place)
+    shared: list[Quad] = []
+    for name in ("agents", "objects", "actions"):
+        where = names.GRAPHS[name]
+        found = store.ask(
+            f"CONSTRUCT {{ ?s ?p ?o }} WHERE {{ {graph} <{PREFIXES['capar']}mentions> ?s . "
+            f"GRAPH {where} {{ ?s ?p ?o }} }}"
+        )
+        shared += [Quad(t.subject, t.predicate, t.object, where) for t in found.triples or ()]
+    return [*own, *shared]
+
+
+def read(data: bytes, format_name: str, *, path: Path | str = "-") -> list[Quad]:
+    """Statements of a file, each in the graph where it belongs, its unnamed things named.
+
+    Raises:
+        FileError: It is not what its format says, or says nothing.
+    """
+    try:
+        parsed = list(parse(data, format=FORMATS[format_name]))
+    except (SyntaxError, ValueError) as error:
+        raise FileError(path, f"is no {format_name}: {error}") from None
+    if not parsed:
+        raise FileError(path, f"holds no statements of {format_name}.", "Export it again.")
+    return [_placed(each) for each in _named(parsed)]
+
+
+def _placed(quad: Quad) -> Quad:
+    if not isinstance(quad.graph_name, DefaultGraph) or not isinstance(quad.subject, NamedNode):
+        return quad
+    return Quad(quad.subject, quad.predicate, quad.object, home(quad.triple))
+
+
+def home(triple: Triple) -> NamedNode:
+    """The graph of a statement, by what it is about; the ontology says nothing but its own."""
+    assert isinstance(triple.subject, NamedNode)
+    if triple in _ontology():
+        return names.GRAPHS["ontology"]
+    if triple.subject.value.startswith(ontology_files.KIND):
+        return names.GRAPHS["objects"]
+    return names.graph_of(triple.subject)
+
+
+@cache
+def _ontology() -> frozenset[Triple]:
+    return frozenset(ontology_files.ontology())
+
+
+def _named(quads: list[Quad]) -> Iterable[Quad]:
+    """The same with IRIs for unnamed things, which follow from what is said of them."""
+    if not any(isinstance(t, BlankNode) for each in quads for t in (each.subject, each.object)):
+        return quads
+    dataset = Dataset(quads)
+    dataset.canonicalize(CanonicalizationAlgorithm.RDFC_1_0)
+    return [Quad(_name(q.subject), q.predicate, _name(q.object), q.graph_name) for q in dataset]
+
+
+def _name(term: object) -> NamedNode:
+    if isinstance(term, BlankNode):
+        return NamedNode(f"{DATA}genid/{term.value}")
+    return term  # type: ignore[return-value]
+
+
+def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -> tuple[int, int]:
+    """Add statements, all or none; an observation among them replaces the one of its name.
+
+    The ontology is the program's own and is not taken from outside.
+
+    Returns:
+        How many statements and how many observations came in.
+
+    Raises:
+        ShapeError: They break the model.
+    """
+    taken = [each for each in quads if each.graph_name != names.GRAPHS["ontology"]]
+    triples = [each.triple for each in taken]
+    problems = (*shapes.violations(triples), *shapes.nlt_problems(triples))
+    if problems:
+        raise ShapeError(source, problems)
+    seen = sorted(
+        {
+            each.graph_name.value
+            for each in taken
+            if isinstance(each.graph_name, NamedNode)
+            and each.graph_name.value.startswith(names.OBSERVATION)
+        }
+    )
+    if taken:
+        removals = [writing.removal(NamedNode(each)) for each in seen]
+        store.change(" ;\n".join([*removals, insertion(taken)]))
+    return len(taken), len(seen)

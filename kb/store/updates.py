@@ -1,0 +1,37 @@
+"""Changes to a store as SPARQL updates: each is one, so that nothing half-written is seen."""
+
+from pyoxigraph import NamedNode, Quad
+
+from kb.store.names import GRAPHS
+from kb.store.sparql import fill
+from kb.store.statements import insertion
+from ontology import CAPAR
+
+_ORPHANS = f"""DELETE {{ GRAPH ?shared {{ ?thing ?predicate ?value }} }}
+WHERE {{
+  GRAPH @graph@ {{ @graph@ {CAPAR.mentions} ?thing }}
+  FILTER NOT EXISTS {{
+    GRAPH ?elsewhere {{ ?other {CAPAR.mentions} ?thing }}
+    FILTER(?elsewhere != @graph@)
+  }}
+  VALUES ?shared {{ @shared@ }}
+  FILTER NOT EXISTS {{ GRAPH ?shared {{ ?thing {CAPAR.declared} true }} }}
+  GRAPH ?shared {{ ?thing ?predicate ?value }}
+}}"""
+
+
+def removal(graph: NamedNode) -> str:
+    """The update that takes an observation back, and what nobody else mentions."""
+    shared = " ".join(str(GRAPHS[each]) for each in ("agents", "objects", "actions"))
+    orphans = fill(_ORPHANS, graph=str(graph), shared=shared)
+    return f"{orphans} ;\nDROP SILENT GRAPH {graph}"
+
+
+def replacement(graph: NamedNode, quads: list[Quad]) -> str:
+    """The update that puts an observation in the place of one of the same name."""
+    return f"{removal(graph)} ;\n{insertion(quads)}"
+
+
+def graph_replacement(graph: NamedNode, quads: list[Quad]) -> str:
+    """The update that gives a graph these statements and no others."""
+    return f"DROP SILENT GRAPH {graph} ;\n{insertion(quads)}"

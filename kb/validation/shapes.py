@@ -1,0 +1,208 @@
+"""Shapes: the part of SHACL that ours are written in, proved fast on each new observation."""
+
+import math
+import re
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, TypeAlias
+
+from pyoxigraph import BlankNode, Literal, NamedNode, Quad, Triple
+
+from kb.errors import ShapeError
+from kb.store.literals import LiteralError, nlt_of
+from kb.store.statements import TYPE, Statements
+from ontology import CAPAR
+from ontology.files import read, shape_files
+
+SH = "http://www.w3.org/ns/shacl#"
+UNIT_TOLERANCE = 1e-3
+"""How far an NLT's quaternion may lie from unit length [1]."""
+
+Node = NamedNode | BlankNode | Literal
+Properties: TypeAlias = Mapping[NamedNode, Collection[Node]]
+"""What is said of a thing, by property."""
+
+NLTS = (CAPAR.eeNlt, CAPAR.goalNlt, CAPAR.vNlt)
+"""The properties whose values are NLTs."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What a shape asks of one property of its things."""
+
+    shape: str
+    target: NamedNode
+    path: NamedNode
+    message: str
+    least: int
+    most: float
+    datatype: NamedNode | None
+    is_iri: bool
+    among: frozenset[str]
+    pattern: re.Pattern[str] | None
+    lowest: float
+    highest: float
+    at_most: NamedNode | None
+    """Another property whose value may not be smaller."""
+
+
+def _after(value: Node) -> str:
+    assert not isinstance(value, BlankNode)
+    return value.value
+
+
+@cache
+def rules() -> tuple[Rule, ...]:
+    """What every shape asks, shape by shape."""
+    found = []
+    for file in shape_files():
+        said: dict[object, dict[str, list[Node]]] = {}
+        for each in read(file):
+            assert not isinstance(each.object, Triple)
+            name = each.predicate.value.removeprefix(SH)
+            said.setdefault(each.subject, {}).setdefault(name, []).append(each.object)
+        for node, shape in said.items():
+            for target in shape.get("targetClass", ()):
+                found += [_rule(str(node), target, said, each) for each in shape["property"]]
+    return tuple(found)
+
+
+def _rule(name: str, target: Node, said: dict[object, dict[str, list[Node]]], node: Node) -> Rule:
+    asked = said[node]
+
+    def one(key: str, default: str) -> str:
+        return _after(asked[key][0]) if key in asked else default
+
+    def term(key: str) -> NamedNode | None:
+        return NamedNode(one(key, "")) if key in asked else None
+
+    pattern = one("pattern", "")
+    return Rule(
+        shape=name,
+        target=NamedNode(_after(target)),
+        path=NamedNode(one("path", "")),
+        message=one("message", ""),
+        least=int(one("minCount", "0")),
+        most=float(one("maxCount", "inf")),
+        datatype=term("datatype"),
+        is_iri=one("nodeKind", "") == SH + "IRI",
+        among=frozenset(_list(said, asked["in"][0])) if "in" in asked else frozenset(),
+        pattern=re.compile(pattern) if pattern else None,
+        lowest=float(one("minInclusive", "-inf")),
+        highest=float(one("maxInclusive", "inf")),
+        at_most=term("lessThanOrEquals"),
+    )
+
+
+def _list(said: dict[object, dict[str, list[Node]]], node: Node) -> Iterable[str]:
+    rdf = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
+    while node in said:
+        yield str(said[node][rdf + "first"][0])
+        node = said[node][rdf + "rest"][0]
+
+
+@cache
+def _rules_of() -> Mapping[object, tuple[Rule, ...]]:
+    """What is asked of the things of each class."""
+    found: dict[object, tuple[Rule, ...]] = {}
+    for each in rules():
+        found[each.target] = (*found.get(each.target, ()), each)
+    return found
+
+
+def violations(triples: Iterable[Triple | Quad]) -> tuple[str, ...]:
+    """What is wrong with statements by our shapes, a line each, sorted."""
+    said: dict[object, dict[NamedNode, list[Node]]] = {}
+    for each in triples:
+        assert not isinstance(each.object, Triple)
+        said.setdefault(each.subject, {}).setdefault(each.predicate, []).append(each.object)
+    return _judged(said)
+
+
+def _judged(things: Mapping[Any, Properties]) -> tuple[str, ...]:
+    asked = _rules_of()
+    found = {
+        f"{_short(thing)}: {rule.message}"
+        for thing, said in things.items()
+        for kind in said.get(TYPE, ())
+        for rule in asked.get(kind, ())
+        if not _obeys(said, rule)
+    }
+    return tuple(sorted(found))
+
+
+def _obeys(said: Properties, rule: Rule) -> bool:
+    values = said.get(rule.path, ())
+    if not rule.least <= len(values) <= rule.most:
+        return False
+    return all(_fits(value, rule) for value in values) and (
+        rule.at_most is None
+        or all(_number(a) <= _number(b) for a in values for b in said.get(rule.at_most, ()))
+    )
+
+
+def _fits(value: Node, rule: Rule) -> bool:
+    if rule.is_iri and not isinstance(value, NamedNode):
+        return False
+    if rule.datatype and not (isinstance(value, Literal) and value.datatype == rule.datatype):
+        return False
+    if rule.among and str(value) not in rule.among:
+        return False
+    if rule.pattern and not (not isinstance(value, BlankNode) and rule.pattern.search(value.value)):
+        return False
+    if rule.lowest > -math.inf or rule.highest < math.inf:
+        return rule.lowest <= _number(value) <= rule.highest
+    return True
+
+
+def _number(value: Node) -> float:
+    try:
+        return float(_after(value))
+    except ValueError:
+        return math.nan
+
+
+def nlt_problems(triples: Iterable[Triple | Quad]) -> tuple[str, ...]:
+    """NLTs that are no finite place with a unit quaternion, a line each, sorted."""
+    found = []
+    for each in triples:
+        if isinstance(each.object, Literal) and each.object.datatype == CAPAR.nlt:
+            problem = nlt_problem(each.object.value)
+            if problem:
+                found.append(f"{_short(each.subject)}: {problem}")
+    return tuple(sorted(found))
+
+
+def nlt_problem(text: str) -> str:
+    """What is wrong with an NLT's literal; empty if nothing is."""
+    try:
+        norm = math.hypot(*nlt_of(text).orientation)
+    except LiteralError as error:
+        return str(error)
+    if abs(norm - 1.0) > UNIT_TOLERANCE:
+        return f"NLT {text!r} has a quaternion of length {norm:.4g}; orientations have length 1"
+    return ""
+
+
+def prove(name: str, statements: Statements) -> None:
+    """Refuse statements that break the model.
+
+    Raises:
+        ShapeError: They do; it says where and how.
+    """
+    nlts = [
+        f"{_short(thing)}: {problem}"
+        for thing, said in statements.things.items()
+        for each in NLTS
+        for value in said.get(each, ())
+        if (problem := nlt_problem(value.value))
+    ]
+    found = (*_judged(statements.things), *sorted(nlts))
+    if found:
+        raise ShapeError(f"observation {name!r}", found)
+
+
+def _short(node: object) -> str:
+    text = node.value if isinstance(node, NamedNode) else str(node)
+    return text.rsplit("/", 1)[-1]
