@@ -14,9 +14,9 @@ import numpy as np
 import scene
 
 from capar.model.capture import Capture
+from extractors.bodies.poses import Poses, poses, rotation_matrices
 from extractors.contact.surfaces import surface
 from extractors.relations.attention import NOTHING, Attention, attention
-from extractors.signals.poses import Poses, poses, rotation_matrices
 from extractors.thresholds import Thresholds
 
 

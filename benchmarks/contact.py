@@ -17,9 +17,9 @@ import numpy as np
 import scene
 
 from capar.model.capture import Capture
+from extractors.bodies.poses import poses
 from extractors.contact.contacts import shaped, watched
 from extractors.contact.proximity import Body, near
-from extractors.signals.poses import poses
 from extractors.thresholds import Thresholds
 
 TOLERANCE_M = 0.005

@@ -23,21 +23,21 @@ from capar.model.facts import (
     Touching,
     Upward,
 )
+from extractors.bodies.body_geometry import Figure, figure
+from extractors.bodies.poses import Poses
 from extractors.contact.normals import contact_normal
 from extractors.motion.impacts import closing_speed, falls
 from extractors.motion.leaning import leaning, upright_axis
 from extractors.motion.object_motion import motion_floor, stays
-from extractors.motion.places import distances, places
 from extractors.motion.rest import resting
 from extractors.motion.rolling import rolling
+from extractors.motion.turning_points import reversals, swings
 from extractors.relations.arrangement import ARRANGEMENTS, Holds, between, gap, sides
-from extractors.relations.body_geometry import Figure, figure
 from extractors.relations.grips import shifts
+from extractors.relations.places import distances, places
 from extractors.relations.weight_bearing import bearing
 from extractors.sample_frames import marks
 from extractors.signals.intervals import Interval, intervals
-from extractors.signals.poses import Poses
-from extractors.signals.turning_points import reversals, swings
 from extractors.thresholds import Thresholds
 
 PASSED = ("inside", "above")

@@ -25,6 +25,7 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
+from extractors.bodies.poses import Poses, poses
 from extractors.contact.contacts import Contact, contact_tolerance, contacts
 from extractors.handling import handling
 from extractors.motion.motion_edges import motion_edges
@@ -33,7 +34,6 @@ from extractors.relations.attention import Attention, attention
 from extractors.relations.weight_bearing import TRUNK
 from extractors.signals.filters import speed
 from extractors.signals.gaps import long_gaps
-from extractors.signals.poses import Poses, poses
 from extractors.signals.zero_crossings import pauses, zero_crossings
 from extractors.thresholds import Thresholds
 

@@ -23,6 +23,7 @@ from capar.rulebook.changes import (
 )
 from capar_rules.authoring.transaction import unbroken
 from capar_rules.engine.profiles import profile
+from capar_rules.lint.admission import admitted_profile
 from kb.actionary import Actionary
 from kb.errors import StoreError
 from kb.lookup.changes import NamedSegment, source_files
@@ -102,7 +103,7 @@ def test_stored_facts_are_those_that_were_measured(kept):
 
 def test_the_segments_change_as_the_comparison_foretold(kept):
     place = str(kept / "actionary")
-    before, after = profile("thesis"), profile("thesis", added=(kept / "lift.lp",))
+    before, after = profile("thesis"), admitted_profile("thesis", added=(kept / "lift.lp",))
     foretold = renamed(stored(place, profile="thesis").seen, before=before, after=after)
     assert [(each.index, each.before, each.after) for each in foretold] == [
         (1, "MoveObjTo", "Lift")
@@ -134,7 +135,7 @@ def test_observations_of_another_profile_are_left_alone_and_said_so(kept):
 
 def test_what_is_compared_with_is_the_name_that_is_stored(kept):
     place = str(kept / "actionary")
-    with_lift = profile("thesis", added=(kept / "lift.lp",))
+    with_lift = admitted_profile("thesis", added=(kept / "lift.lp",))
     reclassified(place, after=with_lift, captures=[kept / "captures"])
     without = profile("thesis")
     changes = renamed(stored(place, profile="thesis").seen, before=without, after=without)
@@ -195,7 +196,9 @@ def test_a_rule_and_what_it_renames_come_together_and_go_together(kept):
     assert [each.after for each in effect.changes] == ["Lift"]
     assert bearing(place, ["Lift"]) == 1
     with Actionary.open(place, read_only=True) as store:
-        assert store.observations()[0].rules == profile("thesis", added=(added,)).fingerprint
+        assert (
+            store.observations()[0].rules == admitted_profile("thesis", added=(added,)).fingerprint
+        )
     gone = remove_reclassifying(
         added, actionary=place, after=profile("thesis"), captures=[kept / "captures"]
     )
@@ -246,7 +249,7 @@ def test_nothing_is_renamed_when_the_files_have_changed(kept):
     with pytest.raises(FileError, match="nothing was renamed"):
         reclassified(
             place,
-            after=profile("thesis", added=(kept / "lift.lp",)),
+            after=admitted_profile("thesis", added=(kept / "lift.lp",)),
             captures=[kept / "captures"],
         )
     with Actionary.open(place, read_only=True) as store:
@@ -267,7 +270,7 @@ def test_takes_of_a_bundle_are_found_again(tmp_path):
     with Actionary.open(place) as store:
         for take in ("take1", "take10"):
             store.add(observe(f"{bundle}/mine.toml:{take}", rules="thesis"))
-    after = profile("thesis", added=(tmp_path / "lift.lp",))
+    after = admitted_profile("thesis", added=(tmp_path / "lift.lp",))
     effect = reclassified(place, after=after, captures=[tmp_path / "captures"])
     assert [(each.capture, each.after) for each in effect.changes] == [
         ("drink_from_mug_tall_man_take1", "Lift"),

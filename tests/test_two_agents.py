@@ -27,7 +27,7 @@ from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
 from kb.language.describe import describe
 from kb.reports.complex_drawing import as_text
-from kb.validation.store_checks import check
+from kb.store_checks import check
 
 BUNDLE = """\
 name = "handing_over"

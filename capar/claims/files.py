@@ -14,7 +14,8 @@ from capar.model.errors import CaparError, FileError
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from capar_rules.authoring.user_rules import user_rules
-from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from capar_rules.engine.profiles import DEFAULT, Profile
+from capar_rules.lint.admission import admitted_profile
 from extractors.readers.bundle.capture_toml import read_capture, takes
 
 SUFFIX = ".motion.toml"
@@ -100,7 +101,7 @@ def _verdict(claim: str, capture: str, base: Profile) -> Verdict:
 
 @cache
 def _base(name: str, added: tuple[Path, ...]) -> Profile:
-    return profile(name, added=added)
+    return admitted_profile(name, added=added)
 
 
 @cache

@@ -60,10 +60,10 @@ def rule_base(
         CaparError: A folder is none, or a rule file has a fault.
     """
     from capar_rules.authoring.user_rules import user_rules
-    from capar_rules.engine.profiles import profile as named_profile
+    from capar_rules.lint.admission import admitted_profile
 
     added = user_rules(rules, actionary=actionary)
-    return named_profile(profile, added=added, steady=steady)
+    return admitted_profile(profile, added=added, steady=steady)
 
 
 def opened(actionary: str | None) -> str:

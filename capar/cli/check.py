@@ -22,7 +22,7 @@ def check(
 ) -> None:
     """Check every observation: SHACL shapes, NLTs, and references to what is not there."""
     from kb import Actionary
-    from kb.validation.store_checks import check as checked
+    from kb.store_checks import check as checked
 
     with Actionary.open(actionary, read_only=True) as opened:
         problems = checked(opened.store, full=not fast)

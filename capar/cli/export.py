@@ -28,8 +28,8 @@ def export(
     """Write everything, or one observation, as Turtle, TriG, N-Quads or JSON-LD."""
     from capar.cli._places import prove_place, written
     from kb import Actionary
-    from kb.store.exchange import export as exported
-    from kb.store.exchange import format_of, misplaced
+    from kb.exchange import export as exported
+    from kb.exchange import format_of, misplaced
 
     chosen = format_of(file or "", format_ or (None if file else "trig"))
     if file is not None:

@@ -26,7 +26,7 @@ def import_(
     An observation in FILE replaces the one of its name.
     """
     from kb import Actionary
-    from kb.store.exchange import bring_in, format_of, read
+    from kb.exchange import bring_in, format_of, read
 
     chosen = format_of(file, format_)
     quads = read(_bytes(file), chosen, path=file)

@@ -200,8 +200,9 @@ def _refuse(observation: "Observation") -> None:
 
 def _teach(observation: "Observation", folder: Path) -> bool:
     """Ask for a name for each unknown feature set; whether any was given."""
+    from capar.model.par import ACTION_NAME
     from capar.views.tables import unknown_note
-    from capar_rules.authoring.user_rules import ACTION_NAME, teach
+    from capar_rules.authoring.user_rules import teach
 
     unknown = {each.features: each for each in observation.segments if not each.known}
     names = []

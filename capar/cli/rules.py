@@ -186,7 +186,7 @@ def remove(
     from capar.rulebook.changes import bearing, remove_reclassifying
     from capar_rules.authoring.user_primitives import introduced, removable
     from capar_rules.authoring.user_rules import actionary_rules, rule_files, user_rules
-    from capar_rules.engine.profiles import profile as named_profile
+    from capar_rules.lint.admission import admitted_profile
 
     place = opened(actionary)
     mine = actionary_rules(place)
@@ -204,7 +204,7 @@ def remove(
     require_actionary(actionary, observed=True)
     others = tuple(each for each in every if each.resolve() != path.resolve())
     effect = remove_reclassifying(
-        path, actionary=actionary, after=named_profile(profile, added=others),
+        path, actionary=actionary, after=admitted_profile(profile, added=others),
         captures=captures or [Path()],
     )  # fmt: skip
     typer.echo(f"removed {path}")
@@ -230,7 +230,7 @@ def diff(
     from dataclasses import asdict
 
     from capar.rulebook.changes import captured, renamed, stored
-    from capar_rules.engine.profiles import profile as named_profile
+    from capar_rules.lint.admission import admitted_profile
     from capar_rules.lint.checking import check as checked
     from capar_rules.lint.checking import require
 
@@ -238,7 +238,7 @@ def diff(
     beside = _others(file, rules, actionary)
     findings = checked(file, profile=profile, beside=beside)
     require(file, [each for each in findings if each.code != "ambiguous"])
-    after = named_profile(profile, added=(*beside, file))
+    after = admitted_profile(profile, added=(*beside, file))
     others: tuple[str, ...] = ()
     if on:
         seen = captured(on, rules=before)

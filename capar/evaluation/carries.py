@@ -8,10 +8,10 @@ import numpy as np
 
 from capar.model import geometry
 from capar.model.capture import Stream, TagObject, TagType
+from extractors.bodies.poses import poses
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import motion_floor, moving, stays
 from extractors.readers.bundle.clock import resampled
-from extractors.signals.poses import poses
 from extractors.thresholds import Thresholds
 
 RATE_HZ = 50.0

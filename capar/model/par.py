@@ -1,9 +1,13 @@
 """Parameterized action representations: uninstantiated, instantiated and complex (thesis 4.1)."""
 
+import re
 from dataclasses import dataclass
 from enum import StrEnum
 
 from capar.model.errors import ParError
+
+ACTION_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
+"""What a primitive may be called: ``MoveObjTo``."""
 
 UNKNOWN = "Unknown"
 """The name of a segment whose features no rule covers."""

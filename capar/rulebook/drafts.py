@@ -11,8 +11,9 @@ from capar.model.par import FeatureSet
 from capar.pipelines.observation import facts_program
 from capar_rules.authoring.examples import Example, try_examples, written
 from capar_rules.authoring.user_primitives import new_rule, rules_of, telling
-from capar_rules.engine.profiles import Profile, profile
+from capar_rules.engine.profiles import Profile
 from capar_rules.engine.syntax import parse, parse_text
+from capar_rules.lint.admission import admitted_profile
 from capar_rules.lint.text_checks import known
 from capar_rules.lint.world_checks import rivals
 from capar_rules.pars.inference import infer
@@ -95,7 +96,7 @@ def rule_from_segment(
     with TemporaryDirectory() as folder:
         draft = Path(folder) / f"{name}.lp"
         draft.write_text(text, encoding="utf-8")
-        joined = profile(rules.name, added=(*rules.added, draft), steady=rules.steady)
+        joined = admitted_profile(rules.name, added=(*rules.added, draft), steady=rules.steady)
         story = Example(f"{called}, segment {place}.", True, _told(measured, links, rules), (), 0)
         (outcome,) = try_examples([story], profile=joined)
     example = Example(story.story, True, story.facts, outcome.found, 0)

@@ -28,7 +28,8 @@ from capar_rules.authoring.dependencies import introduced as introduced
 from capar_rules.authoring.examples import Example, lacking, read_examples, try_examples, written
 from capar_rules.authoring.user_rules import make_folder, taught
 from capar_rules.authoring.user_rules import user_rules as user_rules
-from capar_rules.engine.profiles import DEFAULT, profile
+from capar_rules.engine.profiles import DEFAULT
+from capar_rules.lint.admission import admitted_profile
 from capar_rules.lint.checking import check, require
 
 TELLING = (Frames, RateMhz, Link, Tag, ZeroCrossing, Touching, Gap, Moving, ForceTransfer)
@@ -92,7 +93,7 @@ def try_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) ->
     examples = read_examples(_text(path), file=path)
     names = introduced(path)
     failures = []
-    rules = profile(base, added=(*(each for each in beside if each != path), path))
+    rules = admitted_profile(base, added=(*(each for each in beside if each != path), path))
     for outcome in try_examples(examples, profile=rules):
         if not outcome.met:
             found = dict(outcome.found)

@@ -6,13 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from capar.model.errors import FileError, RuleError
-from capar.model.par import FeatureSet
-
-ACTION_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
-"""What a primitive may be called: ``MoveObjTo``."""
-
-LARGEST_BYTES = 256 * 1024
-"""A rule file is a definition that a person reads; none is larger [bytes]."""
+from capar.model.par import ACTION_NAME, FeatureSet
+from capar_rules.engine.syntax import LARGEST_BYTES
 
 RULES_VARIABLE = "CAPAR_RULES"
 """Environment variable that names the folder of a project's rule files."""

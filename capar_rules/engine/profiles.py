@@ -40,7 +40,7 @@ _CROSSINGS_ONLY = {"extended": False, "thesis": True}
 def profile(
     name: str = DEFAULT, *, added: tuple[Path, ...] = (), steady: bool | None = None
 ) -> Profile:
-    """The profile of that name, with rule files added to it, each judged by its text first.
+    """The profile of that name, with rule files added to it, taken as they are.
 
     Args:
         name: Of the profile.
@@ -50,13 +50,8 @@ def profile(
 
     Raises:
         UnknownNameError: There is none.
-        RuleError: An added file has a fault; nothing of it was run.
     """
     if name not in _CROSSINGS_ONLY:
         raise UnknownNameError("profile", name, _CROSSINGS_ONLY)
-    if added:
-        from capar_rules.lint.admission import admit
-
-        admit(added, profile=name)
     crossings_only = _CROSSINGS_ONLY[name]
     return Profile(name, crossings_only, added, not crossings_only if steady is None else steady)

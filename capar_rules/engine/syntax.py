@@ -15,6 +15,9 @@ _ANONYMOUS = re.compile(r"(?<!\w)_(?!\w)")
 Signature = tuple[str, int]
 """A predicate: its name and its number of arguments."""
 
+LARGEST_BYTES = 256 * 1024
+"""A rule file is a definition that a person reads; none is larger [bytes]."""
+
 
 @dataclass(frozen=True, slots=True, order=True)
 class Place:

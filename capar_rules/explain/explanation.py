@@ -16,41 +16,12 @@ from capar_rules.engine.solver import rule_file
 from capar_rules.engine.syntax import Place, Statement, parse, parse_text
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.instants import frames_of, mended
+from capar_rules.explain.reason import Reason as Reason
 from capar_rules.explain.sentences import Clock, Sentences
-from capar_rules.explain.summaries import summary
+from capar_rules.explain.summary import summary
 from capar_rules.explain.windows import Windows
 
 ALWAYS = (("segment", 3), ("also", 2))
-
-
-@dataclass(frozen=True)
-class Reason:
-    """One node of an explanation."""
-
-    sentence: str
-    """Empty where the step is told by the nodes below it."""
-
-    atom: str
-    rule: str
-    """File and line of the rule; empty for a measurement, and for what does not hold."""
-
-    frames: tuple[int, int] | None
-    """Of a measurement, first and last."""
-
-    leading: bool
-    """Whether the sentence belongs in the summary."""
-
-    because: tuple["Reason", ...]
-
-    def told(self) -> "Reason":
-        """The tree of those nodes that have a sentence; what was told is not told again."""
-        return _told(self, set())
-
-    def walk(self) -> Iterator["Reason"]:
-        """This node and all below it, from the top."""
-        yield self
-        for each in self.because:
-            yield from each.walk()
 
 
 @dataclass(frozen=True)
@@ -232,29 +203,6 @@ def _explanation(segment: Segment, reasons: Sequence[Reason]) -> Explanation:
     return Explanation(
         segment.ee, segment.index, segment.name, segment.start_s, segment.end_s, told, top
     )
-
-
-def _told(reason: Reason, known: set[str]) -> Reason:
-    """The tree of sentences; one that is known already has nothing below it."""
-    below: list[Reason] = []
-    if reason.sentence not in known:
-        known.add(reason.sentence)
-        below = [_told(each, known) for each in _nearest(reason)]
-    return replace(reason, because=tuple(below))
-
-
-def _nearest(reason: Reason) -> list[Reason]:
-    """The nearest nodes with a sentence, in order, each sentence once."""
-    found: dict[str, Reason] = {}
-    waiting, passed = list(reversed(reason.because)), set()
-    while waiting:
-        each = waiting.pop()
-        if each.sentence:
-            found.setdefault(each.sentence, each)
-        elif each.atom not in passed:
-            passed.add(each.atom)
-            waiting += reversed(each.because)
-    return list(found.values())
 
 
 def _where(place: Place | None) -> str:

@@ -5,12 +5,34 @@ from functools import partial
 from pathlib import Path
 
 from capar.model.errors import RuleError
+from capar_rules.engine.profiles import DEFAULT, Profile
+from capar_rules.engine.profiles import profile as unchecked_profile
 from capar_rules.lint.findings import Finding, errors
 from capar_rules.lint.judging import base_of, judge
 from capar_rules.lint.sandbox import guarded
 
 HARMLESS = {"no-primitive"}
 """What keeps a file from being added, and yet may stand among rules: it only helps others."""
+
+
+def admitted_profile(
+    name: str = DEFAULT, *, added: tuple[Path, ...] = (), steady: bool | None = None
+) -> Profile:
+    """The profile of that name with rule files of users added, each checked by its text first.
+
+    Args:
+        name: Of the profile.
+        added: Rule files of the user's.
+        steady: Whether to resolve flicker; None for what is usual in the profile.
+
+    Raises:
+        UnknownNameError: There is none.
+        RuleError: An added file has a fault; nothing of it was run.
+    """
+    chosen = unchecked_profile(name, added=added, steady=steady)
+    if added:
+        admit(added, profile=name)
+    return chosen
 
 
 def admit(files: Sequence[Path], *, profile: str) -> None:

@@ -7,8 +7,7 @@ from pathlib import Path
 
 from capar.model.errors import RuleError
 from capar.model.facts import LARGEST
-from capar_rules.authoring.user_rules import LARGEST_BYTES
-from capar_rules.engine.syntax import Place, Statement, parse_text
+from capar_rules.engine.syntax import LARGEST_BYTES, Place, Statement, parse_text
 from capar_rules.lint.findings import Finding
 from capar_rules.lint.world_checks import solver_findings
 

@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 
-from capar_rules.authoring.user_rules import ACTION_NAME
+from capar.model.par import ACTION_NAME
 from capar_rules.engine.slicing import FITS
 from capar_rules.engine.syntax import Atom, Statement, split_arguments
 from capar_rules.lint.findings import ERROR, NOTE, Finding

@@ -8,11 +8,11 @@ from jaxtyping import Bool, Float
 
 from capar.model import geometry
 from capar.model.capture import Capture, PivotContact, Sensor, TagObject, TagType
+from extractors.bodies.poses import Poses
 from extractors.contact.proximity import Body, body, near, nearest
 from extractors.contact.surfaces import surface
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, intervals
-from extractors.signals.poses import Poses
 from extractors.thresholds import Thresholds
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from extractors.relations.body_geometry import Figure
+from extractors.bodies.body_geometry import Figure
 
 
 def contact_normal(body: Figure, other: Figure, frame: int) -> Float[np.ndarray, "3"] | None:

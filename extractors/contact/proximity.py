@@ -7,10 +7,10 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from capar.model.capture import Stream
+from extractors.bodies.poses import rotation_matrices
 from extractors.contact.surfaces import Surface
 from extractors.contact.sweep import sweep
 from extractors.contact.triangle_intersection import meeting_points
-from extractors.signals.poses import rotation_matrices
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,9 +4,9 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
+from extractors.bodies.poses import Poses, rotation_matrices
 from extractors.motion.object_motion import Stay
 from extractors.signals.intervals import Interval, intervals
-from extractors.signals.poses import Poses, rotation_matrices
 from extractors.thresholds import Thresholds
 
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from extractors.bodies.poses import Poses
 from extractors.motion.object_motion import Floor, Stay, stands
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, first_where, last_where
-from extractors.signals.poses import Poses
 from extractors.thresholds import Thresholds
 
 

@@ -9,10 +9,10 @@ from scipy.ndimage import uniform_filter1d
 
 from capar.model import geometry
 from capar.model.capture import Stream
+from extractors.bodies.poses import Poses, median_pose
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, first_where, intervals, last_where, mask
 from extractors.signals.noise import Noise
-from extractors.signals.poses import Poses, median_pose
 from extractors.thresholds import Thresholds
 
 

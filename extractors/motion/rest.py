@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from extractors.bodies.poses import Poses
 from extractors.motion.object_motion import motion_floor, slow, stays
 from extractors.signals.intervals import Interval
-from extractors.signals.poses import Poses
 from extractors.thresholds import Thresholds
 
 

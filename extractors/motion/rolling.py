@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
-from extractors.relations.body_geometry import Figure
+from extractors.bodies.body_geometry import Figure
 from extractors.signals.filters import velocity
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds

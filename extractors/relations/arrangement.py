@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from extractors.relations.body_geometry import Figure, blocks
+from extractors.bodies.body_geometry import Figure, blocks
 from extractors.thresholds import Thresholds
 
 Holds = Bool[np.ndarray, "frames"]

@@ -7,9 +7,9 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from capar.model.capture import Capture, Sensor
+from extractors.bodies.poses import Poses, rotation_matrices
 from extractors.contact.surfaces import Surface, surface
 from extractors.signals.intervals import Interval, intervals
-from extractors.signals.poses import Poses, rotation_matrices
 from extractors.thresholds import Thresholds
 
 NOTHING = -1

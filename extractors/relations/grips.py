@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from extractors.relations.body_geometry import Figure
+from extractors.bodies.body_geometry import Figure
 from extractors.signals.filters import speed
 from extractors.signals.intervals import Interval
 from extractors.signals.zero_crossings import pauses, zero_crossings

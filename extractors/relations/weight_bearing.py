@@ -7,11 +7,11 @@ from jaxtyping import Bool, Float
 
 from capar.model.capture import Capture, Sensor
 from capar.model.facts import Bears, Touching
+from extractors.bodies.body_geometry import Figure, figure
+from extractors.bodies.poses import Poses
 from extractors.contact.normals import contact_normal
 from extractors.motion.rest import resting
-from extractors.relations.body_geometry import Figure, figure
 from extractors.signals.intervals import Interval, intervals, mask
-from extractors.signals.poses import Poses
 from extractors.thresholds import Thresholds
 
 FOOT = "foot"

@@ -15,10 +15,10 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Capture, Sensor, TagObject
 from capar.model.par import Nlt
+from extractors.bodies.poses import Poses
 from extractors.contact.proximity import nearest, still
 from extractors.contact.surfaces import surface
 from extractors.relations.attention import NOTHING, Attention
-from extractors.signals.poses import Poses
 
 NO_EXTENT_M = 1e-6
 """A size below this is none [m]."""

@@ -4,8 +4,8 @@ import numpy as np
 
 from capar.model import geometry
 from capar.model.par import Motion
+from extractors.bodies.poses import Poses
 from extractors.motion.object_motion import motion_floor
-from extractors.signals.poses import Poses
 from extractors.thresholds import Thresholds
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import Ipar, Motion
 from kb.language.contacts import Scene
-from kb.language.english import joined, words_of
 from kb.language.lexicalisation import QUIET, SOMEONE, Phrasebook
+from kb.lexicon.english import joined, words_of
 from kb.lexicon.links import motion_senses
 from kb.lexicon.wordnet import wordnet
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from capar.model.facts import Link, Moving, OfAgent, Touching
 from capar.model.observation import Observation, Segment
-from kb.language.english import the_agent
+from kb.lexicon.english import the_agent
 
 
 class Scene:

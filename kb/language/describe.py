@@ -9,11 +9,11 @@ from capar.model.observation import Observation, ObservedLink
 from kb.language.aggregation import edited
 from kb.language.clauses import Clause, clauses
 from kb.language.contacts import Scene
-from kb.language.english import capital, the_agent, times
 from kb.language.hands import spoken_links, told_in_order
 from kb.language.lexicalisation import FREE, Phrasebook
 from kb.language.realisation import Telling
 from kb.language.repeating import counted, repetition
+from kb.lexicon.english import capital, the_agent, times
 from kb.lexicon.links import PrimitiveWords
 
 Detail = Literal["steps", "summary"]

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
-from kb.language.english import joined, past, words_of
+from kb.lexicon.english import joined, past, words_of
 from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.tables import table
 

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from capar.model.par import Call
-from kb.language.english import name_of
 from kb.language.question import QUESTION_WORDS, Ask, Question
 from kb.language.sentence import Instruction
 from kb.language.tokens import ARTICLES, Cursor
 from kb.language.vocabulary import PREPOSITIONS, Entry, Vocabulary
+from kb.lexicon.english import name_of
 
 WITH, FROM, TO, FOR = "with", "from", "to", "for"
 AFTER = (WITH, FROM, TO, FOR)

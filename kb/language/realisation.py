@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from capar.model.observation import ObservedLink
 from kb.language.clauses import Clause
-from kb.language.english import joined, noun, the, times
 from kb.language.lexicalisation import in_past
 from kb.language.vocabulary import SIDES
+from kb.lexicon.english import joined, noun, the, times
 
 _ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
 """Places of several objects that a verb has as one."""

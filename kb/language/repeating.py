@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import groupby, pairwise
 
 from kb.language.clauses import Clause
-from kb.language.english import times
+from kb.lexicon.english import times
 
 
 def counted(told: Iterable[Clause]) -> tuple[Clause, ...]:

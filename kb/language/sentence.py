@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from capar.model.observation import Segment
 from capar.model.par import Call, Step
-from kb.language.english import capital, name_of, the, words_of
 from kb.language.vocabulary import EVERYTHING, Vocabulary
+from kb.lexicon.english import capital, name_of, the, words_of
 
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 

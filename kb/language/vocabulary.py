@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from kb.language.english import noun, past
 from kb.language.lexicalisation import USUAL_PREPOSITION, built
+from kb.lexicon.english import noun, past
 from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.tables import table
 

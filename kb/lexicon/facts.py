@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from kb.language.english import words_of
+from kb.lexicon.english import words_of
 from kb.lexicon.evidence import Case, Seen
 from kb.lexicon.levin import levin_classes
 from kb.lexicon.links import (

@@ -13,9 +13,9 @@ from kb.encode import encode
 from kb.encode.facts import CLASSES, PROPERTIES
 from kb.store import names
 from kb.store import updates as writing
+from kb.store.shapes import prove
 from kb.store.sparql import fill
 from kb.store.stores import Store
-from kb.validation.shapes import prove
 from ontology import CAPAR
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from kb.findings import Added, Stored
 from kb.lookup import recognition
 from kb.store import names
 from kb.store import updates as writing
+from kb.store.shapes import prove
 from kb.store.sparql import fill
 from kb.store.stores import Store, is_address
-from kb.validation.shapes import prove
 from ontology import CAPAR
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from kb.language.english import words_of
 from kb.lexicon.claims import doubts_of
+from kb.lexicon.english import words_of
 from kb.lexicon.evidence import Seen, total
 from kb.lexicon.levin import above, book_order, levin_class, levin_classes
 from kb.lexicon.links import (

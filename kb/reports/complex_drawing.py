@@ -8,12 +8,12 @@ from pyoxigraph import NamedNode, RdfFormat
 from capar.model.errors import UnknownNameError
 from capar.model.par import ComplexPar, Step
 from kb.encode.complex_pars import COMMON
+from kb.exchange import part
 from kb.findings import Stored
 from kb.lookup import pars
 from kb.lookup.stored import observations
 from kb.store import names
 from kb.store.answers import turtle
-from kb.store.exchange import part
 from kb.store.stores import Store
 from ontology import CAPAR
 

@@ -12,8 +12,7 @@ from capar_rules.authoring.user_rules import (
     rules_folder,
     user_rules,
 )
-from capar_rules.engine.profiles import profile
-from capar_rules.lint.admission import admit, faults
+from capar_rules.lint.admission import admit, admitted_profile, faults
 
 BY_TEXT = {
     "script_python": "script",
@@ -82,7 +81,7 @@ def test_a_bad_file_is_refused_with_its_place_and_what_would_be_right(name, tmp_
         assert str(each).startswith(f"{path}:{each.place.line}:{each.place.column}: error: ")
         assert each.remedy.endswith((".", "..."))
     with pytest.raises(RuleError, match=f"{path}:"):
-        profile("thesis", added=(path,))
+        admitted_profile("thesis", added=(path,))
     assert not (tmp_path / "HARMED").exists()
 
 
@@ -97,7 +96,7 @@ def test_sound_files_and_those_that_only_help_are_admitted(tmp_path):
     sound = kept(tmp_path, "hoist", hostile_rules.SOUND)
     helping = kept(tmp_path, "helping", "seldom(Hand) :- link(Hand, foot, _).\n")
     admit([sound, helping], profile="extended")
-    assert profile("extended", added=(sound, helping)).added == (sound, helping)
+    assert admitted_profile("extended", added=(sound, helping)).added == (sound, helping)
 
 
 def test_files_that_speak_of_each_other_are_judged_together(tmp_path):
@@ -140,7 +139,7 @@ def test_one_primitive_in_two_files_is_refused_and_both_are_named(tmp_path):
     first = kept(tmp_path / "one", "hoist", hostile_rules.SOUND)
     second = kept(tmp_path / "other", "hoist", hostile_rules.SOUND + "% otherwise\n")
     with pytest.raises(RuleError) as refused:
-        profile("extended", added=(first, second))
+        admitted_profile("extended", added=(first, second))
     assert f'{first}:2:1: error: there is a primitive "Hoist" already, in {second}.' in str(
         refused.value
     )

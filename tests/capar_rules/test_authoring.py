@@ -20,6 +20,7 @@ from capar_rules.authoring.user_primitives import (
     user_rules,
 )
 from capar_rules.engine.profiles import profile
+from capar_rules.lint.admission import admitted_profile
 from capar_rules.pars.inference import infer
 from extractors.measure import extract
 
@@ -165,7 +166,7 @@ def test_a_feature_set_becomes_a_rule_that_names_it(tmp_path):
                               0)],
         )
     )  # fmt: skip
-    named = infer(facts, profile=profile("thesis", added=(path,))).links[0].segments[-1]
+    named = infer(facts, profile=admitted_profile("thesis", added=(path,))).links[0].segments[-1]
     assert (named.name, named.general) == ("Shove", (segment.name,))
     assert len(try_rule(path, base="thesis")) == 1
 
@@ -180,7 +181,7 @@ def test_an_added_rule_is_the_users_until_it_is_removed(grasp, tmp_path):
     added = add_rule(grasp, folder=folder, base="thesis")
     assert user_rules(folder) == (added,)
     assert list(folder.iterdir()) == [added]
-    base = profile("thesis", added=user_rules(folder))
+    base = admitted_profile("thesis", added=user_rules(folder))
     assert rule_of(base, "Grasp").origin == "project"
     assert rule_of(base, "Grasp", actionary=tmp_path).origin == "user"
     with pytest.raises(FileError, match="exists already"):

@@ -7,10 +7,10 @@ from measured_bodies import ball, box, eased, hand, stream
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import TagObject, TagType
-from extractors.relations.body_geometry import figure
+from extractors.bodies.body_geometry import figure
+from extractors.bodies.poses import poses
 from extractors.relations.grips import shifts
 from extractors.signals.intervals import Interval
-from extractors.signals.poses import poses
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

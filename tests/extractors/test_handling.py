@@ -10,17 +10,17 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.model.facts import Wound
+from extractors.bodies.body_geometry import Figure, figure
+from extractors.bodies.poses import poses
 from extractors.contact.normals import contact_normal
 from extractors.motion.impacts import closing_speed, falls
 from extractors.motion.leaning import leaning, spin
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, stays
-from extractors.motion.places import distances
 from extractors.motion.rest import resting
+from extractors.motion.turning_points import reversals, swings, turning_points
 from extractors.relations.arrangement import above, below, beside, between, dips, inside, sides
-from extractors.relations.body_geometry import Figure, figure
-from extractors.signals.poses import poses
-from extractors.signals.turning_points import reversals, swings, turning_points
+from extractors.relations.places import distances
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

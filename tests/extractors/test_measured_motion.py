@@ -8,11 +8,11 @@ from measured_bodies import eased, still, stream
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Stream, TagObject, TagType
+from extractors.bodies.poses import poses
 from extractors.measure import _track
 from extractors.motion.object_motion import motion_floor, moving
 from extractors.signals.gaps import fill_gaps, long_gaps
 from extractors.signals.noise import noise_at_rest
-from extractors.signals.poses import poses
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

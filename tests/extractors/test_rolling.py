@@ -13,9 +13,9 @@ from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.model.facts import Rolls
 from capar.pipelines.observation import observe
+from extractors.bodies.body_geometry import Figure, figure
+from extractors.bodies.poses import poses
 from extractors.motion.rolling import angular_velocity, rolling
-from extractors.relations.body_geometry import Figure, figure
-from extractors.signals.poses import poses
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

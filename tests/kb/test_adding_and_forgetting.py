@@ -15,7 +15,7 @@ from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.errors import ExistsError, ShapeError
 from kb.store import names
-from kb.validation.store_checks import check
+from kb.store_checks import check
 
 
 def statements(actionary: Actionary) -> set[str]:

@@ -14,8 +14,8 @@ from capar.model.par import FeatureSet, Nlt, PathPoint
 from kb.actionary import Actionary
 from kb.encode.segments import BORDER_KINDS
 from kb.errors import ShapeError
+from kb.exchange import FORMATS, bring_in, export, format_of, misplaced, read
 from kb.store import literals, names
-from kb.store.exchange import FORMATS, bring_in, export, format_of, misplaced, read
 from kb.store.literals import LiteralError
 
 PREPOSITIONS = (("away from", "mug", "table"), ("on", "mug", "table"), ("up", "mug", "mug"))

@@ -15,9 +15,9 @@ from observations import with_unknown
 from capar.cli.observe import _keep
 from capar.model.observation import Observation
 from kb.actionary import Actionary
+from kb.exchange import bring_in, export, misplaced, read
 from kb.queries.questions import questions
-from kb.store.exchange import bring_in, export, misplaced, read
-from kb.validation.store_checks import check
+from kb.store_checks import check
 
 PERFORMERS = sorted(each.name for each in motions.PERFORMERS)
 FIRST = next(iter(motions.PERFORMERS)).name

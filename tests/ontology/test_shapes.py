@@ -8,8 +8,8 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 from pyoxigraph import RdfFormat, Triple, parse
 
 from kb.encode import encode
-from kb.validation.shapes import rules, violations
-from kb.validation.store_checks import by_shacl
+from kb.store.shapes import rules, violations
+from kb.store_checks import by_shacl
 from ontology.files import shape_files
 
 HERE = Path(__file__).parent

@@ -31,7 +31,7 @@ from capar.model.facts import Moving, Touching
 from capar.model.par import FeatureSet
 from capar.pipelines.observation import observe
 from kb.language.describe import describe
-from kb.language.english import past
+from kb.lexicon.english import past
 from kb.lexicon.links import PrimitiveWords
 
 ACTIONS = {

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kb.language.english import joined, name_of, noun, number, past, the, the_agent, times, words_of
+from kb.lexicon.english import joined, name_of, noun, number, past, the, the_agent, times, words_of
 
 
 @pytest.mark.parametrize(

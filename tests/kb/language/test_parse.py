@@ -11,10 +11,10 @@ from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.language import Instruction, Question, parse, sentence
-from kb.language.english import noun
 from kb.language.errors import SentenceError
 from kb.language.question import Ask
 from kb.language.vocabulary import EFFECTORS, EVERYTHING, PREPOSITIONS, Vocabulary
+from kb.lexicon.english import noun
 from kb.lexicon.links import PrimitiveWords
 
 WORDS = primitive_words(primitive_files())

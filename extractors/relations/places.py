@@ -7,9 +7,9 @@ from jaxtyping import Bool, Float
 
 from capar.model import geometry
 from capar.model.facts import Apart, Fact, Place, Posture, Travelled, Wound
+from extractors.bodies.body_geometry import Figure
 from extractors.motion.leaning import lean, spin
 from extractors.relations.arrangement import beyond_shadow
-from extractors.relations.body_geometry import Figure
 
 
 def places(

@@ -1,12 +1,9 @@
 """The one sentence that sums up an explanation: a name's own conditions first."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from capar_rules.engine.syntax import split_arguments
-
-if TYPE_CHECKING:
-    from capar_rules.explain.explanation import Reason
+from capar_rules.explain.reason import Reason
 
 BESIDE = ("joins_in(", "looks(")
 """How what begins that is told beside a name, and is no reason for it."""
@@ -18,12 +15,12 @@ BORDERS = ("segment(", "border(", "member(")
 """How what begins that says where a segment begins and ends, and not what it is."""
 
 
-def summary(name: str, reason: "Reason") -> str:
+def summary(name: str, reason: Reason) -> str:
     """Why a segment has a name, in one sentence."""
     return f"{name}, because {_listed(_leading(reason))}."
 
 
-def _leading(reason: "Reason") -> list[str]:
+def _leading(reason: Reason) -> list[str]:
     """The telling sentences, each once; of the same at several times, one."""
     places: dict[str, list[str]] = {}
     for each in _deciding(reason):
@@ -39,7 +36,7 @@ def _leading(reason: "Reason") -> list[str]:
     ]
 
 
-def _deciding(reason: "Reason") -> "list[Reason]":
+def _deciding(reason: Reason) -> list[Reason]:
     """The nodes on which the name rests: first its own conditions, then its features."""
     passed = set[int]()
     own = list(_resting_on([reason], passed))
@@ -49,7 +46,7 @@ def _deciding(reason: "Reason") -> "list[Reason]":
     return [*(each for each in own if _rank(each)), *sorted(features, key=_rank)]
 
 
-def _resting_on(tops: "Iterable[Reason]", passed: set[int]) -> "Iterator[Reason]":
+def _resting_on(tops: "Iterable[Reason]", passed: set[int]) -> Iterator[Reason]:
     """Nodes from the top, each once, as far down as the features."""
     waiting = list(reversed(list(tops)))
     while waiting:
@@ -62,7 +59,7 @@ def _resting_on(tops: "Iterable[Reason]", passed: set[int]) -> "Iterator[Reason]
             waiting += [below for below in reversed(each.because) if _bears(each, below)]
 
 
-def _bears(reason: "Reason", below: "Reason") -> bool:
+def _bears(reason: Reason, below: Reason) -> bool:
     """Whether what is below a node bears on the name, and not on where a border is alone.
 
     Doubts count there too, but none of a measurement at whatever time.
@@ -72,7 +69,7 @@ def _bears(reason: "Reason", below: "Reason") -> bool:
     return not reason.atom.startswith(BORDERS)
 
 
-def _rank(reason: "Reason") -> int:
+def _rank(reason: Reason) -> int:
     """Features in the order in which they are told: what the end-effector touches comes first."""
     predicate = reason.atom.partition("(")[0]
     if predicate == "contact_at":

@@ -10,7 +10,7 @@ from jaxtyping import Float, Int
 from scipy.spatial import ConvexHull, QhullError
 
 from capar.model.capture import Sensor, Shape, TagObject
-from extractors.signals.poses import Poses, rotation_matrices
+from extractors.bodies.poses import Poses, rotation_matrices
 
 DIRECTIONS = 64
 """Directions in which a body's outermost corners are taken [1]: 25 degrees lie between them."""

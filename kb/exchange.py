@@ -20,12 +20,11 @@ from pyoxigraph import (
 from capar.model.errors import FileError, UnknownNameError
 from kb.errors import ShapeError
 from kb.lookup.stored import observations
-from kb.store import names
+from kb.store import names, shapes
 from kb.store import updates as writing
 from kb.store.answers import turtle
 from kb.store.statements import insertion
 from kb.store.stores import Store
-from kb.validation import shapes
 from ontology import DATA, PREFIXES
 from ontology import files as ontology_files
 

@@ -7,13 +7,12 @@ from typing import Any
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
+from kb.exchange import part
 from kb.lookup.stored import observations
-from kb.store import names
-from kb.store.exchange import part
+from kb.store import names, shapes
 from kb.store.literals import LiteralError, nlt_of, numbers
 from kb.store.sparql import fill
 from kb.store.stores import Store
-from kb.validation import shapes
 from ontology import BASE, CAPAR, DATA
 from ontology.files import shape_files
 

@@ -7,8 +7,8 @@ from jaxtyping import Float, Int
 
 from capar.model import geometry
 from capar.model.capture import Stream
+from extractors.bodies.poses import Poses
 from extractors.signals.intervals import Interval
-from extractors.signals.poses import Poses
 from extractors.thresholds import Thresholds
 
 

@@ -1,0 +1,57 @@
+"""Nodes of an explanation: a sentence, the atom that it tells, and what the atom rests on."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+
+@dataclass(frozen=True)
+class Reason:
+    """One node of an explanation."""
+
+    sentence: str
+    """Empty where the step is told by the nodes below it."""
+
+    atom: str
+    rule: str
+    """File and line of the rule; empty for a measurement, and for what does not hold."""
+
+    frames: tuple[int, int] | None
+    """Of a measurement, first and last."""
+
+    leading: bool
+    """Whether the sentence belongs in the summary."""
+
+    because: tuple["Reason", ...]
+
+    def told(self) -> "Reason":
+        """The tree of those nodes that have a sentence; what was told is not told again."""
+        return _told(self, set())
+
+    def walk(self) -> Iterator["Reason"]:
+        """This node and all below it, from the top."""
+        yield self
+        for each in self.because:
+            yield from each.walk()
+
+
+def _told(reason: Reason, known: set[str]) -> Reason:
+    """The tree of sentences; one that is known already has nothing below it."""
+    below: list[Reason] = []
+    if reason.sentence not in known:
+        known.add(reason.sentence)
+        below = [_told(each, known) for each in _nearest(reason)]
+    return replace(reason, because=tuple(below))
+
+
+def _nearest(reason: Reason) -> list[Reason]:
+    """The nearest nodes with a sentence, in order, each sentence once."""
+    found: dict[str, Reason] = {}
+    waiting, passed = list(reversed(reason.because)), set()
+    while waiting:
+        each = waiting.pop()
+        if each.sentence:
+            found.setdefault(each.sentence, each)
+        elif each.atom not in passed:
+            passed.add(each.atom)
+            waiting += reversed(each.because)
+    return list(found.values())

@@ -1,0 +1,1 @@
+"""Bodies through a capture: poses with gaps filled and noise removed, and their geometry."""

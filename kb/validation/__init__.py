@@ -1,1 +1,0 @@
-"""Whether what is stored is whole and right."""
