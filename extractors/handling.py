@@ -32,7 +32,7 @@ from extractors.motion.object_motion import motion_floor, stays
 from extractors.motion.rest import resting
 from extractors.motion.rolling import rolling
 from extractors.motion.turning_points import reversals, swings
-from extractors.relations.arrangement import ARRANGEMENTS, Holds, between, gap, sides
+from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between, sides
 from extractors.relations.grips import shifts
 from extractors.relations.places import distances, places
 from extractors.relations.weight_bearing import bearing
@@ -129,8 +129,9 @@ def _upright(
 def _arranged(
     one: Figure, other: Figure, touches: Iterable[Touching], thresholds: Thresholds
 ) -> Iterator[Fact]:
+    pair = Pair(one, other, thresholds)
     for how, arrangement in ARRANGEMENTS.items():
-        for span in _spans(arrangement(one, other, thresholds), one, thresholds):
+        for span in _spans(arrangement(pair), one, thresholds):
             yield Lies(one.name, how, other.name, *span)
             if how in PASSED and span[0] > 0 and span[1] < len(one.middles) - 1:
                 yield Passage(one.name, how, other.name, span[0], sides(one, other, np.array(span)))
@@ -139,9 +140,7 @@ def _arranged(
         for each in touches
         if (each.body, each.other) == (one.name, other.name)
     ]
-    with np.errstate(invalid="ignore"):
-        close = gap(one, other) <= thresholds.near_m
-    for first, last in _spans(close, one, thresholds):
+    for first, last in _spans(pair.near, one, thresholds):
         if not any(begin <= last and end >= first for begin, end in touching):
             yield Lies(one.name, NEAR, other.name, first, last)
 

@@ -1,7 +1,10 @@
 """All measurements of a capture, as ground facts and the arrays that later stages need."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from operator import attrgetter
+from typing import Any, cast
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -209,12 +212,20 @@ def _moving(
 
 def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:
     """Facts by kind, then by value, each once."""
-    rank = {kind: index for index, kind in enumerate(MEASURED)}
+    groups: dict[type[Fact], set[Fact]] = defaultdict(set)
+    for fact in facts:
+        groups[type(fact)].add(fact)
     return tuple(
         fact
-        for kind in sorted({type(each) for each in facts}, key=rank.__getitem__)
-        for fact in sorted({each for each in facts if type(each) is kind})
+        for kind in MEASURED
+        for fact in sorted(groups.get(kind, ()), key=_values(cast(Any, kind)))
     )
+
+
+def _values(kind: Any) -> Callable[[Fact], Any]:
+    """What facts of a kind are sorted by: their arguments, read without building the fact anew."""
+    names = [each.name for each in fields(kind)]
+    return attrgetter(*names) if names else str
 
 
 def _notices(capture: Capture, tolerance_m: float, thresholds: Thresholds) -> Iterator[Notice]:

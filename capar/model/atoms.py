@@ -46,16 +46,35 @@ class Fact:
         )
 
     def __str__(self) -> str:
-        """The fact as a line of a logic program, without its full stop."""
-        return str(self.symbol())
+        """The fact as a line of a logic program, without its full stop.
+
+        Raises:
+            FactError: An integer that the solver cannot hold.
+        """
+        values = [getattr(self, name) for name in _arguments(cast(Any, type(self)))]
+        return f"{self.predicate}({','.join(map(_text, values))})" if values else self.predicate
 
 
 def _symbol(value: Any) -> clingo.Symbol:
     if isinstance(value, int):
-        if abs(value) > LARGEST:
-            raise FactError(f"{value} does not fit the solver's 32 bits")
-        return clingo.Number(value)
+        return clingo.Number(_proven(value))
     return clingo.Function(value) if NAME.fullmatch(value) else clingo.String(value)
+
+
+def _text(value: int | str) -> str:
+    """The argument as the solver writes it, some ten times faster than by way of its symbol."""
+    return str(_proven(value)) if isinstance(value, int) else _word(value)
+
+
+@cache
+def _word(value: str) -> str:
+    return str(_symbol(value))
+
+
+def _proven(value: int) -> int:
+    if abs(value) > LARGEST:
+        raise FactError(f"{value} does not fit the solver's 32 bits")
+    return value
 
 
 def _value(symbol: clingo.Symbol, kind: type) -> Any:

@@ -35,8 +35,10 @@ def intervals(
             step of time.
         known: Frames at which it can be known at all; unknown ones, if long, stay interruptions.
     """
-    step = float(np.median(np.diff(times)))
     seen = holds if known is None else holds & known
+    if not seen.any():
+        return []
+    step = float(np.median(np.diff(times)))
     closed: list[Interval] = []
     for first, last in geometry.gaps(seen):
         if closed and times[first] - times[closed[-1][1]] - step < dropout_s - 1e-9:

@@ -19,7 +19,7 @@ from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, stays
 from extractors.motion.rest import resting
 from extractors.motion.turning_points import reversals, swings, turning_points
-from extractors.relations.arrangement import above, below, beside, between, dips, inside, sides
+from extractors.relations.arrangement import Pair, above, below, beside, between, dips, inside, sides
 from extractors.relations.places import distances
 from extractors.thresholds import Thresholds
 
@@ -184,14 +184,14 @@ def test_bodies_lie_inside_above_below_and_beside() -> None:
     }
     for arrangement, place in places.items():
         thing = body(np.array(place), shape=small)
-        held = [each for each in places if each(thing, other, LIMITS).all()]
+        held = [each for each in places if each(Pair(thing, other, LIMITS)).all()]
         assert held == [arrangement]
 
 
 def test_what_sticks_out_by_half_is_inside_and_what_stands_on_top_is_not() -> None:
     other = body(np.zeros(3), shape=shapes.box(0.4, 0.4, 0.4))
-    assert inside(body(np.array([0.0, 0.0, 0.34])), other, LIMITS).all()
-    assert not inside(body(np.array([0.0, 0.0, 0.4])), other, LIMITS).any()
+    assert inside(Pair(body(np.array([0.0, 0.0, 0.34])), other, LIMITS)).all()
+    assert not inside(Pair(body(np.array([0.0, 0.0, 0.4])), other, LIMITS)).any()
 
 
 def test_between_is_on_the_way_from_one_to_the_other() -> None:
@@ -231,8 +231,8 @@ def test_a_rod_that_stands_in_a_bowl_dips_into_it_and_one_beside_or_above_it_doe
     places = {(0.0, 0.0, 0.01): True, (0.15, 0.0, 0.01): False, (0.0, 0.0, 0.09): False}
     for place, within in places.items():
         there = body(np.array(place), shape=rod)
-        assert dips(there, bowl, LIMITS).all() == within
-        assert not inside(there, bowl, LIMITS).any()
+        assert dips(Pair(there, bowl, LIMITS)).all() == within
+        assert not inside(Pair(there, bowl, LIMITS)).any()
 
 
 def test_what_turns_above_a_thing_goes_about_nothing() -> None:
