@@ -77,15 +77,18 @@ def handling(
     out: list[Fact] = []
     for name, hand in hands.items():
         out += (Resting(name, *each) for each in resting(hand.where, thresholds))
+    uprights = {
+        name: _upright(one, floors.get(name), capture.rate_hz, thresholds)
+        for name, one in {**{each.name: things[each.name] for each in mobile}, **hands}.items()
+    }
     for each in mobile:
-        out += _motion(each, things[each.name], seen, capture.rate_hz, thresholds)
+        out += _motion(each, things[each.name], seen, uprights[each.name], thresholds)
     out += bearing(capture, where, touches, thresholds)
     borders = marks([*seen, *out], acting, len(capture.times) - 1)
     figures = [*hands.values(), *(things[each.name] for each in mobile if each.name not in hands)]
     for one in figures:
         frames = tuple(borders.get(one.name, ()))
-        upright = _upright(one, floors.get(one.name), capture.rate_hz, thresholds)
-        out += places(one, upright, frames)
+        out += places(one, uprights[one.name], frames)
         for other in things.values():
             if other.name != one.name:
                 out += distances(one, other, frames)
@@ -101,7 +104,11 @@ def handling(
 
 
 def _motion(
-    each: TagObject, one: Figure, known: list[Fact], rate_hz: float, thresholds: Thresholds
+    each: TagObject,
+    one: Figure,
+    known: list[Fact],
+    upright: Float[np.ndarray, "3"],
+    thresholds: Thresholds,
 ) -> Iterator[Fact]:
     pose = one.where
     moves = tuple(
@@ -111,7 +118,6 @@ def _motion(
     )
     yield from (Reverses(each.name, frame) for frame in reversals(pose, moves, thresholds))
     yield from (Swings(each.name, *span) for span in swings(pose, moves, thresholds))
-    upright = _upright(one, each.motion_floor_m, rate_hz, thresholds)
     length_m = float(one.shape.size.max()) if one.shape else 0.0
     leans = leaning(pose, upright, thresholds, length_m=length_m)
     yield from (Leans(each.name, *span) for span in leans)

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 from capar.model import geometry
 from capar.model.capture import Capture, PivotContact, Sensor, TagObject, TagType
 from extractors.bodies.poses import Poses
-from extractors.contact.proximity import Body, body, near, nearest
+from extractors.contact.proximity import Body, body, distance, near
 from extractors.contact.surfaces import surface
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, intervals
@@ -87,7 +87,7 @@ def contacts(
             if pivot is not None or one is None or two is None:
                 gap = float(_apart(where[first], where[second])[interval[0]])
             else:
-                gap = nearest(one, two, interval[0])[0]
+                gap = distance(one, two, interval[0])
             found.append(Contact(first[1], second[1], interval, gap))
     return tuple(found)
 

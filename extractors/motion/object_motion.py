@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -63,6 +64,19 @@ def stays(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Stay, ...
     place is the middle of the poses there; it holds all contiguous frames within the floor of
     that place, so the last millimetres of a landing belong to it.
     """
+    known = _KNOWN.setdefault(where, {})
+    if (floor, thresholds) not in known:
+        known[floor, thresholds] = _stays(where, floor, thresholds)
+    return known[floor, thresholds]
+
+
+_KNOWN: WeakKeyDictionary[Poses, dict[tuple[Floor, Thresholds], tuple[Stay, ...]]] = (
+    WeakKeyDictionary()
+)
+"""Where bodies rest, by their poses: three measurements ask for it."""
+
+
+def _stays(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Stay, ...]:
     stream = where.smooth
     times = stream.times
     rate_hz = 1.0 / float(np.median(np.diff(times)))

@@ -1,5 +1,7 @@
 """Zero-phase low-pass filtering of sampled motion, and what it leaves of white noise."""
 
+from functools import lru_cache
+
 import numpy as np
 from jaxtyping import Bool, Float
 from scipy.signal import butter, sosfiltfilt, sosfreqz
@@ -50,6 +52,7 @@ def lowpass_orientations(
     return np.asarray(smooth / np.linalg.norm(smooth, axis=1, keepdims=True))
 
 
+@lru_cache(maxsize=64)
 def gains(rate_hz: float, thresholds: Thresholds) -> tuple[float, float, float]:
     """What the filter makes of white noise of deviation one.
 
@@ -86,6 +89,7 @@ def velocity(
     return out
 
 
+@lru_cache(maxsize=64)
 def _filter(rate_hz: float, thresholds: Thresholds) -> np.ndarray:
     return np.asarray(butter(ORDER, cutoff(rate_hz, thresholds), fs=rate_hz, output="sos"))
 

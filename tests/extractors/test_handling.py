@@ -19,7 +19,16 @@ from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, stays
 from extractors.motion.rest import resting
 from extractors.motion.turning_points import reversals, swings, turning_points
-from extractors.relations.arrangement import Pair, above, below, beside, between, dips, inside, sides
+from extractors.relations.arrangement import (
+    Pair,
+    above,
+    below,
+    beside,
+    between,
+    dips,
+    inside,
+    sides,
+)
 from extractors.relations.places import distances
 from extractors.thresholds import Thresholds
 
