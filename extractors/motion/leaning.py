@@ -2,7 +2,6 @@
 
 import numpy as np
 from jaxtyping import Bool, Float
-from scipy.spatial.transform import Rotation
 
 from extractors.bodies.poses import Poses, rotation_matrices
 from extractors.motion.object_motion import Stay
@@ -84,8 +83,16 @@ def spin(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "fram
 
     Each step's turn about the vertical is the twist of its rotation; lost frames add nothing.
     """
-    rotation = Rotation.from_quat(np.nan_to_num(orientations, nan=0.5), scalar_first=True)
-    steps = (rotation[1:] * rotation[:-1].inv()).as_rotvec()[:, 2]
+    (w0, x0, y0, z0), (w1, x1, y1, z1) = orientations[:-1].T, orientations[1:].T
+    # The step's quaternion: the later orientation times the inverse of the earlier one.
+    w = w1 * w0 + x1 * x0 + y1 * y0 + z1 * z0
+    x = -w1 * x0 + x1 * w0 - y1 * z0 + z1 * y0
+    y = -w1 * y0 + x1 * z0 + y1 * w0 - z1 * x0
+    z = -w1 * z0 - x1 * y0 + y1 * x0 + z1 * w0
+    length = np.sqrt(x * x + y * y + z * z)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        angle = 2.0 * np.arctan2(length, np.abs(w)) * np.where(w < 0.0, -1.0, 1.0)
+        steps = np.where(length > 0.0, angle * z / length, 0.0)
     lost = np.isnan(orientations[:, 0])
     steps[lost[1:] | lost[:-1]] = 0.0
     return np.concatenate(([0.0], np.cumsum(steps)))
