@@ -59,13 +59,13 @@ def answers(requests: Sequence[Request]) -> list[Findings]:
     return found
 
 
-def require(path: Path, findings: Findings) -> None:
+def require(path: Path, findings: Sequence[Finding]) -> None:
     """Refuse a file with errors.
 
     Raises:
         RuleError: There are some; it lists them, one a line.
     """
-    wrong = errors(findings)
+    wrong = errors(tuple(findings))
     if wrong:
         lines = "\n".join(map(str, wrong))
         raise RuleError(f"{path} does not count:\n{lines}")
