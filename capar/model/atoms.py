@@ -6,8 +6,8 @@ from typing import Any, ClassVar, Self, cast, get_type_hints
 
 import clingo
 
-from capar.model.capture import NAME
 from capar.model.errors import FactError
+from capar.model.names import NAME
 
 LARGEST = 2**31 - 1
 """The largest integer of the solver, which wraps silently beyond."""

@@ -1,6 +1,5 @@
 """A capture: one trial as streams, scene, sensors and performers, frozen and proven once."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -19,9 +18,7 @@ from capar.model.bodies import Stream as Stream
 from capar.model.bodies import TagObject as TagObject
 from capar.model.bodies import TagType as TagType
 from capar.model.errors import CaptureError, UnknownNameError
-
-NAME = re.compile(r"[a-z][A-Za-z0-9_]*")
-"""What sensors and objects may be called: such a name is a constant of the rules, unquoted."""
+from capar.model.names import NAME as NAME
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import clingo
 
-from capar.model.capture import NAME
 from capar.model.errors import RuleError
 from capar.model.facts import Fact, program
+from capar.model.names import NAME
 
 Term = int | str | tuple["Term", ...]
 """A value of the rules: a number, a name or text, or a compound as (functor, arguments...)."""

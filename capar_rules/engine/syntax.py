@@ -157,7 +157,9 @@ class _Named(ast.Transformer):
 
     def visit_Literal(self, node: ast.AST) -> ast.AST:  # noqa: N802 (the parser's own word)
         """Leave negated atoms as they are: there a named variable would be unsafe."""
-        if node.sign != ast.Sign.NoSign or node.atom.ast_type is ast.ASTType.Comparison:
+        if not _ANONYMOUS.search(str(node)) or node.sign != ast.Sign.NoSign:
+            return node
+        if node.atom.ast_type is ast.ASTType.Comparison:
             return node
         return node.update(**self.visit_children(node))
 

@@ -1,18 +1,17 @@
-"""Rule files of users, read with care by every command before any of them counts."""
+"""Rule files of users, checked by their text before any command loads them."""
 
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 
 from capar.model.errors import RuleError
 from capar_rules.engine.profiles import DEFAULT, Profile
 from capar_rules.engine.profiles import profile as unchecked_profile
+from capar_rules.lint.checking import answers
+from capar_rules.lint.file_checks import Request
 from capar_rules.lint.findings import Finding, errors
-from capar_rules.lint.judging import base_of, judge
-from capar_rules.lint.sandbox import guarded
 
 HARMLESS = {"no-primitive"}
-"""What keeps a file from being added, and yet may stand among rules: it only helps others."""
+"""Errors of `rules check` that do not keep a file from being loaded: it may only help others."""
 
 
 def admitted_profile(
@@ -22,12 +21,12 @@ def admitted_profile(
 
     Args:
         name: Of the profile.
-        added: Rule files of the user's.
+        added: Rule files of the user.
         steady: Whether to resolve flicker; None for what is usual in the profile.
 
     Raises:
         UnknownNameError: There is none.
-        RuleError: An added file has a fault; nothing of it was run.
+        RuleError: An added file has an error; nothing in it was executed.
     """
     chosen = unchecked_profile(name, added=added, steady=steady)
     if added:
@@ -36,20 +35,28 @@ def admitted_profile(
 
 
 def admit(files: Sequence[Path], *, profile: str) -> None:
-    """Let rule files count, unless their text alone tells of a fault; nothing of them is run.
+    """Accept rule files that are to be loaded together, unless their text alone shows an error.
 
-    That is syntax, words and names, what could run code or reach elsewhere, choices, circles and
-    growth without end. It takes milliseconds a file, in a process of its own that can come to no
-    harm. What the solver has to say of them is for the full check.
+    That is syntax, predicates and names, what could run code or read other files, choices,
+    negative cycles and unbounded growth. It takes well below a second, in one separate process
+    for all files. Checks that ask the solver are left to `capar rules check`.
 
     Args:
-        files: Rule files that are to count together.
+        files: The rule files.
         profile: The rule base that they join.
 
     Raises:
-        RuleError: There is a fault; it tells each with file, line, column, and what would be right.
+        RuleError: There is an error; it gives each with file, line, column and remedy.
     """
-    wrong = faults(files, profile=profile)
+    refuse(faults(files, profile=profile))
+
+
+def refuse(wrong: Sequence[Finding]) -> None:
+    """Say why rule files are not loaded.
+
+    Raises:
+        RuleError: There is an error among them; it gives each with file, line, column and remedy.
+    """
     if wrong:
         lines = "\n".join(map(str, wrong))
         raise RuleError(
@@ -59,8 +66,14 @@ def admit(files: Sequence[Path], *, profile: str) -> None:
 
 
 def faults(files: Sequence[Path], *, profile: str) -> tuple[Finding, ...]:
-    """What keeps rule files from counting, by place."""
-    if not files:
-        return ()
-    found = guarded(files[0], partial(judge, files, base_of(profile)))
-    return tuple(sorted({each for each in errors(tuple(found)) if each.code not in HARMLESS}))
+    """The errors that keep rule files from being loaded together, by place."""
+    return faults_of_each([files], profile=profile)[0] if files else ()
+
+
+def faults_of_each(sets: Sequence[Sequence[Path]], *, profile: str) -> list[tuple[Finding, ...]]:
+    """The same for several sets of files, each set by itself, in order."""
+    requests = [Request(tuple(map(str, files)), profile) for files in sets]
+    return [
+        tuple(finding for finding in errors(found) if finding.code not in HARMLESS)
+        for found in answers(requests)
+    ]

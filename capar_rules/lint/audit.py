@@ -4,13 +4,12 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.search import Atom, brave, worlds
 from capar_rules.engine.slicing import heads_of, signatures_below, towards
 from capar_rules.engine.solver import rule_file
-from capar_rules.engine.syntax import Signature, Statement, parse
+from capar_rules.engine.syntax import Signature, Statement, parse, parse_text
 
 ASKED: tuple[Signature, ...] = (
     ("nameless", 4),
@@ -87,6 +86,7 @@ def summarise(atoms: frozenset[Atom]) -> Audit:
     )
 
 
+@cache
 def given_in_audit() -> frozenset[Signature]:
     """The predicates that the audit's world states itself."""
     return heads_of([*_own("space.lp"), *_own("scene.lp"), *_own("words.lp")]) | {
@@ -121,6 +121,7 @@ def words_of(rules: Sequence[Statement]) -> list[Statement]:
     return [each for each in words if signatures_below([each]) | heads_of([each]) <= spoken]
 
 
+@cache
 def chosen_in_audit() -> frozenset[Signature]:
     """The relations that the audit's world leaves free, some only for a few of their words."""
     return heads_of(each for each in _own("words.lp") if each.head_kind == "choice")
@@ -152,11 +153,12 @@ _LIMB = re.compile(r"\blimb\b")
 
 @cache
 def _own(name: str) -> tuple[Statement, ...]:
-    """The rules of one file of the audit, without what it includes."""
-    path = rule_file("lint/worlds") / name
-    return tuple(
-        each for each in parse([path]) if Path(each.place.file).name == name and each.kind == "rule"
-    )
+    """The rules of one file of the audit, without those of the files that it includes."""
+    text = (rule_file("lint/worlds") / name).read_text(encoding="utf-8")
+    return tuple(each for each in parse_text(_INCLUDE.sub("", text)) if each.kind == "rule")
+
+
+_INCLUDE = re.compile(r"^#include .*$", re.MULTILINE)
 
 
 def _rows(atoms: Iterable[Atom], predicate: str) -> list[tuple[object, ...]]:

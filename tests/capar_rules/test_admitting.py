@@ -12,7 +12,8 @@ from capar_rules.authoring.user_rules import (
     rules_folder,
     user_rules,
 )
-from capar_rules.lint.admission import admit, admitted_profile, faults
+from capar_rules.lint.admission import admit, admitted_profile, faults, faults_of_each, refuse
+from capar_rules.lint.findings import Finding
 
 BY_TEXT = {
     "script_python": "script",
@@ -71,16 +72,34 @@ def kept(folder: Path, name: str, content: str | bytes) -> Path:
     return path
 
 
+@pytest.fixture(scope="module")
+def refused(tmp_path_factory) -> dict[str, tuple[Path, tuple[Finding, ...]]]:
+    """Each bad file and what is found in it; all are judged one after another, in few processes."""
+    folder = tmp_path_factory.mktemp("bad")
+    contents = {**hostile_rules.BY_HAND, **hostile_rules.BYTES}
+    paths = {name: kept(folder, name, contents[name]) for name in BY_TEXT}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        found = faults_of_each([[path] for path in paths.values()], profile="thesis")
+    assert not (folder / "HARMED").exists()
+    return {name: (path, each) for (name, path), each in zip(paths.items(), found, strict=True)}
+
+
 @pytest.mark.parametrize("name", sorted(BY_TEXT))
-def test_a_bad_file_is_refused_with_its_place_and_what_would_be_right(name, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    path = kept(tmp_path, name, {**hostile_rules.BY_HAND, **hostile_rules.BYTES}[name])
-    found = faults([path], profile="thesis")
+def test_a_bad_file_is_refused_with_its_place_and_what_would_be_right(name, refused):
+    path, found = refused[name]
     assert BY_TEXT[name] in {each.code for each in found}
     for each in found:
         assert str(each).startswith(f"{path}:{each.place.line}:{each.place.column}: error: ")
         assert each.remedy.endswith((".", "..."))
     with pytest.raises(RuleError, match=f"{path}:"):
+        refuse(found)
+
+
+def test_no_profile_is_made_with_a_bad_file_and_nothing_of_it_is_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = kept(tmp_path, "bad", hostile_rules.BY_HAND["script_later"])
+    with pytest.raises(RuleError, match=f"{path}:4:1: error: #script runs code"):
         admitted_profile("thesis", added=(path,))
     assert not (tmp_path / "HARMED").exists()
 
@@ -88,7 +107,10 @@ def test_a_bad_file_is_refused_with_its_place_and_what_would_be_right(name, tmp_
 def test_mutants_never_break_the_process_that_admits_them(tmp_path):
     count = len(hostile_rules.BY_HAND) + len(hostile_rules.BYTES)
     paths = hostile_rules.write_all(tmp_path, count + 60)[count:]
-    refused = [bool(faults([each], profile="thesis")) for each in paths]
+    refused = [
+        bool(found) for found in faults_of_each([[each] for each in paths], profile="thesis")
+    ]
+    assert len(refused) == len(paths)
     assert refused.count(True) > refused.count(False)
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from capar_rules.lint.checking import check, check_all
+from capar_rules.lint.file_checks import base_of
 from capar_rules.lint.findings import ERROR, NOTE, Finding, errors
-from capar_rules.lint.judging import base_of
 from capar_rules.lint.word_checks import slip_findings
 from capar_rules.lint.word_places import closed
 
