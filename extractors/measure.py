@@ -209,7 +209,7 @@ def _moving(
 
 def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:
     """Facts by kind, then by value, each once."""
-    rank = {kind: index for index, kind in enumerate(MEASURED)}
+    rank: dict[type[Fact], int] = {kind: index for index, kind in enumerate(MEASURED)}
     return tuple(
         fact
         for kind in sorted({type(each) for each in facts}, key=rank.__getitem__)
