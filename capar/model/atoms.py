@@ -28,7 +28,7 @@ class Fact:
         Raises:
             FactError: An integer that the solver cannot hold.
         """
-        values = (getattr(self, name) for name in _arguments(cast(Any, type(self))))
+        values = (getattr(self, name) for name in arguments(cast(Any, type(self))))
         return clingo.Function(self.predicate, [_symbol(each) for each in values])
 
     @classmethod
@@ -88,7 +88,8 @@ def _value(symbol: clingo.Symbol, kind: type) -> Any:
 
 
 @cache
-def _arguments(cls: Any) -> tuple[str, ...]:
+def arguments(cls: Any) -> tuple[str, ...]:
+    """The names of the arguments of a kind of fact, in their order."""
     return tuple(each.name for each in fields(cls))
 
 
