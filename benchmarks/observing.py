@@ -17,16 +17,16 @@ from capar.model.capture import Capture
 from capar_rules.engine.profiles import profile
 from capar_rules.pars.inference import infer
 from extractors.contact.contacts import shaped, watched
-from extractors.measure import Measurements, extract
+from extractors.measure import Measurements, measure
 
 SAMPLE = 10
 
 
-def measure(minutes: float) -> dict[str, float]:
+def timed(minutes: float) -> dict[str, float]:
     """Seconds and ratios for one length."""
     capture = scene.capture(minutes)
     start = time.perf_counter()
-    measured = extract(capture)
+    measured = measure(capture)
     extracted = time.perf_counter()
     inference = infer(measured.facts, profile=profile())
     reasoned = time.perf_counter()
@@ -50,15 +50,15 @@ def plain(capture: Capture, measured: Measurements) -> float:
     frames = len(capture.times)
     chosen = range(0, frames, max(1, frames // SAMPLE))
     total = 0.0
-    for pair in watched(capture):
-        bodies = [shaped(capture, key, measured.poses[key]) for key in pair]
+    for pair in watched(capture, measured.bodies):
+        bodies = [shaped(each) for each in pair]
         if None in bodies:
             continue
         trees = [fcl.CollisionObject(each.surface.tree) for each in bodies if each]
         start = time.perf_counter()
         for frame in chosen:
-            for tree, key in zip(trees, pair, strict=True):
-                pose = measured.poses[key].settled
+            for tree, each in zip(trees, pair, strict=True):
+                pose = each.poses.settled
                 turn = fcl.Transform(pose.orientations[frame], pose.positions[frame])
                 tree.setTransform(turn)
             fcl.distance(*trees, fcl.DistanceRequest(), fcl.DistanceResult())
@@ -73,7 +73,7 @@ def main() -> None:
     options = parser.parse_args()
     rows = []
     for minutes in options.minutes:
-        rows.append(measure(minutes))
+        rows.append(timed(minutes))
         if not options.json:
             line = (f"{name} {value:,.4g}" for name, value in rows[-1].items())
             print("  ".join(line), flush=True)

@@ -17,7 +17,7 @@ from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key, infer
 from capar_rules.pars.primitive_pars import Measured, ipars, upars
-from extractors.measure import Measurements, extract
+from extractors.measure import Measurements, measure
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.segments.locations import locate
 from extractors.segments.motion_kinds import motion_kind
@@ -44,7 +44,7 @@ def observe(
         CaparError: The capture or the rules have a fault.
     """
     trial = capture if isinstance(capture, Capture) else read_capture(capture)
-    measurements = extract(trial, thresholds=thresholds)
+    measurements = measure(trial, thresholds=thresholds)
     return observe_measured(trial, measurements, rules=rules, name=name, thresholds=thresholds)
 
 
@@ -102,7 +102,7 @@ def facts_program(
     Flicker is resolved, and borders are numbered, as the profile has it.
     """
     base = profile(rules) if isinstance(rules, str) else rules
-    measurements = extract(capture, thresholds=thresholds)
+    measurements = measure(capture, thresholds=thresholds)
     facts = steady(measurements.facts) if base.steady else measurements.facts
     return replace(measurements, facts=facts), rank(facts, crossings_only=base.crossings_only)
 
@@ -120,7 +120,7 @@ def _measured(
         kind = Motion.NONE
         if "1" in segment.features.change_loc:
             moved = segment.objects[segment.features.change_loc.index("1")]
-            where = measurements.poses["object", moved]
+            where = measurements.bodies.objects[moved].poses
             track = where.smooth.positions
             kind = motion_kind(
                 where,
@@ -151,7 +151,7 @@ def _locations(
             continue
         place = locate(
             capture,
-            measurements.poses,
+            measurements.bodies,
             measurements.attention,
             ee=segment.ee,
             dominant=segment.objects[first] if first >= 0 else "",

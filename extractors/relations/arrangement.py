@@ -5,13 +5,13 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from extractors.bodies.body_geometry import Figure, blocks
+from extractors.bodies.body_geometry import BodyGeometry, blocks
 from extractors.thresholds import Thresholds
 
 Holds = Bool[np.ndarray, "frames"]
 
 
-def inside(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+def inside(body: BodyGeometry, other: BodyGeometry, thresholds: Thresholds) -> Holds:
     """At least half of the body lies in the other's hull.
 
     The share is that of the body's outermost points, those halfway to its middle, and its middle.
@@ -20,13 +20,17 @@ def inside(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
     return _share(points, body, other, depth_m=0.0) >= thresholds.inside_share
 
 
-def dips(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+def dips(body: BodyGeometry, other: BodyGeometry, thresholds: Thresholds) -> Holds:
     """One end of it is in the other's hull, deeper than bodies that touch cut each other."""
     return _share(body.corners, body, other, depth_m=_give(thresholds)) > 0.0
 
 
 def _share(
-    points: Float[np.ndarray, "points 3"], body: Figure, other: Figure, *, depth_m: float
+    points: Float[np.ndarray, "points 3"],
+    body: BodyGeometry,
+    other: BodyGeometry,
+    *,
+    depth_m: float,
 ) -> Float[np.ndarray, "frames"]:
     """Share of a body's points, from its middle, that lie so deep in the other's hull."""
     out = np.zeros(len(body.middles))
@@ -44,7 +48,7 @@ def _share(
     return out
 
 
-def above(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+def above(body: BodyGeometry, other: BodyGeometry, thresholds: Thresholds) -> Holds:
     """It is higher than the other's top, within 45 degrees of the vertical from its shadow."""
     low, high = body.boxes[0][:, 2], other.boxes[1][:, 2]
     aside = beyond_shadow(body.middles, *other.boxes)
@@ -53,7 +57,7 @@ def above(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
         return np.asarray((low >= high - _give(thresholds)) & (rise > 0.0) & (aside <= rise))
 
 
-def below(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+def below(body: BodyGeometry, other: BodyGeometry, thresholds: Thresholds) -> Holds:
     """It is lower than the other's bottom, under its shadow."""
     high, low = body.boxes[1][:, 2], other.boxes[0][:, 2]
     aside = beyond_shadow(body.middles, *other.boxes)
@@ -61,7 +65,7 @@ def below(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
         return np.asarray((high <= low + _give(thresholds)) & (aside <= 0.0))
 
 
-def beside(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+def beside(body: BodyGeometry, other: BodyGeometry, thresholds: Thresholds) -> Holds:
     """It is near, at the same height, and not in its shadow."""
     low, high = body.boxes
     bottom, top = other.boxes
@@ -72,7 +76,7 @@ def beside(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
         return np.asarray(heights & near & (aside > 0.0))
 
 
-def along(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+def along(body: BodyGeometry, other: BodyGeometry, thresholds: Thresholds) -> Holds:
     """It moves near the other, in the direction of its longest axis if it has one."""
     out = np.zeros(len(body.middles), dtype=bool)
     if other.shape is None:
@@ -81,7 +85,7 @@ def along(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
     if sizes[2] < 2.0 * sizes[1]:
         return out
     axis = other.turns_at(slice(None))[:, :, int(np.argmax(other.shape.size))]
-    times = body.where.smooth.times
+    times = body.poses.smooth.times
     step = np.gradient(body.middles, times, axis=0)
     pace = np.linalg.norm(step, axis=1)
     with np.errstate(invalid="ignore"):
@@ -90,7 +94,7 @@ def along(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
         return np.asarray(straight & moves & _overlaps(body, other, thresholds.near_m))
 
 
-def between(body: Figure, one: Figure, other: Figure) -> Holds:
+def between(body: BodyGeometry, one: BodyGeometry, other: BodyGeometry) -> Holds:
     """Its middle is in a straight tube that joins two bodies, in neither of their boxes."""
     line = other.middles - one.middles
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -103,7 +107,7 @@ def between(body: Figure, one: Figure, other: Figure) -> Holds:
         return np.asarray(tube & ~_holds(one, body.middles) & ~_holds(other, body.middles))
 
 
-def gap(body: Figure, other: Figure) -> Float[np.ndarray, "frames"]:
+def gap(body: BodyGeometry, other: BodyGeometry) -> Float[np.ndarray, "frames"]:
     """Distance of the boxes of two bodies along the world's axes [m]; zero where they overlap."""
     low, high = body.boxes
     bottom, top = other.boxes
@@ -111,7 +115,7 @@ def gap(body: Figure, other: Figure) -> Float[np.ndarray, "frames"]:
     return np.asarray(np.linalg.norm(outside, axis=1))
 
 
-def sides(body: Figure, other: Figure, frames: Int[np.ndarray, "two"]) -> str:
+def sides(body: BodyGeometry, other: BodyGeometry, frames: Int[np.ndarray, "two"]) -> str:
     """Whether a body is at opposite sides of another at two frames, or merely at other ones."""
     ends = [
         other.turn(frame).T @ (body.middles[frame] - other.middles[frame])
@@ -123,7 +127,7 @@ def sides(body: Figure, other: Figure, frames: Int[np.ndarray, "two"]) -> str:
     return "opposite" if first[axis] * last[axis] < 0.0 else "other"
 
 
-ARRANGEMENTS: dict[str, Callable[[Figure, Figure, Thresholds], Holds]] = {
+ARRANGEMENTS: dict[str, Callable[[BodyGeometry, BodyGeometry, Thresholds], Holds]] = {
     "inside": inside,
     "dips": dips,
     "above": above,
@@ -139,7 +143,7 @@ def _give(thresholds: Thresholds) -> float:
     return thresholds.tolerance_most_m
 
 
-def _overlaps(body: Figure, other: Figure, reach_m: float) -> Holds:
+def _overlaps(body: BodyGeometry, other: BodyGeometry, reach_m: float) -> Holds:
     with np.errstate(invalid="ignore"):
         return np.asarray(gap(body, other) <= reach_m)
 
@@ -154,10 +158,10 @@ def beyond_shadow(
     return np.asarray(np.linalg.norm(outside[:, :2], axis=1))
 
 
-def _radius(body: Figure) -> float:
+def _radius(body: BodyGeometry) -> float:
     return float(np.linalg.norm(body.corners, axis=1).max())
 
 
-def _holds(box: Figure, points: Float[np.ndarray, "frames 3"]) -> Holds:
+def _holds(box: BodyGeometry, points: Float[np.ndarray, "frames 3"]) -> Holds:
     low, high = box.boxes
     return np.asarray(((points >= low) & (points <= high)).all(axis=1))

@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Capture, Sensor, TagObject
 from capar.model.par import Nlt
+from extractors.bodies.bodies import Bodies
 from extractors.bodies.poses import Poses
 from extractors.contact.proximity import nearest, still
 from extractors.contact.surfaces import surface
@@ -48,7 +49,7 @@ class Location:
 
 def locate(
     capture: Capture,
-    where: Mapping[tuple[str, str], Poses],
+    bodies: Bodies,
     attention: Mapping[str, Attention],
     *,
     ee: str,
@@ -63,7 +64,7 @@ def locate(
 
     Args:
         capture: The trial.
-        where: Poses by ``("sensor", name)`` and ``("object", name)``.
+        bodies: Its bodies.
         attention: What the attending sensors look at.
         ee: The end-effector's sensor.
         dominant: The object in it that makes the contact; empty if the end-effector does.
@@ -75,11 +76,11 @@ def locate(
     """
     hand, target = capture.sensor(ee), capture.tag_object(goal)
     comes = capture.tag_object(dominant) if dominant else hand
-    hand_pose = where["sensor", ee]
-    target_pose = where["object", goal]
-    comes_pose = where["object", dominant] if dominant else hand_pose
+    hand_pose = bodies.sensors[ee].poses
+    target_pose = bodies.objects[goal].poses
+    comes_pose = bodies.objects[dominant].poses if dominant else hand_pose
     lost = [each.lost[frame] for each in (hand_pose, comes_pose, target_pose)]
-    seen, v_nlt = _sight(capture, where, attention, frame)
+    seen, v_nlt = _sight(capture, bodies, attention, frame)
     if any(lost):
         return Location(frame, dominant, goal, None, None, seen, v_nlt)
     on_comes, on_target = _points(comes, comes_pose, target, target_pose, frame)
@@ -154,7 +155,7 @@ def _local(base: Poses, point: Float[np.ndarray, "3"], frame: int) -> Float[np.n
 
 def _sight(
     capture: Capture,
-    where: Mapping[tuple[str, str], Poses],
+    bodies: Bodies,
     attention: Mapping[str, Attention],
     frame: int,
 ) -> tuple[str, Nlt | None]:
@@ -163,8 +164,8 @@ def _sight(
         look = attention[sensor]
         if look.seen[frame] != NOTHING:
             name = look.objects[look.seen[frame]]
-            pose = where["object", name]
+            pose = bodies.objects[name].poses
             point = _local(pose, look.points[frame], frame)
-            turn = _relative(pose, where["sensor", sensor], frame)
+            turn = _relative(pose, bodies.sensors[sensor].poses, frame)
             return name, normalised(point, turn, size(capture.tag_object(name)))
     return "", None

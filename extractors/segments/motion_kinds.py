@@ -10,21 +10,21 @@ from extractors.thresholds import Thresholds
 
 
 def motion_kind(
-    where: Poses, first: int, last: int, *, own_m: float | None, thresholds: Thresholds
+    poses: Poses, first: int, last: int, *, own_m: float | None, thresholds: Thresholds
 ) -> Motion:
     """How the body moves between two frames, against its pose at the first.
 
     Args:
-        where: The body's poses.
+        poses: The body's poses.
         first: Frame of the reference pose.
         last: Frame up to which motion counts.
         own_m: The object's own floor of motion [m], if it has one.
         thresholds: Least floors, and deviations of noise that they must exceed.
     """
     span = slice(first, last + 1)
-    places, turns = where.smooth.positions[span], where.smooth.orientations[span]
-    rate_hz = 1.0 / float(np.median(np.diff(where.smooth.times)))
-    floor = motion_floor(where.noise, rate_hz, own_m=own_m, thresholds=thresholds)
+    places, turns = poses.smooth.positions[span], poses.smooth.orientations[span]
+    rate_hz = 1.0 / float(np.median(np.diff(poses.smooth.times)))
+    floor = motion_floor(poses.noise, rate_hz, own_m=own_m, thresholds=thresholds)
     known = ~np.isnan(places[:, 0])
     if not known.any():
         return Motion.NONE

@@ -34,7 +34,7 @@ def lowpass(
     step = float(np.median(np.diff(times)))
     sos = _filter(1.0 / step, thresholds)
     out = np.array(values, dtype=float)
-    for first, last in geometry.gaps(~np.isnan(values[:, 0])):
+    for first, last in geometry.runs(~np.isnan(values[:, 0])):
         part = slice(first, last + 1)
         out[part] = _filtered(sos, values[part], times[part], step)
     return out
@@ -80,7 +80,7 @@ def velocity(
     """Rate of change by central differences [m/s]; each known stretch by itself, NaN stays."""
     out = np.full(positions.shape, np.nan)
     known: Bool[np.ndarray, "frames"] = ~np.isnan(positions[:, 0])
-    for first, last in geometry.gaps(known):
+    for first, last in geometry.runs(known):
         part = slice(first, last + 1)
         out[part] = np.gradient(positions[part], times[part], axis=0) if last > first else 0.0
     return out

@@ -17,7 +17,7 @@ def fill_gaps(stream: Stream, *, gap_s: float) -> Stream:
     the gap has (two at least), so that noise beside a gap is not thrown across it; it is exact
     for cubic motion. Orientations turn along great arcs. Losses at the ends stay lost.
     """
-    short = [each for each in geometry.gaps(stream.lost) if _inside(stream, each, gap_s)]
+    short = [each for each in geometry.runs(stream.lost) if _inside(stream, each, gap_s)]
     if not short:
         return stream
     positions, orientations = stream.positions.copy(), stream.orientations.copy()
@@ -33,7 +33,7 @@ def fill_gaps(stream: Stream, *, gap_s: float) -> Stream:
 
 def long_gaps(stream: Stream, *, gap_s: float) -> list[tuple[int, int]]:
     """Losses that are not filled, as closed intervals of frames."""
-    return [each for each in geometry.gaps(stream.lost) if not _inside(stream, each, gap_s)]
+    return [each for each in geometry.runs(stream.lost) if not _inside(stream, each, gap_s)]
 
 
 def _inside(stream: Stream, gap: tuple[int, int], gap_s: float) -> bool:

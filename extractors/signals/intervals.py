@@ -38,7 +38,7 @@ def intervals(
     step = float(np.median(np.diff(times)))
     seen = holds if known is None else holds & known
     closed: list[Interval] = []
-    for first, last in geometry.gaps(seen):
+    for first, last in geometry.runs(seen):
         if closed and times[first] - times[closed[-1][1]] - step < dropout_s - 1e-9:
             closed[-1] = (closed[-1][0], last)
         else:

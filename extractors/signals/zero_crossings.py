@@ -44,7 +44,7 @@ def zero_crossings(
             thresholds.crossing_speed_share * float(np.nanmax(speed_mps)),
         )
         resting = rests(speed_mps, times, noise_mps=noise_mps, thresholds=thresholds)
-        for first, last in geometry.gaps(known):
+        for first, last in geometry.runs(known):
             part = slice(first, last + 1)
             turns = _extrema(speed_mps[part], prominence, resting[part])
             found.update(first + each for each in turns)
@@ -108,7 +108,7 @@ def _to_the_ends(
     """
     out = slow.copy()
     reach = int(0.5 * thresholds.rest_minimum_s / float(np.median(np.diff(times)))) + 1
-    for first, last in geometry.gaps(~np.isnan(speed_mps)):
+    for first, last in geometry.runs(~np.isnan(speed_mps)):
         inside = np.flatnonzero(slow[first : last + 1]) + first
         if inside.size and inside[0] - first <= reach:
             out[first : inside[0]] = True
@@ -137,6 +137,6 @@ def _extrema(
     for signal in (speed, -speed):
         peaks, _ = find_peaks(signal, prominence=prominence)
         found.update(int(each) for each in peaks if not resting[each])
-    for first, last in geometry.gaps(resting):
+    for first, last in geometry.runs(resting):
         found.update({first, last} - {0, len(speed) - 1})
     return found

@@ -8,7 +8,7 @@ from measured_bodies import eased, pick_and_place
 
 from capar.model.capture import Capture
 from capar.model.par import Nlt
-from extractors.measure import extract
+from extractors.measure import measure
 from extractors.segments.locations import Location, locate, mirrored, normalised, restored
 from extractors.segments.styles import STEPS, path_style, velocity_style
 from extractors.thresholds import Thresholds
@@ -26,10 +26,10 @@ def unit(turn: tuple[float, float, float, float]) -> np.ndarray:
 
 
 def where(capture: Capture, *, dominant: str, goal: str, frame: int) -> Location:
-    measured = extract(capture)
+    measured = measure(capture)
     return locate(
         capture,
-        measured.poses,
+        measured.bodies,
         measured.attention,
         ee="right_hand",
         dominant=dominant,
