@@ -1,12 +1,44 @@
-"""Whether an object that moves is shifted, turned or both (thesis 4.1.1)."""
+"""Whether an object that moves is shifted, turned or both (thesis 4.1.1), and between where."""
 
 import numpy as np
+from jaxtyping import Float
 
 from capar.model import geometry
+from capar.model.capture import Capture
+from capar.model.observation import Segment
 from capar.model.par import Motion
 from extractors.bodies.poses import Poses
+from extractors.measure import Measurements
 from extractors.motion.object_motion import motion_floor
 from extractors.thresholds import Thresholds
+
+Place = tuple[float, float, float]
+"""A place in the world [m]."""
+
+
+def moved_path(
+    capture: Capture, measurements: Measurements, segment: Segment, thresholds: Thresholds
+) -> tuple[Motion, tuple[Place, ...]]:
+    """How the object that a segment moves moves, and where it begins and ends [m].
+
+    Where the segment moves none, the motion is none and the places are the end-effector's. A place
+    at which the body was lost is left out.
+    """
+    positions = measurements.tracks[segment.ee].positions
+    kind = Motion.NONE
+    if "1" in segment.features.change_loc:
+        moved = capture.tag_object(segment.objects[segment.features.change_loc.index("1")])
+        poses = measurements.bodies.objects[moved.name].poses
+        positions = poses.smooth.positions
+        span = segment.first, segment.last
+        kind = motion_kind(poses, *span, own_m=moved.motion_floor_m, thresholds=thresholds)
+    ends = (positions[segment.first], positions[segment.last])
+    return kind, tuple(_place(each) for each in ends if not np.isnan(each).any())
+
+
+def _place(position: Float[np.ndarray, "3"]) -> Place:
+    x, y, z = map(float, position)
+    return x, y, z
 
 
 def motion_kind(
