@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from extractors.bodies.poses import Poses, rotation_matrices
 from extractors.motion.object_motion import RestPose
+from extractors.signals.filters import derivative
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
 
@@ -19,9 +20,9 @@ def leaning(
 ) -> tuple[Interval, ...]:
     """Closed intervals of frames in which an object leans, from when it began to lean over.
 
-    It leans while its axis is far from the vertical, and already, and still, while it turns
-    thither and back faster than a body at rest does, and turns rather than travels: its middle
-    goes no faster than its turning moves one end about the other.
+    It leans while its axis is far from the vertical. The interval also covers the tipping over
+    before and the righting after, as long as it turns faster than a body at rest does, and turns
+    rather than travels: its middle goes no faster than its turning moves one end about the other.
 
     Args:
         poses: The object's poses.
@@ -31,8 +32,8 @@ def leaning(
     """
     stream = poses.smooth
     angle = lean(stream.orientations, upright)
-    pace = np.gradient(angle, stream.times)
-    speed = np.linalg.norm(np.gradient(stream.positions, stream.times, axis=0), axis=1)
+    pace = derivative(angle, stream.times)
+    speed = np.linalg.norm(derivative(stream.positions, stream.times), axis=1)
     with np.errstate(invalid="ignore"):
         far = angle > thresholds.lean_rad
         turns = (np.abs(pace) >= thresholds.rest_speed_radps) & (speed <= np.abs(pace) * length_m)

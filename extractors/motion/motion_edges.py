@@ -1,9 +1,8 @@
 """When a motion truly begins and ends, beyond the floor that tells it from none."""
 
-import numpy as np
-
 from extractors.bodies.poses import Poses
 from extractors.motion.object_motion import Floor, RestPose, rests_at
+from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, first_where, last_where
 from extractors.thresholds import Thresholds
@@ -43,7 +42,7 @@ def motion_edges(
 
 def _hair(poses: Poses, thresholds: Thresholds) -> Floor:
     times = poses.filled.times
-    rate_hz = 1.0 / float(np.median(np.diff(times)))
+    rate_hz = frame_rate(times)
     left = thresholds.motion_sigmas * gains(rate_hz, thresholds)[0]
     return Floor(
         max(thresholds.edge_m, left * poses.noise.position_m),

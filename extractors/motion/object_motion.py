@@ -5,11 +5,12 @@ from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Bool, Float
-from scipy.ndimage import uniform_filter1d
+from scipy.ndimage import correlate1d
 
 from capar.model import geometry
 from capar.model.capture import Stream
 from extractors.bodies.poses import Poses, median_pose
+from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, first_where, intervals, last_where, mask
 from extractors.signals.noise import Noise
@@ -65,7 +66,7 @@ def rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Rest
     """
     stream = poses.smooth
     times = stream.times
-    rate_hz = 1.0 / float(np.median(np.diff(times)))
+    rate_hz = frame_rate(times)
     calm = slow_frames(stream, poses.noise, rate_hz, thresholds)
     found: list[RestPose] = []
     for first, last in intervals(calm, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
@@ -141,12 +142,8 @@ def _slope(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.n
     half = min(half, (count - 1) // 2)
     if half < 1:
         return np.zeros(count)
-    index = np.arange(count, dtype=float)[:, None]
-    size = 2 * half + 1
-    centred = positions - positions.mean(axis=0)
-    mean = uniform_filter1d(centred, size, axis=0, mode="nearest")
-    moment = uniform_filter1d(centred * index, size, axis=0, mode="nearest")
-    slope = (moment - mean * index) * 3.0 / (half * (half + 1))
+    weights = np.arange(-half, half + 1) * 3.0 / (half * (half + 1) * (2 * half + 1))
+    slope = correlate1d(positions, weights, axis=0, mode="nearest")
     length = np.linalg.norm(slope, axis=1)
     length[:half] = length[half]
     length[count - half :] = length[count - half - 1]

@@ -4,6 +4,7 @@ import numpy as np
 
 from extractors.bodies.poses import Poses
 from extractors.motion.object_motion import motion_floor, rest_poses, slow_frames
+from extractors.signals.clock import frame_rate
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
 
@@ -15,7 +16,7 @@ def resting(poses: Poses, thresholds: Thresholds) -> tuple[Interval, ...]:
     millimetres of settling and its first of leaving are motion.
     """
     stream = poses.smooth
-    rate_hz = 1.0 / float(np.median(np.diff(stream.times)))
+    rate_hz = frame_rate(stream.times)
     floor = motion_floor(poses.noise, rate_hz, own_m=None, thresholds=thresholds)
     calm = slow_frames(stream, poses.noise, rate_hz, thresholds)
     found: list[Interval] = []

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from extractors.bodies.body_geometry import BodyGeometry, blocks
+from extractors.signals.filters import derivative
 from extractors.thresholds import Thresholds
 
 Holds = Bool[np.ndarray, "frames"]
@@ -86,7 +87,7 @@ def along(body: BodyGeometry, other: BodyGeometry, thresholds: Thresholds) -> Ho
         return out
     axis = other.turns_at(slice(None))[:, :, int(np.argmax(other.shape.size))]
     times = body.poses.smooth.times
-    step = np.gradient(body.middles, times, axis=0)
+    step = derivative(body.middles, times)
     pace = np.linalg.norm(step, axis=1)
     with np.errstate(invalid="ignore"):
         straight = np.abs(np.einsum("ij,ij->i", step, axis)) >= np.cos(thresholds.along_rad) * pace

@@ -10,6 +10,7 @@ from capar.model.par import Motion
 from extractors.bodies.poses import Poses
 from extractors.measure import Measurements
 from extractors.motion.object_motion import motion_floor
+from extractors.signals.clock import frame_rate
 from extractors.thresholds import Thresholds
 
 Place = tuple[float, float, float]
@@ -55,7 +56,7 @@ def motion_kind(
     """
     span = slice(first, last + 1)
     places, turns = poses.smooth.positions[span], poses.smooth.orientations[span]
-    rate_hz = 1.0 / float(np.median(np.diff(poses.smooth.times)))
+    rate_hz = frame_rate(poses.smooth.times)
     floor = motion_floor(poses.noise, rate_hz, own_m=own_m, thresholds=thresholds)
     known = ~np.isnan(places[:, 0])
     if not known.any():

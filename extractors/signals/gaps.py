@@ -5,6 +5,7 @@ from jaxtyping import Float
 
 from capar.model import geometry
 from capar.model.capture import Stream
+from extractors.signals.clock import time_step
 
 DEGREE = 3
 """Positions in a gap lie on a polynomial of this degree [1] (spec 3: cubic)."""
@@ -40,8 +41,8 @@ def _inside(stream: Stream, gap: tuple[int, int], gap_s: float) -> bool:
     first, last = gap
     if first == 0 or last == len(stream.times) - 1:
         return False
-    step = float(np.median(np.diff(stream.times)))
-    return bool(stream.times[last + 1] - stream.times[first - 1] - step < gap_s)
+    lasts_s = stream.times[last + 1] - stream.times[first - 1] - time_step(stream.times)
+    return bool(lasts_s < gap_s - 1e-9)
 
 
 def _cubic(stream: Stream, first: int, last: int) -> Float[np.ndarray, "gap 3"]:

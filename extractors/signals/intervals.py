@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model import geometry
+from extractors.signals.clock import time_step
 
 Interval = tuple[int, int]
 """First and last frame, both inside."""
@@ -35,7 +36,7 @@ def intervals(
             step of time.
         known: Frames at which it can be known at all; unknown ones, if long, stay interruptions.
     """
-    step = float(np.median(np.diff(times)))
+    step = time_step(times)
     seen = holds if known is None else holds & known
     closed: list[Interval] = []
     for first, last in geometry.runs(seen):
