@@ -18,7 +18,7 @@ import scene
 from capar.pipelines.observation import observe
 
 STAGES = {
-    "measure": "capar.pipelines.observation.extract",
+    "measure": "capar.pipelines.observation.measure",
     "  contact": "extractors.measure.contacts",
     "  line of sight": "extractors.measure.attention",
     "  handling": "extractors.measure.handling",

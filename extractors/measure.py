@@ -28,11 +28,12 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
-from extractors.bodies.poses import Poses, poses
+from extractors.bodies.bodies import Bodies, bodies_of
+from extractors.bodies.poses import Poses
 from extractors.contact.contacts import Contact, contact_tolerance, contacts
 from extractors.handling import handling
 from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import motion_floor, moving, stays
+from extractors.motion.object_motion import motion_floor, moving, rest_poses
 from extractors.relations.attention import Attention, attention
 from extractors.relations.weight_bearing import TRUNK
 from extractors.signals.filters import speed
@@ -75,11 +76,10 @@ class Measurements:
     attention: Mapping[str, Attention]
     """By sensor that attends, and by head that acts."""
 
-    poses: Mapping[tuple[str, str], Poses]
-    """By ``("sensor", name)`` and ``("object", name)``."""
+    bodies: Bodies
 
 
-def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measurements:
+def measure(capture: Capture, *, thresholds: Thresholds | None = None) -> Measurements:
     """Measure a capture: zero crossings, contacts, motions and looks, as facts.
 
     Args:
@@ -88,14 +88,15 @@ def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measur
             usual ones.
     """
     limits = thresholds or Thresholds()
-    where = {("sensor", each.name): poses(each, limits) for each in capture.sensors}
-    where |= {("object", each.name): poses(each, limits) for each in capture.objects}
-    noises = {each.name: where["sensor", each.name].noise.position_m for each in capture.sensors}
+    bodies = bodies_of(capture, limits)
+    noises = {name: each.poses.noise.position_m for name, each in bodies.sensors.items()}
     tolerance = contact_tolerance(capture, noises, limits)
-    tracks = {each.name: _track(where["sensor", each.name], limits) for each in capture.sensors}
-    looks = {each.name: attention(capture, each, where, limits) for each in _seeing(capture)}
+    tracks = {
+        each.name: _track(bodies.sensors[each.name].poses, limits) for each in capture.sensors
+    }
+    looks = {each.name: attention(capture, each, bodies, limits) for each in _seeing(capture)}
     touches = contacts(
-        capture, where, tolerance_m=tolerance, thresholds=_of_contact(capture, limits)
+        capture, bodies, tolerance_m=tolerance, thresholds=_of_contact(capture, limits)
     )
     facts = [
         *_scene(capture),
@@ -110,17 +111,17 @@ def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measur
             for frame in pauses(tracks[each.name].speed_mps, tracks[each.name].crossings)
         ),
         *_touching(capture, touches),
-        *_moving(capture, where, limits),
+        *_moving(capture, bodies, limits),
         *(
             LookingAt(sensor, name, *interval)
             for sensor, look in looks.items()
             for name, interval in look.looks
         ),
     ]
-    facts += handling(capture, where, facts, limits)
+    facts += handling(capture, bodies, facts, limits)
     own = [each for each in capture.notices if each.code != LOSS]
     notices = (*own, *_notices(capture, tolerance, limits))
-    return Measurements(_ordered(facts), notices, tolerance, tracks, looks, where)
+    return Measurements(_ordered(facts), notices, tolerance, tracks, looks, bodies)
 
 
 LOSS = "long-gap"
@@ -148,11 +149,11 @@ def _of_contact(capture: Capture, thresholds: Thresholds) -> Thresholds:
     )
 
 
-def _track(where: Poses, thresholds: Thresholds) -> Track:
-    stream = where.smooth
+def _track(poses: Poses, thresholds: Thresholds) -> Track:
+    stream = poses.smooth
     pace = speed(stream.positions, stream.times)
     crossings = zero_crossings(
-        pace, stream.times, noise_m=where.noise.position_m, thresholds=thresholds
+        pace, stream.times, noise_m=poses.noise.position_m, thresholds=thresholds
     )
     return Track(stream.positions, pace, crossings)
 
@@ -194,17 +195,15 @@ def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
             yield Gap(first, second, each.interval[0], round(1e6 * each.gap_m))
 
 
-def _moving(
-    capture: Capture, where: Mapping[tuple[str, str], Poses], thresholds: Thresholds
-) -> Iterator[Fact]:
+def _moving(capture: Capture, bodies: Bodies, thresholds: Thresholds) -> Iterator[Fact]:
     """When each object moves, as its floor tells, and when that truly began and ended."""
     for each in capture.objects:
         if each.tag is TagType.MOBILE:
-            pose = where["object", each.name]
+            pose = bodies.objects[each.name].poses
             floor = motion_floor(
                 pose.noise, capture.rate_hz, own_m=each.motion_floor_m, thresholds=thresholds
             )
-            rests = stays(pose, floor, thresholds)
+            rests = rest_poses(pose, floor, thresholds)
             for interval in moving(pose, floor, thresholds):
                 yield Moving(each.name, *interval)
                 yield Displaced(each.name, *motion_edges(pose, interval, rests, thresholds))

@@ -51,7 +51,7 @@ class Fact:
         Raises:
             FactError: An integer that the solver cannot hold.
         """
-        values = [getattr(self, name) for name in _arguments(cast(Any, type(self)))]
+        values = [getattr(self, name) for name in arguments(cast(Any, type(self)))]
         return f"{self.predicate}({','.join(map(_text, values))})" if values else self.predicate
 
 

@@ -12,7 +12,7 @@ from capar.model.observation import Observation, Segment
 from capar.pipelines.observation import observe_measured
 from capar_rules.engine.profiles import Profile
 from capar_rules.explain.explanation import Explainer
-from extractors.measure import Measurements, extract
+from extractors.measure import Measurements, measure
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
@@ -31,7 +31,7 @@ def explained(capture: Capture, *, rules: Profile) -> Explained:
     Raises:
         CaparError: The capture or the rules have a fault.
     """
-    measurements = extract(capture)
+    measurements = measure(capture)
     observation = observe_measured(capture, measurements, rules=rules)
     explainer = Explainer(
         observation.facts, profile=rules, distance_m=distances(capture, measurements)
@@ -55,11 +55,9 @@ def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
 
 def distances(capture: Capture, measurements: Measurements) -> Callable[[str, int, int], float]:
     """How far an object's origin is from where it was, between two frames [m]."""
-    names = {each.name for each in capture.objects}
 
     def distance(name: str, first: int, last: int) -> float:
-        kind = "object" if name in names else "sensor"
-        track = measurements.poses[kind, name].smooth.positions
+        track = measurements.bodies.named(name).poses.smooth.positions
         return float(np.linalg.norm(track[last] - track[first]))
 
     return distance

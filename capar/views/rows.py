@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model.facts import LookingAt, Moving, Touching, ZeroCrossing
-from capar.model.geometry import gaps
+from capar.model.geometry import runs
 from capar.model.observation import Observation, ObservedLink, ObservedObject
 from capar.views.lettering import Span
 
@@ -71,7 +71,7 @@ def rows(observation: Observation, speeds: Speeds, lost: Lost | None = None) -> 
 
 def _lost(about: Sequence[str], lost: Lost, clock: Callable[[int], float]) -> tuple[Span, ...]:
     found = [lost[each] for each in about if each in lost]
-    missing = gaps(np.logical_or.reduce(found)) if found else []
+    missing = runs(np.logical_or.reduce(found)) if found else []
     return tuple(Span(clock(first), clock(last), "") for first, last in missing)
 
 

@@ -4,13 +4,14 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from extractors.bodies.poses import Poses, rotation_matrices
-from extractors.motion.object_motion import Stay
+from extractors.motion.object_motion import RestPose
+from extractors.signals.filters import derivative
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
 
 
 def leaning(
-    where: Poses,
+    poses: Poses,
     upright: Float[np.ndarray, "3"],
     thresholds: Thresholds,
     *,
@@ -18,20 +19,20 @@ def leaning(
 ) -> tuple[Interval, ...]:
     """Closed intervals of frames in which an object leans, from when it began to lean over.
 
-    It leans while its axis is far from the vertical, and already, and still, while it turns
-    thither and back faster than a body at rest does, and turns rather than travels: its middle
-    goes no faster than its turning moves one end about the other.
+    It leans while its axis is far from the vertical. The interval also covers the tipping over
+    before and the righting after, as long as it turns faster than a body at rest does, and turns
+    rather than travels: its middle goes no faster than its turning moves one end about the other.
 
     Args:
-        where: The object's poses.
+        poses: The object's poses.
         upright: The axis that points up while it stands, in its own frame.
         thresholds: The angle, and least durations.
         length_m: The object's greatest length [m]; a point's turning moves nothing.
     """
-    stream = where.smooth
+    stream = poses.smooth
     angle = lean(stream.orientations, upright)
-    pace = np.gradient(angle, stream.times)
-    speed = np.linalg.norm(np.gradient(stream.positions, stream.times, axis=0), axis=1)
+    pace = derivative(angle, stream.times)
+    speed = np.linalg.norm(derivative(stream.positions, stream.times), axis=1)
     with np.errstate(invalid="ignore"):
         far = angle > thresholds.lean_rad
         turns = (np.abs(pace) >= thresholds.rest_speed_radps) & (speed <= np.abs(pace) * length_m)
@@ -57,14 +58,14 @@ def _run(holds: Bool[np.ndarray, "frames"]) -> int:
     return int(gaps[0]) if gaps.size else len(holds)
 
 
-def upright_axis(where: Poses, rests: tuple[Stay, ...]) -> Float[np.ndarray, "3"]:
+def upright_axis(poses: Poses, rests: tuple[RestPose, ...]) -> Float[np.ndarray, "3"]:
     """The axis that points up where a body first rests, or else in its first known frame."""
-    known = np.flatnonzero(~where.smooth.lost)
+    known = np.flatnonzero(~poses.smooth.lost)
     up = np.array([0.0, 0.0, 1.0])
     if rests:
         turn = rests[0].orientation
     elif known.size:
-        turn = where.smooth.orientations[known[0]]
+        turn = poses.smooth.orientations[known[0]]
     else:
         return up
     return np.asarray(rotation_matrices(turn[None])[0].T @ up)

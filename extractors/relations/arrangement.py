@@ -7,7 +7,8 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from extractors.bodies.body_geometry import Figure
+from extractors.bodies.body_geometry import BodyGeometry
+from extractors.signals.filters import derivative
 from extractors.thresholds import Thresholds
 
 Holds = Bool[np.ndarray, "frames"]
@@ -23,8 +24,8 @@ BLOCK_POINTS = 1 << 10
 class Pair:
     """A body and another one, with what several arrangements ask of both, computed once."""
 
-    body: Figure
-    other: Figure
+    body: BodyGeometry
+    other: BodyGeometry
     thresholds: Thresholds
 
     @cached_property
@@ -140,8 +141,8 @@ def along(pair: Pair) -> Holds:
     if sizes[2] < 2.0 * sizes[1]:
         return out
     axis = other.turns_at(slice(None))[:, :, int(np.argmax(other.shape.size))]
-    times = body.where.smooth.times
-    step = np.gradient(body.middles, times, axis=0)
+    times = body.poses.smooth.times
+    step = derivative(body.middles, times)
     pace = np.linalg.norm(step, axis=1)
     with np.errstate(invalid="ignore"):
         straight = np.abs(np.einsum("ij,ij->i", step, axis)) >= np.cos(thresholds.along_rad) * pace
@@ -149,7 +150,7 @@ def along(pair: Pair) -> Holds:
         return np.asarray(straight & moves & pair.near)
 
 
-def between(body: Figure, one: Figure, other: Figure) -> Holds:
+def between(body: BodyGeometry, one: BodyGeometry, other: BodyGeometry) -> Holds:
     """Its middle is in a straight tube that joins two bodies, in neither of their boxes."""
     line = other.middles - one.middles
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -162,7 +163,7 @@ def between(body: Figure, one: Figure, other: Figure) -> Holds:
         return np.asarray(tube & ~_holds(one, body.middles) & ~_holds(other, body.middles))
 
 
-def gap(body: Figure, other: Figure) -> Float[np.ndarray, "frames"]:
+def gap(body: BodyGeometry, other: BodyGeometry) -> Float[np.ndarray, "frames"]:
     """Distance of the boxes of two bodies along the world's axes [m]; zero where they overlap."""
     low, high = body.boxes
     bottom, top = other.boxes
@@ -170,7 +171,7 @@ def gap(body: Figure, other: Figure) -> Float[np.ndarray, "frames"]:
     return np.asarray(np.linalg.norm(outside, axis=1))
 
 
-def sides(body: Figure, other: Figure, frames: Int[np.ndarray, "two"]) -> str:
+def sides(body: BodyGeometry, other: BodyGeometry, frames: Int[np.ndarray, "two"]) -> str:
     """Whether a body is at opposite sides of another at two frames, or merely at other ones."""
     ends = [
         other.turn(frame).T @ (body.middles[frame] - other.middles[frame])
@@ -203,10 +204,10 @@ def beyond_shadow(
     return np.asarray(np.linalg.norm(outside[:, :2], axis=1))
 
 
-def _radius(body: Figure) -> float:
+def _radius(body: BodyGeometry) -> float:
     return float(np.linalg.norm(body.corners, axis=1).max())
 
 
-def _holds(box: Figure, points: Float[np.ndarray, "frames 3"]) -> Holds:
+def _holds(box: BodyGeometry, points: Float[np.ndarray, "frames 3"]) -> Holds:
     low, high = box.boxes
     return np.asarray(((points >= low) & (points <= high)).all(axis=1))

@@ -7,13 +7,13 @@ from jaxtyping import Bool, Float
 
 from capar.model import geometry
 from capar.model.facts import Apart, Fact, Place, Posture, Travelled, Wound
-from extractors.bodies.body_geometry import Figure
+from extractors.bodies.body_geometry import BodyGeometry
 from extractors.motion.leaning import lean, spin
 from extractors.relations.arrangement import beyond_shadow
 
 
 def places(
-    figure: Figure, upright: Float[np.ndarray, "3"], frames: tuple[int, ...]
+    figure: BodyGeometry, upright: Float[np.ndarray, "3"], frames: tuple[int, ...]
 ) -> Iterator[Fact]:
     """Place, way, turn and posture of a body at some frames; lost frames are left out.
 
@@ -38,7 +38,7 @@ def places(
         yield Posture(figure.name, frame, *posture)
 
 
-def distances(figure: Figure, other: Figure, frames: tuple[int, ...]) -> Iterator[Fact]:
+def distances(figure: BodyGeometry, other: BodyGeometry, frames: tuple[int, ...]) -> Iterator[Fact]:
     """Distance of two bodies' middles, and the angle by which one has gone about the other."""
     if not frames:
         return
@@ -59,7 +59,9 @@ def _thousandths(values: Float[np.ndarray, "rows columns"]) -> list[list[int]]:
     return rounded
 
 
-def _cumulated(figure: Figure) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
+def _cumulated(
+    figure: BodyGeometry,
+) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
     """Length of the path [m] and sum of the rotation [rad] up to each frame."""
     steps = np.linalg.norm(np.diff(figure.middles, axis=0), axis=1)
     angles = geometry.angle_between(figure.orientations[1:], figure.orientations[:-1])

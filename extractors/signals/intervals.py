@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model import geometry
+from extractors.signals.clock import time_step
 
 Interval = tuple[int, int]
 """First and last frame, both inside."""
@@ -38,9 +39,9 @@ def intervals(
     seen = holds if known is None else holds & known
     if not seen.any():
         return []
-    step = float(np.median(np.diff(times)))
+    step = time_step(times)
     closed: list[Interval] = []
-    for first, last in geometry.gaps(seen):
+    for first, last in geometry.runs(seen):
         if closed and times[first] - times[closed[-1][1]] - step < dropout_s - 1e-9:
             closed[-1] = (closed[-1][0], last)
         else:

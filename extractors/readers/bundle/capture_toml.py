@@ -20,7 +20,7 @@ from capar.model.capture import (
     TagObject,
 )
 from capar.model.errors import CaptureError, UnknownNameError
-from capar.model.geometry import gaps
+from capar.model.geometry import runs
 from extractors.readers.bundle.clock import GAP_S
 from extractors.readers.bundle.declared import Declared, declared
 from extractors.readers.bundle.names import constant_name
@@ -278,7 +278,7 @@ def _long_gaps(stream: Stream) -> list[tuple[int, int]]:
     times, last = stream.times, len(stream.times) - 1
     return [
         (first, end)
-        for first, end in gaps(stream.lost)
+        for first, end in runs(stream.lost)
         if times[min(end + 1, last)] - times[max(first - 1, 0)] > GAP_S
     ]
 
