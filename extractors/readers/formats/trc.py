@@ -8,10 +8,7 @@ import numpy as np
 from capar.model.errors import FileError
 from extractors.readers.files import read_text, source_of
 from extractors.readers.formats.numbers import read_rows
-from extractors.readers.recording import Recording
-
-UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-"""Metres per unit, by the names that headers and capture.toml use."""
+from extractors.readers.recording import UNITS, Recording
 
 
 def recognises(path: Path, head: bytes) -> bool:
