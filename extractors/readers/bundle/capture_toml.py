@@ -50,7 +50,7 @@ def read_capture(place: str | Path) -> Capture:
     _check_names(document)
     files = read_files(document)
     group = declared(document, files)
-    agents = [Agent(each.name, each.kind, each.measures) for each in document.agent] or [Agent()]
+    agents = [Agent(each.name, each.kind, each.measures) for each in document.performers]
     notices = [*(notice for file in files.values() for notice in file.notices), *group.notices]
     contact = document.contact
     try:
@@ -111,7 +111,7 @@ def _name(document: "CaptureFile", take: str) -> str:
 
 def _check_names(document: "CaptureFile") -> None:
     """Prove that sensors and objects have names of their own, and that named agents exist."""
-    agents = [each.name for each in document.agent] or [Agent().name]
+    agents = [each.name for each in document.performers]
     for kind, entries in (("sensor", document.sensor), ("object", document.object)):
         lines: dict[str, str] = {}
         for entry in entries:

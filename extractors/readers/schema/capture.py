@@ -2,9 +2,9 @@
 
 # ruff: noqa: RUF012  (pydantic copies the defaults of fields)
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
+from pydantic import AfterValidator, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
 from extractors.readers.schema.bodies import (
@@ -114,10 +114,6 @@ def _has_name(value: dict[str, str]) -> dict[str, str]:
     return value
 
 
-def _listed(value: Any) -> Any:
-    return [value] if isinstance(value, dict) else value
-
-
 class Takes(Entry):
     """The trials that one file describes."""
 
@@ -169,7 +165,11 @@ class CaptureFile(Takes):
         Field(min_length=1),
         key('Motion files by names of your choice: ``motion = "recording.c3d"``.'),
     ]
-    agent: Annotated[list[Performer], BeforeValidator(_listed), key("Who performs.")] = []
+    agent: Annotated[
+        Annotated[Performer, Tag("as table")] | Annotated[list[Performer], Tag("as list")],
+        Discriminator(form_of_value),
+        key("Who performs: one under ``[agent]``, several each under ``[[agent]]``."),
+    ] = []
     contact: Annotated[Contact | None, key("When bodies touch.")] = None
     sensor: Annotated[list[SensorEntry], key("Tracked body segments.")] = []
     sensors_from: Annotated[list[ManySensors], key("Many sensors at once.")] = []
@@ -177,3 +177,9 @@ class CaptureFile(Takes):
     objects_from: Annotated[list[ManyObjects], key("Many objects at once.")] = []
     pivot_contact: Annotated[list[Pivots], key("Contact by distance of origins.")] = []
     purpose: Annotated[list[Purposes], key("What steps are done for.")] = []
+
+    @property
+    def performers(self) -> list[Performer]:
+        """Everyone who performs; the first is the one whom sensors belong to by default."""
+        stated = [self.agent] if isinstance(self.agent, Performer) else self.agent
+        return stated or [Performer()]

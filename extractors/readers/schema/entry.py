@@ -5,9 +5,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    PrivateAttr,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
-from pydantic_core import PydanticCustomError
+from pydantic_core import CoreSchema, PydanticCustomError
 
 from capar.model.errors import FileError, UnknownNameError
 
@@ -75,6 +82,16 @@ class Entry(BaseModel):
         """The keys that the file states, with their validated values."""
         names = [name for name in type(self).model_fields if name in self.model_fields_set]
         return {name: getattr(self, name) for name in names if among is None or name in among}
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """The JSON schema, with the keys of which one must be given."""
+        out = handler(core_schema)
+        if cls.one_of:
+            handler.resolve_ref_schema(out)["anyOf"] = [{"required": [k]} for k in cls.one_of]
+        return out
 
     @model_validator(mode="before")
     @classmethod
