@@ -11,7 +11,7 @@ from capar.model.capture import Stream, TagObject, TagType
 from extractors.bodies.poses import poses_of
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import motion_floor, moving, rest_poses
-from extractors.readers.bundle.clock import resampled
+from extractors.readers.bundle.resampling import resampled
 from extractors.thresholds import Thresholds
 
 RATE_HZ = 50.0

@@ -1,4 +1,4 @@
-"""One clock for every stream: interpolation that never crosses a gap."""
+"""Streams resampled to one clock, by interpolation that never crosses a gap."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float
 from scipy.interpolate import CubicSpline
 
 from capar.model import geometry
-from capar.model.capture import Stream
+from capar.model.capture import Notice, Stream
 from capar.model.errors import CaptureError
 
 GAP_S = 0.1
@@ -18,6 +18,9 @@ GAP_STEPS = 1.5
 
 SAME_S = 1e-6
 """Time stamps that differ by less are one [s]."""
+
+FAR_RATE = 4.0
+"""A rate that differs from the recorded ones by more than this factor is doubtful."""
 
 LARGEST_FRAMES = 1e7
 """Frames that a capture may have: more than a day at 100 Hz."""
@@ -133,6 +136,16 @@ def shared_clock(
     if len(kept) < 2:
         raise CaptureError(f"{where}: no frames between from_s and to_s")
     return kept - kept[0], float(kept[0])
+
+
+def rate_notices(streams: Sequence[Stream], rate_hz: float | None) -> list[Notice]:
+    """A notice if the stated rate is far from every rate at which bodies were recorded."""
+    rates = [1.0 / float(np.median(np.diff(each.times))) for each in streams]
+    if rate_hz is None or min(rates) / FAR_RATE <= rate_hz <= max(rates) * FAR_RATE:
+        return []
+    recorded = f"{min(rates):.4g}" + (f" to {max(rates):.4g}" if max(rates) > min(rates) else "")
+    text = f"rate_hz = {rate_hz:g}, but the files have {recorded} frames a second; is it mistyped?"
+    return [Notice("rate-doubtful", text)]
 
 
 def _count(begin: float, end: float, rate_hz: float, where: str) -> int:

@@ -2,9 +2,14 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from capar.model.errors import FileError, UnknownNameError
-from extractors.readers.bundle.toml_table import Table, read_table
+from extractors.readers.schema.document import read_toml, substituted, validated
+
+if TYPE_CHECKING:
+    from extractors.readers.schema.capture import CaptureFile
+    from extractors.readers.schema.entry import Location
 
 FILE = "capture.toml"
 
@@ -50,41 +55,41 @@ def _wanted(path: Path) -> Path:
 
 def takes(place: str | Path) -> list[str]:
     """The names of a bundle's takes; empty where it has one only."""
-    return list(_takes(read_table(find_place(place).file)))
+    data, location = read_toml(find_place(place).file)
+    return list(_takes(data, location))
 
 
-def open_bundle(place: str | Path) -> tuple[Table, str]:
-    """The table of a capture.toml with the take's names filled in, and the take.
+def open_bundle(place: str | Path) -> "tuple[CaptureFile, str]":
+    """A capture.toml with the take's names filled in, validated, and the take.
 
     Raises:
-        FileError: The bundle has several takes and none was named, or it is no TOML.
+        FileError: The bundle has several takes and none was named, or it is not valid TOML.
         UnknownNameError: It has no such take.
+        CaparError: A key or value is not as the schema says.
     """
+    from extractors.readers.schema.capture import CaptureFile
+
     where = find_place(place)
-    table = read_table(where.file)
-    known = _takes(table)
-    if not known:
+    data, location = read_toml(where.file)
+    known = _takes(data, location)
+    if where.take not in known and (where.take or known):
         if where.take:
-            raise UnknownNameError("take", where.take, [], where=str(where.file))
-        table.raw("takes")
-        return table, ""
-    if where.take not in known:
-        if where.take:
-            raise UnknownNameError("take", where.take, known, where=table.where("takes"))
-        raise table.error(
-            "takes", "has several takes.", f"Name one of them: {place}:{next(iter(known))}"
+            raise UnknownNameError("take", where.take, known, where=location.where("takes"))
+        raise FileError(
+            location.where("takes"),
+            "has several takes.",
+            f"Name one of them: {place}:{next(iter(known))}",
         )
-    table = read_table(where.file, known[where.take])
-    table.raw("takes")
-    return table, where.take
+    words = known.get(where.take, {})
+    return validated(CaptureFile, substituted(data, words), location), where.take
 
 
-def _takes(table: Table) -> dict[str, dict[str, str]]:
+def _takes(data: dict[str, Any], location: "Location") -> dict[str, dict[str, str]]:
     """Each take's name and what ``{...}`` stands for in it."""
-    out: dict[str, dict[str, str]] = {}
-    for each in table.raw("takes", []):
-        values = {"take": each} if isinstance(each, str) else dict(each)
-        if "take" not in values or not all(isinstance(v, str) for v in values.values()):
-            raise table.error("takes", f"{each!r} is no take.", 'Like "take0" or { take = "..." }.')
-        out[values["take"]] = values
-    return out
+    from extractors.readers.schema.capture import Takes
+
+    if "takes" not in data:
+        return {}
+    found = validated(Takes, {"takes": data["takes"]}, location).takes
+    words = [{"take": take} if isinstance(take, str) else take for take in found]
+    return {take["take"]: take for take in words}
