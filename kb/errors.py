@@ -7,6 +7,18 @@ class StoreError(CaparError):
     """A store that cannot be opened, read or written."""
 
 
+class SchemaError(StoreError):
+    """A store, or an export of one, that is kept in another form than this program's.
+
+    Attributes:
+        found: The version of its form.
+    """
+
+    def __init__(self, place: str, found: int, remedy: str) -> None:
+        self.found = found
+        super().__init__(f"{place}: this is an Actionary of schema {found}; {remedy}")
+
+
 class LockedError(StoreError):
     """A store that another process writes.
 
