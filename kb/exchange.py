@@ -75,8 +75,10 @@ def export(store: Store, format_name: str, *, observation: str | None = None) ->
     """
     if format_name not in FORMATS:
         raise UnknownNameError("format", format_name, FORMATS)
-    stated = store.quads() if observation is None else part(store, observation)
-    quads = sorted({*stated, schema.statement()}, key=str)
+    if observation is None:
+        quads = sorted(set(store.quads()), key=str)
+    else:
+        quads = sorted({*part(store, observation), schema.statement()}, key=str)
     form = FORMATS[format_name]
     if form == RdfFormat.TURTLE:
         return turtle(dict.fromkeys(each.triple for each in quads), form=form).encode()

@@ -1,4 +1,4 @@
-"""The address of a segment, as every command prints and reads it: ``CAPTURE/END_EFFECTOR/INDEX``."""
+"""The address of a segment as every command prints and reads it."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace

@@ -48,5 +48,5 @@ def ontology_digest() -> Quad:
 def ontology_replacement() -> str:
     """The update that gives a store the present ontology and schema version."""
     graph = GRAPHS["ontology"]
-    stated = [Quad(*each, graph) for each in ontology_files.ontology()]
+    stated = [Quad(s, p, o, graph) for s, p, o in ontology_files.ontology()]
     return graph_replacement(graph, [*stated, ontology_digest(), schema.statement()])
