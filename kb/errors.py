@@ -19,6 +19,16 @@ class SchemaError(StoreError):
         super().__init__(f"{place}: this is an Actionary of schema {found}; {remedy}")
 
 
+class DamagedError(StoreError):
+    """A store whose files are not as they were written."""
+
+    def __init__(self, place: str, reason: str) -> None:
+        super().__init__(
+            f"{place}: its database is damaged ({reason}); move the folder away, then restore it "
+            "from an export (capar import FILE) or observe the captures again"
+        )
+
+
 class LockedError(StoreError):
     """A store that another process writes.
 
