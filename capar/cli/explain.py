@@ -117,8 +117,10 @@ def _branch(reason: "Reason", depth: int) -> None:
 
 
 def _header(each: "Segment | Explanation") -> str:
+    from capar.model.segment_address import SegmentAddress
+
     span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
-    return f"{each.ee}/{each.index}  {span}"
+    return f"{SegmentAddress(each.ee, each.index)}  {span}"
 
 
 def _print_alternatives(name: str, found: "tuple[Alternative, ...]") -> None:

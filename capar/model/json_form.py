@@ -10,6 +10,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from capar.model.errors import CaparError, ParError
 from capar.model.facts import Fact, read_fact
+from capar.model.json_migration import SCHEMA, take_schema
 from capar.model.observation import Observation
 from capar.model.par import ComplexPar, FeatureSet, Ipar, Upar
 
@@ -45,7 +46,7 @@ def document(value: Value) -> dict[str, Any]:
         ParError: A number is not finite.
     """
     out: dict[str, Any] = _plain(value, type(value).__name__)
-    return out
+    return {"schema": SCHEMA, **out} if isinstance(value, Observation) else out
 
 
 def from_json(text: str, *, where: str = "") -> Observation:
@@ -70,6 +71,8 @@ def value_from_json(text: str, kind: type[_T], *, where: str = "") -> _T:
     from pydantic import TypeAdapter, ValidationError
 
     content = _parsed(text, where)
+    if kind is Observation:
+        take_schema(content, where)
     facts = _facts(content, where) if kind is Observation else ()
     try:
         value: _T = TypeAdapter(kind).validate_json(
@@ -97,6 +100,9 @@ def schema(name: str) -> dict[str, Any]:
             "type": "string",
             "pattern": FACT_PATTERN,
         }
+    if name == "observation":
+        out["properties"] = {"schema": {"const": SCHEMA, "type": "integer"}, **out["properties"]}
+        out["required"] = ["schema", *out["required"]]
     return {"$schema": DRAFT, **out}
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from capar.model.capture import Capture
-from capar.model.errors import UnknownNameError
 from capar.model.observation import Observation, Segment
+from capar.model.segment_address import SegmentAddress, find_segment
 from capar.pipelines.observation import observe_measured
 from capar_rules.engine.profiles import Profile
 from capar_rules.explain.explanation import Explainer
@@ -44,7 +44,10 @@ def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
 
     Rules name a segment by the tick where it begins, which is no index.
     """
-    known = {(each.ee, each.first): f"{each.ee}/{each.index}" for each in seen.observation.segments}
+    known = {
+        (each.ee, each.first): str(SegmentAddress(each.ee, each.index))
+        for each in seen.observation.segments
+    }
     found = []
     for ee, tick in _SEGMENT.findall(atom):
         frames = seen.explainer.windows.frames.get(ee, [])
@@ -64,14 +67,11 @@ def distances(capture: Capture, measurements: Measurements) -> Callable[[str, in
 
 
 def segment_named(observation: Observation, text: str) -> Segment:
-    """The segment that a user names: ``right_hand/3``, or ``3`` where one end-effector acts.
+    """The segment of an observation at an address such as ``right_hand/3``.
 
     Raises:
-        UnknownNameError: There is none.
+        AddressError: The text is no address.
+        UnknownNameError: There is no segment at it.
     """
-    known = {f"{each.ee}/{each.index}": each for each in observation.segments}
-    if len(observation.links) == 1:
-        known |= {str(each.index): each for each in observation.segments}
-    if text not in known:
-        raise UnknownNameError("segment", text, known, where=observation.capture)
-    return known[text]
+    address = SegmentAddress.parse(text)
+    return find_segment(observation.links, address, capture=observation.capture)

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from capar.model.errors import CaparError, UnknownNameError
-from capar.model.observation import Observation, Segment
+from capar.model.segment_address import find_segment, split_capture
 from kb.language.vocabulary import EFFECTORS, Vocabulary
 from kb.lexicon.fitting import Fit, fitting
 from kb.lexicon.fitting import Seen as SegmentSeen
@@ -47,33 +46,23 @@ def verbs_for(
     """The verbs that fit a segment, best first.
 
     Args:
-        segment: ``CAPTURE:END_EFFECTOR:INDEX``.
+        segment: ``CAPTURE/END_EFFECTOR/INDEX``.
         words: The primitives' words.
         store: Where VerbNet is, if it was imported.
         rules: The rule profile to observe with, or its name.
 
     Raises:
-        CaparError: There is no such segment.
+        AddressError: It is no address of a segment, or names no capture.
+        UnknownNameError: There is no segment at it.
+        CaparError: The capture cannot be read.
     """
-    capture, _, index = segment.rpartition(":")
-    capture, _, ee = capture.rpartition(":")
-    if not capture or not index.isdigit():
-        raise CaparError(f"{segment!r} names no segment; write CAPTURE:END_EFFECTOR:INDEX")
     from capar.pipelines.observation import observe
 
-    found = _segment(observe(capture, rules=rules), ee, int(index))
+    capture, place = split_capture(segment)
+    observation = observe(capture, rules=rules)
+    found = find_segment(observation.links, place, capture=observation.capture)
     seen = SegmentSeen(found.name, found.general, found.features)
     return fitting(seen, words, _classes(store) if store else ())
-
-
-def _segment(observation: Observation, ee: str, index: int) -> Segment:
-    links = {link.ee: link.segments for link in observation.links}
-    if ee not in links:
-        raise UnknownNameError("end-effector", ee, links, where=observation.capture)
-    numbers = [str(each.index) for each in links[ee]]
-    if index >= len(links[ee]):
-        raise UnknownNameError(f"segment of {ee}", str(index), numbers, where=observation.capture)
-    return links[ee][index]
 
 
 def _classes(store: "Store") -> tuple[VerbClass, ...]:
