@@ -16,12 +16,13 @@ right. Times are in seconds, lengths in metres, quaternions w x y z.
 """
 
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from capar.model.display import register as _register
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from capar.model.capture import Capture as Capture
     from capar.model.errors import CaparError as CaparError
     from capar.model.json_form import from_json as from_json
@@ -71,7 +72,7 @@ _register("frame", "capar.views.frames:observation_frame")
 
 
 def open_actionary(
-    place: str | Path | None = None, *, read_only: bool = False, wait_s: float = 0.0
+    place: "str | Path | None" = None, *, read_only: bool = False, wait_s: float = 0.0
 ) -> "Actionary":
     """The Actionary at a place: what was observed, to be asked in SPARQL or by named questions.
 

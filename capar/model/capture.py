@@ -37,6 +37,10 @@ class Agent:
         """Make the measures read-only."""
         object.__setattr__(self, "measures", MappingProxyType(dict(self.measures)))
 
+    def __reduce__(self) -> "tuple[type[Agent], tuple[str, str, dict[str, float]]]":
+        """Pickle it by its fields: a read-only mapping cannot be pickled itself."""
+        return Agent, (self.name, self.kind, dict(self.measures))
+
 
 @dataclass(frozen=True)
 class Purpose:

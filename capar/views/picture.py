@@ -1,6 +1,7 @@
 """A picture of an observation: named segments, contacts, crossings and speed over time."""
 
 from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -58,13 +59,29 @@ def draw(observation: Observation, speeds: Speeds, *, path: Path, lost: Lost | N
     Raises:
         FileError: The suffix is another one, or the file cannot be written.
     """
-    import matplotlib as mpl
-
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise FileError(
             path, f"no picture format {path.suffix!r};", f"there are: {', '.join(SUFFIXES)}."
         )
+    try:
+        _save(observation, rows(observation, speeds, lost), path, suffix)
+    except OSError as error:
+        raise FileError(path, f"cannot be written: {error.strerror or error}.") from None
+
+
+def svg(observation: Observation) -> str:
+    """The picture as the text of an SVG, without the speeds, which an observation does not hold."""
+    out = BytesIO()
+    _save(observation, rows(observation, {}), out, ".svg")
+    return out.getvalue().decode("utf-8")
+
+
+def _save(
+    observation: Observation, content: Sequence[Row], where: Path | BytesIO, suffix: str
+) -> None:
+    import matplotlib as mpl
+
     settings: dict[Any, Any] = {
         "svg.hashsalt": "capar",
         "font.family": "DejaVu Sans",
@@ -72,11 +89,10 @@ def draw(observation: Observation, speeds: Speeds, *, path: Path, lost: Lost | N
         "text.parse_math": False,
     }
     with mpl.rc_context(rc={**dict(mpl.rcParamsDefault), **settings, "backend": "agg"}):
-        figure = _figure(observation, rows(observation, speeds, lost))
-        try:
-            figure.savefig(path, dpi=DPI, metadata=SUFFIXES[suffix])
-        except OSError as error:
-            raise FileError(path, f"cannot be written: {error.strerror or error}.") from None
+        figure = _figure(observation, content)
+        figure.savefig(
+            where, dpi=DPI, metadata=SUFFIXES[suffix], format=suffix.removeprefix(".")
+        )
 
 
 def _figure(observation: Observation, content: Sequence[Row]) -> "Figure":
