@@ -46,9 +46,7 @@ def processor_s(*arguments: str) -> float:
 
 def test_importing_the_front_door_imports_nothing_heavy() -> None:
     code = "import sys, capar; print(' '.join(sys.modules))"
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not HEAVY & set(done.stdout.split())
 
 

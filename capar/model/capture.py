@@ -19,6 +19,8 @@ from capar.model.bodies import Stream as Stream
 from capar.model.bodies import TagObject as TagObject
 from capar.model.bodies import TagType as TagType
 from capar.model.errors import CaptureError, UnknownNameError
+from capar.model.notices import Notice as Notice
+from capar.model.notices import notice as notice
 
 NAME = re.compile(r"[a-z][A-Za-z0-9_]*")
 """What sensors and objects may be called: such a name is a constant of the rules, unquoted."""
@@ -53,16 +55,6 @@ class Purpose:
     action: str = ""
     object: str = ""
     goal: str = ""
-
-
-@dataclass(frozen=True)
-class Notice:
-    """Something about a capture that is no error and that its user ought to know."""
-
-    code: str
-    """A stable name in kebab case: ``long-gap``, ``assumed-support`` ..."""
-
-    message: str
 
 
 @dataclass(frozen=True)

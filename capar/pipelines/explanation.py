@@ -83,9 +83,7 @@ def why_not(
         RuleError: The segment has that name.
     """
     seen = _explained(capture, rules)
-    return alternatives(
-        seen.explainer, segment_named(seen.observation, segment), name, limit=limit
-    )
+    return alternatives(seen.explainer, segment_named(seen.observation, segment), name, limit=limit)
 
 
 def _explained(capture: Capture | Path | str, rules: Profile | str) -> Explained:

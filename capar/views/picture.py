@@ -90,9 +90,7 @@ def _save(
     }
     with mpl.rc_context(rc={**dict(mpl.rcParamsDefault), **settings, "backend": "agg"}):
         figure = _figure(observation, content)
-        figure.savefig(
-            where, dpi=DPI, metadata=SUFFIXES[suffix], format=suffix.removeprefix(".")
-        )
+        figure.savefig(where, dpi=DPI, metadata=SUFFIXES[suffix], format=suffix.removeprefix("."))
 
 
 def _figure(observation: Observation, content: Sequence[Row]) -> "Figure":

@@ -1,6 +1,5 @@
 """What a picture of an observation shows, row by row, before any of it is drawn."""
 
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
@@ -106,13 +105,11 @@ def marked(observation: Observation, name: str) -> str:
 
 def stand_ins(observation: Observation) -> dict[str, str]:
     """What stands in for the true shape of a body, by the body's name, as its notice says."""
-    notices = (each.message for each in observation.notices if each.code == "stand-in-shape")
-    found: dict[str, str] = {}
-    for message in notices:
-        quoted = re.match(r"'(\w+)' is a stand-in: (.*)", message)
-        if quoted:
-            found[quoted[1]] = quoted[2]
-    return found
+    return {
+        each.bodies[0]: str(each["shape"])
+        for each in observation.notices
+        if each.code == "stand-in-shape"
+    }
 
 
 def _objects(observation: Observation, name: str) -> list[ObservedObject]:

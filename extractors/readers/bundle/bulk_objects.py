@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Any
 
-from capar.model.capture import Notice, PivotContact
+from capar.model.capture import Notice, PivotContact, notice
 from capar.model.errors import UnknownNameError
 from extractors.readers.bundle.toml_table import Table
 from extractors.readers.bundle.world import WorldRecording
@@ -76,7 +76,4 @@ def _pivots(table: Table, names: list[str]) -> tuple[PivotContact, ...]:
 
 
 def _left_out(names: list[str], bodies: int) -> tuple[Notice, ...]:
-    if not names:
-        return ()
-    text = f"{len(names)} of {bodies} objects have no shape and are left out: {', '.join(names)}"
-    return (Notice("objects-left-out", text),)
+    return (notice("objects-left-out", *names, objects=bodies),) if names else ()
