@@ -110,7 +110,7 @@ def _figure(observation: Observation, content: Sequence[Row]) -> "Figure":
     ]
     legend = _flowed(entries, room)
     notes = _notes(observation, content, width - 2 * EDGE_IN)
-    foot = 0.62 + 0.24 * len(legend) + NOTE_LINE_IN * len(notes) + (0.24 if notes else 0.0)
+    foot = 0.62 + 0.24 * len(legend) + NOTE_LINE_IN * len(notes) + (0.24 if notes else 0.12)
     height = TITLE_IN + painter.height + foot
     figure = Figure(figsize=(width, height), facecolor="white")
     axes = figure.add_axes(
