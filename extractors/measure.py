@@ -9,7 +9,16 @@ from typing import Any, cast
 import numpy as np
 from jaxtyping import Float, Int
 
-from capar.model.capture import Capture, Notice, Purpose, Sensor, ShapeSource, TagObject, TagType
+from capar.model.capture import (
+    Capture,
+    Notice,
+    Purpose,
+    Sensor,
+    ShapeSource,
+    TagObject,
+    TagType,
+    notice,
+)
 from capar.model.facts import (
     MEASURED,
     Displaced,
@@ -228,27 +237,17 @@ def _values(kind: Any) -> Callable[[Fact], Any]:
 
 
 def _notices(capture: Capture, tolerance_m: float, thresholds: Thresholds) -> Iterator[Notice]:
-    source = (
-        "as the capture states"
-        if capture.contact_tolerance_m is not None
-        else ("from the sensors' noise at rest")
-    )
-    yield Notice(
-        "contact-tolerance", f"bodies count as touching within {1e3 * tolerance_m:.1f} mm, {source}"
-    )
+    stated = capture.contact_tolerance_m is not None
+    yield notice("contact-tolerance", tolerance_m=tolerance_m, stated=stated)
     for pair in capture.pivot_contacts:
-        yield Notice(
-            "pivot-distance",
-            f"{pair.first!r} and {pair.second!r} count as touching while their origins are "
-            f"within {1e3 * pair.distance_m:.0f} mm",
-        )
+        yield notice("pivot-distance", pair.first, pair.second, distance_m=pair.distance_m)
     pivots = {name for pair in capture.pivot_contacts for name in (pair.first, pair.second)}
     touching: tuple[Sensor | TagObject, ...] = (*capture.acting, *capture.objects)
     for each in touching:
         if each.shape is None and each.name not in pivots:
-            yield Notice("no-shape", f"{each.name!r} has no shape, so no contact of it is known")
+            yield notice("no-shape", each.name)
         elif each.shape is not None and each.shape.source is ShapeSource.STAND_IN:
-            yield Notice("stand-in-shape", f"{each.name!r} is a stand-in: {each.shape.description}")
+            yield notice("stand-in-shape", each.name, shape=each.shape.description)
     yield from _pose_notices(capture, thresholds)
 
 
@@ -256,7 +255,7 @@ def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
     everything: tuple[Sensor | TagObject, ...] = (*capture.sensors, *capture.objects)
     for each in everything:
         if isinstance(each, TagObject) and each.assumed:
-            yield Notice("assumed-support", f"{each.name!r} is assumed: {each.assumed}")
+            yield notice("assumed-support", each.name, assumed=each.assumed)
         lost = [
             (first, last)
             for first, last in long_gaps(each.stream, gap_s=thresholds.gap_s)
@@ -264,17 +263,13 @@ def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
         ]
         if lost:
             fixed = isinstance(each, TagObject) and each.tag is TagType.FIXED
-            told = _when(lost, capture, fixed=fixed)
-            yield Notice(LOSS, f"{each.name!r} was lost {told}")
+            yield _loss(each.name, lost, capture, fixed=fixed)
 
 
-def _when(lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> str:
-    """How often a body was lost for long, when at most, and what follows."""
+def _loss(name: str, lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> Notice:
+    """How often a body was lost for long, and when at most; without times if it was throughout."""
     first, last = max(lost, key=lambda gap: gap[1] - gap[0])
     if last - first + 1 == len(capture.times):
-        return "throughout; no contact of it is known"
-    often = {1: "once", 2: "twice"}.get(len(lost), f"{len(lost)} times")
-    most = " at most" if len(lost) > 1 else ""
-    span = f"{capture.times[first]:.2f} to {capture.times[last]:.2f} s"
-    follows = "it is held to stay" if fixed else "a contact before and after is taken to last"
-    return f"{often} for long,{most} from {span}; {follows}"
+        return notice(LOSS, name, times=len(lost), fixed=fixed)
+    start_s, end_s = float(capture.times[first]), float(capture.times[last])
+    return notice(LOSS, name, start_s=start_s, end_s=end_s, times=len(lost), fixed=fixed)

@@ -138,7 +138,7 @@ def _rows(
     return [
         {"ee": each.ee, "index": each.index, "is": each.name, "sentence": told.sentence}
         | _placed(asdict(told), seen)
-        | {"notices": [asdict(notice) for notice in _notices([each], seen)]}
+        | {"notices": [notice.document() for notice in _notices([each], seen)]}
         for each, found in rows
         for told in found
     ]
@@ -154,7 +154,7 @@ def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
     from dataclasses import asdict
 
     segments = [e for e in seen.observation.segments if (e.ee, e.index) == (told.ee, told.index)]
-    notices = [asdict(each) for each in _notices(segments, seen)]
+    notices = [each.document() for each in _notices(segments, seen)]
     return _placed(asdict(told), seen) | {"notices": notices}
 
 

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -10,9 +11,12 @@ from capar.model.capture import Capture
 from capar.model.observation import Observation, Segment
 from capar.model.segment_address import SegmentAddress, find_segment
 from capar.pipelines.observation import observe_measured
-from capar_rules.engine.profiles import Profile
-from capar_rules.explain.explanation import Explainer
+from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from capar_rules.explain.explanation import Explainer, Explanation
+from capar_rules.explain.why_not import Alternative
+from capar_rules.explain.why_not import why_not as alternatives
 from extractors.measure import Measurements, measure
+from extractors.readers.bundle.capture_toml import read_capture
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
@@ -37,6 +41,64 @@ def explained(capture: Capture, *, rules: Profile) -> Explained:
         observation.facts, profile=rules, distance_m=distances(capture, measurements)
     )
     return Explained(observation, explainer)
+
+
+def explain(
+    capture: Capture | Path | str, segment: str = "", *, rules: Profile | str = DEFAULT
+) -> tuple[Explanation, ...]:
+    """Say why segments of a capture have their names: the rules and facts behind each.
+
+    Args:
+        capture: A capture, or where to read it.
+        segment: ``right_hand/3`` for one, ``right_hand`` for all of an end-effector; all if empty.
+        rules: A rule profile or its name.
+
+    Raises:
+        UnknownNameError: There is no such segment.
+        CaparError: The capture or the rules have a fault.
+    """
+    seen = _explained(capture, rules)
+    return tuple(seen.explainer.explain(each) for each in chosen(seen.observation, segment))
+
+
+def why_not(
+    capture: Capture | Path | str,
+    segment: str,
+    name: str,
+    *,
+    rules: Profile | str = DEFAULT,
+    limit: int = 1,
+) -> tuple[Alternative, ...]:
+    """The smallest changes that would have given a segment of a capture another name.
+
+    Args:
+        capture: A capture, or where to read it.
+        segment: Such as ``right_hand/3``.
+        name: The name that it has not.
+        rules: A rule profile or its name.
+        limit: How many equally small answers to give, at most.
+
+    Raises:
+        UnknownNameError: There is no such segment, or no rule gives that name.
+        RuleError: The segment has that name.
+    """
+    seen = _explained(capture, rules)
+    return alternatives(seen.explainer, segment_named(seen.observation, segment), name, limit=limit)
+
+
+def _explained(capture: Capture | Path | str, rules: Profile | str) -> Explained:
+    trial = capture if isinstance(capture, Capture) else read_capture(capture)
+    return explained(trial, rules=profile(rules) if isinstance(rules, str) else rules)
+
+
+def chosen(observation: Observation, text: str) -> tuple[Segment, ...]:
+    """The segments that a user names: one, all of an end-effector, or all if the text is empty.
+
+    Raises:
+        UnknownNameError: There is no such segment.
+    """
+    own = tuple(each for each in observation.segments if not text or each.ee == text)
+    return own or (segment_named(observation, text),)
 
 
 def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:

@@ -1,9 +1,15 @@
 """The pipelines from captures to language: tellings, fitting verbs, and what can be said."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from capar.model.capture import Capture
+from capar.model.observation import Observation
 from capar.model.segment_address import find_segment, split_capture
+from capar.pipelines.linguistic_report import primitive_files, primitive_words
+from kb.language.describe import Detail
+from kb.language.describe import describe as told
 from kb.language.vocabulary import EFFECTORS, Vocabulary
 from kb.lexicon.fitting import Fit, fitting
 from kb.lexicon.fitting import Seen as SegmentSeen
@@ -34,6 +40,31 @@ CONTACT_CLASSES = (
     "40",
 )
 """Levin's chapters whose verbs say what a body does to things and to itself."""
+
+
+def describe(
+    seen: Observation | Capture | Path | str,
+    *,
+    detail: Detail = "steps",
+    timed: bool = False,
+    words: Sequence[PrimitiveWords] | None = None,
+) -> str:
+    """Say in plain English what was done.
+
+    Args:
+        seen: An observation, or a capture or its place, which is observed first.
+        detail: ``steps`` tells every step, ``summary`` only those that changed something.
+        timed: Whether each step is followed by its time [s].
+        words: What the primitives are called; by default as the rules that ship call them.
+
+    Raises:
+        CaparError: The capture has a fault.
+    """
+    from capar.pipelines.observation import observe
+
+    observation = seen if isinstance(seen, Observation) else observe(seen)
+    known = primitive_words(primitive_files()) if words is None else words
+    return told(observation, detail=detail, timed=timed, words=known)
 
 
 def verbs_for(

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from capar import __version__
-from capar.model.capture import Capture, Notice
+from capar.model.capture import Capture, Notice, notice
 from capar.model.facts import Doubted, Fact
 from capar.model.observation import Observation, Segment
 from capar.model.par import ConstraintLocation
@@ -139,16 +139,17 @@ def _locations(
 
 
 def _violations(inference: Inference) -> Iterable[Notice]:
-    return (Notice("rule-violation", each) for each in inference.violations)
+    return (notice("rule-violation", violation=each) for each in inference.violations)
 
 
 def _doubts(facts: Iterable[Fact], rate_hz: float) -> Iterable[Notice]:
     for each in facts:
         if isinstance(each, Doubted):
-            what = each.body if each.body == each.other else f"{each.body} with {each.other}"
-            length_s = (each.last - each.first + 1) / rate_hz
-            yield Notice(
+            yield notice(
                 "flicker",
-                f"{what}: {length_s:.2f} s at {each.first / rate_hz:.2f} s taken for "
-                f"{each.taken}, not as measured: so the fewest changes explain it",
+                *dict.fromkeys((each.body, each.other)),
+                start_s=each.first / rate_hz,
+                end_s=each.last / rate_hz,
+                length_s=(each.last - each.first + 1) / rate_hz,
+                taken=each.taken,
             )

@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.capture import (
     Capture,
-    Notice,
     PivotContact,
     Purpose,
     Role,
@@ -19,6 +18,7 @@ from capar.model.capture import (
     ShapeSource,
     TagObject,
     TagType,
+    notice,
 )
 from capar.model.facts import (
     MEASURED,
@@ -184,7 +184,7 @@ def test_each_loss_is_told_once_in_words(
         way[first : last + 1] = np.nan
     hand = Sensor("hand", "hand", "right", "arm", still((0, 0, 0), 200), ball(0.04))
     thing = TagObject("thing", tag, stream(way), ball(0.04))
-    read = Notice("long-gap", "thing is lost from 0.50 s to 0.99 s")
+    read = notice("long-gap", "thing", start_s=0.5, end_s=0.99)
     found = measure(Capture("x", (hand,), (thing,), notices=(read,))).notices
     (loss,) = [each.message for each in found if each.code == "long-gap"]
     unknown = "no contact of it is known"

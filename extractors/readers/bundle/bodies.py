@@ -11,7 +11,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
-from capar.model.capture import Notice, Stream
+from capar.model.capture import Notice, Stream, notice
 from capar.model.errors import CaptureError
 from extractors.readers.bundle.marker_fit import Cluster, arrangement, check_fit, fit_cluster
 from extractors.readers.bundle.shapes import Frame, transform
@@ -123,8 +123,8 @@ def _from_markers(entry: "Tracked", files: Files, names: list[str], offset: Rigi
     places = offset.inv().apply(cluster.local)
     points_here = MeanPlaces(recording, stream, dict(zip(names, places, strict=True)))
     frame = Frame(points=points_here, markers=tuple(names), mirrored=recording.mirrored)
-    text = f"{label}: {wild.sum()} frames in which its markers are not rigid are taken as lost"
-    return Body(stream, frame, (Notice("markers-not-rigid", text),) if wild.any() else ())
+    wrong = notice("markers-not-rigid", label, frames=int(wild.sum()))
+    return Body(stream, frame, (wrong,) if wild.any() else ())
 
 
 def _stated(entry: "Tracked", names: list[str]) -> Cluster | None:

@@ -18,6 +18,7 @@ from capar.model.capture import (
     Source,
     Stream,
     TagObject,
+    notice,
 )
 from capar.model.errors import CaptureError
 from capar.model.geometry import runs
@@ -225,6 +226,6 @@ def _long_gaps(stream: Stream) -> list[tuple[int, int]]:
 
 def _gap_notice(name: str, stream: Stream, gap: tuple[int, int]) -> Notice:
     if gap == (0, len(stream.times) - 1):
-        return Notice("long-gap", f"{name} is lost throughout")
+        return notice("long-gap", name)
     start, end = stream.times[gap[0]], stream.times[gap[1]]
-    return Notice("long-gap", f"{name} is lost from {start:.2f} s to {end:.2f} s")
+    return notice("long-gap", name, start_s=float(start), end_s=float(end))

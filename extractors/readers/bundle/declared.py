@@ -20,6 +20,7 @@ from capar.model.capture import (
     Stream,
     TagObject,
     TagType,
+    notice,
 )
 from extractors.readers.bundle.bodies import Body, find_body
 from extractors.readers.bundle.many import many_objects, many_sensors, pivots
@@ -141,11 +142,15 @@ def _doubtful_kind(entry: "SensorEntry") -> list[Notice]:
     near = get_close_matches(entry.end_effector.lower(), LINKS, n=1)
     if not near or entry.end_effector in LINKS:
         return []
-    text = (
-        f"{entry.name}: end_effector {entry.end_effector!r} is none of {', '.join(LINKS)}, which "
-        f"rules know; did you mean {near[0]!r}?"
-    )
-    return [Notice("end-effector-unknown", text)]
+    return [
+        notice(
+            "end-effector-unknown",
+            entry.name,
+            stated=entry.end_effector,
+            known=", ".join(LINKS),
+            near=near[0],
+        )
+    ]
 
 
 def _objects(

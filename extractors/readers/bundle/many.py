@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
-from capar.model.capture import Notice, PivotContact
+from capar.model.capture import Notice, PivotContact, notice
 from extractors.readers.bundle.world import WorldRecording
 from extractors.readers.schema.document import validated
 from extractors.readers.schema.names import constant_name
@@ -106,5 +106,4 @@ def pivots(entry: "ManyObjects", objects: "list[ObjectEntry]") -> list[PivotCont
 def _left_out(names: list[str], bodies: int) -> list[Notice]:
     if not names:
         return []
-    text = f"{len(names)} of {bodies} objects have no shape and are left out: {', '.join(names)}"
-    return [Notice("objects-left-out", text)]
+    return [notice("objects-left-out", *names, objects=bodies)]

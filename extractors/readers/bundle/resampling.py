@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float
 from scipy.interpolate import CubicSpline
 
 from capar.model import geometry
-from capar.model.capture import Notice, Stream
+from capar.model.capture import Notice, Stream, notice
 from capar.model.errors import CaptureError
 
 GAP_S = 0.1
@@ -144,8 +144,7 @@ def rate_notices(streams: Sequence[Stream], rate_hz: float | None) -> list[Notic
     if rate_hz is None or min(rates) / FAR_RATE <= rate_hz <= max(rates) * FAR_RATE:
         return []
     recorded = f"{min(rates):.4g}" + (f" to {max(rates):.4g}" if max(rates) > min(rates) else "")
-    text = f"rate_hz = {rate_hz:g}, but the files have {recorded} frames a second; is it mistyped?"
-    return [Notice("rate-doubtful", text)]
+    return [notice("rate-mistyped", stated_hz=rate_hz, recorded_hz=recorded)]
 
 
 def _count(begin: float, end: float, rate_hz: float, where: str) -> int:

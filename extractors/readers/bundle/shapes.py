@@ -10,7 +10,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
-from capar.model.capture import Notice, Shape, ShapeSource, Source
+from capar.model.capture import Notice, Shape, ShapeSource, Source, notice
 from extractors.readers.bundle.mesh import open_edges, read_mesh
 from extractors.readers.bundle.world import mirrored
 from extractors.readers.files import source_of
@@ -104,8 +104,7 @@ def _mesh(entry: "MeshShape", frame: Frame) -> Described:
     vertices, faces = read_mesh(path)
     frame.sources.append(replace(source_of(path, "mesh"), path=entry.mesh))
     if edges := open_edges(vertices, faces):
-        text = f"{frame.owner}: the mesh {path.name} is not closed, it has {edges} open edges"
-        frame.notices.append(Notice("mesh-not-closed", text))
+        frame.notices.append(notice("mesh-not-closed", frame.owner, mesh=path.name, edges=edges))
     vertices = vertices * UNITS[entry.unit]
     if (entry.handedness or ("left" if frame.mirrored else "right")) == "left":
         vertices, faces = mirrored(vertices), faces[:, ::-1]

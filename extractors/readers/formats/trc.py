@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.capture import Notice
+from capar.model.capture import Notice, notice
 from capar.model.errors import FileError, UnknownNameError
 from extractors.readers.files import read_text, source_of
 from extractors.readers.formats.numbers import read_rows
@@ -73,13 +73,11 @@ def _contradictions(
 ) -> Iterator[Notice]:
     """Notices of a number of frames or a rate in the header that the rows contradict."""
     if header["NumFrames"] != str(len(times)):
-        text = f"the header states {header['NumFrames']} frames, the file holds {len(times)}"
-        yield Notice("frames-missing", f"{text}; was it cut short?")
+        yield notice("frames-missing", stated=header["NumFrames"], frames=len(times))
     try:
         stated_hz = float(header.get("DataRate", ""))
     except ValueError:
         return
     rate_hz = contradicted_rate(times, stated_hz)
     if rate_hz is not None:
-        text = f"the header states {stated_hz:g} frames a second, the time stamps {rate_hz:.4g}"
-        yield Notice("rate-doubtful", f"{text}; the time stamps are taken")
+        yield notice("rate-contradicted", stated_hz=stated_hz, rate_hz=rate_hz)

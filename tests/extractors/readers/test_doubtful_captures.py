@@ -71,9 +71,9 @@ def test_a_rate_far_from_every_recorded_one_gets_a_notice(
     rate_hz: int, doubtful: bool, tmp_path: Path
 ) -> None:
     said = notices(tmp_path, f"rate_hz = {rate_hz}\n{TRIAL}")
-    assert ("rate-doubtful" in said) == doubtful
+    assert ("rate-mistyped" in said) == doubtful
     if doubtful:
-        assert "the files have 50 frames a second" in said["rate-doubtful"]
+        assert "the files have 50 frames a second" in said["rate-mistyped"]
 
 
 @pytest.mark.parametrize("kind", ["csv", "npz"])
