@@ -161,5 +161,3 @@ AnyShape = Annotated[
     | Annotated[PartsShape, Tag("parts shape")],
     Discriminator(shape_tag, custom_error_type="shape", custom_error_message="no shape"),
 ]
-
-PartsShape.model_rebuild()
