@@ -16,7 +16,7 @@ def inspect(
     ],
     as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
 ) -> None:
-    """Say what a capture holds: streams, rate, gaps, noise at rest, ranges and near pairs."""
+    """Say what a capture holds: streams, rate, gaps, noise, ranges and near pairs."""
     report = _report(place)
     if as_json:
         typer.echo(json.dumps(report, indent=2, sort_keys=True))
@@ -92,7 +92,7 @@ def _show(report: dict[str, Any]) -> None:
     console = Console()
     console.print(f"[bold]{report['name']}[/]: {report['frames']} frames")
     table = Table("stream", "kind", "s", "Hz", "jitter ms", "lost", "longest gap s",
-                  "rest mm", "rest deg", "range m")  # fmt: skip
+                  "noise mm", "noise deg", "range m")  # fmt: skip
     for each in report["streams"]:
         table.add_row(
             each["name"], each["kind"], f"{each['seconds']:.2f}", f"{each['rate_hz']:.1f}",

@@ -20,7 +20,7 @@ from capar.model.capture import (
     TagObject,
     notice,
 )
-from capar.model.errors import CaptureError
+from capar.model.errors import CaptureError, FileError
 from capar.model.geometry import runs
 from extractors.readers.bundle.declared import Declared, declared
 from extractors.readers.bundle.location import find_place, open_bundle, takes
@@ -147,7 +147,7 @@ def _read_file(document: "CaptureFile", name: str) -> WorldRecording:
     return to_world(
         recording,
         unit_m=_unit_m(document, entry, recording.unit_m),
-        up=_stated(document, "up", entry.up or recording.up or document.up),
+        up=_up(document, entry, recording.up),
         left_handed=(entry.handedness or document.handedness) == "left",
     )
 
@@ -174,15 +174,23 @@ def _unit_m(document: "CaptureFile", entry: "MotionFile", stated_m: float | None
     """Metres per unit of a file: as its own table, the file, or the general key says."""
     if not entry.unit and stated_m:
         return stated_m
-    return UNITS[_stated(document, "unit", entry.unit or document.unit)]
+    unit = entry.unit or document.unit
+    if unit is None:
+        raise _unstated(document, "unit", f'unit = "mm" (or {", ".join(UNITS)})')
+    return UNITS[unit] if isinstance(unit, str) else unit
 
 
-def _stated(document: "CaptureFile", key: str, value: str | None) -> str:
-    if value is None:
-        remedy = {"unit": f'unit = "mm" (or {", ".join(UNITS)})', "up": 'up = "z" (or "y")'}[key]
-        problem = f"no file states its {key}."
-        raise document.error("files", problem, f"State it at the top: {remedy}.")
-    return value
+def _up(document: "CaptureFile", entry: "MotionFile", stated: str | None) -> str:
+    """The upward axis of a file: as its own table, the file, or the general key says."""
+    up = entry.up or stated or document.up
+    if up is None:
+        raise _unstated(document, "up", 'up = "z" (or "y")')
+    return up
+
+
+def _unstated(document: "CaptureFile", key: str, example: str) -> FileError:
+    remedy = f"State it at the top: {example}."
+    return document.error("files", f"no file states its {key}.", remedy)
 
 
 def _parents(entry: "MotionFile", known: list[str]) -> dict[str, str]:

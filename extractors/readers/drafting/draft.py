@@ -6,8 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from extractors.readers.drafting.clusters import limb_of, marker_sets, side_of
-from extractors.readers.recording import Recording
+from extractors.readers.drafting.marker_sets import marker_sets
+from extractors.readers.name_guesses import (
+    HEIGHT_M,
+    Standing,
+    end_effectors,
+    limb_of,
+    side_of,
+    standing,
+)
+from extractors.readers.recording import UNITS, Recording
 from extractors.readers.schema.names import constant_name
 
 TODO = "# EDIT:"
@@ -61,10 +69,11 @@ def _files(recordings: Sequence[Recording], folder: Path) -> dict[str, str]:
 
 def _frame_lines(recordings: Sequence[Recording]) -> list[str]:
     lines = []
+    person = next(filter(None, map(standing, recordings)), None)
     if any(each.unit_m is None for each in recordings):
-        lines.append(f'unit = "m"                      {TODO} m, dm, cm, mm, in or ft')
+        lines += _unit_lines(person)
     if any(each.up is None for each in recordings):
-        lines.append(f'up = "z"                        {TODO} the axis that points up: x, y or z')
+        lines += _up_lines(person)
     lines.append('handedness = "right"            # "left" if the world is mirrored')
     if len(recordings) > 1:
         rate = 1.0 / min(float(each.times[1] - each.times[0]) for each in recordings)
@@ -72,8 +81,37 @@ def _frame_lines(recordings: Sequence[Recording]) -> list[str]:
     return lines
 
 
+def _unit_lines(person: Standing | None) -> list[str]:
+    """The unit, by the height of the person in the file."""
+    if person is None:
+        return [f'unit = "m"                      {TODO} {", ".join(UNITS)}, or metres per unit']
+    evidence = f"# the head is {person.height:.4g} above the feet"
+    low, high = HEIGHT_M
+    if person.unit:
+        height = person.height * UNITS[person.unit]
+        return [
+            f"{evidence}: {height:.2f} m if the unit is {person.unit}",
+            f'unit = "{person.unit}"',
+        ]
+    return [
+        f"{evidence}, which is {low:g} to {high:g} m in no usual unit",
+        f"unit = {person.scale_m:.4g}                  {TODO} metres per unit, for an adult",
+    ]
+
+
+def _up_lines(person: Standing | None) -> list[str]:
+    """The axis that points up, by where head and feet are."""
+    if person is None or not person.clear:
+        up = person.up if person else "z"
+        return [f'up = "{up}"                        {TODO} the axis that points up: x, y or z']
+    return [f'up = "{person.up}"                        # from the feet to the head']
+
+
 def _found(file: str, recording: Recording) -> list[_Found]:
-    bodies = [_Found(name, file, f"body = {_quoted(name)}") for name in recording.bodies]
+    """Bodies and marker sets; of a skeleton only its end-effectors, for joints are no objects."""
+    names = list(end_effectors(recording) if recording.parents else recording.bodies)
+    names = names or list(recording.bodies)[:1]
+    bodies = [_Found(name, file, f"body = {_quoted(name)}") for name in names]
     unit = recording.unit_m or 1.0
     metres = {name: points * unit for name, points in recording.markers.items()}
     sets = marker_sets(metres)

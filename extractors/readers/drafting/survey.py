@@ -1,4 +1,4 @@
-"""What streams look like before anything is made of them: rate, gaps, noise at rest, ranges."""
+"""Streams in figures: rate, gaps, noise, ranges, and which come near each other."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -12,7 +12,13 @@ from capar.model import geometry
 from capar.model.capture import Stream
 
 REST_S = 0.5
-"""Rest is sought in windows of this length [s]."""
+"""Noise is measured in windows of this length [s]."""
+
+DEGREE = 3
+"""Degree of the polynomial that motion within a window is fitted by."""
+
+SHORTEST = 8
+"""Frames that a window has at least, so that noise is left after the fit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,9 +37,12 @@ class StreamSurvey:
     gaps: int
     longest_gap_s: float
     noise_mm: float | None
-    """Deviation of position in the quietest half second [mm]; None where nothing is seen."""
+    """Deviation of position from a smooth motion in the stillest windows [mm], over all three
+    axes; None where nothing is seen for half a second."""
 
     noise_deg: float | None
+    """The same of orientation [deg]."""
+
     range_m: tuple[float, float, float] | None
     """Extent along x, y and z [m]."""
 
@@ -56,7 +65,7 @@ def survey(name: str, kind: str, stream: Stream) -> StreamSurvey:
     lost = geometry.runs(stream.lost)
     known = stream.positions[~stream.lost]
     extent = known.max(axis=0) - known.min(axis=0) if len(known) else None
-    quiet = _quietest(stream)
+    noise = _noise(stream)
     longest = max((stream.times[b] - stream.times[a] for a, b in lost), default=0.0)
     return StreamSurvey(
         name=name,
@@ -68,27 +77,43 @@ def survey(name: str, kind: str, stream: Stream) -> StreamSurvey:
         lost=int(stream.lost.sum()),
         gaps=len(lost),
         longest_gap_s=float(longest),
-        noise_mm=None if quiet is None else quiet[0],
-        noise_deg=None if quiet is None else quiet[1],
+        noise_mm=None if noise is None else noise[0],
+        noise_deg=None if noise is None else noise[1],
         range_m=None if extent is None else (float(extent[0]), float(extent[1]), float(extent[2])),
     )
 
 
-def _quietest(stream: Stream) -> tuple[float, float] | None:
-    """Deviation of position [mm] and orientation [deg] in the window of least motion."""
-    length = max(2, round(REST_S / float(np.median(np.diff(stream.times)))))
-    starts = range(0, max(1, len(stream.times) - length + 1), max(1, length // 2))
+def _noise(stream: Stream) -> tuple[float, float] | None:
+    """Noise of position [mm] and orientation [deg] in the windows of least motion.
+
+    It is the deviation from a smooth local fit, so that slow motion is not taken for noise; the
+    median of the stillest tenth of the windows, so that one lucky window does not decide.
+    """
+    length = max(SHORTEST, round(REST_S / float(np.median(np.diff(stream.times)))))
+    starts = range(0, len(stream.times) - length + 1, max(1, length // 2))
     windows = [slice(at, at + length) for at in starts]
-    whole = [each for each in windows if not stream.lost[each].any()]
-    if not whole:
+    found = [_deviation(stream, each) for each in windows if not stream.lost[each].any()]
+    if not found:
         return None
-    spreads = [float(np.sqrt(stream.positions[each].var(axis=0).sum())) for each in whole]
-    still = whole[int(np.argmin(spreads))]
-    turned = stream.orientations[still]
-    middle = turned.mean(axis=0)
-    middle /= max(float(np.linalg.norm(middle)), 1e-12)
-    angles = geometry.angle_between(turned, np.broadcast_to(middle, turned.shape))
-    return min(spreads) * 1e3, float(np.degrees(np.sqrt(np.mean(angles**2))))
+    count = max(1, len(found) // 10)
+    places, angles = (np.sort([each[index] for each in found])[:count] for index in (0, 1))
+    return float(np.median(places)) * 1e3, float(np.degrees(np.median(angles)))
+
+
+def _deviation(stream: Stream, window: slice) -> tuple[float, float]:
+    """Root mean square distance [m] and angle [rad] of a window's poses from a smooth fit."""
+    times = stream.times[window]
+    turned = stream.orientations[window]
+    relative = geometry.rotations(turned[:1]).inv() * geometry.rotations(turned)
+    return _residual(times, stream.positions[window]), _residual(times, relative.as_rotvec())
+
+
+def _residual(times: Float[np.ndarray, "frames"], values: Float[np.ndarray, "frames 3"]) -> float:
+    """Deviation of values from a cubic in time, freed of the bias of fitting it."""
+    base = np.vander((times - times.mean()) / np.ptp(times), DEGREE + 1)
+    _, *rest = np.linalg.lstsq(base, values, rcond=None)
+    free = len(times) - (DEGREE + 1)
+    return float(np.sqrt(np.sum(rest[0]) / free))
 
 
 def near_pairs(streams: Mapping[str, Stream], count: int = 12) -> list[NearPair]:

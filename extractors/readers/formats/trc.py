@@ -34,6 +34,7 @@ def read(path: Path, options: Any) -> Recording:
     if delimiter == "\t" and not any("." in line for line in lines[5:8]):
         lines[2:3] = [lines[2].replace(",", ".")]
         lines[5:] = [line.replace(",", ".") for line in lines[5:]]
+    lines[5:] = [line if line.strip(" \t,") else "" for line in lines[5:]]
     header = _header(path, lines, delimiter)
     names = _markers(path, lines[3], delimiter)
     table = read_rows(

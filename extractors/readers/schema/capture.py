@@ -20,6 +20,10 @@ from extractors.readers.schema.shapes import Handedness, Unit, form_of_value
 
 Up = Literal["z", "y", "x", "-z", "-y", "-x"]
 Order = Literal["xyzw", "wxyz"]
+UnitOrScale = Annotated[
+    Annotated[Unit, Tag("as text")] | Annotated[Positive, Tag("as number")],
+    Discriminator(form_of_value),
+]
 Tolerance = Annotated[float, Field(ge=0.0, lt=1.0)]
 
 
@@ -43,7 +47,9 @@ class MotionFile(Entry):
     path: Annotated[
         str, key("The file, relative to the capture.toml; ${NAME} is an environment variable.")
     ]
-    unit: Annotated[Unit | None, key("Unit of this file's lengths.")] = None
+    unit: Annotated[
+        UnitOrScale | None, key("Unit of this file's lengths, or metres per unit as a number.")
+    ] = None
     up: Annotated[Up | None, key("The axis of this file that points up.")] = None
     handedness: Annotated[Handedness | None, key("Handedness of this file's axes.")] = None
     parents: Annotated[
@@ -138,7 +144,10 @@ class CaptureFile(Takes):
     one_of: ClassVar[tuple[str, ...]] = ("sensor", "sensors_from")
 
     name: Annotated[Filled | None, key("Name of the capture; its folder's if not given.")] = None
-    unit: Annotated[Unit | None, key("Unit of lengths in files that do not state it.")] = None
+    unit: Annotated[
+        UnitOrScale | None,
+        key("Unit of lengths in files that do not state it, or metres per unit as a number."),
+    ] = None
     up: Annotated[Up | None, key("Axis that points up in files that do not state it.")] = None
     handedness: Annotated[
         Handedness, key("Of the files' axes; a left-handed world is mirrored in x.")

@@ -49,7 +49,9 @@ class Location:
 class Entry(BaseModel):
     """A table whose keys are the fields; unknown keys are refused with the known ones."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        extra="forbid", strict=True, frozen=True, allow_inf_nan=False, defer_build=True
+    )
 
     one_of: ClassVar[tuple[str, ...]] = ()
     """Keys of which at least one is given."""

@@ -18,7 +18,9 @@ Pair = Annotated[list[str], Field(min_length=2, max_length=2)]
 
 
 def form_of_value(value: Any) -> str | None:
-    """``as text``, ``as list`` or ``as table``: the member of a union that a value is read as."""
+    """The tag of the member of a union that a value is read as: ``as text``, ``as list`` ..."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return "as number"
     kinds = ((str, "as text"), (list, "as list"), (dict | Entry, "as table"))
     return next((name for kind, name in kinds if isinstance(value, kind)), None)
 
@@ -159,5 +161,3 @@ AnyShape = Annotated[
     | Annotated[PartsShape, Tag("parts shape")],
     Discriminator(shape_tag, custom_error_type="shape", custom_error_message="no shape"),
 ]
-
-PartsShape.model_rebuild()

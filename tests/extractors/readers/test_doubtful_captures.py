@@ -108,7 +108,7 @@ def test_a_trc_with_commas_reads_as_the_one_with_tabs_and_points(
     changes: list[tuple[str, str]], tmp_path: Path
 ) -> None:
     expected = read_recording(trc(tmp_path))
-    found = read_recording(trc(tmp_path, *changes))
+    found = read_recording(trc(tmp_path, ("Z4\n", "Z4\n\t\t\n"), *changes))
     assert list(found.markers) == list(samples.NAMES)
     assert np.array_equal(found.marker_times, expected.marker_times)
     for name in samples.NAMES:

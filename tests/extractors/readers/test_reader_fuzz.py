@@ -2,7 +2,9 @@
 
 import contextlib
 import time
+import tomllib
 from pathlib import Path
+from typing import Any
 
 import motion_files as samples
 import pytest
@@ -10,8 +12,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from capar.model.errors import CaparError
+from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.bundle.mesh import read_mesh
 from extractors.readers.registry import read_recording
+from extractors.readers.schema.capture import CaptureFile
+from extractors.readers.schema.document import line_numbers, validated
+from extractors.readers.schema.entry import Location
+from extractors.readers.schema.reference import TABLES
 
 EDITS = st.lists(
     st.tuples(
@@ -22,6 +29,7 @@ EDITS = st.lists(
     min_size=1,
     max_size=6,
 )
+WORDS = sorted({name for kind in TABLES.values() for name in kind.model_fields})
 QUICK = settings(
     max_examples=60,
     deadline=None,
@@ -75,3 +83,82 @@ def test_a_damaged_mesh_raises_nothing_but_our_own_errors(
     with contextlib.suppress(CaparError):
         read_mesh(path)
     assert time.monotonic() - start < 5.0
+
+
+CAPTURE = """takes = ["m", { take = "n", side = "left" }]
+unit = "m"
+up = "y"
+rate_hz = 60
+[files]
+motion = { path = "{take}.csv", order = "xyzw" }
+[agent]
+measures = { stature = 1.7 }
+[[sensor]]
+name = "right_hand"
+end_effector = "hand"
+body = "hand"
+offset = { position = [0, 0, 0.1] }
+shape = { parts = [{ sphere = 0.05 }, { capsules = "children", radius_m = 0.02 }] }
+[[objects_from]]
+file = "motion"
+touched_by = "right_hand"
+touched_within_m = 0.1
+[objects_from.kinds]
+hand = { name = "thing", tag = "mobile", shape = { box = [0.1, 0.1, 0.1] } }
+[[object]]
+name = "table"
+tag = "fixed"
+top_at_bottom_of = "thing"
+at_s = 0.1
+shape = { cylinder = [0.4, 0.02] }
+[[purpose]]
+purpose = "PutDown"
+goal = "table"
+"""
+
+
+def test_the_capture_toml_to_be_damaged_is_right(tmp_path: Path) -> None:
+    samples.write_csv(tmp_path / "m.csv")
+    (tmp_path / "capture.toml").write_text(CAPTURE)
+    assert len(read_capture(f"{tmp_path}:m").objects) == 2
+
+
+@settings(QUICK, max_examples=300)
+@given(edits=EDITS)
+def test_a_damaged_capture_toml_raises_nothing_but_our_own_errors(
+    edits: list[tuple[float, str, bytes]], tmp_path: Path
+) -> None:
+    samples.write_csv(tmp_path / "m.csv")
+    (tmp_path / "capture.toml").write_bytes(edited(CAPTURE.encode(), edits))
+    with contextlib.suppress(CaparError):
+        read_capture(f"{tmp_path}:m")
+
+
+VALUES = st.recursive(
+    st.one_of(st.text(max_size=5), st.integers(-9, 9), st.floats(), st.booleans()),
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=4),
+        st.dictionaries(st.sampled_from([*WORDS, "x"]), inner, max_size=4),
+    ),
+    max_leaves=8,
+)
+
+
+@settings(QUICK, max_examples=300)
+@given(path=st.lists(st.integers(0, 20), min_size=1, max_size=5), value=VALUES)
+def test_a_value_of_any_type_anywhere_is_read_or_told_with_its_line(
+    path: list[int], value: object
+) -> None:
+    data = tomllib.loads(CAPTURE)
+    place: Any = data
+    for index in path:
+        keys = list(place) if isinstance(place, dict) else list(range(len(place)))
+        if not keys:
+            break
+        key = keys[index % len(keys)]
+        if not isinstance(place[key], dict | list) or index == path[-1]:
+            place[key] = value
+            break
+        place = place[key]
+    with contextlib.suppress(CaparError):
+        validated(CaptureFile, data, Location(Path("capture.toml"), line_numbers(CAPTURE)))

@@ -1,4 +1,4 @@
-"""Guesses at what names in a file mean: marker sets, hands, heads and feet."""
+"""Sets of markers that are likely rigid bodies, by their names and distances."""
 
 import re
 from collections.abc import Mapping
@@ -12,32 +12,6 @@ RIGID_M = 0.004
 
 NEAR_M = 0.5
 """And they are no further apart than this [m]."""
-
-LIMBS = {
-    "hand": ("hand", "wrist", "palm", "main"),
-    "head": ("head", "skull", "camera", "hmd"),
-    "foot": ("foot", "ankle", "toe"),
-}
-"""Words in names that tell end-effectors."""
-
-_SIDES = {
-    "right": re.compile(r"right|(^|[_.\W])r([_.\W]|$)|[a-z]Rt?$|^R(?=[A-Z_])|(?<=[a-z])R$|_r$"),
-    "left": re.compile(r"left|(^|[_.\W])l([_.\W]|$)|[a-z]Lf?t?$|^L(?=[A-Z_])|(?<=[a-z])L$|_l$"),
-}
-
-
-def limb_of(name: str) -> str:
-    """The end-effector that a name tells of, or an empty string."""
-    low = name.lower()
-    return next((limb for limb, words in LIMBS.items() if any(w in low for w in words)), "")
-
-
-def side_of(name: str) -> str:
-    """The side that a name tells of: ``right``, ``left`` or ``none``."""
-    for side, pattern in _SIDES.items():
-        if pattern.search(name) or side in name.lower():
-            return side
-    return "none"
 
 
 def marker_sets(

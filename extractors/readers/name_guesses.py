@@ -1,0 +1,110 @@
+"""Guesses from names in a motion file: end-effectors, sides, and how a person stands."""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from extractors.readers.recording import UNITS, Recording
+
+HEIGHT_M = (0.85, 2.0)
+"""How far the head's joint or markers are above the feet of people of 1.0 to 2.2 m [m]."""
+
+USUAL_M = 1.4
+"""That height of an adult of whom nothing is known [m]."""
+
+CLEAR = 2.0
+"""The upward axis is clear if the body is so many times longer along it than along another."""
+
+LIMBS = {
+    "hand": ("hand", "wrist", "palm", "main"),
+    "head": ("head", "skull", "camera", "hmd"),
+    "foot": ("foot", "ankle", "toe"),
+}
+"""Words in names by which end-effectors are known."""
+
+_SIDES = {
+    "right": re.compile(r"right|(^|[_.\W])r([_.\W]|$)|[a-z]Rt?$|^R(?=[A-Z_])|(?<=[a-z])R$|_r$"),
+    "left": re.compile(r"left|(^|[_.\W])l([_.\W]|$)|[a-z]Lf?t?$|^L(?=[A-Z_])|(?<=[a-z])L$|_l$"),
+}
+
+
+def limb_of(name: str) -> str:
+    """The end-effector that a name tells of, or an empty string."""
+    low = name.lower()
+    return next((limb for limb, words in LIMBS.items() if any(w in low for w in words)), "")
+
+
+def side_of(name: str) -> str:
+    """The side that a name tells of: ``right``, ``left`` or ``none``."""
+    for side, pattern in _SIDES.items():
+        if pattern.search(name) or side in name.lower():
+            return side
+    return "none"
+
+
+def end_effectors(recording: Recording) -> dict[str, str]:
+    """The bodies of a file that are likely end-effectors, and of which kind.
+
+    In a skeleton these are the first joint of each hand, foot or head, not the fingers below it.
+    """
+    kinds = {name: limb_of(name) for name in recording.bodies}
+    return {
+        name: kind
+        for name, kind in kinds.items()
+        if kind and not any(kinds.get(each) == kind for each in _ancestors(recording, name))
+    }
+
+
+def _ancestors(recording: Recording, name: str) -> list[str]:
+    out: list[str] = []
+    while name in recording.parents and recording.parents[name] not in out:
+        name = recording.parents[name]
+        out.append(name)
+    return out
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How a person stands in a recording, by the names of head and feet."""
+
+    up: str
+    """The axis from the feet to the head: ``z``, ``-y`` ..."""
+
+    height: float
+    """Median distance from the feet to the head along it, in the file's unit."""
+
+    clear: bool
+    """Whether the body is much longer along this axis than along the others."""
+
+    @property
+    def unit(self) -> str:
+        """The unit in which somebody has this height; empty if none makes it so."""
+        low, high = HEIGHT_M
+        return next((n for n in UNITS if low <= self.height * UNITS[n] <= high), "")
+
+    @property
+    def scale_m(self) -> float:
+        """Metres per unit with which the person has the usual height."""
+        return USUAL_M / self.height
+
+
+def standing(recording: Recording) -> Standing | None:
+    """How a person stands, if the file has a head and a foot by name."""
+    points = {name: each.positions for name, each in recording.bodies.items()}
+    points |= recording.markers
+    ends: dict[str, list[Float[np.ndarray, "3"]]] = {"head": [], "foot": [], "hand": [], "": []}
+    for name, places in points.items():
+        if not np.isnan(places).all():
+            ends[limb_of(name)].append(np.nanmedian(places, axis=0))
+    if not ends["head"] or not ends["foot"]:
+        return None
+    way = np.mean(ends["head"], axis=0) - np.mean(ends["foot"], axis=0)
+    axis = int(np.argmax(np.abs(way)))
+    lengths = np.sort(np.abs(way))
+    if not lengths[2] > 0.0:
+        return None
+    sign = "-" if way[axis] < 0.0 else ""
+    clear = bool(lengths[2] > CLEAR * lengths[1])
+    return Standing(f"{sign}{'xyz'[axis]}", float(lengths[2]), clear)
