@@ -20,6 +20,7 @@ class Times:
     confirming_ms: int
     settled_ms: int
     flicker_ms: int
+    flicker_window_ms: int
 
     def __post_init__(self) -> None:
         """Check what the numbering relies on.

@@ -76,4 +76,5 @@ def test_borders_that_could_merge_may_not_be_cut_apart() -> None:
             confirming_ms=100,
             settled_ms=200,
             flicker_ms=150,
+            flicker_window_ms=10000,
         )
