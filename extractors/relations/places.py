@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model import geometry
-from capar.model.facts import Apart, Fact, Place, Posture, Travelled, Wound
+from capar.model.facts import Distance, Fact, Place, Posture, SweptAzimuth, Travelled
 from extractors.bodies.body_geometry import Figure
 from extractors.motion.leaning import lean, spin
 from extractors.relations.arrangement import beyond_shadow
@@ -44,8 +44,8 @@ def distances(figure: Figure, other: Figure, frames: tuple[int, ...]) -> Iterato
     wound = _wound(offset, beyond_shadow(figure.middles, *other.boxes) > 0.0)
     for frame in frames:
         if not np.isnan(apart[frame]):
-            yield Apart(figure.name, other.name, frame, round(1000.0 * float(apart[frame])))
-            yield Wound(figure.name, other.name, frame, round(1000.0 * float(wound[frame])))
+            yield Distance(figure.name, other.name, frame, round(1000.0 * float(apart[frame])))
+            yield SweptAzimuth(figure.name, other.name, frame, round(1000.0 * float(wound[frame])))
 
 
 def _cumulated(figure: Figure) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
