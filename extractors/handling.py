@@ -9,7 +9,8 @@ from jaxtyping import Float
 from capar.model.capture import Capture, TagObject, TagType
 from capar.model.facts import (
     Between,
-    Closing,
+    ClosingSpeed,
+    ContactNormal,
     Fact,
     Flies,
     Leans,
@@ -21,7 +22,6 @@ from capar.model.facts import (
     Rolls,
     Swings,
     Touching,
-    Upward,
 )
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
@@ -173,6 +173,6 @@ def _contacts(figures: Mapping[str, BodyGeometry], touches: Iterable[Touching]) 
         body, other = figures[each.body], figures[each.other]
         normal = contact_normal(body, other, each.first)
         if normal is not None:
-            yield Upward(each.body, each.other, each.first, round(1000.0 * float(normal[2])))
+            yield ContactNormal(each.body, each.other, each.first, round(1000.0 * float(normal[2])))
         speed = closing_speed(body, other, each.first)
-        yield Closing(each.body, each.other, each.first, round(1000.0 * speed))
+        yield ClosingSpeed(each.body, each.other, each.first, round(1000.0 * speed))

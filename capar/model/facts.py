@@ -11,11 +11,12 @@ from capar.model.atoms import program as program
 from capar.model.declarations import Declaration, Span, kinds_of
 from capar.model.declarations import Observed as Observed
 from capar.model.errors import FactError
-from capar.model.handling import Apart as Apart
 from capar.model.handling import Bears as Bears
 from capar.model.handling import Between as Between
-from capar.model.handling import Closing as Closing
+from capar.model.handling import ClosingSpeed as ClosingSpeed
+from capar.model.handling import ContactNormal as ContactNormal
 from capar.model.handling import Displaced as Displaced
+from capar.model.handling import Distance as Distance
 from capar.model.handling import Flies as Flies
 from capar.model.handling import Leans as Leans
 from capar.model.handling import Lies as Lies
@@ -25,10 +26,9 @@ from capar.model.handling import Posture as Posture
 from capar.model.handling import Resting as Resting
 from capar.model.handling import Reverses as Reverses
 from capar.model.handling import Rolls as Rolls
+from capar.model.handling import SweptAzimuth as SweptAzimuth
 from capar.model.handling import Swings as Swings
 from capar.model.handling import Travelled as Travelled
-from capar.model.handling import Upward as Upward
-from capar.model.handling import Wound as Wound
 from capar.model.scene_facts import ForceTransfer as ForceTransfer
 from capar.model.scene_facts import Frames as Frames
 from capar.model.scene_facts import Gap as Gap

@@ -75,7 +75,7 @@ class Posture(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Apart(Observed):
+class Distance(Observed):
     """How far the middles of two bodies are apart at a frame [millimetres]."""
 
     predicate = "apart"
@@ -87,7 +87,7 @@ class Apart(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Wound(Observed):
+class SweptAzimuth(Observed):
     """The angle by which a body has gone about another, seen from above [milliradians]."""
 
     predicate = "wound"
@@ -99,7 +99,7 @@ class Wound(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Upward(Observed):
+class ContactNormal(Observed):
     """How far the normal of a contact points up, from the other to the body [1/1000].
 
     Stated at the contact's first frame; 1000 where the body lies on the other.
@@ -114,7 +114,7 @@ class Upward(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Closing(Observed):
+class ClosingSpeed(Observed):
     """How fast two bodies approached each other when they began to touch [mm/s]."""
 
     predicate = "closing"

@@ -10,9 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from capar.model.facts import Fact, Moving, Touching
-
-REFINING_S = 0.15
-"""How long an object may take to the floor of motion, or from it [s]; no shorter rest counts."""
+from capar_rules.borders.times import in_frames, times
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -58,7 +56,7 @@ def edges(
         pauses: Frames at which it is slow, ascending.
         rate_hz: Frames a second [Hz].
     """
-    reach = round(REFINING_S * rate_hz)
+    reach = round(in_frames(times().refining_ms, rate_hz))
     contacts: dict[str, list[Touching]] = {}
     for each in own:
         contacts.setdefault(each.other, []).append(each)

@@ -31,13 +31,8 @@ from capar_rules.borders.ticks import MovesDuring as MovesDuring
 from capar_rules.borders.ticks import Shares as Shares
 from capar_rules.borders.ticks import Tick as Tick
 from capar_rules.borders.ticks import Within as Within
+from capar_rules.borders.times import in_frames, times
 from capar_rules.borders.undisturbed_rest import undisturbed
-
-MARGIN_S = 1.0
-"""How far beyond a possession the contacts of its object are numbered [s]: merging sees less."""
-
-CONFIRMING_S = 0.1
-"""How near a zero crossing confirms a border [s]."""
 
 
 def rank(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:
@@ -94,7 +89,7 @@ class _Scene:
 
 def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
     own = scene.touching[ee]
-    reach = _reach(own, round(MARGIN_S * scene.rate))
+    reach = _reach(own, round(in_frames(times().margin_ms, scene.rate)))
     others = [
         each
         for name in reach
@@ -158,7 +153,7 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
         pairs = overlapping(own, others_too)
         yield from shared(ee, ticks, pairs, rate_hz=scene.rate)
         yield from _within(ee, ticks, (), sorted({each for _, each in pairs}))
-    yield from _confirmed(ee, ticks, crossings, CONFIRMING_S * scene.rate)
+    yield from _confirmed(ee, ticks, crossings, in_frames(times().confirming_ms, scene.rate))
 
 
 def _reach(own: Iterable[Touching], margin: int) -> dict[str, list[tuple[int, int]]]:

@@ -5,9 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from capar.model.facts import Fact, Touching
 from capar_rules.borders.ticks import Meanwhile, Shares
-
-TOGETHER_S = 0.15
-"""Contacts that begin, or end, within this time do so together [s]: events that would merge."""
+from capar_rules.borders.times import in_frames, times
 
 Contacts = Mapping[str, Sequence[Touching]]
 """Contacts of one end-effector by what it touches, each in order of time and disjoint."""
@@ -49,7 +47,7 @@ def shared(
         pairs: Its own contacts, each with one of another end-effector.
         rate_hz: Frames a second [Hz].
     """
-    margin = TOGETHER_S * rate_hz
+    margin = in_frames(times().merge_ms, rate_hz)
     for touch, each in pairs:
         begins, ends = each.first - touch.first, each.last - touch.last
         if begins < -margin and ends < -margin:

@@ -8,9 +8,7 @@ from dataclasses import replace
 from capar.model.fact_intervals import FactIntervals
 from capar.model.facts import Fact, Observed, RateMhz
 from capar_rules.borders.ranking import LastTick, MovesDuring, Shares, Tick, Within
-
-SETTLED_S = 0.2
-"""Ticks further apart than this cannot merge [s]: there a window may begin or end."""
+from capar_rules.borders.times import in_frames, times
 
 BUCKET = 256
 """How many frames, or ticks, share an entry of the index."""
@@ -85,7 +83,7 @@ class Windows:
 
     def _settled(self, ee: str, first: int, last: int, widen: int) -> Span:
         """Ticks around a segment between which and the rest nothing merges, and one beyond."""
-        frames, gap = self.frames[ee], SETTLED_S * self.rate
+        frames, gap = self.frames[ee], in_frames(times().settled_ms, self.rate)
         for _ in range(widen + 1):
             while first > 0 and frames[first] - frames[first - 1] < gap:
                 first -= 1

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model import geometry
-from capar.model.facts import Apart, Fact, Place, Posture, Travelled, Wound
+from capar.model.facts import Distance, Fact, Place, Posture, SweptAzimuth, Travelled
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.motion.leaning import lean, spin
 from extractors.relations.arrangement import beyond_shadow
@@ -49,8 +49,8 @@ def distances(figure: BodyGeometry, other: BodyGeometry, frames: tuple[int, ...]
     known = ~np.isnan(apart)
     values = _thousandths(np.stack([apart[known], wound[at[known]]], axis=1))
     for frame, (millimetres, milliradians) in zip(at[known].tolist(), values, strict=True):
-        yield Apart(figure.name, other.name, frame, millimetres)
-        yield Wound(figure.name, other.name, frame, milliradians)
+        yield Distance(figure.name, other.name, frame, millimetres)
+        yield SweptAzimuth(figure.name, other.name, frame, milliradians)
 
 
 def _thousandths(values: Float[np.ndarray, "rows columns"]) -> list[list[int]]:

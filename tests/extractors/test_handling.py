@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
-from capar.model.facts import Wound
+from capar.model.facts import SweptAzimuth
 from extractors.bodies.body_geometry import BodyGeometry, geometry_of
 from extractors.contact.normals import contact_normal
 from extractors.motion.impacts import closing_speed, falls
@@ -251,5 +251,5 @@ def test_what_turns_above_a_thing_goes_about_nothing() -> None:
     whole = tuple(range(0, len(TIMES), 100))
     for radius, expected in ((0.5, 3000), (0.05, 0)):
         going = distances(body(radius * round_ + np.array([0.0, 0.0, 0.3])), thing, whole)
-        wound = [each.milliradians for each in going if isinstance(each, Wound)]
+        wound = [each.milliradians for each in going if isinstance(each, SweptAzimuth)]
         assert wound[-1] - wound[0] == pytest.approx(expected, abs=15)

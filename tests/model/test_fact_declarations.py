@@ -14,12 +14,12 @@ from capar.model.facts import (
     MEASURED,
     STATED,
     Bears,
+    ContactNormal,
     Doubted,
     Frames,
     Lies,
     Passage,
     Touching,
-    Upward,
 )
 from capar_rules.engine.solver import rule_file
 from ontology import CAPAR
@@ -117,8 +117,8 @@ def test_a_foot_draws_borders_only_where_it_bears_all_or_nothing() -> None:
 
 def test_a_fact_about_a_contact_holds_while_the_contact_lasts() -> None:
     intervals = FactIntervals([Touching("hand", "cup", 3, 9), Lies("cup", "inside", "box", 3, 5)])
-    assert intervals.of(Upward("hand", "cup", 3, 900)) == (3, 9)
-    assert intervals.of(Upward("hand", "cup", 4, 900)) is None
+    assert intervals.of(ContactNormal("hand", "cup", 3, 900)) == (3, 9)
+    assert intervals.of(ContactNormal("hand", "cup", 4, 900)) is None
     assert intervals.of(Passage("cup", "inside", "box", 3, "other")) == (3, 5)
     assert intervals.of(Passage("cup", "above", "box", 3, "other")) is None
     assert intervals.of(Frames(0, 9)) is None
