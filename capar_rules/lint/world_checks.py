@@ -18,7 +18,6 @@ from capar_rules.lint.audit import (
 )
 from capar_rules.lint.findings import NOTE, Finding
 from capar_rules.lint.text_checks import Known
-from capar_rules.lint.word_checks import fitting_findings, single_findings
 from capar_rules.lint.word_places import STRING
 
 FIRED, IDLE, HELD = ("fired", 1), ("idle", 1), ("held", 3)
@@ -91,8 +90,6 @@ def world_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
     atoms = evaluate([*base.rules, *own, *_probes(judged)], asked)
     yield from _firing(judged, atoms, lambda number: _missing(number, judged, own, base, atoms))
     yield from _clashes(own, summarise(atoms))
-    yield from fitting_findings(own, base)
-    yield from single_findings(own)
 
 
 def _not_judged(rule: Statement, what: str) -> Finding:
