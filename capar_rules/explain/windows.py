@@ -1,4 +1,4 @@
-"""The facts around one segment, cut so that asking about it costs the same in any capture."""
+"""The facts around one segment, so that explaining it costs the same in any capture."""
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
@@ -9,10 +9,10 @@ from capar.model.facts import Fact, Frames, Lies, RateMhz, Touching
 from capar_rules.borders.ranking import LastTick, MovesDuring, Shares, Tick, Within
 
 SETTLED_S = 0.2
-"""Ticks further apart than this cannot merge [s]: there a window may begin or end."""
+"""Ticks further apart than this cannot merge [s]; a window may begin or end between them."""
 
 BUCKET = 256
-"""How many frames, or ticks, share an entry of the index."""
+"""Number of frames, or ticks, for each entry of the index."""
 
 Span = tuple[int, int]
 
@@ -53,13 +53,13 @@ class Windows:
             self.always.append(fact)
 
     def around(self, ee: str, first: int, last: int, *, widen: int = 0) -> tuple[Fact, ...]:
-        """What bears on the segment of a link between two ticks.
+        """The facts that can affect the segment of a link between two ticks.
 
         Args:
             ee: The link's end-effector.
             first: The tick where the segment begins.
             last: The tick where it ends.
-            widen: By how many further settled places to widen the window.
+            widen: By how many further gaps between ticks to widen the window.
         """
         spans = {ee: self._settled(ee, first, last, widen)}
         begin, end = (self.frames[ee][tick] for tick in spans[ee])
@@ -76,14 +76,14 @@ class Windows:
         return tuple(sorted(found, key=lambda each: (type(each).predicate, each)))
 
     def whole(self) -> tuple[Fact, ...]:
-        """Everything, should no window do."""
+        """All facts, if no window suffices."""
         facts = {*self.always, *self.timed.everything()}
         for ee, frames in self.frames.items():
             facts |= set(self._cut(ee, (0, len(frames) - 1)))
         return tuple(sorted(facts, key=lambda each: (type(each).predicate, each)))
 
     def _settled(self, ee: str, first: int, last: int, widen: int) -> Span:
-        """Ticks around a segment between which and the rest nothing merges, and one beyond."""
+        """The ticks around a segment that could merge with its own, and one beyond on each side."""
         frames, gap = self.frames[ee], SETTLED_S * self.rate
         for _ in range(widen + 1):
             while first > 0 and frames[first] - frames[first - 1] < gap:
@@ -130,12 +130,12 @@ class _Index:
 
 
 def _stretches(facts: Iterable[Fact]) -> Iterator[Touching | Lies]:
-    """What other measurements name by its first frame."""
+    """Measurements that others refer to by their first frame."""
     return (each for each in facts if isinstance(each, Touching | Lies))
 
 
 def _span(fact: Fact, ends: dict[tuple[str, str, int], int]) -> Span | None:
-    """When a measurement holds [frames]; None: always."""
+    """First and last frame of a measurement; None if it always holds."""
     if isinstance(fact, Frames):
         return None
     first = getattr(fact, "first", getattr(fact, "frame", None))

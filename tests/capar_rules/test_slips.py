@@ -110,7 +110,7 @@ def test_a_variable_that_joins_nothing_is_noted_and_an_anonymous_one_is_not(tmp_
     rule += "tag(Object, mobile).\n"
     loose, fine = checked(tmp_path, HEAD + rule.format("Place"), HEAD + rule.format("_"))
     (note,) = [each for each in loose if each.code == "single-variable"]
-    assert (note.level, note.message) == (NOTE, "Place occurs once alone in this rule.")
+    assert (note.level, note.message) == (NOTE, "Place occurs only once in this rule.")
     assert [each for each in fine if each.code == "single-variable"] == []
 
 
