@@ -7,7 +7,7 @@ TESTED := .make/venv
 CORES ?= 2
 SOURCES := $(shell find capar extractors capar_rules kb ontology -type f -not -name '*.pyc' 2>/dev/null)
 
-.PHONY: demo test check bench develop clean
+.PHONY: demo test check bench docs develop clean
 
 demo: $(VENV)/ready  ## Observe the shipped capture: six steps of drinking from a mug, and a picture.
 	$(VENV)/bin/capar demo
@@ -25,6 +25,9 @@ check: $(VENV)/developing  ## Style, types and the import contract, as the tests
 
 bench: $(VENV)/developing  ## Ratios side by side; takes minutes.
 	for each in benchmarks/*.py; do $(VENV)/bin/python $$each || exit 1; done
+
+docs: $(VENV)/developing  ## The reference of capture.toml, from its schema.
+	$(VENV)/bin/python -m extractors.readers.schema.reference docs/capture-toml.md
 
 develop: $(VENV)/developing  ## An editable install with everything for development.
 

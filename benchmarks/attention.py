@@ -14,18 +14,17 @@ import numpy as np
 import scene
 
 from capar.model.capture import Capture
-from extractors.bodies.poses import Poses, poses, rotation_matrices
+from extractors.bodies.bodies import Bodies, bodies_of
+from extractors.bodies.poses import rotation_matrices
 from extractors.contact.surfaces import surface
 from extractors.relations.attention import NOTHING, Attention, attention
 from extractors.thresholds import Thresholds
 
 
-def plain(
-    capture: Capture, where: dict[tuple[str, str], Poses], look: Attention, frames: np.ndarray
-) -> list[int]:
+def plain(capture: Capture, bodies: Bodies, look: Attention, frames: np.ndarray) -> list[int]:
     """What is seen at some frames, by one ray for each object and frame."""
     head = capture.attending[0]
-    stream = where["sensor", head.name].settled
+    stream = bodies.sensors[head.name].poses.settled
     found = []
     for frame in frames:
         turn = rotation_matrices(stream.orientations[[frame]])[0]
@@ -33,7 +32,7 @@ def plain(
         eye = stream.positions[frame] + turn @ np.array(head.eye)
         best, seen = np.inf, NOTHING
         for index, name in enumerate(look.objects):
-            pose = where["object", name].settled
+            pose = bodies.objects[name].poses.settled
             back = rotation_matrices(pose.orientations[[frame]])[0].T
             start = back @ (eye - pose.positions[frame])
             shape = capture.tag_object(name).shape
@@ -48,15 +47,14 @@ def plain(
 
 def row(minutes: float, sample: int) -> dict[str, float]:
     capture, limits = scene.capture(minutes), Thresholds()
-    where = {("object", each.name): poses(each, limits) for each in capture.objects}
-    where |= {("sensor", each.name): poses(each, limits) for each in capture.attending}
-    attention(capture, capture.attending[0], where, limits)
+    bodies = bodies_of(capture, limits)
+    attention(capture, capture.attending[0], bodies, limits)
     begin = time.perf_counter()
-    look = attention(capture, capture.attending[0], where, limits)
+    look = attention(capture, capture.attending[0], bodies, limits)
     seconds = time.perf_counter() - begin
     frames = np.linspace(0, len(capture.times) - 1, sample).astype(int)
     begin = time.perf_counter()
-    truth = plain(capture, where, look, frames)
+    truth = plain(capture, bodies, look, frames)
     plain_s = (time.perf_counter() - begin) * len(capture.times) / sample
     return {
         "minutes": minutes,

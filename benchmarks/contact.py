@@ -16,26 +16,20 @@ import fcl
 import numpy as np
 import scene
 
-from capar.model.capture import Capture
-from extractors.bodies.poses import poses
+from extractors.bodies.bodies import bodies_of
+from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.contacts import shaped, watched
 from extractors.contact.proximity import Body, near
 from extractors.thresholds import Thresholds
 
 TOLERANCE_M = 0.005
 EXACT_M = 0.00005
-Pair = tuple[tuple[str, str], tuple[str, str]]
+Pair = tuple[BodyGeometry, BodyGeometry]
 
 
-def bodies(capture: Capture) -> dict[tuple[str, str], Body]:
-    limits = Thresholds()
-    keys = [("sensor", each.name) for each in capture.acting]
-    keys += [("object", each.name) for each in capture.objects]
-    found = {}
-    for kind, name in keys:
-        each = capture.sensor(name) if kind == "sensor" else capture.tag_object(name)
-        found[kind, name] = shaped(capture, (kind, name), poses(each, limits))
-    return {key: each for key, each in found.items() if each is not None}
+def surfaces(pairs: list[Pair]) -> dict[BodyGeometry, Body]:
+    found = {each: shaped(each) for pair in pairs for each in pair}
+    return {each: body for each, body in found.items() if body is not None}
 
 
 def plain(one: Body, two: Body, frames: np.ndarray) -> np.ndarray:
@@ -50,7 +44,7 @@ def plain(one: Body, two: Body, frames: np.ndarray) -> np.ndarray:
     return out
 
 
-def ours(where: dict[tuple[str, str], Body], pairs: list[Pair]) -> tuple[float, list[np.ndarray]]:
+def ours(where: dict[BodyGeometry, Body], pairs: list[Pair]) -> tuple[float, list[np.ndarray]]:
     begin = time.perf_counter()
     found = [near(where[one], where[two], distance_m=TOLERANCE_M) for one, two in pairs]
     return time.perf_counter() - begin, found
@@ -58,8 +52,10 @@ def ours(where: dict[tuple[str, str], Body], pairs: list[Pair]) -> tuple[float, 
 
 def row(minutes: float, sample: int) -> dict[str, float]:
     capture = scene.capture(minutes)
-    where, every = bodies(capture), list(watched(capture))
-    pairs = [each for each in every if each[0][0] == "sensor"]
+    bodies = bodies_of(capture, Thresholds())
+    every = list(watched(capture, bodies))
+    where = surfaces(every)
+    pairs = [each for each in every if each[0] in bodies.sensors.values()]
     first_s, _ = ours(where, pairs)
     seconds, found = ours(where, pairs)
     all_s, _ = ours(where, every)

@@ -16,7 +16,7 @@ from capar.model.facts import Fact, Frames
 from capar_rules.engine.profiles import profile
 from capar_rules.explain.explanation import Explainer
 from capar_rules.pars.inference import infer
-from extractors.measure import extract
+from extractors.measure import measure
 from extractors.readers.bundle.capture_toml import read_capture
 
 COPIES = (1, 10, 100)
@@ -37,7 +37,7 @@ def repeated(facts: tuple[Fact, ...], copies: int) -> tuple[Fact, ...]:
     return tuple(sorted(out, key=lambda each: (type(each).predicate, each)))
 
 
-def measure(facts: tuple[Fact, ...], copies: int) -> dict[str, float]:
+def timed(facts: tuple[Fact, ...], copies: int) -> dict[str, float]:
     """Milliseconds for each segment of the last copy."""
     told = repeated(facts, copies)
     rules = profile()
@@ -63,8 +63,8 @@ def main() -> None:
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
     options = parser.parse_args()
     with resources.as_file(resources.files("capar") / "demo" / "drink_from_mug") as bundle:
-        facts = extract(read_capture(bundle)).facts
-    rows = [measure(facts, copies) for copies in COPIES]
+        facts = measure(read_capture(bundle)).facts
+    rows = [timed(facts, copies) for copies in COPIES]
     if options.json:
         print(json.dumps(rows, indent=2))
         return

@@ -1,69 +1,76 @@
-"""Time to measure and to reason against the length of a capture, each beside real time.
+"""Time of the whole of `observe`, stage by stage, against the length of a capture.
 
 Run by hand: ``python benchmarks/observing.py [--minutes 1 10 60] [--json]``. Four sensors and eight
-objects with meshes of 10,000 faces at 100 Hz. The plain check, the distance of every pair at every
-frame, is timed in the same run on a few frames of each pair and extrapolated.
+objects with meshes of 10,000 faces at 100 Hz. Times are wall time in one process; stages that
+call each other are listed beneath their caller and counted in it.
 """
 
 import argparse
 import json
 import resource
 import time
+from collections.abc import Callable
+from typing import Any
+from unittest.mock import patch
 
-import fcl
 import scene
 
-from capar.model.capture import Capture
-from capar_rules.engine.profiles import profile
-from capar_rules.pars.inference import infer
-from extractors.contact.contacts import shaped, watched
-from extractors.measure import Measurements, extract
+from capar.pipelines.observation import observe
 
-SAMPLE = 10
+STAGES = {
+    "measure": "capar.pipelines.observation.measure",
+    "  contact": "extractors.measure.contacts",
+    "  line of sight": "extractors.measure.attention",
+    "  handling": "extractors.measure.handling",
+    "flicker": "capar.pipelines.observation.steady",
+    "reason": "capar.pipelines.observation.infer",
+    "  facts to text": "capar_rules.engine.solver.program",
+    "  answers back": "capar_rules.engine.solver._shown",
+    "PARs": "capar.pipelines.observation.upars",
+    "composing": "capar.pipelines.observation.compose",
+}
+"""Every stage that is timed, and the name by which its caller knows it."""
 
 
 def measure(minutes: float) -> dict[str, float]:
-    """Seconds and ratios for one length."""
+    """Seconds of each stage and of the whole, and the whole against real time."""
     capture = scene.capture(minutes)
+    spent = dict.fromkeys(STAGES, 0.0)
+    patches = [patch(place, _timed(stage, place, spent)) for stage, place in STAGES.items()]
+    for each in patches:
+        each.start()
     start = time.perf_counter()
-    measured = extract(capture)
-    extracted = time.perf_counter()
-    inference = infer(measured.facts, profile=profile())
-    reasoned = time.perf_counter()
-    seconds = 60.0 * minutes
-    plain_s = plain(capture, measured)
+    seen = observe(capture)
+    whole = time.perf_counter() - start
+    for each in patches:
+        each.stop()
     return {
         "minutes": minutes,
-        "facts": len(measured.facts),
-        "segments": sum(len(each.segments) for each in inference.links),
-        "extract_s": extracted - start,
-        "reason_s": reasoned - extracted,
-        "times real time": seconds / (reasoned - start),
-        "plain check_s": plain_s,
-        "times plain check": plain_s / (extracted - start),
-        "peak memory_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,
+        "facts": len(seen.facts),
+        "segments": sum(len(link.segments) for link in seen.links),
+        "observe": whole,
+        **spent,
+        "observe, times real time": 60.0 * minutes / whole,
+        "contact, times real time": 60.0 * minutes / spent["  contact"],
+        "facts to text and back, share": (spent["  facts to text"] + spent["  answers back"])
+        / whole,
+        "peak memory [GB]": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,
     }
 
 
-def plain(capture: Capture, measured: Measurements) -> float:
-    """How long the distance of every pair at every frame would take [s]."""
-    frames = len(capture.times)
-    chosen = range(0, frames, max(1, frames // SAMPLE))
-    total = 0.0
-    for pair in watched(capture):
-        bodies = [shaped(capture, key, measured.poses[key]) for key in pair]
-        if None in bodies:
-            continue
-        trees = [fcl.CollisionObject(each.surface.tree) for each in bodies if each]
+def _timed(stage: str, place: str, spent: dict[str, float]) -> Callable[..., Any]:
+    """The function of that name, which adds the time that it takes to a stage's."""
+    module, _, name = place.rpartition(".")
+    function = getattr(__import__(module, fromlist=[name]), name)
+
+    def timed(*arguments: Any, **options: Any) -> Any:
         start = time.perf_counter()
-        for frame in chosen:
-            for tree, key in zip(trees, pair, strict=True):
-                pose = measured.poses[key].settled
-                turn = fcl.Transform(pose.orientations[frame], pose.positions[frame])
-                tree.setTransform(turn)
-            fcl.distance(*trees, fcl.DistanceRequest(), fcl.DistanceResult())
-        total += (time.perf_counter() - start) * frames / len(chosen)
-    return total
+        try:
+            return function(*arguments, **options)
+        finally:
+            spent[stage] += time.perf_counter() - start
+
+    return timed
 
 
 def main() -> None:
@@ -71,14 +78,12 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, nargs="+", default=[1.0, 10.0, 60.0])
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
     options = parser.parse_args()
-    rows = []
-    for minutes in options.minutes:
-        rows.append(measure(minutes))
-        if not options.json:
-            line = (f"{name} {value:,.4g}" for name, value in rows[-1].items())
-            print("  ".join(line), flush=True)
+    rows = [measure(minutes) for minutes in options.minutes]
     if options.json:
         print(json.dumps(rows, indent=2))
+        return
+    for name in rows[0]:
+        print(f"{name:32}" + "".join(f"{row[name]:14,.4g}" for row in rows))
 
 
 if __name__ == "__main__":

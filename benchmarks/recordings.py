@@ -19,7 +19,7 @@ from capar.evaluation.carries import Carry, Miss, measure, near
 from capar.evaluation.containers import halved, landings
 from capar.evaluation.grasps import Change, changes, compare, read_seen
 from extractors.readers.bundle.capture_toml import read_capture, read_files, takes
-from extractors.readers.bundle.place import open_bundle
+from extractors.readers.bundle.location import open_bundle
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 SCENES = EXAMPLES / "boxed_vr" / "scenes.toml"

@@ -1,3 +1,107 @@
-"""Knowledge of what somebody did in a motion capture: observed, explained, stored and replayed."""
+"""Knowledge of what somebody did in a motion capture: observed, explained, stored and queried.
+
+>>> import capar
+>>> seen = capar.observe("captures/breakfast")      # a folder with a capture.toml
+>>> seen.segments[0].name
+'Reach'
+>>> print(capar.describe(seen))                     # plain English
+>>> print(capar.explain("captures/breakfast", "right_hand/3")[0].summary)
+>>> with capar.open_actionary("actionary") as book:
+...     book.add(seen)
+...     book.ask("hand", action="Reach")
+
+Everything listed in ``__all__`` is imported when it is first used, so that ``import capar`` is
+fast. A user's mistake raises ``CaparError``, whose text says what, where and what would have been
+right. Times are in seconds, lengths in metres, quaternions w x y z.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from capar.model.display import register as _register
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from capar.model.capture import Capture as Capture
+    from capar.model.errors import CaparError as CaparError
+    from capar.model.json_form import from_json as from_json
+    from capar.model.json_form import to_json as to_json
+    from capar.model.observation import Observation as Observation
+    from capar.pipelines.explanation import explain as explain
+    from capar.pipelines.explanation import why_not as why_not
+    from capar.pipelines.language import describe as describe
+    from capar.pipelines.observation import observe as observe
+    from extractors.readers.bundle.capture_toml import read_capture as read_capture
+    from kb.actionary import Actionary as Actionary
 
 __version__ = "0.1.0"
+
+_LAZY = {
+    "Actionary": "kb.actionary",
+    "CaparError": "capar.model.errors",
+    "Capture": "capar.model.capture",
+    "Observation": "capar.model.observation",
+    "describe": "capar.pipelines.language",
+    "explain": "capar.pipelines.explanation",
+    "from_json": "capar.model.json_form",
+    "observe": "capar.pipelines.observation",
+    "read_capture": "extractors.readers.bundle.capture_toml",
+    "to_json": "capar.model.json_form",
+    "why_not": "capar.pipelines.explanation",
+}
+"""The module of each public name."""
+
+__all__ = [
+    "Actionary",
+    "CaparError",
+    "Capture",
+    "Observation",
+    "describe",
+    "explain",
+    "from_json",
+    "observe",
+    "open_actionary",
+    "read_capture",
+    "to_json",
+    "why_not",
+]
+
+_register("html", "capar.views.page:observation_page")
+_register("frame", "capar.views.frames:observation_frame")
+
+
+def open_actionary(
+    place: "str | Path | None" = None, *, read_only: bool = False, wait_s: float = 0.0
+) -> "Actionary":
+    """The Actionary at a place: what was observed, to be asked in SPARQL or by named questions.
+
+    Args:
+        place: A folder, a server's address, or ``":memory:"`` for one that ends with the process;
+            by default ``CAPAR_ACTIONARY``, else ``./actionary``.
+        read_only: Whether it is only read, which any number may do beside a writer.
+        wait_s: How long to wait for another writer [s].
+
+    Raises:
+        LockedError: Another process writes the folder.
+        StoreError: There is nothing to read, or it cannot be used.
+    """
+    from kb.actionary import Actionary
+
+    if place == ":memory:":
+        return Actionary.in_memory()
+    return Actionary.open(place, read_only=read_only, wait_s=wait_s)
+
+
+def __getattr__(name: str) -> object:
+    """A public name, imported when it is first used (PEP 562)."""
+    if name not in _LAZY:
+        raise AttributeError(f"module 'capar' has no attribute {name!r}")
+    value: object = getattr(import_module(_LAZY[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """The public names, for completion in a shell."""
+    return sorted({*globals(), *__all__})

@@ -23,16 +23,16 @@ from capar.model.facts import (
     Touching,
     Upward,
 )
-from extractors.bodies.body_geometry import Figure, figure
-from extractors.bodies.poses import Poses
+from extractors.bodies.bodies import Bodies
+from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
 from extractors.motion.impacts import closing_speed, falls
 from extractors.motion.leaning import leaning, upright_axis
-from extractors.motion.object_motion import motion_floor, stays
+from extractors.motion.object_motion import motion_floor, rest_poses
 from extractors.motion.rest import resting
 from extractors.motion.rolling import rolling
 from extractors.motion.turning_points import reversals, swings
-from extractors.relations.arrangement import ARRANGEMENTS, Holds, between, gap, sides
+from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between, sides
 from extractors.relations.grips import shifts
 from extractors.relations.places import distances, places
 from extractors.relations.weight_bearing import bearing
@@ -52,7 +52,7 @@ NEAR = "near"
 
 def handling(
     capture: Capture,
-    where: Mapping[tuple[str, str], Poses],
+    bodies: Bodies,
     known: Iterable[Fact],
     thresholds: Thresholds,
 ) -> tuple[Fact, ...]:
@@ -62,7 +62,7 @@ def handling(
 
     Args:
         capture: The trial.
-        where: Poses by ``("sensor", name)`` and ``("object", name)``.
+        bodies: Its bodies.
         known: Contacts and motions, as facts.
         thresholds: What the measurements decide by.
     """
@@ -70,22 +70,25 @@ def handling(
     touches = [each for each in seen if isinstance(each, Touching)]
     acting = [each.name for each in capture.acting]
     held = {each.other for each in touches if each.body in acting}
-    hands = {each.name: figure(each, where["sensor", each.name]) for each in capture.acting}
-    things = {each.name: figure(each, where["object", each.name]) for each in capture.objects}
+    hands = {each.name: bodies.sensors[each.name] for each in capture.acting}
+    things = bodies.objects
     mobile = [each for each in capture.objects if each.tag is TagType.MOBILE and each.name in held]
     floors = {each.name: each.motion_floor_m for each in mobile}
     out: list[Fact] = []
     for name, hand in hands.items():
-        out += (Resting(name, *each) for each in resting(hand.where, thresholds))
+        out += (Resting(name, *each) for each in resting(hand.poses, thresholds))
+    uprights = {
+        name: _upright(one, floors.get(name), capture.rate_hz, thresholds)
+        for name, one in {**{each.name: things[each.name] for each in mobile}, **hands}.items()
+    }
     for each in mobile:
-        out += _motion(each, things[each.name], seen, capture.rate_hz, thresholds)
-    out += bearing(capture, where, touches, thresholds)
+        out += _motion(each, things[each.name], seen, uprights[each.name], thresholds)
+    out += bearing(capture, bodies, touches, thresholds)
     borders = marks([*seen, *out], acting, len(capture.times) - 1)
     figures = [*hands.values(), *(things[each.name] for each in mobile if each.name not in hands)]
     for one in figures:
         frames = tuple(borders.get(one.name, ()))
-        upright = _upright(one, floors.get(one.name), capture.rate_hz, thresholds)
-        out += places(one, upright, frames)
+        out += places(one, uprights[one.name], frames)
         for other in things.values():
             if other.name != one.name:
                 out += distances(one, other, frames)
@@ -101,9 +104,13 @@ def handling(
 
 
 def _motion(
-    each: TagObject, one: Figure, known: list[Fact], rate_hz: float, thresholds: Thresholds
+    each: TagObject,
+    one: BodyGeometry,
+    known: list[Fact],
+    upright: Float[np.ndarray, "3"],
+    thresholds: Thresholds,
 ) -> Iterator[Fact]:
-    pose = one.where
+    pose = one.poses
     moves = tuple(
         (fact.first, fact.last)
         for fact in known
@@ -111,7 +118,6 @@ def _motion(
     )
     yield from (Reverses(each.name, frame) for frame in reversals(pose, moves, thresholds))
     yield from (Swings(each.name, *span) for span in swings(pose, moves, thresholds))
-    upright = _upright(one, each.motion_floor_m, rate_hz, thresholds)
     length_m = float(one.shape.size.max()) if one.shape else 0.0
     leans = leaning(pose, upright, thresholds, length_m=length_m)
     yield from (Leans(each.name, *span) for span in leans)
@@ -120,17 +126,18 @@ def _motion(
 
 
 def _upright(
-    one: Figure, own_m: float | None, rate_hz: float, thresholds: Thresholds
+    one: BodyGeometry, own_m: float | None, rate_hz: float, thresholds: Thresholds
 ) -> Float[np.ndarray, "3"]:
-    floor = motion_floor(one.where.noise, rate_hz, own_m=own_m, thresholds=thresholds)
-    return upright_axis(one.where, stays(one.where, floor, thresholds))
+    floor = motion_floor(one.poses.noise, rate_hz, own_m=own_m, thresholds=thresholds)
+    return upright_axis(one.poses, rest_poses(one.poses, floor, thresholds))
 
 
 def _arranged(
-    one: Figure, other: Figure, touches: Iterable[Touching], thresholds: Thresholds
+    one: BodyGeometry, other: BodyGeometry, touches: Iterable[Touching], thresholds: Thresholds
 ) -> Iterator[Fact]:
+    pair = Pair(one, other, thresholds)
     for how, arrangement in ARRANGEMENTS.items():
-        for span in _spans(arrangement(one, other, thresholds), one, thresholds):
+        for span in _spans(arrangement(pair), one, thresholds):
             yield Lies(one.name, how, other.name, *span)
             if how in PASSED and span[0] > 0 and span[1] < len(one.middles) - 1:
                 yield Passage(one.name, how, other.name, span[0], sides(one, other, np.array(span)))
@@ -139,29 +146,29 @@ def _arranged(
         for each in touches
         if (each.body, each.other) == (one.name, other.name)
     ]
-    with np.errstate(invalid="ignore"):
-        close = gap(one, other) <= thresholds.near_m
-    for first, last in _spans(close, one, thresholds):
+    for first, last in _spans(pair.near, one, thresholds):
         if not any(begin <= last and end >= first for begin, end in touching):
             yield Lies(one.name, NEAR, other.name, first, last)
 
 
-def _between(one: Figure, others: list[Figure], thresholds: Thresholds) -> Iterator[Fact]:
+def _between(
+    one: BodyGeometry, others: list[BodyGeometry], thresholds: Thresholds
+) -> Iterator[Fact]:
     for first, second in combinations(sorted(others, key=lambda each: each.name), 2):
         for span in _spans(between(one, first, second), one, thresholds):
             yield Between(one.name, first.name, second.name, *span)
 
 
-def _spans(holds: Holds, one: Figure, thresholds: Thresholds) -> list[Interval]:
+def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Interval]:
     return intervals(
         holds,
-        one.where.smooth.times,
+        one.poses.smooth.times,
         dropout_s=thresholds.dropout_s,
         minimum_s=thresholds.contact_minimum_s,
     )
 
 
-def _contacts(figures: Mapping[str, Figure], touches: Iterable[Touching]) -> Iterator[Fact]:
+def _contacts(figures: Mapping[str, BodyGeometry], touches: Iterable[Touching]) -> Iterator[Fact]:
     for each in touches:
         body, other = figures[each.body], figures[each.other]
         normal = contact_normal(body, other, each.first)

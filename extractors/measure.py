@@ -1,12 +1,24 @@
 """All measurements of a capture, as ground facts and the arrays that later stages need."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from operator import attrgetter
+from typing import Any, cast
 
 import numpy as np
 from jaxtyping import Float, Int
 
-from capar.model.capture import Capture, Notice, Purpose, Sensor, ShapeSource, TagObject, TagType
+from capar.model.capture import (
+    Capture,
+    Notice,
+    Purpose,
+    Sensor,
+    ShapeSource,
+    TagObject,
+    TagType,
+    notice,
+)
 from capar.model.facts import (
     MEASURED,
     Displaced,
@@ -25,11 +37,12 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
-from extractors.bodies.poses import Poses, poses
+from extractors.bodies.bodies import Bodies, bodies_of
+from extractors.bodies.poses import Poses
 from extractors.contact.contacts import Contact, contact_tolerance, contacts
 from extractors.handling import handling
 from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import motion_floor, moving, stays
+from extractors.motion.object_motion import motion_floor, moving, rest_poses
 from extractors.relations.attention import Attention, attention
 from extractors.relations.weight_bearing import TRUNK
 from extractors.signals.filters import speed
@@ -72,11 +85,10 @@ class Measurements:
     attention: Mapping[str, Attention]
     """By sensor that attends, and by head that acts."""
 
-    poses: Mapping[tuple[str, str], Poses]
-    """By ``("sensor", name)`` and ``("object", name)``."""
+    bodies: Bodies
 
 
-def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measurements:
+def measure(capture: Capture, *, thresholds: Thresholds | None = None) -> Measurements:
     """Measure a capture: zero crossings, contacts, motions and looks, as facts.
 
     Args:
@@ -85,14 +97,15 @@ def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measur
             usual ones.
     """
     limits = thresholds or Thresholds()
-    where = {("sensor", each.name): poses(each, limits) for each in capture.sensors}
-    where |= {("object", each.name): poses(each, limits) for each in capture.objects}
-    noises = {each.name: where["sensor", each.name].noise.position_m for each in capture.sensors}
+    bodies = bodies_of(capture, limits)
+    noises = {name: each.poses.noise.position_m for name, each in bodies.sensors.items()}
     tolerance = contact_tolerance(capture, noises, limits)
-    tracks = {each.name: _track(where["sensor", each.name], limits) for each in capture.sensors}
-    looks = {each.name: attention(capture, each, where, limits) for each in _seeing(capture)}
+    tracks = {
+        each.name: _track(bodies.sensors[each.name].poses, limits) for each in capture.sensors
+    }
+    looks = {each.name: attention(capture, each, bodies, limits) for each in _seeing(capture)}
     touches = contacts(
-        capture, where, tolerance_m=tolerance, thresholds=_of_contact(capture, limits)
+        capture, bodies, tolerance_m=tolerance, thresholds=_of_contact(capture, limits)
     )
     facts = [
         *_scene(capture),
@@ -107,17 +120,17 @@ def extract(capture: Capture, *, thresholds: Thresholds | None = None) -> Measur
             for frame in pauses(tracks[each.name].speed_mps, tracks[each.name].crossings)
         ),
         *_touching(capture, touches),
-        *_moving(capture, where, limits),
+        *_moving(capture, bodies, limits),
         *(
             LookingAt(sensor, name, *interval)
             for sensor, look in looks.items()
             for name, interval in look.looks
         ),
     ]
-    facts += handling(capture, where, facts, limits)
+    facts += handling(capture, bodies, facts, limits)
     own = [each for each in capture.notices if each.code != LOSS]
     notices = (*own, *_notices(capture, tolerance, limits))
-    return Measurements(_ordered(facts), notices, tolerance, tracks, looks, where)
+    return Measurements(_ordered(facts), notices, tolerance, tracks, looks, bodies)
 
 
 LOSS = "long-gap"
@@ -145,11 +158,11 @@ def _of_contact(capture: Capture, thresholds: Thresholds) -> Thresholds:
     )
 
 
-def _track(where: Poses, thresholds: Thresholds) -> Track:
-    stream = where.smooth
+def _track(poses: Poses, thresholds: Thresholds) -> Track:
+    stream = poses.smooth
     pace = speed(stream.positions, stream.times)
     crossings = zero_crossings(
-        pace, stream.times, noise_m=where.noise.position_m, thresholds=thresholds
+        pace, stream.times, noise_m=poses.noise.position_m, thresholds=thresholds
     )
     return Track(stream.positions, pace, crossings)
 
@@ -191,17 +204,15 @@ def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
             yield Gap(first, second, each.interval[0], round(1e6 * each.gap_m))
 
 
-def _moving(
-    capture: Capture, where: Mapping[tuple[str, str], Poses], thresholds: Thresholds
-) -> Iterator[Fact]:
+def _moving(capture: Capture, bodies: Bodies, thresholds: Thresholds) -> Iterator[Fact]:
     """When each object moves, as its floor tells, and when that truly began and ended."""
     for each in capture.objects:
         if each.tag is TagType.MOBILE:
-            pose = where["object", each.name]
+            pose = bodies.objects[each.name].poses
             floor = motion_floor(
                 pose.noise, capture.rate_hz, own_m=each.motion_floor_m, thresholds=thresholds
             )
-            rests = stays(pose, floor, thresholds)
+            rests = rest_poses(pose, floor, thresholds)
             for interval in moving(pose, floor, thresholds):
                 yield Moving(each.name, *interval)
                 yield Displaced(each.name, *motion_edges(pose, interval, rests, thresholds))
@@ -209,36 +220,34 @@ def _moving(
 
 def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:
     """Facts by kind, then by value, each once."""
-    rank = {kind: index for index, kind in enumerate(MEASURED)}
+    groups: dict[type[Fact], set[Fact]] = defaultdict(set)
+    for fact in facts:
+        groups[type(fact)].add(fact)
     return tuple(
         fact
-        for kind in sorted({type(each) for each in facts}, key=rank.__getitem__)
-        for fact in sorted({each for each in facts if type(each) is kind})
+        for kind in MEASURED
+        for fact in sorted(groups.get(kind, ()), key=_values(cast(Any, kind)))
     )
+
+
+def _values(kind: Any) -> Callable[[Fact], Any]:
+    """What facts of a kind are sorted by: their arguments, read without building the fact anew."""
+    names = [each.name for each in fields(kind)]
+    return attrgetter(*names) if names else str
 
 
 def _notices(capture: Capture, tolerance_m: float, thresholds: Thresholds) -> Iterator[Notice]:
-    source = (
-        "as the capture states"
-        if capture.contact_tolerance_m is not None
-        else ("from the sensors' noise at rest")
-    )
-    yield Notice(
-        "contact-tolerance", f"bodies count as touching within {1e3 * tolerance_m:.1f} mm, {source}"
-    )
+    stated = capture.contact_tolerance_m is not None
+    yield notice("contact-tolerance", tolerance_m=tolerance_m, stated=stated)
     for pair in capture.pivot_contacts:
-        yield Notice(
-            "pivot-distance",
-            f"{pair.first!r} and {pair.second!r} count as touching while their origins are "
-            f"within {1e3 * pair.distance_m:.0f} mm",
-        )
+        yield notice("pivot-distance", pair.first, pair.second, distance_m=pair.distance_m)
     pivots = {name for pair in capture.pivot_contacts for name in (pair.first, pair.second)}
     touching: tuple[Sensor | TagObject, ...] = (*capture.acting, *capture.objects)
     for each in touching:
         if each.shape is None and each.name not in pivots:
-            yield Notice("no-shape", f"{each.name!r} has no shape, so no contact of it is known")
+            yield notice("no-shape", each.name)
         elif each.shape is not None and each.shape.source is ShapeSource.STAND_IN:
-            yield Notice("stand-in-shape", f"{each.name!r} is a stand-in: {each.shape.description}")
+            yield notice("stand-in-shape", each.name, shape=each.shape.description)
     yield from _pose_notices(capture, thresholds)
 
 
@@ -246,7 +255,7 @@ def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
     everything: tuple[Sensor | TagObject, ...] = (*capture.sensors, *capture.objects)
     for each in everything:
         if isinstance(each, TagObject) and each.assumed:
-            yield Notice("assumed-support", f"{each.name!r} is assumed: {each.assumed}")
+            yield notice("assumed-support", each.name, assumed=each.assumed)
         lost = [
             (first, last)
             for first, last in long_gaps(each.stream, gap_s=thresholds.gap_s)
@@ -254,17 +263,13 @@ def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
         ]
         if lost:
             fixed = isinstance(each, TagObject) and each.tag is TagType.FIXED
-            told = _when(lost, capture, fixed=fixed)
-            yield Notice(LOSS, f"{each.name!r} was lost {told}")
+            yield _loss(each.name, lost, capture, fixed=fixed)
 
 
-def _when(lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> str:
-    """How often a body was lost for long, when at most, and what follows."""
+def _loss(name: str, lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> Notice:
+    """How often a body was lost for long, and when at most; without times if it was throughout."""
     first, last = max(lost, key=lambda gap: gap[1] - gap[0])
     if last - first + 1 == len(capture.times):
-        return "throughout; no contact of it is known"
-    often = {1: "once", 2: "twice"}.get(len(lost), f"{len(lost)} times")
-    most = " at most" if len(lost) > 1 else ""
-    span = f"{capture.times[first]:.2f} to {capture.times[last]:.2f} s"
-    follows = "it is held to stay" if fixed else "a contact before and after is taken to last"
-    return f"{often} for long,{most} from {span}; {follows}"
+        return notice(LOSS, name, times=len(lost), fixed=fixed)
+    start_s, end_s = float(capture.times[first]), float(capture.times[last])
+    return notice(LOSS, name, start_s=start_s, end_s=end_s, times=len(lost), fixed=fixed)

@@ -4,19 +4,7 @@ from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
-from capar.model.facts import (
-    Bears,
-    Fact,
-    Flies,
-    Leans,
-    LookingAt,
-    Moving,
-    Pause,
-    Resting,
-    Reverses,
-    Swings,
-    Touching,
-)
+from capar.model.facts import Fact, Observed, Touching
 
 Marks = Mapping[str, Sequence[int]]
 """Frames by body, ascending."""
@@ -36,8 +24,8 @@ def marks(facts: Iterable[Fact], acting: Iterable[str], last_frame: int) -> Mark
     frames: dict[str, set[int]] = defaultdict(set)
     touches: dict[str, list[Touching]] = defaultdict(list)
     for fact in facts:
-        body, found = _instants(fact)
-        frames[body].update(found)
+        if isinstance(fact, Observed) and fact.declaration.border:
+            frames[fact.subject()].update(fact.ends())
         if isinstance(fact, Touching):
             touches[fact.body].append(fact)
     out: dict[str, set[int]] = defaultdict(set)
@@ -50,30 +38,6 @@ def marks(facts: Iterable[Fact], acting: Iterable[str], last_frame: int) -> Mark
         for each in touches[ee]:
             out[each.other].update(_around(ordered, each.first, each.last))
     return {name: tuple(sorted(out[name])) for name in sorted(out)}
-
-
-_ABOUT: Mapping[type[Fact], str] = {
-    Bears: "foot",
-    Flies: "object",
-    Leans: "object",
-    LookingAt: "sensor",
-    Moving: "object",
-    Pause: "ee",
-    Resting: "ee",
-    Reverses: "object",
-    Swings: "body",
-    Touching: "body",
-}
-"""The field of each kind of fact that names the body which it is about."""
-
-
-def _instants(fact: Fact) -> tuple[str, tuple[int, ...]]:
-    """What a fact is about, and the frames where it begins and ends."""
-    body = _ABOUT.get(type(fact))
-    if body is None:
-        return "", ()
-    fields = ("frame",) if isinstance(fact, Pause | Reverses) else ("first", "last")
-    return getattr(fact, body), tuple(getattr(fact, each) for each in fields)
 
 
 def _around(ordered: Sequence[int], first: int, last: int) -> Sequence[int]:

@@ -14,6 +14,10 @@ class Thresholds:
     cutoff_rate_share: float = 0.45
     """Largest cutoff as a share of the rate [1]: a filter needs some band below half the rate."""
 
+    filter_periods: float = 5.0
+    """Half the length of the low-pass filter in periods of its cutoff [1]: its weights have
+    decayed there to less than a billionth of the largest."""
+
     gap_s: float = 0.1
     """A shorter loss of tracking is interpolated, a longer one carries no events [s] (spec 3)."""
 
@@ -48,6 +52,10 @@ class Thresholds:
 
     crossing_speed_share: float = 0.03
     """Least prominence as a share of the stream's largest speed [1]."""
+
+    extremum_horizon_s: float = 4.0
+    """How far about an extremum of speed its prominence and its neighbours are sought [s]: longer
+    than people take to speed up or to slow down."""
 
     rest_sigmas: float = 4.0
     """A body rests while its speed is below so many deviations of the speed's noise [1]."""

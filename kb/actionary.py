@@ -1,24 +1,19 @@
 """The Actionary: what was observed, as knowledge that lasts and answers (thesis 4.1.2)."""
 
-from collections.abc import Iterable
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
-
-from pyoxigraph import Literal, NamedNode, Quad, Triple
 
 from kb.errors import StoreError
 from kb.findings import Added, Stored
 from kb.knowledge import Knowledge
 from kb.lookup import stored
 from kb.queries.questions import question
-from kb.store import names, sparql
+from kb.store import schema, sparql
 from kb.store import updates as writing
 from kb.store.answers import Answer, Plain
 from kb.store.stores import Store, open_store
 from kb.store.stores import place as default_place
-from ontology import CAPAR
-from ontology import files as ontology_files
 
 if TYPE_CHECKING:
     from capar.model.observation import Observation
@@ -34,9 +29,11 @@ class Actionary(Knowledge):
         """Take a store; one that is written gets the present ontology if it has another.
 
         Raises:
+            SchemaError: The store is kept in the form of another version.
             StoreError: The store answers like no Actionary.
         """
         self.store = store
+        schema.prove_current(store)
         if not read_only:
             self._prepare()
 
@@ -53,10 +50,16 @@ class Actionary(Knowledge):
 
         Raises:
             LockedError: Another process writes the folder.
+            SchemaError: It is kept in the form of another version of the program.
             StoreError: There is nothing to read, or it cannot be used.
         """
         target = default_place(str(where) if where is not None else None)
-        return cls(open_store(target, read_only=read_only, wait_s=wait_s), read_only=read_only)
+        store = open_store(target, read_only=read_only, wait_s=wait_s)
+        try:
+            return cls(store, read_only=read_only)
+        except BaseException:
+            store.close()
+            raise
 
     @classmethod
     def in_memory(cls) -> Self:
@@ -85,14 +88,10 @@ class Actionary(Knowledge):
         self.store.refresh()
 
     def _prepare(self) -> None:
-        graph = names.GRAPHS["ontology"]
-        digest = ontology_files.digest()
-        known = self.store.ask(f'ASK {{ {graph} {CAPAR.sha256} "{digest}" }}')
-        if not known.boolean:
-            stated = [_in(each, graph) for each in ontology_files.ontology()]
-            mark = Quad(graph, CAPAR.sha256, Literal(digest), graph)
-            self.store.change(writing.graph_replacement(graph, [*stated, mark]))
-            if not self.store.ask(f'ASK {{ {graph} {CAPAR.sha256} "{digest}" }}').boolean:
+        current = f"ASK {{ {writing.ontology_digest().triple} }}"
+        if not self.store.ask(current).boolean:
+            self.store.change(writing.ontology_replacement())
+            if not self.store.ask(current).boolean:
                 raise StoreError(
                     f"{self.store.place}: its default graph is not the union of the named ones; "
                     "configure the server so (oxigraph serve --union-default-graph)"
@@ -151,14 +150,6 @@ class Actionary(Knowledge):
         """
         return self.store.ask_within(sparql.prepare(text), seconds=seconds)
 
-    def replace_graph(self, graph: NamedNode, triples: Iterable[Triple]) -> None:
-        """Give a graph that is no observation's these statements and no others."""
-        self.store.change(writing.graph_replacement(graph, [_in(each, graph) for each in triples]))
-
     def dataset(self) -> Any:
         """The whole as rdflib's dataset, whose default graph is the union of all."""
         return self.store.dataset()
-
-
-def _in(triple: Triple, graph: NamedNode) -> Quad:
-    return Quad(triple.subject, triple.predicate, triple.object, graph)

@@ -7,6 +7,28 @@ class StoreError(CaparError):
     """A store that cannot be opened, read or written."""
 
 
+class SchemaError(StoreError):
+    """A store, or an export of one, that is kept in another form than this program's.
+
+    Attributes:
+        found: The version of its form.
+    """
+
+    def __init__(self, place: str, found: int, remedy: str) -> None:
+        self.found = found
+        super().__init__(f"{place}: this is an Actionary of schema {found}; {remedy}")
+
+
+class DamagedError(StoreError):
+    """A store whose files are not as they were written."""
+
+    def __init__(self, place: str, reason: str) -> None:
+        super().__init__(
+            f"{place}: its database is damaged ({reason}); move the folder away, then restore it "
+            "from an export (capar import FILE) or observe the captures again"
+        )
+
+
 class LockedError(StoreError):
     """A store that another process writes.
 

@@ -18,11 +18,12 @@ from pyoxigraph import (
 )
 
 from capar.model.errors import FileError, UnknownNameError
-from kb.errors import ShapeError
+from kb.errors import SchemaError, ShapeError
 from kb.lookup.stored import observations
-from kb.store import names, shapes
+from kb.store import names, schema, shapes
 from kb.store import updates as writing
 from kb.store.answers import turtle
+from kb.store.embedded import EmbeddedStore
 from kb.store.statements import insertion
 from kb.store.stores import Store
 from ontology import DATA, PREFIXES
@@ -74,7 +75,10 @@ def export(store: Store, format_name: str, *, observation: str | None = None) ->
     """
     if format_name not in FORMATS:
         raise UnknownNameError("format", format_name, FORMATS)
-    quads = sorted(set(store.quads() if observation is None else part(store, observation)), key=str)
+    if observation is None:
+        quads = sorted(set(store.quads()), key=str)
+    else:
+        quads = sorted({*part(store, observation), schema.statement()}, key=str)
     form = FORMATS[format_name]
     if form == RdfFormat.TURTLE:
         return turtle(dict.fromkeys(each.triple for each in quads), form=form).encode()
@@ -165,18 +169,34 @@ def _name(term: object) -> NamedNode:
     return term  # type: ignore[return-value]
 
 
+def _present(quads: list[Quad], source: str) -> list[Quad]:
+    """Exported statements in the form of this version."""
+    found = schema.version_of(quads)
+    if found in {None, schema.SCHEMA}:
+        return quads
+    if found not in schema.STEPS:
+        raise SchemaError(source, found or 0, schema.remedy(source, found or 0))
+    store = EmbeddedStore(None)
+    store.bulk(quads)
+    store.change(" ;\n".join(schema.migration(found)))
+    return list(store.quads())
+
+
 def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -> tuple[int, int]:
     """Add statements, all or none; an observation among them replaces the one of its name.
 
-    The ontology is the program's own and is not taken from outside.
+    The ontology is the program's own and is not taken from outside. What an older program
+    exported is brought to the present schema.
 
     Returns:
         How many statements and how many observations came in.
 
     Raises:
+        SchemaError: A newer program exported them.
         ShapeError: They break the model.
     """
-    taken = [each for each in quads if each.graph_name != names.GRAPHS["ontology"]]
+    present = _present(list(quads), source)
+    taken = [each for each in present if each.graph_name != names.GRAPHS["ontology"]]
     triples = [each.triple for each in taken]
     problems = (*shapes.violations(triples), *shapes.nlt_problems(triples))
     if problems:

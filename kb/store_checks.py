@@ -50,7 +50,11 @@ def check(store: Store, *, full: bool = True) -> tuple[Problem, ...]:
     Args:
         store: What to look at.
         full: Whether SHACL itself judges (pySHACL), rather than our fast reading of the shapes.
+
+    Raises:
+        DamagedError: A statement cannot be read.
     """
+    store.prove_readable()
     found: list[Problem] = []
     for each in observations(store):
         quads = part(store, each.name)

@@ -222,6 +222,7 @@ class CAPAR(metaclass=Closed):
     other: NamedNode
     objects: NamedNode
     next: NamedNode
+    address: NamedNode
     frame: NamedNode
     firstFrame: NamedNode
     lastFrame: NamedNode
@@ -250,6 +251,7 @@ class CAPAR(metaclass=Closed):
     profile: NamedNode
     version: NamedNode
     identity: NamedNode
+    schemaVersion: NamedNode
     frames: NamedNode
     rate: NamedNode
     filePath: NamedNode

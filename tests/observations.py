@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from capar.model.capture import Agent, Notice, Source
+from capar.model.capture import Agent, Notice, Source, notice
 from capar.model.facts import (
     Fact,
     Frames,
@@ -383,8 +383,12 @@ def drink_from_mug(*, agent: str = "agent", profile: str = "thesis") -> Observat
         agent=Agent(agent, "person", {"stature": 1.78, "upper_arm": 0.31}),
         profile=profile,
         notices=(
-            Notice("stand-in-shape", "'mouth' is a stand-in: box 0.02 x 0.05 x 0.02 m"),
-            Notice("assumed-support", "table: a box whose top is the mug's lowest point at rest"),
+            notice("stand-in-shape", "mouth", shape="box 0.02 x 0.05 x 0.02 m"),
+            notice(
+                "assumed-support",
+                "table",
+                assumed="a box whose top is the mug's lowest point at rest",
+            ),
         ),
     )
 

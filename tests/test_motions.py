@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Capture, Shape
 from capar.model.facts import Touching
-from extractors.measure import extract
+from extractors.measure import measure
 
 Act = Callable[..., Trial]
 
@@ -103,7 +103,7 @@ def test_extracted_contacts_are_the_true_ones_within_two_frames(
     act: Act, performer: Performer
 ) -> None:
     trial = act(performer)
-    measured = extract(trial.capture)
+    measured = measure(trial.capture)
     found = sorted(
         ("-".join(sorted((each.body, each.other))), each.first, each.last)
         for each in measured.facts
@@ -281,7 +281,7 @@ def _touching(
     capture: Capture, one: str, two: str, *, tolerance_m: float
 ) -> list[tuple[float, float]]:
     near = _distances(capture, one, two) <= tolerance_m
-    return [(capture.times[a], capture.times[b]) for a, b in geometry.gaps(near)]
+    return [(capture.times[a], capture.times[b]) for a, b in geometry.runs(near)]
 
 
 def _box(trial: Trial) -> Float[np.ndarray, "3"]:

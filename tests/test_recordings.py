@@ -13,7 +13,7 @@ from scipy.signal import find_peaks
 from capar.model.facts import Moving, Touching
 from capar.model.observation import Observation, Segment
 from capar.pipelines.observation import observe, observe_measured
-from extractors.measure import extract
+from extractors.measure import measure
 from extractors.readers.bundle.capture_toml import read_capture, takes
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -70,7 +70,7 @@ def test_a_large_table_is_lifted_and_put_down_with_both_hands(recordings: Path) 
 def test_a_soft_pillow_is_touched_at_each_descent_and_never_moves(recordings: Path) -> None:
     """Twenty minima of the hand's height deeper than 5 cm, and one more descent at the very end."""
     capture = read_capture(EXAMPLES / "hand_embodiment_pillow")
-    measurements = extract(capture)
+    measurements = measure(capture)
     height = measurements.tracks["right_hand"].positions[:, 2]
     minima, _ = find_peaks(-height, prominence=0.05)
     observation = observe_measured(capture, measurements)
@@ -131,7 +131,7 @@ def _labels_and_touches(recordings: Path, take: str) -> tuple[np.ndarray, np.nda
     thing = take.split("_")[1]
     capture = read_capture(f"{EXAMPLES / 'omomo_intermimic'}:{take}")
     assert {each.name.lower() for each in capture.sensors} == set(bodies)
-    for fact in extract(capture).facts:
+    for fact in measure(capture).facts:
         if isinstance(fact, Touching) and fact.other == thing and fact.body.lower() in bodies:
             touched[fact.first : fact.last + 1, bodies[fact.body.lower()]] = True
     return labels, touched

@@ -14,7 +14,7 @@ DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 
 def test_a_drafted_rule_names_the_segment_that_it_was_drafted_from(tmp_path):
     text = rule_from_segment(
-        "Sip", f"{DEMO}:right_hand/2", rules=profile("thesis"), general="MoveObj"
+        "Sip", f"{DEMO}/right_hand/2", rules=profile("thesis"), general="MoveObj"
     )
     path = tmp_path / "sip.lp"
     path.write_text(text)

@@ -34,6 +34,7 @@ class Commands(TyperGroup):
                 raise
             module = import_module(f"{__name__}.{stem}_command")
         module.app._add_completion = False  # the root's is for all
+        module.app.rich_markup_mode = None
         command = typer.main.get_command(module.app)
         command.name = name
         return command
@@ -54,6 +55,7 @@ app = typer.Typer(
     cls=Commands,
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
+    rich_markup_mode=None,  # help in boxes would take twice as long, and is cut in a pipe
     pretty_exceptions_enable=False,
 )
 

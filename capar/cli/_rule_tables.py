@@ -12,16 +12,15 @@ if TYPE_CHECKING:
 
 def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) -> None:
     """The segments that have another name now, and how many; who was left alone."""
+    from capar.model.segment_address import SegmentAddress
     from capar.rulebook.changes import NOTHING
 
     for each in changes:
         what = f"{each.before} -> {each.after}"
         if NOTHING in (each.before, each.after):
             what = f"{each.before} vanishes" if each.after == NOTHING else f"{each.after} appears"
-        typer.echo(
-            f"{each.capture}  {each.ee}/{each.index}  {each.start_s:.2f} to {each.end_s:.2f} s: "
-            f"{what}"
-        )
+        address = SegmentAddress(each.ee, each.index, each.capture)
+        typer.echo(f"{address}  {each.start_s:.2f} to {each.end_s:.2f} s: {what}")
     typer.echo("1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change")
     print_others(others)
 

@@ -18,7 +18,7 @@ def new(
         str | None,
         typer.Option(
             "--from",
-            help="CAPTURE:SEGMENT whose features it has: take:right_hand/3. "
+            help="A segment whose features it has, as CAPTURE/END_EFFECTOR/INDEX. "
             "CAPTURE may also be the name of an observation in the Actionary.",
         ),
     ] = None,
@@ -41,7 +41,9 @@ def new(
 
     words = {"definition": definition, "general": general, "verb": verb}
     if (source is None) == (features is None):
-        raise RuleError("say either --from CAPTURE:SEGMENT or --features START,END,CHANGE,FORCE")
+        raise RuleError(
+            "say either --from CAPTURE/END_EFFECTOR/INDEX or --features START,END,CHANGE,FORCE"
+        )
     place = opened(actionary)
     base = rule_base(profile, rules, place)
     if source is not None:

@@ -46,6 +46,6 @@ def describe(
     notices = reservations(observation.notices)
     if json:
         told_of = {"capture": observation.capture, "description": text}
-        print_json(told_of | {"notices": notices})
+        print_json(told_of | {"notices": [each.document() for each in notices]})
     else:
         typer.echo("\n".join((text, *reservation_lines(notices))))

@@ -117,8 +117,10 @@ def _branch(reason: "Reason", depth: int) -> None:
 
 
 def _header(each: "Segment | Explanation") -> str:
+    from capar.model.segment_address import SegmentAddress
+
     span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
-    return f"{each.ee}/{each.index}  {span}"
+    return f"{SegmentAddress(each.ee, each.index)}  {span}"
 
 
 def _print_alternatives(name: str, found: "tuple[Alternative, ...]") -> None:
@@ -136,7 +138,7 @@ def _rows(
     return [
         {"ee": each.ee, "index": each.index, "is": each.name, "sentence": told.sentence}
         | _placed(asdict(told), seen)
-        | {"notices": [asdict(notice) for notice in _notices([each], seen)]}
+        | {"notices": [notice.document() for notice in _notices([each], seen)]}
         for each, found in rows
         for told in found
     ]
@@ -152,7 +154,7 @@ def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
     from dataclasses import asdict
 
     segments = [e for e in seen.observation.segments if (e.ee, e.index) == (told.ee, told.index)]
-    notices = [asdict(each) for each in _notices(segments, seen)]
+    notices = [each.document() for each in _notices(segments, seen)]
     return _placed(asdict(told), seen) | {"notices": notices}
 
 

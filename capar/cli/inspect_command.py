@@ -48,7 +48,7 @@ def _of_capture(place: str) -> dict[str, Any]:
         "shapes": {
             name: each.shape.description for name, each in capture.bodies.items() if each.shape
         },
-        "notices": [{"code": n.code, "message": n.message} for n in capture.notices],
+        "notices": [each.document() for each in capture.notices],
         "sources": [{"path": s.path, "format": s.format} for s in capture.sources],
     }
     return head | as_json(surveys, near_pairs(streams))
@@ -57,25 +57,23 @@ def _of_capture(place: str) -> dict[str, Any]:
 def _of_file(path: Path) -> dict[str, Any]:
     import numpy as np
 
-    from capar.model.capture import Stream
+    from capar.model.capture import Stream, notice
     from extractors.readers.drafting.survey import as_json, near_pairs, survey
     from extractors.readers.registry import read_recording
 
     recording = read_recording(path)
-    unit = recording.unit_m or 1.0
+    metres = recording.unit_m or 1.0
     streams = {
-        name: Stream(each.times, each.positions * unit, each.orientations)
+        name: Stream(each.times, each.positions * metres, each.orientations)
         for name, each in recording.bodies.items()
     }
     kinds = dict.fromkeys(streams, "body")
     upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(recording.marker_times), 1))
     for name, points in recording.markers.items():
-        streams[name] = Stream(recording.marker_times, points * unit, upright)
+        streams[name] = Stream(recording.marker_times, points * metres, upright)
         kinds[name] = "marker"
-    notices = [{"code": n.code, "message": n.message} for n in recording.notices]
-    if recording.unit_m is None:
-        message = "the file states no unit; lengths are shown as if it were metres"
-        notices.append({"code": "no-unit", "message": message})
+    unit = [notice("no-unit")] if recording.unit_m is None else []
+    notices = [each.document() for each in (*recording.notices, *unit)]
     surveys = [survey(name, kinds[name], each) for name, each in streams.items()]
     head = {
         "name": path.name,

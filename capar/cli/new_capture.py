@@ -1,5 +1,6 @@
 """``capar new-capture``: a first capture.toml from what motion files hold."""
 
+import json
 from pathlib import Path
 from typing import Annotated
 
@@ -10,13 +11,31 @@ app = typer.Typer()
 
 @app.command()
 def new_capture(
-    files: Annotated[list[Path], typer.Argument(help="Motion files of one trial.")],
+    files: Annotated[
+        list[Path] | None, typer.Argument(help="Motion files of one trial.", show_default=False)
+    ] = None,
     output: Annotated[
         Path, typer.Option("-o", "--output", help="The capture.toml to write, or its folder.")
     ] = Path("capture.toml"),
     force: Annotated[bool, typer.Option("--force", help="Overwrite what is there.")] = False,
+    schema: Annotated[
+        bool, typer.Option("--schema", help="Print the JSON schema of capture.toml, for editors.")
+    ] = False,
 ) -> None:
     """Write a commented capture.toml that a person then edits; it is read back at once."""
+    if schema:
+        from extractors.readers.schema.reference import json_schema
+
+        typer.echo(json.dumps(json_schema(), indent=2))
+        return
+    from capar.model.errors import CaparError
+
+    if not files:
+        raise CaparError("no motion file is named; like capar new-capture recording.c3d")
+    _write_draft(files, output, force=force)
+
+
+def _write_draft(files: list[Path], output: Path, *, force: bool) -> None:
     from capar.cli._places import written
     from capar.model.errors import CaparError, FileError
     from extractors.readers.bundle.capture_toml import read_capture

@@ -71,13 +71,13 @@ def observe(
 
     from capar.pipelines.observation import observe_measured
     from capar_rules.authoring.user_rules import new_rules_folder
-    from extractors.measure import extract
+    from extractors.measure import measure
     from extractors.readers.bundle.capture_toml import read_capture
 
     _prove_output(json=json, script=script, pars=pars, plot=plot)
     base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
-    measurements = extract(trial)
+    measurements = measure(trial)
     observation = observe_measured(trial, measurements, rules=base, name=name)
     terminal = sys.stdin.isatty() and sys.stderr.isatty()
     choice = on_unknown or (OnUnknown.ASK if terminal and not json else OnUnknown.KEEP)
@@ -183,7 +183,7 @@ def _draw(
         link.ee: (capture.times, measurements.tracks[link.ee].speed_mps)
         for link in observation.links
     }
-    lost = {name: each.lost for (_, name), each in measurements.poses.items()}
+    lost = {name: each.lost for name, each in measurements.bodies.poses.items()}
     with written(path) as draft:
         draw(observation, speeds, path=draft, lost=lost)
     typer.echo(f"drew {path}", err=True)

@@ -148,7 +148,12 @@ def _print(answer: "Answer", chosen: str) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(*header(answer))
-    for row in cells(answer):
+    table, rows = Table(), cells(answer)
+    for index, name in enumerate(header(answer)):
+        texts = [row[index] for row in rows]
+        whole = all(" " not in each for each in texts)  # a name or an IRI, to be pasted
+        width = max(map(len, [name, *texts])) if whole else None
+        table.add_column(name, no_wrap=whole, min_width=width, overflow="fold")
+    for row in rows:
         table.add_row(*map(Text, row))
-    Console().print(table)
+    Console().print(table, crop=False)

@@ -50,7 +50,7 @@ def test(
         profile = "thesis"    # if not extended
         rules = "mine"        # a folder of rules, if not the usual
     \b
-        [\\[expect]]
+        [[expect]]
         that = "right_hand MoveObjTo(mug, head)"
 
     A capture is a folder, FOLDER:TAKE, or with FOLDER:* each of its takes.

@@ -27,7 +27,7 @@ def verb(
     lemma: Annotated[str, typer.Argument(help="A verb, such as carry or 'pick up'.")] = "",
     segment: Annotated[
         str,
-        typer.Option("--for", help="A segment, as CAPTURE:END_EFFECTOR:INDEX: which verbs fit it?"),
+        typer.Option("--for", help="A segment, as CAPTURE/END_EFFECTOR/INDEX: which verbs fit it?"),
     ] = "",
     kinds: Annotated[
         bool, typer.Option("--kinds", help="Which primitives do the verb, or a kind of it?")
@@ -44,7 +44,7 @@ def verb(
     from capar.model.errors import CaparError
 
     if bool(lemma) == bool(segment):
-        raise CaparError("name a verb, or a segment with --for CAPTURE:END_EFFECTOR:INDEX")
+        raise CaparError("name a verb, or a segment with --for CAPTURE/END_EFFECTOR/INDEX")
     place = opened(actionary)
     words = rule_words(rules, place)
     with open_words(actionary) as store:

@@ -8,10 +8,10 @@ import numpy as np
 
 from capar.model import geometry
 from capar.model.capture import Stream, TagObject, TagType
-from extractors.bodies.poses import poses
+from extractors.bodies.poses import poses_of
 from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import motion_floor, moving, stays
-from extractors.readers.bundle.clock import resampled
+from extractors.motion.object_motion import motion_floor, moving, rest_poses
+from extractors.readers.bundle.resampling import resampled
 from extractors.thresholds import Thresholds
 
 RATE_HZ = 50.0
@@ -71,16 +71,16 @@ def measure(name: str, recorded: Stream, thresholds: Thresholds | None = None) -
     clock = np.arange(begin - REST_S, finish + REST_S, 1.0 / RATE_HZ)
     whole = resampled(recorded, clock, extend="rest")
     stream = Stream(clock - clock[0], whole.positions, whole.orientations)
-    where = poses(TagObject("thing", TagType.MOBILE, stream), limits)
-    floor = motion_floor(where.noise, RATE_HZ, own_m=None, thresholds=limits)
-    found = moving(where, floor, limits)
+    poses = poses_of(TagObject("thing", TagType.MOBILE, stream), limits)
+    floor = motion_floor(poses.noise, RATE_HZ, own_m=None, thresholds=limits)
+    found = moving(poses, floor, limits)
     if not found:
         ends = (_end(recorded, finish, 0, limits), _end(recorded, begin, -1, limits))
         onset, offset = (replace(each, error_s=float("nan")) for each in ends)
         return Carry(name, onset, offset)
-    rests = stays(where, floor, limits)
-    first = motion_edges(where, found[0], rests, limits)[0]
-    last = motion_edges(where, found[-1], rests, limits)[1]
+    rests = rest_poses(poses, floor, limits)
+    first = motion_edges(poses, found[0], rests, limits)[0]
+    last = motion_edges(poses, found[-1], rests, limits)[1]
     return Carry(
         name,
         _end(recorded, float(clock[first]), 0, limits),

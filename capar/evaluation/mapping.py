@@ -1,18 +1,7 @@
 """From the names that rules give to the names that people used in their labels.
 
-A mapping is a TOML file of rules; the first that fits a segment gives its label::
-
-    [links]                      # optional: our link = the label file's
-    right_hand = "right"
-
-    [[rule]]
-    name = "MoveObj"             # the segment's name, or one that it specialises; "*" fits all
-    object = "whisk"             # optional: among the segment's objects
-    dominant = "whisk"           # optional: the segment's dominant object
-    position = "before first"    # optional: of the link's first contact, or "after last"
-    previous = "Reach"           # optional: name of the segment before; "" if it is the first
-    next = "MoveObjTo"           # optional: name of the segment after; "" if it is the last
-    label = "stir"
+A mapping is a TOML file of rules (see ``mapping_schema``); the first that fits a segment gives
+its label.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -25,7 +14,7 @@ from jaxtyping import Float
 from capar.evaluation.metrics import Interval
 from capar.model.errors import FileError, UnknownNameError
 from capar.model.observation import ObservedLink, Segment
-from extractors.readers.bundle.toml_table import Table, read_table
+from extractors.readers.schema.document import read_toml, validated
 
 ANY = "*"
 
@@ -61,14 +50,13 @@ def read_mapping(path: Path) -> LabelMapping:
     Raises:
         CaparError: A key or a value is not as above; it names the line.
     """
-    table = read_table(path)
-    links = table.table("links")
-    names = {each: links.text(each) for each in links.given()} if links else {}
-    rules = tuple(_rule(each) for each in table.tables("rule"))
-    table.close()
-    if not rules:
+    from capar.evaluation.mapping_schema import MappingFile
+
+    table = validated(MappingFile, *read_toml(path))
+    if not table.rule:
         raise FileError(path, "has no rule.", 'Write [[rule]], name = "Reach", label = "approach".')
-    return LabelMapping(path, rules, names)
+    rules = tuple(Rule(**dict(each), where=each.where("name")) for each in table.rule)
+    return LabelMapping(path, rules, table.links)
 
 
 def check_names(
@@ -116,22 +104,6 @@ def labelled(
         )
         for index, each in enumerate(link.segments)
     )
-
-
-def _rule(table: Table) -> Rule:
-    position = table.choice("position", POSITIONS) if "position" in table else ""
-    out = Rule(
-        name=table.text("name"),
-        label=table.text("label"),
-        object=table.text("object", ""),
-        dominant=table.text("dominant", ""),
-        position=position,
-        previous=table.text("previous") if "previous" in table else None,
-        next=table.text("next") if "next" in table else None,
-        where=table.where("name"),
-    )
-    table.close()
-    return out
 
 
 def _label(segments: Sequence[Segment], index: int, mapping: LabelMapping) -> str:

@@ -28,7 +28,7 @@ class Fact:
         Raises:
             FactError: An integer that the solver cannot hold.
         """
-        values = (getattr(self, name) for name in _arguments(cast(Any, type(self))))
+        values = (getattr(self, name) for name in arguments(cast(Any, type(self))))
         return clingo.Function(self.predicate, [_symbol(each) for each in values])
 
     @classmethod
@@ -46,16 +46,35 @@ class Fact:
         )
 
     def __str__(self) -> str:
-        """The fact as a line of a logic program, without its full stop."""
-        return str(self.symbol())
+        """The fact as a line of a logic program, without its full stop.
+
+        Raises:
+            FactError: An integer that the solver cannot hold.
+        """
+        values = [getattr(self, name) for name in arguments(cast(Any, type(self)))]
+        return f"{self.predicate}({','.join(map(_text, values))})" if values else self.predicate
 
 
 def _symbol(value: Any) -> clingo.Symbol:
     if isinstance(value, int):
-        if abs(value) > LARGEST:
-            raise FactError(f"{value} does not fit the solver's 32 bits")
-        return clingo.Number(value)
+        return clingo.Number(_proven(value))
     return clingo.Function(value) if NAME.fullmatch(value) else clingo.String(value)
+
+
+def _text(value: int | str) -> str:
+    """The argument as the solver writes it, some ten times faster than by way of its symbol."""
+    return str(_proven(value)) if isinstance(value, int) else _word(value)
+
+
+@cache
+def _word(value: str) -> str:
+    return str(_symbol(value))
+
+
+def _proven(value: int) -> int:
+    if abs(value) > LARGEST:
+        raise FactError(f"{value} does not fit the solver's 32 bits")
+    return value
 
 
 def _value(symbol: clingo.Symbol, kind: type) -> Any:
@@ -69,7 +88,8 @@ def _value(symbol: clingo.Symbol, kind: type) -> Any:
 
 
 @cache
-def _arguments(cls: Any) -> tuple[str, ...]:
+def arguments(cls: Any) -> tuple[str, ...]:
+    """The names of the arguments of a kind of fact, in their order."""
     return tuple(each.name for each in fields(cls))
 
 

@@ -19,6 +19,8 @@ from capar.model.bodies import TagObject as TagObject
 from capar.model.bodies import TagType as TagType
 from capar.model.errors import CaptureError, UnknownNameError
 from capar.model.names import NAME as NAME
+from capar.model.notices import Notice as Notice
+from capar.model.notices import notice as notice
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,10 @@ class Agent:
         """Make the measures read-only."""
         object.__setattr__(self, "measures", MappingProxyType(dict(self.measures)))
 
+    def __reduce__(self) -> "tuple[type[Agent], tuple[str, str, dict[str, float]]]":
+        """Pickle it by its fields: a read-only mapping cannot be pickled itself."""
+        return Agent, (self.name, self.kind, dict(self.measures))
+
 
 @dataclass(frozen=True)
 class Purpose:
@@ -46,16 +52,6 @@ class Purpose:
     action: str = ""
     object: str = ""
     goal: str = ""
-
-
-@dataclass(frozen=True)
-class Notice:
-    """Something about a capture that is no error and that its user ought to know."""
-
-    code: str
-    """A stable name in kebab case: ``long-gap``, ``assumed-support`` ..."""
-
-    message: str
 
 
 @dataclass(frozen=True)

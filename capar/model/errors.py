@@ -4,6 +4,11 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from pathlib import Path
 
+MOST_LISTED = 20
+"""So many names that exist are all listed; of more, the nearest and their number."""
+
+NEAREST = 5
+
 
 class CaparError(Exception):
     """A user's mistake; a command that meets one prints it and exits with 2."""
@@ -27,8 +32,15 @@ class UnknownNameError(CaparError):
         close = get_close_matches(name, self.known, n=1)
         hint = f" Did you mean {close[0]!r}?" if close else ""
         place = f"{where}: " if where else ""
-        names = ", ".join(self.known) or "none"
-        super().__init__(f"{place}no {kind} {name!r}; there are: {names}.{hint}")
+        super().__init__(f"{place}no {kind} {name!r}; {_listed(name, self.known)}.{hint}")
+
+
+def _listed(name: str, known: list[str]) -> str:
+    """The names that exist: all of a few, of many the nearest five and how many there are."""
+    if len(known) <= MOST_LISTED:
+        return f"there are: {', '.join(known) or 'none'}"
+    nearest = get_close_matches(name, known, n=NEAREST, cutoff=0.0)
+    return f"there are {len(known)}, the nearest: {', '.join(nearest)}"
 
 
 class FileError(CaparError):

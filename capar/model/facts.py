@@ -4,9 +4,12 @@ from dataclasses import dataclass
 
 import clingo
 
+from capar.model import handling, scene_facts
 from capar.model.atoms import LARGEST as LARGEST
 from capar.model.atoms import Fact as Fact
 from capar.model.atoms import program as program
+from capar.model.declarations import Declaration, Span, kinds_of
+from capar.model.declarations import Observed as Observed
 from capar.model.errors import FactError
 from capar.model.handling import Apart as Apart
 from capar.model.handling import Bears as Bears
@@ -26,135 +29,23 @@ from capar.model.handling import Swings as Swings
 from capar.model.handling import Travelled as Travelled
 from capar.model.handling import Upward as Upward
 from capar.model.handling import Wound as Wound
+from capar.model.scene_facts import ForceTransfer as ForceTransfer
+from capar.model.scene_facts import Frames as Frames
+from capar.model.scene_facts import Gap as Gap
+from capar.model.scene_facts import Intended as Intended
+from capar.model.scene_facts import Link as Link
+from capar.model.scene_facts import LookingAt as LookingAt
+from capar.model.scene_facts import Moving as Moving
+from capar.model.scene_facts import OfAgent as OfAgent
+from capar.model.scene_facts import Pause as Pause
+from capar.model.scene_facts import RateMhz as RateMhz
+from capar.model.scene_facts import Tag as Tag
+from capar.model.scene_facts import Touching as Touching
+from capar.model.scene_facts import ZeroCrossing as ZeroCrossing
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Frames(Fact):
-    """The capture's first and last frame."""
-
-    predicate = "frames"
-    first: int
-    last: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class RateMhz(Fact):
-    """Frames in a thousand seconds."""
-
-    predicate = "rate_mhz"
-    rate: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Link(Fact):
-    """An end-effector that acts, its general type and its side."""
-
-    predicate = "link"
-    ee: str
-    kind: str
-    side: str
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Tag(Fact):
-    """An object or body part watched for contact: self, fixed or mobile."""
-
-    predicate = "tag"
-    object: str
-    type: str
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class OfAgent(Fact):
-    """Whose an end-effector or a body part is; stated where several agents perform."""
-
-    predicate = "of_agent"
-    body: str
-    agent: str
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class ZeroCrossing(Fact):
-    """The end-effector's acceleration crosses zero at this frame (thesis 3.2.1)."""
-
-    predicate = "zero_crossing"
-    ee: str
-    frame: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Pause(Fact):
-    """A zero crossing at which the end-effector is slow: it starts, stops or turns."""
-
-    predicate = "pause"
-    ee: str
-    frame: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Touching(Fact):
-    """Two bodies touch from the first to the last frame; an end-effector stands first."""
-
-    predicate = "touching"
-    body: str
-    other: str
-    first: int
-    last: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Gap(Fact):
-    """How far two bodies are apart when they begin to touch [micrometres]; zero where they cut."""
-
-    predicate = "gap"
-    body: str
-    other: str
-    first: int
-    micrometres: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Moving(Fact):
-    """An object is away from each place where it rests, from the first to the last frame."""
-
-    predicate = "moving"
-    object: str
-    first: int
-    last: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class LookingAt(Fact):
-    """The line of sight of a sensor that attends, or of a head that acts, meets it first."""
-
-    predicate = "looking_at"
-    sensor: str
-    object: str
-    first: int
-    last: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class ForceTransfer(Fact):
-    """The user says that force passes to objects in this trial (thesis 4.4.1)."""
-
-    predicate = "force_transfer"
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Intended(Fact):
-    """The user's purpose for steps of an action with an object and a goal; "any" fits all."""
-
-    predicate = "intended"
-    rank: int
-    action: str
-    object: str
-    goal: str
-    purpose: str
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Doubted(Fact):
+class Doubted(Observed):
     """A stretch that the rules do not take as it was measured: it is a flicker.
 
     It is taken for contact, ``touching``, or for none, ``apart``. Of one body, which stands twice,
@@ -163,6 +54,7 @@ class Doubted(Fact):
     """
 
     predicate = "doubted"
+    declaration = Declaration(about="body", span=Span.INTERVAL, border=False, told=True)
     body: str
     other: str
     first: int
@@ -170,46 +62,14 @@ class Doubted(Fact):
     taken: str
 
 
-MEASURED: tuple[type[Fact], ...] = (
-    Frames,
-    RateMhz,
-    Link,
-    Tag,
-    OfAgent,
-    ZeroCrossing,
-    Pause,
-    Touching,
-    Gap,
-    Moving,
-    LookingAt,
-    ForceTransfer,
-    Intended,
-    Displaced,
-    Resting,
-    Place,
-    Travelled,
-    Posture,
-    Apart,
-    Wound,
-    Upward,
-    Closing,
-    Reverses,
-    Swings,
-    Leans,
-    Flies,
-    Rolls,
-    Bears,
-    Lies,
-    Between,
-    Passage,
-)
+MEASURED: tuple[type[Observed], ...] = (*kinds_of(scene_facts), *kinds_of(handling))
 """Every kind of fact that extractors state, in the order in which they are written."""
 
-STATED: tuple[type[Fact], ...] = (*MEASURED, Doubted)
+STATED: tuple[type[Observed], ...] = (*MEASURED, Doubted)
 """Every kind of fact that an observation rests on: what was measured, and what was doubted."""
 
 
-def read_fact(text: str) -> Fact:
+def read_fact(text: str) -> Observed:
     """The measured fact that an atom states, such as ``touching(right_hand,mug,118,335)``.
 
     Raises:

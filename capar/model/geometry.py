@@ -83,9 +83,9 @@ def fit_rigid(
     return transform, float(np.sqrt((rest**2).sum(axis=1).mean()))
 
 
-def gaps(missing: Bool[np.ndarray, "frames"]) -> list[tuple[int, int]]:
-    """Runs of true values as closed intervals of frames [first, last]."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], missing.astype(np.int8), [0]))))
+def runs(holds: Bool[np.ndarray, "frames"]) -> list[tuple[int, int]]:
+    """Runs of true values, as closed intervals of frames [first, last]."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], holds.astype(np.int8), [0]))))
     return [(int(first), int(last) - 1) for first, last in edges.reshape(-1, 2)]
 
 

@@ -2,34 +2,40 @@
 
 from dataclasses import dataclass
 
-from capar.model.atoms import Fact
+from capar.model.declarations import Declaration, Observed, Span
+from capar.model.scene_facts import Touching
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Displaced(Fact):
+class Displaced(Observed):
     """An object that moves is elsewhere than where it rested, to a hair's width."""
 
     predicate = "displaced"
+    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, told=False)
     object: str
     first: int
     last: int
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Resting(Fact):
+class Resting(Observed):
     """An end-effector is at a place where it rests, from the first to the last frame."""
 
     predicate = "resting"
+    declaration = Declaration(
+        about="ee", span=Span.INTERVAL, border=True, told=True, stretch="resting", negated="going"
+    )
     ee: str
     first: int
     last: int
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Place(Fact):
+class Place(Observed):
     """Where the middle of a body is at a frame [millimetres]."""
 
     predicate = "place"
+    declaration = Declaration(about="body", span=Span.INSTANT, border=False, told=True)
     body: str
     frame: int
     x: int
@@ -38,13 +44,14 @@ class Place(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Travelled(Fact):
+class Travelled(Observed):
     """How far a body has gone along its path, and turned, since the capture began.
 
     The way in millimetres, and the turn about any axis in milliradians.
     """
 
     predicate = "travelled"
+    declaration = Declaration(about="body", span=Span.INSTANT, border=False, told=False)
     body: str
     frame: int
     way: int
@@ -52,7 +59,7 @@ class Travelled(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Posture(Fact):
+class Posture(Observed):
     """How a body stands at a frame [milliradians].
 
     How far its upright axis is from the vertical, and the angle by which it has turned about the
@@ -60,6 +67,7 @@ class Posture(Fact):
     """
 
     predicate = "posture"
+    declaration = Declaration(about="body", span=Span.INSTANT, border=False, told=False)
     body: str
     frame: int
     lean: int
@@ -67,10 +75,11 @@ class Posture(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Apart(Fact):
+class Apart(Observed):
     """How far the middles of two bodies are apart at a frame [millimetres]."""
 
     predicate = "apart"
+    declaration = Declaration(about="body", span=Span.INSTANT, border=False, told=False)
     body: str
     other: str
     frame: int
@@ -78,10 +87,11 @@ class Apart(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Wound(Fact):
+class Wound(Observed):
     """The angle by which a body has gone about another, seen from above [milliradians]."""
 
     predicate = "wound"
+    declaration = Declaration(about="body", span=Span.INSTANT, border=False, told=False)
     body: str
     other: str
     frame: int
@@ -89,13 +99,14 @@ class Wound(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Upward(Fact):
+class Upward(Observed):
     """How far the normal of a contact points up, from the other to the body [1/1000].
 
     Stated at the contact's first frame; 1000 where the body lies on the other.
     """
 
     predicate = "upward"
+    declaration = Declaration(about="body", span=Touching, border=False, told=False)
     body: str
     other: str
     first: int
@@ -103,10 +114,11 @@ class Upward(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Closing(Fact):
+class Closing(Observed):
     """How fast two bodies approached each other when they began to touch [mm/s]."""
 
     predicate = "closing"
+    declaration = Declaration(about="body", span=Touching, border=False, told=False)
     body: str
     other: str
     first: int
@@ -114,59 +126,81 @@ class Closing(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Reverses(Fact):
+class Reverses(Observed):
     """The height of a moving object has an extremum, with a real way before and after it."""
 
     predicate = "reverses"
+    declaration = Declaration(
+        about="object", span=Span.INSTANT, border=True, told=False, stretch="reverses"
+    )
     object: str
     frame: int
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Swings(Fact):
+class Swings(Observed):
     """A body moves to and fro, again and again, from the first to the last frame."""
 
     predicate = "swings"
+    declaration = Declaration(
+        about="body", span=Span.INTERVAL, border=True, told=True, stretch="swings"
+    )
     body: str
     first: int
     last: int
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Leans(Fact):
+class Leans(Observed):
     """An object's upright axis is far from the vertical, from the first to the last frame."""
 
     predicate = "leans"
+    declaration = Declaration(
+        about="object", span=Span.INTERVAL, border=True, told=True, stretch="leans"
+    )
     object: str
     first: int
     last: int
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Flies(Fact):
+class Flies(Observed):
     """An object falls freely, from the first to the last frame."""
 
     predicate = "flies"
+    declaration = Declaration(
+        about="object", span=Span.INTERVAL, border=True, told=True, stretch="flies"
+    )
     object: str
     first: int
     last: int
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Rolls(Fact):
+class Rolls(Observed):
     """An object goes and turns about a level axis without slipping below its middle."""
 
     predicate = "rolls"
+    declaration = Declaration(
+        about="object", span=Span.INTERVAL, border=False, told=True, stretch="rolls"
+    )
     object: str
     first: int
     last: int
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Bears(Fact):
+class Bears(Observed):
     """A foot that is down bears the whole weight of the body, part of it, or none."""
 
     predicate = "bears"
+    declaration = Declaration(
+        about="foot",
+        span=Span.INTERVAL,
+        border=frozenset({"bears_whole", "bears_none"}),
+        told=True,
+        stretch="bears_{share}",
+    )
     foot: str
     share: str
     first: int
@@ -174,7 +208,7 @@ class Bears(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Lies(Fact):
+class Lies(Observed):
     """How a body lies to another.
 
     It is inside it, or dips into it with one end; it is above, below, beside or along it, or
@@ -182,6 +216,14 @@ class Lies(Fact):
     """
 
     predicate = "lies"
+    declaration = Declaration(
+        about="body",
+        span=Span.INTERVAL,
+        border=False,
+        told=False,
+        stretch="{how}",
+        others=("other",),
+    )
     body: str
     how: str
     other: str
@@ -190,10 +232,18 @@ class Lies(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Between(Fact):
+class Between(Observed):
     """A body's middle is between two others, from the first to the last frame."""
 
     predicate = "between"
+    declaration = Declaration(
+        about="body",
+        span=Span.INTERVAL,
+        border=False,
+        told=False,
+        stretch="between",
+        others=("one", "other"),
+    )
     body: str
     one: str
     other: str
@@ -202,13 +252,21 @@ class Between(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Passage(Fact):
+class Passage(Observed):
     """A stretch of being inside or above another ends at another side than it began.
 
     The first frame names the stretch; the sides are opposite or merely other ones.
     """
 
     predicate = "passage"
+    declaration = Declaration(
+        about="body",
+        span=Lies,
+        border=False,
+        told=False,
+        stretch="{how}_{sides}",
+        others=("other",),
+    )
     body: str
     how: str
     other: str

@@ -1,7 +1,7 @@
 """The JSON form of observations and PARs, and the schemas that describe it."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from importlib import resources
@@ -10,6 +10,9 @@ from typing import Any, TypeAlias, TypeVar
 
 from capar.model.errors import CaparError, ParError
 from capar.model.facts import Fact, read_fact
+from capar.model.json_migration import SCHEMA, take_schema
+from capar.model.notices import KINDS as NOTICE_KINDS
+from capar.model.notices import Notice, read_notice
 from capar.model.observation import Observation
 from capar.model.par import ComplexPar, FeatureSet, Ipar, Upar
 
@@ -26,6 +29,7 @@ KINDS: dict[str, type[Value]] = {
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 FACT_PATTERN = r"^[a-z][A-Za-z0-9_]*(\(.+\))?$"
+_Part = TypeVar("_Part", Fact, Notice)
 _T = TypeVar("_T", Observation, ComplexPar, Upar, Ipar)
 
 
@@ -45,7 +49,7 @@ def document(value: Value) -> dict[str, Any]:
         ParError: A number is not finite.
     """
     out: dict[str, Any] = _plain(value, type(value).__name__)
-    return out
+    return {"schema": SCHEMA, **out} if isinstance(value, Observation) else out
 
 
 def from_json(text: str, *, where: str = "") -> Observation:
@@ -70,7 +74,12 @@ def value_from_json(text: str, kind: type[_T], *, where: str = "") -> _T:
     from pydantic import TypeAdapter, ValidationError
 
     content = _parsed(text, where)
-    facts = _facts(content, where) if kind is Observation else ()
+    facts: tuple[Fact, ...] = ()
+    notices: tuple[Notice, ...] = ()
+    if kind is Observation:
+        take_schema(content, where)
+        facts = _taken(content, "facts", read_fact, "atoms", where)
+        notices = _taken(content, "notices", _notice, "notices", where)
     try:
         value: _T = TypeAdapter(kind).validate_json(
             json.dumps(content), strict=True, extra="forbid"
@@ -79,7 +88,9 @@ def value_from_json(text: str, kind: type[_T], *, where: str = "") -> _T:
         raise ParError(_complaint(error.errors(), where)) from None
     except CaparError as error:
         raise ParError(f"{_place(where)}{_features_place(content)}{error}") from None
-    return replace(value, facts=facts) if isinstance(value, Observation) else value
+    if isinstance(value, Observation):
+        return replace(value, facts=facts, notices=notices)
+    return value
 
 
 def schema(name: str) -> dict[str, Any]:
@@ -97,6 +108,10 @@ def schema(name: str) -> dict[str, Any]:
             "type": "string",
             "pattern": FACT_PATTERN,
         }
+        out["$defs"]["Notice"] = _notice_schema()
+    if name == "observation":
+        out["properties"] = {"schema": {"const": SCHEMA, "type": "integer"}, **out["properties"]}
+        out["required"] = ["schema", *out["required"]]
     return {"$schema": DRAFT, **out}
 
 
@@ -114,12 +129,14 @@ def published_schema(name: str) -> str:
 def _plain(value: Any, place: str) -> Any:
     if isinstance(value, Fact):
         return str(value)
+    if isinstance(value, Notice):
+        value = value.document()
     if is_dataclass(value):
         names = [each.name for each in fields(value)]
         return {each: _plain(getattr(value, each), f"{place}.{each}") for each in names}
     if isinstance(value, Mapping):
         return {key: _plain(value[key], f"{place}.{key}") for key in sorted(value)}
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | list):
         return [_plain(each, f"{place}.{index}") for index, each in enumerate(value)]
     if isinstance(value, float):
         if not isfinite(value):
@@ -138,19 +155,47 @@ def _parsed(text: str, where: str) -> dict[str, Any]:
     return content
 
 
-def _facts(content: dict[str, Any], where: str) -> tuple[Fact, ...]:
-    """Take the facts out of the content and read them."""
-    texts = content.get("facts", [])
-    if not isinstance(texts, list):
-        raise ParError(f"{_place(where)}facts: expected a list of atoms, found {_shown(texts)}")
-    if "facts" in content:
-        content["facts"] = []
+def _notice_schema() -> dict[str, Any]:
+    seconds = {"type": "number"}
+    value = {"anyOf": [{"type": each} for each in ("string", "number", "boolean")]}
+    return {
+        "title": "Notice",
+        "description": "Something about a capture that is no error and that its user should know.",
+        "type": "object",
+        "properties": {
+            "code": {"enum": list(NOTICE_KINDS)},
+            "bodies": {"type": "array", "items": {"type": "string"}},
+            "start_s": seconds,
+            "end_s": seconds,
+            "values": {"type": "object", "additionalProperties": value},
+            "message": {"type": "string"},
+        },
+        "required": ["code", "bodies", "values", "message"],
+        "additionalProperties": False,
+    }
+
+
+def _notice(document: Any) -> Notice:
+    if not isinstance(document, dict):
+        raise ParError(f"expected an object in braces, found {_shown(document)}")
+    return read_notice(document)
+
+
+def _taken(
+    content: dict[str, Any], key: str, read: Callable[[Any], _Part], what: str, where: str
+) -> tuple[_Part, ...]:
+    """Take a list out of the content and read each of its parts."""
+    parts = content.get(key, [])
+    if not isinstance(parts, list):
+        raise ParError(f"{_place(where)}{key}: expected a list of {what}, found {_shown(parts)}")
+    if key in content:
+        content[key] = []
     out = []
-    for index, text in enumerate(texts):
+    for index, each in enumerate(parts):
         try:
-            out.append(read_fact(text))
+            out.append(read(each))
         except CaparError as error:
-            raise ParError(f"{_place(where)}facts.{index}: {error}") from None
+            raise ParError(f"{_place(where)}{key}.{index}: {error}") from None
     return tuple(out)
 
 

@@ -1,8 +1,10 @@
 """An observation: everything that was understood of one capture, frozen."""
 
 from dataclasses import dataclass
+from typing import Any, Literal
 
 from capar.model.capture import Agent, Notice, Source
+from capar.model.display import display
 from capar.model.facts import Fact
 from capar.model.par import (
     UNKNOWN,
@@ -16,6 +18,9 @@ from capar.model.par import (
 
 BOTH = {"hand": "hands", "foot": "feet"}
 """End-effectors of which a body has two, and what both are called."""
+
+MOST_SHOWN = 240
+"""So many letters of segments' names are shown in one line."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -146,6 +151,10 @@ class ObservedObject:
     """Unit quaternion w x y z there."""
 
 
+FrameOf = Literal["segments", "contacts", "facts"]
+"""What a data frame of an observation can hold a row of."""
+
+
 @dataclass(frozen=True, slots=True)
 class Observation:
     """A capture understood: its scene, facts, segments and PARs, and where they come from."""
@@ -182,6 +191,31 @@ class Observation:
     def segments(self) -> tuple[Segment, ...]:
         """Every segment, links in order."""
         return tuple(each for link in self.links for each in link.segments)
+
+    def __repr__(self) -> str:
+        """One line: the capture, and the names of each end-effector's segments."""
+        done = "; ".join(
+            f"{link.ee}: {' '.join(each.name for each in link.segments) or 'nothing'}"
+            for link in self.links
+        )
+        done = done if len(done) <= MOST_SHOWN else f"{done[: MOST_SHOWN - 3]}..."
+        return (
+            f"<Observation {self.capture!r}, {self.duration_s:.2f} s, {self.profile} rules, "
+            f"{len(self.segments)} segments; {done}>"
+        )
+
+    def _repr_html_(self) -> str:
+        """Its table and picture, as notebooks show them."""
+        page: str = display("html")(self)
+        return page
+
+    def to_frame(self, of: FrameOf = "segments") -> Any:
+        """A pandas DataFrame of its segments, contacts or facts, one a row; times in seconds.
+
+        Raises:
+            CaparError: pandas is not installed, or there is no such frame.
+        """
+        return display("frame")(self, of)
 
     def performer(self, ee: str) -> str:
         """Name of the agent whose end-effector that is."""

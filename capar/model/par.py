@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from capar.model.errors import ParError
+from capar.model.nlt import Nlt as Nlt
 
 ACTION_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
 """What a primitive may be called: ``MoveObjTo``."""
@@ -83,25 +84,6 @@ class Constraint:
     features: FeatureSet
     colliding_objects: tuple[int, int]
     """The two in the relation that ends the action: -1 the end-effector, else an object's index."""
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Nlt:
-    """Normalised local transform: a place in an object's frame over its size, and a quaternion."""
-
-    position: tuple[float, float, float]
-    orientation: tuple[float, float, float, float]
-    """Unit quaternion w x y z that takes the constraint's axes to the object's."""
-
-    def mirrored(self) -> "Nlt":
-        """The same place for the other side of the body (thesis 4.4.2.2).
-
-        Mirrored in the plane through the object's origin that parts its left (+y) from its right;
-        the constraint's own axes are those of the other side's end-effector, mirrored alike.
-        """
-        x, y, z = self.position
-        w, i, j, k = self.orientation
-        return Nlt((x, 0.0 - y, z), (w, 0.0 - i, j, 0.0 - k))
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,16 +3,20 @@
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from capar.model.capture import Capture
-from capar.model.errors import UnknownNameError
 from capar.model.observation import Observation, Segment
+from capar.model.segment_address import SegmentAddress, find_segment
 from capar.pipelines.observation import observe_measured
-from capar_rules.engine.profiles import Profile
-from capar_rules.explain.explanation import Explainer
-from extractors.measure import Measurements, extract
+from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from capar_rules.explain.explanation import Explainer, Explanation
+from capar_rules.explain.why_not import Alternative
+from capar_rules.explain.why_not import why_not as alternatives
+from extractors.measure import Measurements, measure
+from extractors.readers.bundle.capture_toml import read_capture
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
@@ -31,7 +35,7 @@ def explained(capture: Capture, *, rules: Profile) -> Explained:
     Raises:
         CaparError: The capture or the rules have a fault.
     """
-    measurements = extract(capture)
+    measurements = measure(capture)
     observation = observe_measured(capture, measurements, rules=rules)
     explainer = Explainer(
         observation.facts, profile=rules, distance_m=distances(capture, measurements)
@@ -39,12 +43,73 @@ def explained(capture: Capture, *, rules: Profile) -> Explained:
     return Explained(observation, explainer)
 
 
+def explain(
+    capture: Capture | Path | str, segment: str = "", *, rules: Profile | str = DEFAULT
+) -> tuple[Explanation, ...]:
+    """Say why segments of a capture have their names: the rules and facts behind each.
+
+    Args:
+        capture: A capture, or where to read it.
+        segment: ``right_hand/3`` for one, ``right_hand`` for all of an end-effector; all if empty.
+        rules: A rule profile or its name.
+
+    Raises:
+        UnknownNameError: There is no such segment.
+        CaparError: The capture or the rules have a fault.
+    """
+    seen = _explained(capture, rules)
+    return tuple(seen.explainer.explain(each) for each in chosen(seen.observation, segment))
+
+
+def why_not(
+    capture: Capture | Path | str,
+    segment: str,
+    name: str,
+    *,
+    rules: Profile | str = DEFAULT,
+    limit: int = 1,
+) -> tuple[Alternative, ...]:
+    """The smallest changes that would have given a segment of a capture another name.
+
+    Args:
+        capture: A capture, or where to read it.
+        segment: Such as ``right_hand/3``.
+        name: The name that it has not.
+        rules: A rule profile or its name.
+        limit: How many equally small answers to give, at most.
+
+    Raises:
+        UnknownNameError: There is no such segment, or no rule gives that name.
+        RuleError: The segment has that name.
+    """
+    seen = _explained(capture, rules)
+    return alternatives(seen.explainer, segment_named(seen.observation, segment), name, limit=limit)
+
+
+def _explained(capture: Capture | Path | str, rules: Profile | str) -> Explained:
+    trial = capture if isinstance(capture, Capture) else read_capture(capture)
+    return explained(trial, rules=profile(rules) if isinstance(rules, str) else rules)
+
+
+def chosen(observation: Observation, text: str) -> tuple[Segment, ...]:
+    """The segments that a user names: one, all of an end-effector, or all if the text is empty.
+
+    Raises:
+        UnknownNameError: There is no such segment.
+    """
+    own = tuple(each for each in observation.segments if not text or each.ee == text)
+    return own or (segment_named(observation, text),)
+
+
 def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
     """The segments that an atom speaks of, as a user names them: ``right_hand/3``.
 
     Rules name a segment by the tick where it begins, which is no index.
     """
-    known = {(each.ee, each.first): f"{each.ee}/{each.index}" for each in seen.observation.segments}
+    known = {
+        (each.ee, each.first): str(SegmentAddress(each.ee, each.index))
+        for each in seen.observation.segments
+    }
     found = []
     for ee, tick in _SEGMENT.findall(atom):
         frames = seen.explainer.windows.frames.get(ee, [])
@@ -55,25 +120,20 @@ def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
 
 def distances(capture: Capture, measurements: Measurements) -> Callable[[str, int, int], float]:
     """How far an object's origin is from where it was, between two frames [m]."""
-    names = {each.name for each in capture.objects}
 
     def distance(name: str, first: int, last: int) -> float:
-        kind = "object" if name in names else "sensor"
-        track = measurements.poses[kind, name].smooth.positions
+        track = measurements.bodies.named(name).poses.smooth.positions
         return float(np.linalg.norm(track[last] - track[first]))
 
     return distance
 
 
 def segment_named(observation: Observation, text: str) -> Segment:
-    """The segment that a user names: ``right_hand/3``, or ``3`` where one end-effector acts.
+    """The segment of an observation at an address such as ``right_hand/3``.
 
     Raises:
-        UnknownNameError: There is none.
+        AddressError: The text is no address.
+        UnknownNameError: There is no segment at it.
     """
-    known = {f"{each.ee}/{each.index}": each for each in observation.segments}
-    if len(observation.links) == 1:
-        known |= {str(each.index): each for each in observation.segments}
-    if text not in known:
-        raise UnknownNameError("segment", text, known, where=observation.capture)
-    return known[text]
+    address = SegmentAddress.parse(text)
+    return find_segment(observation.links, address, capture=observation.capture)

@@ -1,10 +1,15 @@
 """The pipelines from captures to language: tellings, fitting verbs, and what can be said."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from capar.model.errors import CaparError, UnknownNameError
-from capar.model.observation import Observation, Segment
+from capar.model.capture import Capture
+from capar.model.observation import Observation
+from capar.model.segment_address import find_segment, split_capture
+from capar.pipelines.linguistic_report import primitive_files, primitive_words
+from kb.language.describe import Detail
+from kb.language.describe import describe as told
 from kb.language.vocabulary import EFFECTORS, Vocabulary
 from kb.lexicon.fitting import Fit, fitting
 from kb.lexicon.fitting import Seen as SegmentSeen
@@ -37,6 +42,31 @@ CONTACT_CLASSES = (
 """Levin's chapters whose verbs say what a body does to things and to itself."""
 
 
+def describe(
+    seen: Observation | Capture | Path | str,
+    *,
+    detail: Detail = "steps",
+    timed: bool = False,
+    words: Sequence[PrimitiveWords] | None = None,
+) -> str:
+    """Say in plain English what was done.
+
+    Args:
+        seen: An observation, or a capture or its place, which is observed first.
+        detail: ``steps`` tells every step, ``summary`` only those that changed something.
+        timed: Whether each step is followed by its time [s].
+        words: What the primitives are called; by default as the rules that ship call them.
+
+    Raises:
+        CaparError: The capture has a fault.
+    """
+    from capar.pipelines.observation import observe
+
+    observation = seen if isinstance(seen, Observation) else observe(seen)
+    known = primitive_words(primitive_files()) if words is None else words
+    return told(observation, detail=detail, timed=timed, words=known)
+
+
 def verbs_for(
     segment: str,
     words: Sequence[PrimitiveWords],
@@ -47,33 +77,23 @@ def verbs_for(
     """The verbs that fit a segment, best first.
 
     Args:
-        segment: ``CAPTURE:END_EFFECTOR:INDEX``.
+        segment: ``CAPTURE/END_EFFECTOR/INDEX``.
         words: The primitives' words.
         store: Where VerbNet is, if it was imported.
         rules: The rule profile to observe with, or its name.
 
     Raises:
-        CaparError: There is no such segment.
+        AddressError: It is no address of a segment, or names no capture.
+        UnknownNameError: There is no segment at it.
+        CaparError: The capture cannot be read.
     """
-    capture, _, index = segment.rpartition(":")
-    capture, _, ee = capture.rpartition(":")
-    if not capture or not index.isdigit():
-        raise CaparError(f"{segment!r} names no segment; write CAPTURE:END_EFFECTOR:INDEX")
     from capar.pipelines.observation import observe
 
-    found = _segment(observe(capture, rules=rules), ee, int(index))
+    capture, place = split_capture(segment)
+    observation = observe(capture, rules=rules)
+    found = find_segment(observation.links, place, capture=observation.capture)
     seen = SegmentSeen(found.name, found.general, found.features)
     return fitting(seen, words, _classes(store) if store else ())
-
-
-def _segment(observation: Observation, ee: str, index: int) -> Segment:
-    links = {link.ee: link.segments for link in observation.links}
-    if ee not in links:
-        raise UnknownNameError("end-effector", ee, links, where=observation.capture)
-    numbers = [str(each.index) for each in links[ee]]
-    if index >= len(links[ee]):
-        raise UnknownNameError(f"segment of {ee}", str(index), numbers, where=observation.capture)
-    return links[ee][index]
 
 
 def _classes(store: "Store") -> tuple[VerbClass, ...]:

@@ -24,7 +24,8 @@ MAIN = "lexical/main.lp"
 
 _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
 _TEXT_OR_COMMENT = re.compile(rf"({_TEXT.pattern})|%\*.*?\*%|%[^\n]*", re.DOTALL)
-_NAMED = re.compile(r'^named\(.*,\s*"([^"]+)"\)', re.MULTILINE)
+_NAMED = re.compile(r'^=> named\(.*,\s*"([^"]+)"\)', re.MULTILINE)
+_CASE = re.compile(r"^%% ", re.MULTILINE)
 _SAID = re.compile(rf"{_TEXT.pattern}|0|[1-9]\d*")
 _FACT = re.compile(
     rf"(?:^|\.)\s*(?P<predicate>[a-z]\w*)\((?P<arguments>\s*{_TEXT.pattern}"
@@ -92,7 +93,7 @@ def cases_of(files: Sequence[Path], folder: Path | None = None) -> tuple[Case, .
 
     Args:
         files: Rule files of primitives, which may carry examples of their own.
-        folder: A folder of rule cases, whose ``.expected`` files name segments.
+        folder: A folder of rule cases: ``.cases`` files whose expectations name segments.
 
     Raises:
         FileError: The folder is none.
@@ -110,10 +111,11 @@ def cases_of(files: Sequence[Path], folder: Path | None = None) -> tuple[Case, .
     if folder is not None:
         if not folder.is_dir():
             raise FileError(folder, "is no folder;", "name one that holds rule cases.")
-        for path in sorted(folder.rglob("*.expected")):
+        for path in sorted(folder.rglob("*.cases")):
             place = str(path.relative_to(folder).with_suffix(""))
-            names = _NAMED.findall(path.read_text(encoding="utf-8"))
-            found |= {Case(name, place) for name in names}
+            for text in _CASE.split(path.read_text(encoding="utf-8"))[1:]:
+                title = text.splitlines()[0]
+                found |= {Case(name, f"{place}: {title}") for name in _NAMED.findall(text)}
     return tuple(sorted(found))
 
 

@@ -4,24 +4,23 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from capar import __version__
-from capar.model.capture import Capture, Notice, TagObject
+from capar.model.capture import Capture, Notice, notice
 from capar.model.facts import Doubted, Fact
-from capar.model.observation import Observation, ObservedObject, Segment
-from capar.model.par import ConstraintLocation, Motion, Style
+from capar.model.observation import Observation, Segment
+from capar.model.par import ConstraintLocation
 from capar_rules.borders.deflicker import steady
 from capar_rules.borders.ranking import rank
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key, infer
 from capar_rules.pars.primitive_pars import Measured, ipars, upars
-from extractors.measure import Measurements, extract
+from extractors.bodies.observed_objects import observed_object
+from extractors.measure import Measurements, measure
 from extractors.readers.bundle.capture_toml import read_capture
-from extractors.segments.locations import locate
-from extractors.segments.motion_kinds import motion_kind
-from extractors.segments.styles import path_style, velocity_style
+from extractors.segments.locations import constraint_location
+from extractors.segments.motion_kinds import moved_path
+from extractors.segments.styles import style
 from extractors.thresholds import Thresholds
 
 
@@ -44,7 +43,7 @@ def observe(
         CaparError: The capture or the rules have a fault.
     """
     trial = capture if isinstance(capture, Capture) else read_capture(capture)
-    measurements = extract(trial, thresholds=thresholds)
+    measurements = measure(trial, thresholds=thresholds)
     return observe_measured(trial, measurements, rules=rules, name=name, thresholds=thresholds)
 
 
@@ -75,14 +74,17 @@ def observe_measured(
         duration_s=duration_s,
         rate_hz=capture.rate_hz,
         frames=frames + 1,
-        objects=tuple(_observed(each) for each in capture.objects),
+        objects=tuple(observed_object(each) for each in capture.objects),
         links=inference.links,
         facts=facts,
         upars=upars(inference, measured, name=action),
         ipars=ipars(inference, measured, agent=agent, name=action),
         complex_par=compose(inference, name=action, frames=frames, duration_s=duration_s),
         locations=tuple(_locations(capture, measurements, inference)),
-        styles=tuple(_styles(capture, measurements, inference, limits)),
+        styles=tuple(
+            style(segment, measurements.tracks[segment.ee], capture.times, limits)
+            for segment in _segments(inference)
+        ),
         sources=capture.sources,
         notices=(
             *measurements.notices,
@@ -102,7 +104,7 @@ def facts_program(
     Flicker is resolved, and borders are numbered, as the profile has it.
     """
     base = profile(rules) if isinstance(rules, str) else rules
-    measurements = extract(capture, thresholds=thresholds)
+    measurements = measure(capture, thresholds=thresholds)
     facts = steady(measurements.facts) if base.steady else measurements.facts
     return replace(measurements, facts=facts), rank(facts, crossings_only=base.crossings_only)
 
@@ -114,112 +116,40 @@ def _segments(inference: Inference) -> Iterable[Segment]:
 def _measured(
     capture: Capture, measurements: Measurements, inference: Inference, thresholds: Thresholds
 ) -> Iterable[tuple[Key, Measured]]:
-    tags = {each.name: each for each in capture.objects}
     for segment in _segments(inference):
-        track = measurements.tracks[segment.ee].positions
-        kind = Motion.NONE
-        if "1" in segment.features.change_loc:
-            moved = segment.objects[segment.features.change_loc.index("1")]
-            where = measurements.poses["object", moved]
-            track = where.smooth.positions
-            kind = motion_kind(
-                where,
-                segment.first,
-                segment.last,
-                own_m=tags[moved].motion_floor_m,
-                thresholds=thresholds,
-            )
-        ends = [_point(track[frame]) for frame in (segment.first, segment.last)]
-        yield (segment.ee, segment.index), Measured(kind, tuple(each for each in ends if each))
-
-
-def _point(position: np.ndarray) -> tuple[float, float, float] | tuple[()]:
-    if np.isnan(position).any():
-        return ()
-    x, y, z = map(float, position)
-    return x, y, z
+        motion, path = moved_path(capture, measurements, segment, thresholds)
+        yield (segment.ee, segment.index), Measured(motion, path)
 
 
 def _locations(
     capture: Capture, measurements: Measurements, inference: Inference
 ) -> Iterable[ConstraintLocation]:
     """The constraint that ends each segment, where it ends in a contact (spec 4)."""
-    sides = {each.ee: each.side for each in inference.links}
     for segment in _segments(inference):
         first, second = inference.conditions[segment.ee, segment.index].colliding
-        if second < 0 or "1" not in segment.features.rel_end:
-            continue
-        place = locate(
-            capture,
-            measurements.poses,
-            measurements.attention,
-            ee=segment.ee,
-            dominant=segment.objects[first] if first >= 0 else "",
-            goal=segment.objects[second],
-            frame=segment.last,
-        )
-        yield ConstraintLocation(
-            action=segment.name,
-            purpose=segment.purpose,
-            ee=segment.ee,
-            side=sides[segment.ee],
-            frame=place.frame,
-            dominant=place.dominant,
-            goal=place.goal,
-            ee_nlt=place.ee_nlt,
-            goal_nlt=place.goal_nlt,
-            seen=place.seen,
-            v_nlt=place.v_nlt,
-        )
-
-
-def _styles(
-    capture: Capture, measurements: Measurements, inference: Inference, thresholds: Thresholds
-) -> Iterable[Style]:
-    for segment in _segments(inference):
-        track = measurements.tracks[segment.ee]
-        span = segment.first, segment.last
-        yield Style(
-            action=segment.name,
-            purpose=segment.purpose,
-            ee=segment.ee,
-            velocity=velocity_style(track.positions, capture.times, *span, thresholds=thresholds),
-            path=path_style(track.positions, capture.times, track.crossings, *span),
-        )
-
-
-def _observed(each: TagObject) -> ObservedObject:
-    known = np.flatnonzero(~each.stream.lost)
-    frame = int(known[0]) if known.size else 0
-    position = each.stream.positions[frame] if known.size else np.zeros(3)
-    turn = each.stream.orientations[frame] if known.size else np.array([1.0, 0.0, 0.0, 0.0])
-    size = each.shape.size if each.shape else np.zeros(3)
-    x, y, z = map(float, position)
-    w, i, j, k = map(float, turn)
-    length, width, height = map(float, size)
-    return ObservedObject(
-        name=each.name,
-        kind=each.kind or each.name,
-        tag=each.tag.value,
-        size_m=(length, width, height),
-        shape=each.shape.description if each.shape else "",
-        assumed=each.assumed,
-        position_m=(x, y, z),
-        orientation=(w, i, j, k),
-    )
+        if second >= 0 and "1" in segment.features.rel_end:
+            yield constraint_location(
+                capture,
+                measurements.bodies,
+                measurements.attention,
+                segment,
+                dominant=segment.objects[first] if first >= 0 else "",
+                goal=segment.objects[second],
+            )
 
 
 def _violations(inference: Inference) -> Iterable[Notice]:
-    return (Notice("rule-violation", each) for each in inference.violations)
+    return (notice("rule-violation", violation=each) for each in inference.violations)
 
 
 def _doubts(facts: Iterable[Fact], rate_hz: float) -> Iterable[Notice]:
     for each in facts:
         if isinstance(each, Doubted):
-            what = each.body if each.body == each.other else f"{each.body} with {each.other}"
-            length_s = (each.last - each.first + 1) / rate_hz
-            yield Notice(
+            yield notice(
                 "flicker",
-                f"{what}: {length_s:.2f} s at {each.first / rate_hz:.2f} s taken for "
-                f"{each.taken}, not as measured: so the fewest changes explain it",
+                *dict.fromkeys((each.body, each.other)),
+                start_s=each.first / rate_hz,
+                end_s=each.last / rate_hz,
+                length_s=(each.last - each.first + 1) / rate_hz,
+                taken=each.taken,
             )

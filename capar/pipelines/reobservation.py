@@ -12,7 +12,7 @@ from capar.model.observation import Observation
 from capar.pipelines.observation import observe_measured
 from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import Profile
-from extractors.measure import extract
+from extractors.measure import measure
 from extractors.readers.bundle.capture_toml import read_capture, takes
 from kb.findings import Stored
 
@@ -56,7 +56,7 @@ def _again(
     trial: Capture, known: Stored, measured: tuple[Fact, ...], rules: Profile
 ) -> Observation:
     """A capture observed again, its flicker resolved if it was in what was measured then."""
-    found = extract(trial)
+    found = measure(trial)
     steadied = rules.steady
     for other in (rules.steady, not rules.steady):
         facts_then = steady(found.facts) if other else found.facts

@@ -6,8 +6,9 @@ from tempfile import TemporaryDirectory
 
 from capar.model.errors import RuleError, UnknownNameError
 from capar.model.facts import Fact
-from capar.model.observation import ObservedLink, Segment
+from capar.model.observation import ObservedLink
 from capar.model.par import FeatureSet
+from capar.model.segment_address import find_segment, split_capture
 from capar.pipelines.observation import facts_program
 from capar_rules.authoring.examples import Example, try_examples, written
 from capar_rules.authoring.user_primitives import new_rule, rules_of, telling
@@ -70,8 +71,7 @@ def rule_from_segment(
 
     Args:
         name: What the primitive is called.
-        source: CAPTURE:SEGMENT, the segment as END_EFFECTOR/INDEX; segments are counted as
-            `capar observe` counts them.
+        source: CAPTURE/END_EFFECTOR/INDEX; segments are counted as `capar observe` counts them.
         rules: The rules by which the capture is cut into segments, and which it is to join.
         actionary: An Actionary that may hold an observation of that name; None for none.
         definition: What it is, in words.
@@ -79,17 +79,16 @@ def rule_from_segment(
         verb: The verb for it.
 
     Raises:
-        RuleError: The source names no segment, or the name is taken.
-        UnknownNameError: There is no such primitive to specialise.
+        AddressError: The source is no address of a segment.
+        RuleError: The name is taken.
+        UnknownNameError: There is no such segment, or no such primitive to specialise.
         CaparError: The capture cannot be read.
     """
-    capture, colon, place = source.rpartition(":")
-    if not colon:
-        raise RuleError(f"{source!r} names no segment; write CAPTURE:END_EFFECTOR/INDEX")
+    capture, place = split_capture(source)
     _free(name, general, rules)
     called, measured = _measured(capture, rules, actionary)
     links = infer(measured, profile=rules).links
-    segment = _segment(links, place, called)
+    segment = find_segment(links, place, capture=called)
     more = general or (segment.name if segment.known else "")
     over = (more,) if more else ()
     text = _ordered(name, segment.features, rules, over=over, definition=definition, verb=verb)
@@ -140,16 +139,6 @@ def _told(
 
 def _outline(links: Sequence[ObservedLink]) -> list[tuple[str, int, int, str]]:
     return [(each.ee, each.first, each.last, each.name) for one in links for each in one.segments]
-
-
-def _segment(links: Sequence[ObservedLink], place: str, capture: str) -> Segment:
-    segments = [each for link in links for each in link.segments]
-    found = {f"{each.ee}/{each.index}": each for each in segments}
-    if len(links) == 1:
-        found |= {str(each.index): each for each in segments}
-    if place not in found:
-        raise UnknownNameError("segment", place, found, where=capture)
-    return found[place]
 
 
 def _ordered(

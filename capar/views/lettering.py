@@ -16,6 +16,8 @@ class Span:
     start_s: float
     end_s: float
     label: str
+    kind: str = ""
+    """What kind of action the name is: the most general one that it specialises."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +50,17 @@ def width_in(text: str, *, points: float) -> float:
     if not text.strip():
         return 0.0
     return float(TextPath((0.0, 0.0), text, size=points).get_extents().width) / POINTS_PER_INCH
+
+
+def shortened(text: str, *, points: float, widest_in: float) -> str:
+    """The text, cut to a width [inches] where it is wider."""
+    if width_in(text, points=points) <= widest_in:
+        return text
+    most = max(
+        (end for end in range(len(text)) if width_in(f"{text[:end]}…", points=points) <= widest_in),
+        default=0,
+    )
+    return f"{text[:most].rstrip()}…"
 
 
 def place(

@@ -1,37 +1,16 @@
-"""Notices as people read them: one a line, many alike as one, those told that bear on the truth."""
+"""Notices as people read them: one a line, many alike as one, reservations by themselves."""
 
-import re
 from collections.abc import Collection, Iterable, Sequence
 
-from capar.model.capture import Notice
+from capar.model.notices import KINDS, Notice
 
 HEADING = "Known with reservations:"
-
-RESERVATIONS = {
-    "long-gap": "bodies lost for long",
-    "markers-not-rigid": "bodies whose markers are not rigid",
-    "stand-in-shape": "stand-in shapes",
-    "no-shape": "bodies without a shape",
-    "objects-left-out": "groups of objects left out",
-    "assumed-support": "assumed supports",
-    "pivot-distance": "pairs that touch by the distance of their origins",
-}
-"""Codes of notices without which what is told would be taken for more certain than it is, each
-with what many of it are called."""
 
 MOST = 5
 """So many notices of one code are told one by one."""
 
 NAMED = 3
 """Of more, so many are named."""
-
-_ABOUT = re.compile(r"'(\w+)'(?: and '(\w+)')?|(\w+)(?: with (\w+))?:")
-
-
-def bodies(notice: Notice) -> tuple[str, ...]:
-    """The bodies that a notice begins with; none where it is about something else."""
-    found = _ABOUT.match(notice.message)
-    return tuple(each for each in found.groups() if each) if found else ()
 
 
 def reservations(
@@ -41,7 +20,7 @@ def reservations(
     return tuple(
         each
         for each in notices
-        if each.code in RESERVATIONS and (about is None or set(bodies(each)) & set(about))
+        if KINDS[each.code].several and (about is None or set(each.bodies) & set(about))
     )
 
 
@@ -63,7 +42,7 @@ def reservation_lines(notices: Sequence[Notice]) -> tuple[str, ...]:
 def _texts(code: str, group: Sequence[Notice]) -> Iterable[str]:
     if len(group) <= MOST:
         return [each.message for each in group]
-    names = list(dict.fromkeys(" and ".join(bodies(each)) for each in group))
+    names = list(dict.fromkeys(" and ".join(each.bodies) for each in group))
     named = ", ".join(filter(None, names[:NAMED])) + (" …" if len(names) > NAMED else "")
-    what = RESERVATIONS.get(code, "alike")
+    what = KINDS[code].several or "alike"
     return [f"{len(group)} {what}{': ' if named else ''}{named}; --json lists them"]

@@ -1,7 +1,8 @@
 """Rows of a picture, put on one pair of axes: seconds to the right, inches downward."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
+from zlib import crc32
 
 import numpy as np
 
@@ -14,22 +15,28 @@ if TYPE_CHECKING:
 
 INK, QUIET, FAINT = "#1a1a1a", "#5c5c5c", "#d9d9d9"
 CONTACT, MOTION, SPEED = "#4477AA", "#CCBB44", "#333333"
-PALETTE = (
-    "#77AADD",
-    "#EE8866",
-    "#EEDD88",
-    "#44BB99",
-    "#FFAABB",
-    "#BBCC33",
-    "#99DDFF",
-    "#C9A6DE",
-)
-"""Light colours that people who are colour-blind can tell apart, under dark letters (P. Tol)."""
+COLOURS = {
+    "LookAt": "#FFAABB",
+    "MoveObj": "#EE8866",
+    "MoveObjTo": "#EEDD88",
+    "PostureChange": "#C9A6DE",
+    "Reach": "#77AADD",
+    "Rest": "#DDDDDD",
+    "ResumePosture": "#BBCC33",
+    "Touch": "#44BB99",
+}
+"""The colour of each most general kind of action: light, under dark letters, and such that people
+who are colour-blind can tell them apart (P. Tol)."""
+
+OTHERS = ("#99DDFF", "#AAAA00", "#D9B99B", "#B7C9A6")
+"""Colours of kinds that only a user's rules have, by their names."""
 
 PALE = ("#BBCCEE", "#CCDDAA", "#FFCCCC", "#EEEEBB", "#CCEEFF", "#DDDDDD")
-"""Paler ones of the same kind, for what is looked at (P. Tol)."""
+"""Paler ones, for what is looked at, by its place in the alphabet (P. Tol)."""
 
-HATCHES = ("", "///", "...", "xxx", "---")
+UNNAMED: dict[str, Any] = {"facecolor": "white", "edgecolor": QUIET, "linestyle": "--"}
+"""How a segment looks that no rule names."""
+
 HEIGHTS_IN = {
     Kind.HEADING: 0.34,
     Kind.SEGMENTS: 0.36,
@@ -58,34 +65,30 @@ class Painter:
     Attributes:
         width: Of the axes [inches].
         height: Of the axes [inches].
-        legend: Each name of the rows where some name found no room, with their kind.
+        legend: What each colour means, with its look; what is looked at where some of it found
+            no room.
     """
 
     def __init__(self, rows: Sequence[Row], duration_s: float, width_in: float) -> None:
         self.width = width_in
         self.duration_s = duration_s
         self._rows = tuple(rows)
-        self._names = _names(rows, Kind.SEGMENTS)
-        self._seen = _names(rows, Kind.NAMES)
+        self._seen = sorted(_labels(rows, Kind.NAMES))
         self._placed = {index: self._place(row) for index, row in enumerate(rows)}
         self._tops = self._stack()
         self.height = self._tops[-1] + FOOT_IN
         self.legend = self._legend()
         self._fastest = max((_peak(each) for each in rows), default=0.0)
 
-    def look(self, name: str, kind: Kind) -> dict[str, Any]:
-        """Colours and hatch of the bars of a name in rows of that kind."""
-        if kind is Kind.SEGMENTS and name == UNKNOWN:
-            return {"facecolor": "#f2f2f2", "edgecolor": QUIET, "hatch": "///", "linewidth": 0.8}
-        names, colours = (self._names, PALETTE) if kind is Kind.SEGMENTS else (self._seen, PALE)
-        turn, colour = divmod(names.index(name), len(colours))
-        hatch = HATCHES[turn % len(HATCHES)] or None
-        return {
-            "facecolor": colours[colour],
-            "edgecolor": "white" if hatch is None else QUIET,
-            "hatch": hatch,
-            "linewidth": 0.8,
-        }
+    def look(self, span: Span, kind: Kind) -> dict[str, Any]:
+        """The colours of a bar in a row of that kind; hatching means lost tracking alone."""
+        if kind is Kind.NAMES:
+            colour = PALE[self._seen.index(span.label) % len(PALE)]
+        elif span.label == UNKNOWN:
+            return {**UNNAMED, "linewidth": 0.8}
+        else:
+            colour = colour_of(span.kind or span.label)
+        return {"facecolor": colour, "edgecolor": "white", "linewidth": 0.8}
 
     def paint(self, axes: "Axes") -> None:
         """Put everything on the axes."""
@@ -105,14 +108,22 @@ class Painter:
                 Kind.CURVE: self._curve,
             }[row.kind](axes, index, low)
 
-    def _legend(self) -> tuple[tuple[Kind, str], ...]:
-        dropped = {
-            row.kind
+    def _legend(self) -> tuple[tuple[str, dict[str, Any]], ...]:
+        kinds: dict[str, set[str]] = {}
+        for span in _spans(self._rows, Kind.SEGMENTS):
+            kinds.setdefault(span.kind or span.label, set()).add(span.label)
+        ordered = sorted(kinds, key=lambda each: (each == UNKNOWN, each))
+        out = [
+            (_with_names(kind, kinds[kind] - {kind}), Span(0.0, 0.0, kind, kind), Kind.SEGMENTS)
+            for kind in ordered
+        ]
+        if any(
+            row.kind is Kind.NAMES and any(each.row < 0 for each in self._placed[index])
             for index, row in enumerate(self._rows)
-            if any(each.row < 0 for each in self._placed[index])
-        }
-        groups = ((Kind.SEGMENTS, self._names), (Kind.NAMES, self._seen))
-        return tuple((kind, each) for kind, names in groups if kind in dropped for each in names)
+        ):
+            looked = (Span(0.0, 0.0, name) for name in self._seen)
+            out += [(f"looks at {each.label}", each, Kind.NAMES) for each in looked]
+        return tuple((text, self.look(span, kind)) for text, span, kind in out)
 
     @property
     def _seconds_per_inch(self) -> float:
@@ -180,9 +191,7 @@ class Painter:
             axes, self._rows[index].label, bar + tall / 2, fontsize=9.5, color=INK, weight="bold"
         )
         for each in self._placed[index]:
-            self._box(
-                axes, each.span, bar, tall, **self.look(each.span.label, Kind.SEGMENTS), zorder=2
-            )
+            self._box(axes, each.span, bar, tall, **self.look(each.span, Kind.SEGMENTS), zorder=2)
             self._letter(axes, each, bar, tall, Kind.SEGMENTS)
 
     def _letter(self, axes: "Axes", each: Placed, bar: float, tall: float, kind: Kind) -> None:
@@ -195,10 +204,7 @@ class Painter:
             "ha": "center",
             "va": "center",
         }
-        text = axes.text(each.centre_s, y, each.span.label, zorder=4, **style)
-        look = self.look(each.span.label, kind)
-        if each.row == 0 and look["hatch"]:
-            text.set_bbox({"facecolor": look["facecolor"], "edgecolor": "none", "pad": 1.5})
+        axes.text(each.centre_s, y, each.span.label, zorder=4, **style)
         if each.row > 1:
             axes.vlines(each.middle_s, y + 0.07, bar, colors=QUIET, linewidth=0.6, zorder=1)
 
@@ -219,7 +225,7 @@ class Painter:
     def _looks(self, axes: "Axes", index: int, low: float) -> None:
         self._name(axes, self._rows[index].label, low - 0.12)
         for each in self._placed[index]:
-            look = self.look(each.span.label, Kind.NAMES)
+            look = self.look(each.span, Kind.NAMES)
             self._box(axes, each.span, low - 0.21, 0.18, **look, zorder=2)
             self._letter(axes, each, low - 0.21, 0.18, Kind.NAMES)
 
@@ -236,12 +242,22 @@ class Painter:
         self._name(axes, "0", low - 0.03, fontsize=7.5)
 
 
-def _names(rows: Sequence[Row], kind: Kind) -> list[str]:
-    """Names in rows of a kind, in order of first appearance in time; a colour belongs to each."""
-    spans = [each for row in rows if row.kind is kind for each in row.spans]
-    spans.sort(key=lambda each: (each.start_s, each.label))
-    names = list(dict.fromkeys(each.label for each in spans))
-    return [each for each in names if each != UNKNOWN] + [UNKNOWN] * (UNKNOWN in names)
+def colour_of(kind: str) -> str:
+    """The colour of a kind of action: the same in every picture."""
+    return COLOURS.get(kind) or OTHERS[crc32(kind.encode()) % len(OTHERS)]
+
+
+def _with_names(kind: str, names: Collection[str]) -> str:
+    """A kind of action, and what else of that kind there is: ``MoveObj (Carry, Drink)``."""
+    return f"{kind} ({', '.join(sorted(names))})" if names else kind
+
+
+def _spans(rows: Sequence[Row], kind: Kind) -> Iterator[Span]:
+    return (each for row in rows if row.kind is kind for each in row.spans)
+
+
+def _labels(rows: Sequence[Row], kind: Kind) -> set[str]:
+    return {each.label for each in _spans(rows, kind)}
 
 
 def _peak(row: Row) -> float:

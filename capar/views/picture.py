@@ -1,18 +1,19 @@
 """A picture of an observation: named segments, contacts, crossings and speed over time."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from capar.model.errors import FileError
 from capar.model.observation import Observation
-from capar.views.lettering import width_in
+from capar.views.lettering import shortened, width_in
 from capar.views.painter import INK, QUIET, Painter
 from capar.views.rows import (
     ASSUMED,
     STAND_IN,
-    Kind,
     Lost,
     Row,
     Speeds,
@@ -42,8 +43,11 @@ NOTE_LINE_IN = 0.16
 
 LOST_NOTE = "hatched: a body of that row was not tracked; a bar across it is inferred."
 
-Entry: TypeAlias = tuple[Kind, str]
-"""A name in the legend, and the kind of rows that it stands in."""
+LABEL_IN = 3.5
+"""A longer label at the left of a row is cut [inches]."""
+
+Entry: TypeAlias = tuple[str, dict[str, Any]]
+"""What the legend says of a colour, and how the bars look that have it."""
 
 
 def draw(observation: Observation, speeds: Speeds, *, path: Path, lost: Lost | None = None) -> None:
@@ -58,13 +62,29 @@ def draw(observation: Observation, speeds: Speeds, *, path: Path, lost: Lost | N
     Raises:
         FileError: The suffix is another one, or the file cannot be written.
     """
-    import matplotlib as mpl
-
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise FileError(
             path, f"no picture format {path.suffix!r};", f"there are: {', '.join(SUFFIXES)}."
         )
+    try:
+        _save(observation, rows(observation, speeds, lost), path, suffix)
+    except OSError as error:
+        raise FileError(path, f"cannot be written: {error.strerror or error}.") from None
+
+
+def svg(observation: Observation) -> str:
+    """The picture as the text of an SVG, without the speeds, which an observation does not hold."""
+    out = BytesIO()
+    _save(observation, rows(observation, {}), out, ".svg")
+    return out.getvalue().decode("utf-8")
+
+
+def _save(
+    observation: Observation, content: Sequence[Row], where: Path | BytesIO, suffix: str
+) -> None:
+    import matplotlib as mpl
+
     settings: dict[Any, Any] = {
         "svg.hashsalt": "capar",
         "font.family": "DejaVu Sans",
@@ -72,23 +92,25 @@ def draw(observation: Observation, speeds: Speeds, *, path: Path, lost: Lost | N
         "text.parse_math": False,
     }
     with mpl.rc_context(rc={**dict(mpl.rcParamsDefault), **settings, "backend": "agg"}):
-        figure = _figure(observation, rows(observation, speeds, lost))
-        try:
-            figure.savefig(path, dpi=DPI, metadata=SUFFIXES[suffix])
-        except OSError as error:
-            raise FileError(path, f"cannot be written: {error.strerror or error}.") from None
+        figure = _figure(observation, content)
+        figure.savefig(where, dpi=DPI, metadata=SUFFIXES[suffix], format=suffix.removeprefix("."))
 
 
 def _figure(observation: Observation, content: Sequence[Row]) -> "Figure":
     """Lay the rows out, then the time axis, the legend and the footnote under them."""
     from matplotlib.figure import Figure
 
+    content = [_narrow(each) for each in content]
     left = EDGE_IN + 0.15 + max(width_in(each.label, points=9.5) for each in content)
     width = _width(observation, left)
     painter = Painter(content, observation.duration_s, width - left - EDGE_IN - 0.1)
-    legend = _flowed(painter.legend, width - 2 * EDGE_IN)
+    room = width - 2 * EDGE_IN
+    entries = [
+        (shortened(text, points=9.0, widest_in=room - 0.55), look) for text, look in painter.legend
+    ]
+    legend = _flowed(entries, room)
     notes = _notes(observation, content, width - 2 * EDGE_IN)
-    foot = 0.62 + 0.24 * len(legend) + NOTE_LINE_IN * len(notes) + (0.24 if notes else 0.0)
+    foot = 0.62 + 0.24 * len(legend) + NOTE_LINE_IN * len(notes) + (0.24 if notes else 0.12)
     height = TITLE_IN + painter.height + foot
     figure = Figure(figsize=(width, height), facecolor="white")
     axes = figure.add_axes(
@@ -96,11 +118,16 @@ def _figure(observation: Observation, content: Sequence[Row]) -> "Figure":
     )
     painter.paint(axes)
     _title(figure, observation, left)
-    _legend(figure, painter, legend, top=foot - 0.62)
+    _legend(figure, legend, top=foot - 0.62)
     for index, line in enumerate(reversed(notes)):
         place = (EDGE_IN / width, (0.12 + index * NOTE_LINE_IN) / height)
         figure.text(*place, line, fontsize=NOTE_POINTS, color=QUIET, va="bottom")
     return figure
+
+
+def _narrow(row: Row) -> Row:
+    """A row whose label leaves room for what it labels."""
+    return replace(row, label=shortened(row.label, points=9.5, widest_in=LABEL_IN))
 
 
 def _width(observation: Observation, left: float) -> float:
@@ -129,7 +156,7 @@ def _flowed(entries: Sequence[Entry], width: float) -> list[list[Entry]]:
     lines: list[list[Entry]] = []
     used = width + 1.0
     for entry in entries:
-        need = width_in(_entry(entry), points=9.0) + 0.55
+        need = width_in(entry[0], points=9.0) + 0.55
         if used + need > width:
             lines.append([])
             used = 0.0
@@ -138,33 +165,24 @@ def _flowed(entries: Sequence[Entry], width: float) -> list[list[Entry]]:
     return lines
 
 
-def _legend(
-    figure: "Figure", painter: Painter, lines: Sequence[Sequence[Entry]], *, top: float
-) -> None:
+def _legend(figure: "Figure", lines: Sequence[Sequence[Entry]], *, top: float) -> None:
     from matplotlib.patches import Rectangle
 
     width, height = figure.get_size_inches()
     for index, line in enumerate(lines):
         x, y = EDGE_IN, top - 0.24 * (index + 1)
-        for kind, name in line:
+        for text, look in line:
             figure.add_artist(
                 Rectangle(
                     (x / width, (y + 0.03) / height),
                     0.22 / width,
                     0.13 / height,
                     transform=figure.transFigure,
-                    **painter.look(name, kind),
+                    **look,
                 )
             )
-            text = _entry((kind, name))
             figure.text((x + 0.28) / width, (y + 0.04) / height, text, fontsize=9, color=INK)
             x += width_in(text, points=9.0) + 0.55
-
-
-def _entry(entry: Entry) -> str:
-    """What the legend says of a colour."""
-    kind, name = entry
-    return name if kind is Kind.SEGMENTS else f"looks at {name}"
 
 
 def _notes(observation: Observation, content: Sequence[Row], width: float) -> list[str]:

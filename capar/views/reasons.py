@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from html import escape
 from textwrap import wrap
 
+from capar.model.segment_address import SegmentAddress
 from capar_rules.explain.explanation import Explanation, Reason
 
 ROW, LINE, INDENT, TEXT, STRIP = 20, 15, 18, 760, 240
@@ -18,7 +19,8 @@ def reasons_svg(told: Sequence[Explanation]) -> str:
     rows: list[str] = []
     y = ROW
     for each in told:
-        title = f"{each.ee}/{each.index}  {each.start_s:.2f} to {each.end_s:.2f} s: {each.summary}"
+        address = SegmentAddress(each.ee, each.index)
+        title = f"{address}  {each.start_s:.2f} to {each.end_s:.2f} s: {each.summary}"
         lines = _lines(title, TEXT + STRIP, BOLD)
         rows.append(f'<text x="8" y="{y}" font-weight="bold">{_set(lines, 8)}</text>')
         y += ROW + (len(lines) - 1) * LINE

@@ -1,6 +1,5 @@
 """What a picture of an observation shows, row by row, before any of it is drawn."""
 
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
@@ -10,8 +9,14 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model.facts import LookingAt, Moving, Touching, ZeroCrossing
-from capar.model.geometry import gaps
-from capar.model.observation import Observation, ObservedLink, ObservedObject
+from capar.model.geometry import runs
+from capar.model.observation import (
+    JointAction,
+    Observation,
+    ObservedLink,
+    ObservedObject,
+    Segment,
+)
 from capar.views.lettering import Span
 
 Speeds = Mapping[str, tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]]
@@ -23,7 +28,10 @@ Lost = Mapping[str, Bool[np.ndarray, "frames"]]
 ASSUMED, STAND_IN = "*", "†"
 """Marks of an object that is assumed, and of a shape that stands in for the true one."""
 
-_Name = TypeVar("_Name")
+MOST_NAMED = 4
+"""So many who take part in one action are named one by one."""
+
+_Name = TypeVar("_Name", str, tuple[str, ...])
 
 
 class Kind(Enum):
@@ -71,7 +79,7 @@ def rows(observation: Observation, speeds: Speeds, lost: Lost | None = None) -> 
 
 def _lost(about: Sequence[str], lost: Lost, clock: Callable[[int], float]) -> tuple[Span, ...]:
     found = [lost[each] for each in about if each in lost]
-    missing = gaps(np.logical_or.reduce(found)) if found else []
+    missing = runs(np.logical_or.reduce(found)) if found else []
     return tuple(Span(clock(first), clock(last), "") for first, last in missing)
 
 
@@ -106,13 +114,11 @@ def marked(observation: Observation, name: str) -> str:
 
 def stand_ins(observation: Observation) -> dict[str, str]:
     """What stands in for the true shape of a body, by the body's name, as its notice says."""
-    notices = (each.message for each in observation.notices if each.code == "stand-in-shape")
-    found: dict[str, str] = {}
-    for message in notices:
-        quoted = re.match(r"'(\w+)' is a stand-in: (.*)", message)
-        if quoted:
-            found[quoted[1]] = quoted[2]
-    return found
+    return {
+        each.bodies[0]: str(each["shape"])
+        for each in observation.notices
+        if each.code == "stand-in-shape"
+    }
 
 
 def _objects(observation: Observation, name: str) -> list[ObservedObject]:
@@ -122,7 +128,10 @@ def _objects(observation: Observation, name: str) -> list[ObservedObject]:
 def _link_rows(
     observation: Observation, link: ObservedLink, speeds: Speeds, clock: Callable[[int], float]
 ) -> list[Row]:
-    spans = tuple(Span(clock(each.first), clock(each.last), each.name) for each in link.segments)
+    spans = tuple(
+        Span(clock(each.first), clock(each.last), each.name, kind_of(each))
+        for each in link.segments
+    )
     borders = tuple(sorted({each.start_s for each in spans} | {each.end_s for each in spans}))
     crossings = sorted(
         each.frame
@@ -146,11 +155,35 @@ def _link_rows(
 def _joint_rows(observation: Observation, clock: Callable[[int], float]) -> list[Row]:
     """For those who act together: what they do as one action."""
     rows = []
-    for who in _in_order(map(observation.who, observation.joint)):
-        joint = [each for each in observation.joint if observation.who(each) == who]
-        spans = tuple(Span(clock(each.first), clock(each.last), each.name) for each in joint)
-        rows.append(Row(Kind.SEGMENTS, who, spans))
+    kinds = _kinds(observation)
+    for ees in _in_order(each.ees for each in observation.joint):
+        joint = [each for each in observation.joint if each.ees == ees]
+        spans = tuple(
+            Span(clock(each.first), clock(each.last), each.name, kinds.get(each.name, each.name))
+            for each in joint
+        )
+        rows.append(Row(Kind.SEGMENTS, _who(observation, joint[0]), spans))
     return rows
+
+
+def _who(observation: Observation, joint: JointAction) -> str:
+    """Who takes part, in few words: of many the first two are named."""
+    if len(joint.ees) <= MOST_NAMED:
+        return observation.who(joint)
+    first, second = (spoken(each) for each in joint.ees[:2])
+    return f"{first}, {second} and {len(joint.ees) - 2} more"
+
+
+def kind_of(segment: Segment) -> str:
+    """What kind of action a segment is: the most general name that it specialises, or its own."""
+    return segment.general[-1] if segment.general else segment.name
+
+
+def _kinds(observation: Observation) -> dict[str, str]:
+    """The kind of each name that segments have or specialise."""
+    return {
+        name: kind_of(each) for each in observation.segments for name in (*each.general, each.name)
+    }
 
 
 def _object_rows(observation: Observation, clock: Callable[[int], float]) -> list[Row]:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import ComplexPar, FeatureSet, Step
+from capar.model.segment_address import SegmentAddress
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -47,6 +48,9 @@ def segments_table(observation: Observation) -> "Table":
             style = None if segment.known else "yellow"
             table.add_row(*map(_escaped, _segment_row(link, segment)), style=style)
         table.add_section()
+    addresses = table.columns[0]
+    addresses.no_wrap = True
+    addresses.min_width = max(map(len, map(str, addresses.cells)))
     return table
 
 
@@ -112,7 +116,7 @@ def _segment_row(link: ObservedLink, segment: Segment) -> tuple[str, ...]:
         name = f"{name} ({unknown_note(segment)})"
     elif segment.candidates:
         name = f"{name} (or {', '.join(segment.candidates)})"
-    place = f"{link.ee}/{segment.index}"
+    place = str(SegmentAddress(link.ee, segment.index))
     return (
         f"{place} ({link.agent})" if link.agent else place,
         f"{segment.start_s:.3f}",

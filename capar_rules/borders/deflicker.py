@@ -4,21 +4,14 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from capar.model.facts import Doubted, Fact, Frames, Link, Moving, RateMhz, Resting, Tag, Touching
+from capar.model.facts import STATED, Doubted, Fact, Frames, Link, Observed, RateMhz, Tag
 from capar_rules.engine.solver import best, rule_file
 
 Key = tuple[str, str, str]
 """A relation: touching, moving or resting, the body, and the other body, or the same."""
 
-TAKEN = {
-    ("touching", 0): "touching",
-    ("touching", 1): "apart",
-    ("moving", 0): "moving",
-    ("moving", 1): "still",
-    ("resting", 0): "resting",
-    ("resting", 1): "going",
-}
-"""What a doubted stretch is taken for, by whether the relation was measured to hold."""
+NEGATED = {kind.predicate: kind.declaration.negated for kind in STATED}
+"""What an interval that is contradicted is taken for, by predicate; empty where none can be."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -66,7 +59,7 @@ def steady(facts: Sequence[Fact]) -> tuple[Fact, ...]:
     doubted |= {_turned(key): places for key, places in doubted.items() if _turned(key) in keys}
     mended = {key: _mended(stretches[key], places) for key, places in doubted.items()}
     told = (
-        Doubted(*key[1:], stretch[1], stretch[2], TAKEN[key[0], stretch[0]])
+        Doubted(*key[1:], stretch[1], stretch[2], _taken(key[0], stretch[0]))
         for key, places in doubted.items()
         for stretch in (stretches[key][place] for place in places)
     )
@@ -81,27 +74,23 @@ def _relations(facts: Iterable[Fact]) -> dict[Key, list[tuple[int, int]]]:
     """The intervals of every relation, in order of time."""
     found: dict[Key, list[tuple[int, int]]] = defaultdict(list)
     for each in facts:
-        key = _key(each)
-        if key and isinstance(each, Touching | Moving | Resting):
-            found[key].append((each.first, each.last))
+        key = relation_of(each)
+        if key and isinstance(each, Observed):
+            first, last = each.ends()
+            found[key].append((first, last))
     return {key: sorted(spans) for key, spans in found.items()}
 
 
-def _key(fact: Fact) -> Key | None:
-    if isinstance(fact, Touching):
-        return "touching", fact.body, fact.other
-    if isinstance(fact, Moving):
-        return "moving", fact.object, fact.object
-    if isinstance(fact, Resting):
-        return "resting", fact.ee, fact.ee
-    return None
+def relation_of(fact: Fact) -> Key | None:
+    """The relation of which a fact states an interval, where flicker of it is resolved."""
+    if not isinstance(fact, Observed) or not fact.declaration.negated:
+        return None
+    return fact.predicate, fact.subject(), fact.other_bodies()[0]
 
 
-def _stated(key: Key, first: int, last: int) -> Fact:
-    how, body, other = key
-    if how == "touching":
-        return Touching(body, other, first, last)
-    return Moving(body, first, last) if how == "moving" else Resting(body, first, last)
+def _taken(how: str, holds: int) -> str:
+    """What a doubted stretch is taken for, by whether the relation was measured to hold."""
+    return NEGATED[how] if holds else how
 
 
 def _turned(key: Key) -> Key:
@@ -154,9 +143,9 @@ def _restated(facts: Iterable[Fact], mended: dict[Key, list[tuple[int, int]]]) -
     """The facts in their order, those of mended relations in place of the measured ones."""
     written = set()
     for each in facts:
-        key = _key(each)
-        if key is None or key not in mended:
+        key = relation_of(each)
+        if key is None or key not in mended or not isinstance(each, Observed):
             yield each
         elif key not in written:
             written.add(key)
-            yield from (_stated(key, *span) for span in mended[key])
+            yield from (each.between(*span) for span in mended[key])

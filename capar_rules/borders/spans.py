@@ -4,24 +4,10 @@ from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import cast
 
-from capar.model.facts import (
-    Bears,
-    Between,
-    Fact,
-    Flies,
-    Leans,
-    Lies,
-    Link,
-    LookingAt,
-    OfAgent,
-    Passage,
-    Resting,
-    Reverses,
-    Rolls,
-    Swings,
-    Touching,
-)
+from capar.model.fact_intervals import FactIntervals, Interval
+from capar.model.facts import Fact, Link, LookingAt, Observed, OfAgent, Touching
 
 Stretch = tuple[str, str, str, int, int]
 """What it is, the body, the other body (or the same), first and last frame."""
@@ -61,38 +47,30 @@ class Stretches:
         self._seen: dict[str, list[Stretch]] = defaultdict(list)
         self._touches: dict[str, set[str]] = defaultdict(set)
         self._agents = {fact.body: fact.agent for fact in facts if isinstance(fact, OfAgent)}
+        self._borders: dict[str, list[Interval]] = defaultdict(list)
         acting = {fact.ee for fact in facts if isinstance(fact, Link)}
-        passed = {}
-        spans = {}
+        intervals = FactIntervals(facts)
         for fact in facts:
-            for each in _stretches(fact):
-                self._by_body[each[1]].append(each)
             if isinstance(fact, Touching):
                 self._touches[fact.body].add(fact.other)
-            elif isinstance(fact, LookingAt):
-                look = (LOOKS, fact.sensor, fact.object, fact.first, fact.last)
-                self._seen[fact.object].append(look)
-                if fact.sensor in acting:
-                    self._by_body[fact.sensor].append(look)
-            elif isinstance(fact, Lies):
-                spans[fact.body, fact.how, fact.other, fact.first] = fact.last
-            elif isinstance(fact, Passage):
-                passed[fact.body, fact.how, fact.other, fact.first] = fact.sides
-        for key, way in passed.items():
-            body, how, other, first = key
-            if key in spans:
-                stretch = (f"{how}_{way}", body, other, first, spans[key])
-                self._by_body[body].append(stretch)
+            for stretch in _stretches(fact, intervals):
+                if isinstance(fact, LookingAt):
+                    self._seen[fact.object].append(stretch)
+                    if fact.sensor not in acting:
+                        continue
+                self._add(stretch, border=cast(Observed, fact).is_border())
         for stretches in self._by_body.values():
             stretches.sort(key=lambda each: (each[3], each))
 
+    def _add(self, stretch: Stretch, *, border: bool) -> None:
+        _, body, _, first, last = stretch
+        self._by_body[body].append(stretch)
+        if border:
+            self._borders[body].append((first, last))
+
     def frames(self, body: str) -> Iterable[tuple[int, int]]:
         """First and last frames at which rules may draw a border for this body."""
-        return [
-            (first, last)
-            for how, _, _, first, last in self._by_body.get(body, ())
-            if how in BORDERS
-        ]
+        return self._borders.get(body, ())
 
     def ranked(
         self, ee: str, ticks: Sequence[int], reach: dict[str, list[tuple[int, int]]]
@@ -113,35 +91,14 @@ class Stretches:
                     yield from _ranked(ee, look, ticks)
 
 
-LOOKS = "looks"
-"""That a sensor looks at an object."""
-
-BORDERS = frozenset(
-    {"resting", "reverses", "swings", "leans", "flies", "bears_whole", "bears_none", LOOKS}
-)
-"""Stretches at whose ends there may be a border."""
-
-
-def _stretches(fact: Fact) -> Iterable[Stretch]:
-    if isinstance(fact, Resting):
-        yield "resting", fact.ee, fact.ee, fact.first, fact.last
-    elif isinstance(fact, Swings):
-        yield "swings", fact.body, fact.body, fact.first, fact.last
-    elif isinstance(fact, Leans):
-        yield "leans", fact.object, fact.object, fact.first, fact.last
-    elif isinstance(fact, Flies):
-        yield "flies", fact.object, fact.object, fact.first, fact.last
-    elif isinstance(fact, Rolls):
-        yield "rolls", fact.object, fact.object, fact.first, fact.last
-    elif isinstance(fact, Bears):
-        yield f"bears_{fact.share}", fact.foot, fact.foot, fact.first, fact.last
-    elif isinstance(fact, Reverses):
-        yield "reverses", fact.object, fact.object, fact.frame, fact.frame
-    elif isinstance(fact, Lies):
-        yield fact.how, fact.body, fact.other, fact.first, fact.last
-    elif isinstance(fact, Between):
-        yield "between", fact.body, fact.one, fact.first, fact.last
-        yield "between", fact.body, fact.other, fact.first, fact.last
+def _stretches(fact: Fact, intervals: FactIntervals) -> Iterable[Stretch]:
+    """The stretches that a fact states, as it declares."""
+    if not isinstance(fact, Observed) or not fact.declaration.stretch:
+        return
+    interval = intervals.of(fact)
+    if interval is not None:
+        for other in fact.other_bodies():
+            yield fact.stretch(), fact.subject(), other, *interval
 
 
 def _meets(times: Sequence[tuple[int, int]], first: int, last: int) -> bool:

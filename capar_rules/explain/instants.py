@@ -2,10 +2,11 @@
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 
-from capar.model.facts import STATED, Doubted, Fact, Moving, Resting, Touching
+from capar.model.facts import STATED, Doubted, Fact, Observed
+from capar_rules.borders.deflicker import Key, relation_of
 from capar_rules.borders.ranking import Tick
 from capar_rules.explain.sentences import Clock
 
@@ -31,24 +32,22 @@ def frames_of(predicate: str, arguments: Sequence[str], clock: Clock) -> tuple[i
     return None
 
 
-def mended(facts: Iterable[Fact]) -> frozenset[str]:
+def mended(facts: Sequence[Fact]) -> frozenset[str]:
     """The contacts, motions and rests, as atoms, that contain doubted frames."""
-    doubts: dict[tuple[str, str, str], list[int]] = defaultdict(list)
-    spans: list[tuple[tuple[str, str, str], Touching | Moving | Resting]] = []
+    doubts: dict[Key, list[int]] = defaultdict(list)
     for each in facts:
         if isinstance(each, Doubted):
             doubts[each.taken, each.body, each.other].append(each.first)
-        elif isinstance(each, Touching):
-            spans.append((("touching", each.body, each.other), each))
-        elif isinstance(each, Moving):
-            spans.append((("moving", each.object, each.object), each))
-        elif isinstance(each, Resting):
-            spans.append((("resting", each.ee, each.ee), each))
     for frames in doubts.values():
         frames.sort()
     return frozenset(
-        str(each)
-        for key, each in spans
-        if bisect_left(doubts.get(key, ()), each.first)
-        < bisect_right(doubts.get(key, ()), each.last)
+        str(each) for each in facts if isinstance(each, Observed) and _has_doubt(each, doubts)
+    )
+
+
+def _has_doubt(fact: Observed, doubts: Mapping[Key, Sequence[int]]) -> bool:
+    key = relation_of(fact)
+    begins = doubts.get(key, ()) if key else ()
+    return bool(begins) and bisect_left(begins, fact.ends()[0]) < bisect_right(
+        begins, fact.ends()[1]
     )

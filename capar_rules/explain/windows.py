@@ -2,10 +2,11 @@
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from capar.model.facts import Fact, Frames, Lies, RateMhz, Touching
+from capar.model.fact_intervals import FactIntervals
+from capar.model.facts import Fact, Observed, RateMhz
 from capar_rules.borders.ranking import LastTick, MovesDuring, Shares, Tick, Within
 
 SETTLED_S = 0.2
@@ -28,9 +29,9 @@ class Windows:
         self.always: list[Fact] = []
         self.timed = _Index()
         self.numbered: dict[str, _Index] = defaultdict(_Index)
-        ends = {(each.body, each.other, each.first): each.last for each in _stretches(facts)}
+        intervals = FactIntervals(facts)
         for fact in facts:
-            span = _span(fact, ends)
+            span = _span(fact, intervals)
             if span is None:
                 self.always.append(fact)
             else:
@@ -129,20 +130,12 @@ class _Index:
             yield from (fact for _, _, fact in group)
 
 
-def _stretches(facts: Iterable[Fact]) -> Iterator[Touching | Lies]:
-    """Measurements that others refer to by their first frame."""
-    return (each for each in facts if isinstance(each, Touching | Lies))
+def _span(fact: Fact, intervals: FactIntervals) -> Span | None:
+    """First and last frame of a measurement; None if it always holds.
 
-
-def _span(fact: Fact, ends: dict[tuple[str, str, int], int]) -> Span | None:
-    """First and last frame of a measurement; None if it always holds."""
-    if isinstance(fact, Frames):
-        return None
-    first = getattr(fact, "first", getattr(fact, "frame", None))
-    if first is None:
-        return None
-    last = getattr(fact, "last", None)
-    if last is None:
-        pair = str(getattr(fact, "body", "")), str(getattr(fact, "other", ""))
-        last = ends.get((*pair, first), first)
-    return int(first), int(last)
+    A fact about an interval that no other fact states any more has only its first frame.
+    """
+    found = intervals.of(fact)
+    if found is None and isinstance(fact, Observed) and fact.ends():
+        return fact.ends()[0], fact.ends()[0]
+    return found

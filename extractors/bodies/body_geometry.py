@@ -10,7 +10,8 @@ from jaxtyping import Float, Int
 from scipy.spatial import ConvexHull, QhullError
 
 from capar.model.capture import Sensor, Shape, TagObject
-from extractors.bodies.poses import Poses, rotation_matrices
+from extractors.bodies.poses import Poses, poses_of, rotation_matrices
+from extractors.thresholds import Thresholds
 
 DIRECTIONS = 64
 """Directions in which a body's outermost corners are taken [1]: 25 degrees lie between them."""
@@ -24,22 +25,22 @@ AROUND = np.asarray(trimesh.creation.icosphere(subdivisions=2).vertices)
 
 
 @dataclass(frozen=True, eq=False)
-class Figure:
-    """A body that may stand in some arrangement to others."""
+class BodyGeometry:
+    """A body with its shape and its poses; what follows from them is computed once, when asked."""
 
     name: str
     shape: Shape | None
-    where: Poses
+    poses: Poses
 
     @cached_property
     def orientations(self) -> Float[np.ndarray, "frames 4"]:
         """Unit quaternions w x y z, low-passed."""
-        return self.where.settled.orientations if self.where.rests else self._smooth[1]
+        return self.poses.settled.orientations if self.poses.rests else self._smooth[1]
 
     @cached_property
     def middles(self) -> Float[np.ndarray, "frames 3"]:
         """The middle of its box in the world [m], or its origin where it has no shape."""
-        places = self.where.settled.positions if self.where.rests else self._smooth[0]
+        places = self.poses.settled.positions if self.poses.rests else self._smooth[0]
         if self.shape is None:
             return places
         offset = self.shape.bounds.mean(axis=0)
@@ -47,7 +48,7 @@ class Figure:
 
     @property
     def _smooth(self) -> tuple[np.ndarray, np.ndarray]:
-        return self.where.smooth.positions, self.where.smooth.orientations
+        return self.poses.smooth.positions, self.poses.smooth.orientations
 
     def turns_at(self, frames: Int[np.ndarray, "some"] | slice) -> Float[np.ndarray, "some 3 3"]:
         """Rotation matrices from the body's axes to the world's; made anew, being large."""
@@ -89,17 +90,17 @@ class Figure:
     def boxes(self) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
         """Lowest and highest corner of its box along the world's axes at each frame [m]."""
         low, high = self.middles.copy(), self.middles.copy()
-        for block in [slice(None)] if self.where.rests else blocks(len(low)):
-            poses = slice(0, 1) if self.where.rests else block
-            spread = self.turns_at(poses) @ self.corners.T
+        for block in [slice(None)] if self.poses.rests else blocks(len(low)):
+            frames = slice(0, 1) if self.poses.rests else block
+            spread = self.turns_at(frames) @ self.corners.T
             low[block] += spread.min(axis=2)
             high[block] += spread.max(axis=2)
         return low, high
 
 
-def figure(body: Sensor | TagObject, where: Poses) -> Figure:
-    """The figure of a sensor's or an object's body."""
-    return Figure(body.name, body.shape, where)
+def geometry_of(body: Sensor | TagObject, thresholds: Thresholds) -> BodyGeometry:
+    """The geometry of a sensor or an object, with the poses that its stream gives."""
+    return BodyGeometry(body.name, body.shape, poses_of(body, thresholds))
 
 
 def blocks(count: int) -> Iterator[slice]:

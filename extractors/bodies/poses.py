@@ -37,7 +37,7 @@ class Poses:
         return self.settled.lost
 
 
-def poses(body: Sensor | TagObject, thresholds: Thresholds) -> Poses:
+def poses_of(body: Sensor | TagObject, thresholds: Thresholds) -> Poses:
     """The poses of a sensor or an object.
 
     A fixed object stands at the median of its places throughout: what its tracker shows besides

@@ -7,9 +7,11 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model import geometry
-from capar.model.capture import Capture, PivotContact, Sensor, TagObject, TagType
+from capar.model.capture import Capture, PivotContact, TagType
+from extractors.bodies.bodies import Bodies
+from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import Poses
-from extractors.contact.proximity import Body, body, near, nearest
+from extractors.contact.proximity import Body, body, distance, near
 from extractors.contact.surfaces import surface
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, intervals
@@ -43,7 +45,7 @@ def contact_tolerance(
 
 def contacts(
     capture: Capture,
-    where: Mapping[tuple[str, str], Poses],
+    bodies: Bodies,
     *,
     tolerance_m: float,
     thresholds: Thresholds,
@@ -56,28 +58,28 @@ def contacts(
 
     Args:
         capture: The trial.
-        where: Poses by ``("sensor", name)`` and ``("object", name)``.
+        bodies: Its bodies.
         tolerance_m: Distance up to which bodies count as touching [m].
         thresholds: Least durations of contacts and of their interruptions.
     """
-    bodies = {key: _body(capture, key, each) for key, each in where.items()}
+    surfaces = {each: shaped(each) for pair in watched(capture, bodies) for each in pair}
     found: list[Contact] = []
-    for first, second in watched(capture):
-        pivot = _pivot(capture, first[1], second[1])
-        one, two = bodies[first], bodies[second]
+    for first, second in watched(capture, bodies):
+        pivot = _pivot(capture, first.name, second.name)
+        one, two = surfaces[first], surfaces[second]
         if pivot is not None:
-            apart = _apart(where[first], where[second])
+            apart = _apart(first.poses, second.poses)
             touching = np.nan_to_num(apart, nan=np.inf) <= pivot.distance_m
         elif one is not None and two is not None:
             touching = near(one, two, distance_m=tolerance_m)
-            margin = _margin(where[first], where[second], capture.rate_hz, thresholds)
+            margin = _margin(first.poses, second.poses, capture.rate_hz, thresholds)
             if margin > 0.0 and touching.any():
                 release = tolerance_m + min(margin, tolerance_m)
                 touching = bridged(touching, near(one, two, distance_m=release))
         else:
             continue
         # Where a body was lost nothing begins or ends: what touched before and after has touched.
-        touching = bridged(touching, where[first].lost | where[second].lost)
+        touching = bridged(touching, first.poses.lost | second.poses.lost)
         for interval in intervals(
             touching,
             capture.times,
@@ -85,15 +87,15 @@ def contacts(
             minimum_s=thresholds.contact_minimum_s,
         ):
             if pivot is not None or one is None or two is None:
-                gap = float(_apart(where[first], where[second])[interval[0]])
+                gap = float(_apart(first.poses, second.poses)[interval[0]])
             else:
-                gap = nearest(one, two, interval[0])[0]
-            found.append(Contact(first[1], second[1], interval, gap))
+                gap = distance(one, two, interval[0])
+            found.append(Contact(first.name, second.name, interval, gap))
     return tuple(found)
 
 
-def watched(capture: Capture) -> Iterator[tuple[tuple[str, str], tuple[str, str]]]:
-    """Pairs of bodies whose contact matters, by kind and name, each once.
+def watched(capture: Capture, bodies: Bodies) -> Iterator[tuple[BodyGeometry, BodyGeometry]]:
+    """Pairs of bodies whose contact matters, each once.
 
     Each acting sensor with each tag object but itself; each mobile object with each other tag
     object. Of an object that is also an acting sensor both are watched: it may be handled too.
@@ -101,12 +103,12 @@ def watched(capture: Capture) -> Iterator[tuple[tuple[str, str], tuple[str, str]
     for sensor in capture.acting:
         for each in capture.objects:
             if each.name != sensor.name:
-                yield ("sensor", sensor.name), ("object", each.name)
+                yield bodies.sensors[sensor.name], bodies.objects[each.name]
     mobile = sorted(each.name for each in capture.objects if each.tag is TagType.MOBILE)
     for name in mobile:
         for each in sorted(capture.objects, key=lambda other: other.name):
             if each.name != name and not (each.tag is TagType.MOBILE and each.name < name):
-                yield ("object", name), ("object", each.name)
+                yield bodies.objects[name], bodies.objects[each.name]
 
 
 def bridged(
@@ -114,7 +116,7 @@ def bridged(
 ) -> Bool[np.ndarray, "frames"]:
     """Contact that also lasts between two of its frames if the bodies stay near by throughout."""
     out = touching.copy()
-    for first, last in geometry.gaps(near_by | touching):
+    for first, last in geometry.runs(near_by | touching):
         inside = np.flatnonzero(touching[first : last + 1])
         if inside.size:
             out[first + inside[0] : first + inside[-1] + 1] = True
@@ -129,18 +131,11 @@ def _margin(first: Poses, second: Poses, rate_hz: float, thresholds: Thresholds)
     return left * float(np.linalg.norm(noisy)) if noisy else 0.0
 
 
-def shaped(capture: Capture, key: tuple[str, str], where: Poses) -> Body | None:
-    """The surface of a sensor or object at its poses; None if it has no shape."""
-    return _body(capture, key, where)
-
-
-def _body(capture: Capture, key: tuple[str, str], where: Poses) -> Body | None:
-    kind, name = key
-    each: Sensor | TagObject
-    each = capture.sensor(name) if kind == "sensor" else capture.tag_object(name)
+def shaped(each: BodyGeometry) -> Body | None:
+    """The surface of a body at its poses; None if it has no shape."""
     if each.shape is None:
         return None
-    return body(surface(each.shape), where.settled, rests=where.rests)
+    return body(surface(each.shape), each.poses.settled, rests=each.poses.rests)
 
 
 def _pivot(capture: Capture, first: str, second: str) -> PivotContact | None:

@@ -3,10 +3,12 @@
 import numpy as np
 from jaxtyping import Float
 
-from extractors.bodies.body_geometry import Figure
+from extractors.bodies.body_geometry import BodyGeometry
 
 
-def contact_normal(body: Figure, other: Figure, frame: int) -> Float[np.ndarray, "3"] | None:
+def contact_normal(
+    body: BodyGeometry, other: BodyGeometry, frame: int
+) -> Float[np.ndarray, "3"] | None:
     """The unit normal of a contact, from the other to the body, in the world; None if unknown.
 
     Among the directions of the world's and both bodies' axes and the one that joins their

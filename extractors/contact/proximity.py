@@ -91,13 +91,31 @@ def nearest(
     point = _cut(first.surface, second.surface, turns[0], places[0])
     if point is not None:
         return 0.0, point, turns[0].T @ (point - places[0])
-    result = fcl.DistanceResult()
-    request = fcl.DistanceRequest(enable_nearest_points=True)
+    distance, on_first, on_second = _apart(first.surface, second.surface, turns[0], places[0])
+    return distance, on_first, turns[0].T @ (on_second - places[0])
+
+
+def distance(first: Body, second: Body, frame: int) -> float:
+    """Distance [m] of two bodies' surfaces at a frame; zero where they cut each other."""
+    turns, places = _relative(first, second, np.array([frame]))
     one = fcl.CollisionObject(first.surface.tree)
     two = fcl.CollisionObject(second.surface.tree, fcl.Transform(turns[0], places[0]))
-    distance = fcl.distance(one, two, request, result)
+    if fcl.collide(one, two, fcl.CollisionRequest(), fcl.CollisionResult()):
+        return 0.0
+    return _apart(first.surface, second.surface, turns[0], places[0])[0]
+
+
+def _apart(
+    first: Surface, second: Surface, turn: Float[np.ndarray, "3 3"], place: Float[np.ndarray, "3"]
+) -> tuple[float, Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """Distance [m] of surfaces that do not cut, and nearest points, in the first's frame [m]."""
+    result = fcl.DistanceResult()
+    request = fcl.DistanceRequest(enable_nearest_points=True)
+    one = fcl.CollisionObject(first.tree)
+    two = fcl.CollisionObject(second.tree, fcl.Transform(turn, place))
+    apart = fcl.distance(one, two, request, result)
     on_first, on_second = (np.asarray(each) for each in result.nearest_points)
-    return float(distance), on_first, turns[0].T @ (on_second - places[0])
+    return float(apart), on_first, on_second
 
 
 def _simplicity(each: Body) -> tuple[int, float, bytes]:

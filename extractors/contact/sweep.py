@@ -15,7 +15,7 @@ from jaxtyping import Bool, Float, Int
 
 from extractors.contact.offset_surfaces import EXACTNESS_M
 from extractors.contact.surfaces import Surface
-from extractors.contact.triangle_intersection import meeting_points
+from extractors.contact.triangle_intersection import meeting_point
 
 ROOMS_M = (0.002, 0.006, 0.018, 0.054, 0.162)
 """Rooms beyond the distance that are asked for [m], each by a shell of its own."""
@@ -171,7 +171,8 @@ class _Sweep:
         """
         standing, own = meeting
         moved = own @ self.turns[self.index].T + self.places[self.index]
-        return meeting_points(standing[None], moved[None])[0]
+        point = meeting_point(standing.tolist(), moved.tolist())
+        return np.full(3, np.nan) if point is None else np.array(point)
 
     def _distance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
         """What ``_touch`` or ``_room`` would say with shells at every distance."""

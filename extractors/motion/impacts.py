@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from extractors.bodies.body_geometry import Figure
+from extractors.bodies.body_geometry import BodyGeometry
 from extractors.signals.filters import velocity
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
@@ -14,13 +14,13 @@ APPROACH_S = 0.05
 """How long before a contact the speed of approach is taken [s]: the filter's own blur."""
 
 
-def closing_speed(body: Figure, other: Figure, frame: int) -> float:
+def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     """How fast two bodies' middles move relative to each other just before a frame [m/s].
 
     The fastest relative speed in the last twentieth of a second, so that a filter which rounds
     a blow does not hide it; zero where either is lost or the contact begins the capture.
     """
-    times = body.where.filled.times
+    times = body.poses.filled.times
     first = int(np.searchsorted(times, times[frame] - APPROACH_S))
     span = slice(first, frame + 1)
     offset = body.middles[span] - other.middles[span]
@@ -30,9 +30,9 @@ def closing_speed(body: Figure, other: Figure, frame: int) -> float:
     return float(speeds.max())
 
 
-def falls(body: Figure, thresholds: Thresholds) -> tuple[Interval, ...]:
+def falls(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
     """Closed intervals of frames in which a body's acceleration is that of free fall."""
-    times = body.where.smooth.times
+    times = body.poses.smooth.times
     rate = velocity(velocity(body.middles, times), times)
     apart = np.linalg.norm(rate + np.array([0.0, 0.0, GRAVITY_MPS2]), axis=1)
     with np.errstate(invalid="ignore"):

@@ -2,16 +2,16 @@
 
 import numpy as np
 from jaxtyping import Bool, Float
-from scipy.spatial.transform import Rotation
 
 from extractors.bodies.poses import Poses, rotation_matrices
-from extractors.motion.object_motion import Stay
+from extractors.motion.object_motion import RestPose
+from extractors.signals.filters import derivative
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
 
 
 def leaning(
-    where: Poses,
+    poses: Poses,
     upright: Float[np.ndarray, "3"],
     thresholds: Thresholds,
     *,
@@ -19,20 +19,20 @@ def leaning(
 ) -> tuple[Interval, ...]:
     """Closed intervals of frames in which an object leans, from when it began to lean over.
 
-    It leans while its axis is far from the vertical, and already, and still, while it turns
-    thither and back faster than a body at rest does, and turns rather than travels: its middle
-    goes no faster than its turning moves one end about the other.
+    It leans while its axis is far from the vertical. The interval also covers the tipping over
+    before and the righting after, as long as it turns faster than a body at rest does, and turns
+    rather than travels: its middle goes no faster than its turning moves one end about the other.
 
     Args:
-        where: The object's poses.
+        poses: The object's poses.
         upright: The axis that points up while it stands, in its own frame.
         thresholds: The angle, and least durations.
         length_m: The object's greatest length [m]; a point's turning moves nothing.
     """
-    stream = where.smooth
+    stream = poses.smooth
     angle = lean(stream.orientations, upright)
-    pace = np.gradient(angle, stream.times)
-    speed = np.linalg.norm(np.gradient(stream.positions, stream.times, axis=0), axis=1)
+    pace = derivative(angle, stream.times)
+    speed = np.linalg.norm(derivative(stream.positions, stream.times), axis=1)
     with np.errstate(invalid="ignore"):
         far = angle > thresholds.lean_rad
         turns = (np.abs(pace) >= thresholds.rest_speed_radps) & (speed <= np.abs(pace) * length_m)
@@ -58,14 +58,14 @@ def _run(holds: Bool[np.ndarray, "frames"]) -> int:
     return int(gaps[0]) if gaps.size else len(holds)
 
 
-def upright_axis(where: Poses, rests: tuple[Stay, ...]) -> Float[np.ndarray, "3"]:
+def upright_axis(poses: Poses, rests: tuple[RestPose, ...]) -> Float[np.ndarray, "3"]:
     """The axis that points up where a body first rests, or else in its first known frame."""
-    known = np.flatnonzero(~where.smooth.lost)
+    known = np.flatnonzero(~poses.smooth.lost)
     up = np.array([0.0, 0.0, 1.0])
     if rests:
         turn = rests[0].orientation
     elif known.size:
-        turn = where.smooth.orientations[known[0]]
+        turn = poses.smooth.orientations[known[0]]
     else:
         return up
     return np.asarray(rotation_matrices(turn[None])[0].T @ up)
@@ -84,8 +84,16 @@ def spin(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "fram
 
     Each step's turn about the vertical is the twist of its rotation; lost frames add nothing.
     """
-    rotation = Rotation.from_quat(np.nan_to_num(orientations, nan=0.5), scalar_first=True)
-    steps = (rotation[1:] * rotation[:-1].inv()).as_rotvec()[:, 2]
+    (w0, x0, y0, z0), (w1, x1, y1, z1) = orientations[:-1].T, orientations[1:].T
+    # The step's quaternion: the later orientation times the inverse of the earlier one.
+    w = w1 * w0 + x1 * x0 + y1 * y0 + z1 * z0
+    x = -w1 * x0 + x1 * w0 - y1 * z0 + z1 * y0
+    y = -w1 * y0 + x1 * z0 + y1 * w0 - z1 * x0
+    z = -w1 * z0 - x1 * y0 + y1 * x0 + z1 * w0
+    length = np.sqrt(x * x + y * y + z * z)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        angle = 2.0 * np.arctan2(length, np.abs(w)) * np.where(w < 0.0, -1.0, 1.0)
+        steps = np.where(length > 0.0, angle * z / length, 0.0)
     lost = np.isnan(orientations[:, 0])
     steps[lost[1:] | lost[:-1]] = 0.0
     return np.concatenate(([0.0], np.cumsum(steps)))

@@ -1,16 +1,15 @@
 """When a motion truly begins and ends, beyond the floor that tells it from none."""
 
-import numpy as np
-
 from extractors.bodies.poses import Poses
-from extractors.motion.object_motion import Floor, Stay, stands
+from extractors.motion.object_motion import Floor, RestPose, rests_at
+from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, first_where, last_where
 from extractors.thresholds import Thresholds
 
 
 def motion_edges(
-    where: Poses, moved: Interval, rests: tuple[Stay, ...], thresholds: Thresholds
+    poses: Poses, moved: Interval, rests: tuple[RestPose, ...], thresholds: Thresholds
 ) -> Interval:
     """The interval of a motion, from when the object left one place to when it was at another.
 
@@ -19,33 +18,33 @@ def motion_edges(
     rests afterwards: within what noise alone makes, and at least a hair's width.
 
     Args:
-        where: The object's poses.
+        poses: The object's poses.
         moved: Frames in which it is beyond the floor of motion.
         rests: Places where it rests, in time.
         thresholds: Least displacement, and deviations of noise that it must exceed.
     """
-    floor = _hair(where, thresholds)
+    floor = _hair(poses, thresholds)
     before = [each for each in rests if each.interval[0] < moved[0]]
     after = [each for each in rests if each.interval[1] > moved[1]]
-    stream = where.smooth
+    stream = poses.smooth
     first, last = moved
     if before:
         stay = before[-1]
-        there = last_where(lambda frames: stands(stream, frames, stay, floor), first - 1)
+        there = last_where(lambda frames: rests_at(stream, frames, stay, floor), first - 1)
         first = stay.interval[0] if there is None else there + 1
     if after:
         come = after[0]
         count = len(stream.times)
-        there = first_where(lambda frames: stands(stream, frames, come, floor), last + 1, count)
+        there = first_where(lambda frames: rests_at(stream, frames, come, floor), last + 1, count)
         last = come.interval[1] if there is None else there - 1
     return first, last
 
 
-def _hair(where: Poses, thresholds: Thresholds) -> Floor:
-    times = where.filled.times
-    rate_hz = 1.0 / float(np.median(np.diff(times)))
+def _hair(poses: Poses, thresholds: Thresholds) -> Floor:
+    times = poses.filled.times
+    rate_hz = frame_rate(times)
     left = thresholds.motion_sigmas * gains(rate_hz, thresholds)[0]
     return Floor(
-        max(thresholds.edge_m, left * where.noise.position_m),
-        max(thresholds.edge_rad, left * where.noise.orientation_rad),
+        max(thresholds.edge_m, left * poses.noise.position_m),
+        max(thresholds.edge_rad, left * poses.noise.orientation_rad),
     )

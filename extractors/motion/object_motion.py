@@ -2,14 +2,16 @@
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from jaxtyping import Bool, Float
-from scipy.ndimage import uniform_filter1d
+from scipy.ndimage import correlate1d
 
 from capar.model import geometry
 from capar.model.capture import Stream
 from extractors.bodies.poses import Poses, median_pose
+from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, first_where, intervals, last_where, mask
 from extractors.signals.noise import Noise
@@ -17,7 +19,7 @@ from extractors.thresholds import Thresholds
 
 
 @dataclass(frozen=True, eq=False)
-class Stay:
+class RestPose:
     """A place where an object rests, and the frames through which it is there."""
 
     interval: Interval
@@ -56,18 +58,31 @@ def motion_floor(
     return Floor(own_m, max(turn, thresholds.motion_floor_rad * own_m / thresholds.motion_floor_m))
 
 
-def stays(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Stay, ...]:
+def rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[RestPose, ...]:
     """Places where the object rests, in time, with all frames at which it is not beyond the floor.
 
     A stay grows from a stretch in which the object is slow for the least duration of rest; its
     place is the middle of the poses there; it holds all contiguous frames within the floor of
     that place, so the last millimetres of a landing belong to it.
     """
-    stream = where.smooth
+    known = _KNOWN.setdefault(poses, {})
+    if (floor, thresholds) not in known:
+        known[floor, thresholds] = _rest_poses(poses, floor, thresholds)
+    return known[floor, thresholds]
+
+
+_KNOWN: WeakKeyDictionary[Poses, dict[tuple[Floor, Thresholds], tuple[RestPose, ...]]] = (
+    WeakKeyDictionary()
+)
+"""Where bodies rest, by their poses: three measurements ask for it."""
+
+
+def _rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[RestPose, ...]:
+    stream = poses.smooth
     times = stream.times
-    rate_hz = 1.0 / float(np.median(np.diff(times)))
-    calm = slow(stream, where.noise, rate_hz, thresholds)
-    found: list[Stay] = []
+    rate_hz = frame_rate(times)
+    calm = slow_frames(stream, poses.noise, rate_hz, thresholds)
+    found: list[RestPose] = []
     for first, last in intervals(calm, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
         if found and last <= found[-1].interval[1]:
             continue
@@ -75,17 +90,17 @@ def stays(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Stay, ...
     return tuple(found)
 
 
-def moving(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Interval, ...]:
+def moving(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Interval, ...]:
     """Closed intervals of frames in which the object is at none of the places where it rests.
 
     An absence from a place counts if it lasts, or if the next place is beyond the floor from it:
     what rests here and then there has moved in between, however quickly. Frames in which it was
     lost count as motion only if it lies elsewhere afterwards.
     """
-    stream = where.smooth
-    rests = stays(where, floor, thresholds)
+    stream = poses.smooth
+    rests = rest_poses(poses, floor, thresholds)
     away = ~mask([each.interval for each in rests], len(stream.times)) & ~stream.lost
-    for first, last in geometry.gaps(stream.lost):
+    for first, last in geometry.runs(stream.lost):
         if first > 0 and last < len(stream.times) - 1 and _moved(stream, first, last, floor):
             away[first : last + 1] = True
     changes = _changes(rests, floor)
@@ -94,12 +109,12 @@ def moving(where: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Interval
     )
     return tuple(
         each
-        for each in geometry.gaps(away)
+        for each in geometry.runs(away)
         if each in lasting or any(_meet(each, change) for change in changes)
     )
 
 
-def _changes(rests: tuple[Stay, ...], floor: Floor) -> list[Interval]:
+def _changes(rests: tuple[RestPose, ...], floor: Floor) -> list[Interval]:
     """The frames between two places of rest that are farther apart than the floor."""
     out: list[Interval] = []
     for one, two in pairwise(rests):
@@ -116,7 +131,7 @@ def _meet(one: Interval, other: Interval) -> bool:
     return one[0] <= other[1] and other[0] <= one[1]
 
 
-def slow(
+def slow_frames(
     stream: Stream, noise: Noise, rate_hz: float, thresholds: Thresholds
 ) -> Bool[np.ndarray, "frames"]:
     """Whether the way's slope over the window of rest is no more than noise makes it."""
@@ -124,7 +139,7 @@ def slow(
     # Least squares over n samples: the slope's deviation is sigma sqrt(12 / n^3) a step.
     left = thresholds.rest_sigmas * rate_hz * np.sqrt(3.0 * 12.0 / (2 * half + 1) ** 3)
     slow = np.zeros(len(stream.times), dtype=bool)
-    for first, last in geometry.gaps(~stream.lost):
+    for first, last in geometry.runs(~stream.lost):
         part = slice(first, last + 1)
         speed = _slope(stream.positions[part], half) * rate_hz
         # A quaternion changes by half of the angle.
@@ -141,25 +156,21 @@ def _slope(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.n
     half = min(half, (count - 1) // 2)
     if half < 1:
         return np.zeros(count)
-    index = np.arange(count, dtype=float)[:, None]
-    size = 2 * half + 1
-    centred = positions - positions.mean(axis=0)
-    mean = uniform_filter1d(centred, size, axis=0, mode="nearest")
-    moment = uniform_filter1d(centred * index, size, axis=0, mode="nearest")
-    slope = (moment - mean * index) * 3.0 / (half * (half + 1))
+    weights = np.arange(-half, half + 1) * 3.0 / (half * (half + 1) * (2 * half + 1))
+    slope = correlate1d(positions, weights, axis=0, mode="nearest")
     length = np.linalg.norm(slope, axis=1)
     length[:half] = length[half]
     length[count - half :] = length[count - half - 1]
     return np.asarray(length)
 
 
-def _stay(stream: Stream, seed: Interval, floor: Floor) -> Stay:
+def _stay(stream: Stream, seed: Interval, floor: Floor) -> RestPose:
     first, last = seed
     place, turn = median_pose(stream, slice(first, last + 1))
-    stay = Stay(seed, place, turn)
+    stay = RestPose(seed, place, turn)
 
     def gone(frames: slice) -> Bool[np.ndarray, "some"]:
-        return ~stands(stream, frames, stay, floor)
+        return ~rests_at(stream, frames, stay, floor)
 
     middle = _middle(~gone(slice(first, last + 1)), seed)
     before, after = last_where(gone, middle - 1), first_where(gone, middle + 1, len(stream.times))
@@ -168,7 +179,9 @@ def _stay(stream: Stream, seed: Interval, floor: Floor) -> Stay:
     return replace(stay, interval=(begin, end))
 
 
-def stands(stream: Stream, frames: slice, stay: Stay, floor: Floor) -> Bool[np.ndarray, "some"]:
+def rests_at(
+    stream: Stream, frames: slice, stay: RestPose, floor: Floor
+) -> Bool[np.ndarray, "some"]:
     """Whether an object is at a place within a floor, at each of some frames; not where lost."""
     distance = np.linalg.norm(stream.positions[frames] - stay.position, axis=1)
     angle = geometry.angle_between(stream.orientations[frames], stay.orientation[None])

@@ -4,13 +4,13 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
-from extractors.bodies.body_geometry import Figure
+from extractors.bodies.body_geometry import BodyGeometry
 from extractors.signals.filters import velocity
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
 
 
-def rolling(body: Figure, thresholds: Thresholds) -> tuple[Interval, ...]:
+def rolling(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
     """Closed intervals of frames in which a body rolls, as on a level through its lowest point.
 
     The material point straight below its middle, at the height of its lowest point, has the
@@ -22,9 +22,9 @@ def rolling(body: Figure, thresholds: Thresholds) -> tuple[Interval, ...]:
         body: The body; one without a shape has no lowest point and never rolls.
         thresholds: Least speed and turn, largest slip, and least durations.
     """
-    if body.where.rests or body.shape is None:
+    if body.poses.rests or body.shape is None:
         return ()
-    stream = body.where.smooth
+    stream = body.poses.smooth
     goes = velocity(body.middles, stream.times)
     turns = angular_velocity(stream.orientations, stream.times)
     arm = np.zeros_like(goes)

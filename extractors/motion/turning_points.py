@@ -36,19 +36,19 @@ def turning_points(values: Float[np.ndarray, "frames"], least: float) -> Int[np.
 
 
 def reversals(
-    where: Poses, moving: tuple[Interval, ...], thresholds: Thresholds
+    poses: Poses, moving: tuple[Interval, ...], thresholds: Thresholds
 ) -> tuple[int, ...]:
     """Frames at which the height of a moving body has an extremum after and before a real way."""
-    height = where.smooth.positions[:, 2]
+    height = poses.smooth.positions[:, 2]
     found: list[int] = []
-    for first, last in _known(where.smooth, moving):
+    for first, last in _known(poses.smooth, moving):
         turns = turning_points(height[first : last + 1], thresholds.reversal_m)
         found += [first + int(each) for each in turns]
     return tuple(found)
 
 
 def swings(
-    where: Poses, moving: tuple[Interval, ...], thresholds: Thresholds
+    poses: Poses, moving: tuple[Interval, ...], thresholds: Thresholds
 ) -> tuple[Interval, ...]:
     """Closed intervals of frames in which a body moves to and fro along an axis of the world.
 
@@ -57,7 +57,7 @@ def swings(
     swing. Several axes that swing at a time are one swinging. It begins and ends with the motion
     itself, if that is soon before or after and no further than one stroke.
     """
-    stream = where.smooth
+    stream = poses.smooth
     chains: list[Interval] = []
     for first, last in _known(stream, moving):
         part = stream.positions[first : last + 1]
@@ -78,7 +78,7 @@ def swings(
 def _known(stream: Stream, moving: tuple[Interval, ...]) -> Iterator[Interval]:
     """The parts of the motions in which the body was not lost."""
     for first, last in moving:
-        for begin, end in geometry.gaps(~stream.lost[first : last + 1]):
+        for begin, end in geometry.runs(~stream.lost[first : last + 1]):
             yield first + begin, first + end
 
 

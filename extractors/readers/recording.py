@@ -3,12 +3,16 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
 from capar.model.capture import Notice, Source, Stream
 from capar.model.errors import CaptureError
+
+UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+"""Metres per unit, by the names that headers and capture.toml use."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,3 +111,33 @@ def uniform_clock(frames: int, rate_hz: float) -> Float[np.ndarray, "frames"]:
     if not (np.isfinite(rate_hz) and rate_hz > 0.0):
         raise CaptureError(f"a rate of {rate_hz:g} frames a second; it must be positive")
     return np.arange(frames) / rate_hz
+
+
+SAME_RATE = 0.05
+"""A stated rate that differs from that of the time stamps by a larger share contradicts them."""
+
+
+def contradicted_rate(times: Float[np.ndarray, "frames"], stated_hz: float) -> float | None:
+    """The rate of the time stamps [Hz], if the stated one contradicts it."""
+    steps = np.diff(times)
+    if not len(steps) or not float(np.median(steps)) > 0.0:
+        return None
+    rate_hz = 1.0 / float(np.median(steps))
+    return rate_hz if abs(stated_hz / rate_hz - 1.0) > SAME_RATE else None
+
+
+def check_rate(times: Float[np.ndarray, "frames"], options: Mapping[str, Any]) -> None:
+    """Prove that a ``rate_hz`` in a file's options is the rate of its time stamps.
+
+    Raises:
+        CaptureError: It is not; the message has both rates.
+    """
+    stated_hz = options.get("rate_hz")
+    if stated_hz is None:
+        return
+    rate_hz = contradicted_rate(times, float(stated_hz))
+    if rate_hz is not None:
+        raise CaptureError(
+            f"rate_hz = {stated_hz:g}, but the time stamps have {rate_hz:.4g} frames a second; "
+            "leave rate_hz out, or correct the time stamps"
+        )

@@ -59,6 +59,10 @@ READERS = (
 """Every format, the surest sign first; text files may be compressed with gzip or xz."""
 
 
+READER_OPTIONS = frozenset().union(*(reader.options for reader in READERS))
+"""What a capture.toml may say about a file of some format."""
+
+
 def reader_for(path: Path) -> Reader:
     """The reader of a file.
 

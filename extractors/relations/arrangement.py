@@ -1,96 +1,156 @@
 """How a body lies to another through time: inside, above, below, beside, along, between."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from extractors.bodies.body_geometry import Figure, blocks
+from extractors.bodies.body_geometry import BodyGeometry
+from extractors.signals.filters import derivative
 from extractors.thresholds import Thresholds
 
 Holds = Bool[np.ndarray, "frames"]
 
+BLOCK_VALUES = 1 << 19
+"""How many points are placed at once [1]: 12 MB."""
 
-def inside(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
-    """At least half of the body lies in the other's hull.
-
-    The share is that of the body's outermost points, those halfway to its middle, and its middle.
-    """
-    points = np.concatenate([body.corners, 0.5 * body.corners, np.zeros((1, 3))])
-    return _share(points, body, other, depth_m=0.0) >= thresholds.inside_share
+BLOCK_POINTS = 1 << 10
+"""How many points are held against all planes at once [1]: few enough for a processor's cache."""
 
 
-def dips(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A body and another one, with what several arrangements ask of both, computed once."""
+
+    body: BodyGeometry
+    other: BodyGeometry
+    thresholds: Thresholds
+
+    @cached_property
+    def gap(self) -> Float[np.ndarray, "frames"]:
+        """Distance of their boxes along the world's axes [m]; zero where they overlap."""
+        return gap(self.body, self.other)
+
+    @cached_property
+    def aside(self) -> Float[np.ndarray, "frames"]:
+        """How far the body's middle is outside the shadow of the other's box [m]."""
+        return beyond_shadow(self.body.middles, *self.other.boxes)
+
+    @cached_property
+    def near(self) -> Holds:
+        """Whether their boxes are within a hand's length."""
+        with np.errstate(invalid="ignore"):
+            return np.asarray(self.gap <= self.thresholds.near_m)
+
+    @property
+    def give_m(self) -> float:
+        """How far bodies may cut each other where they touch [m]."""
+        return self.thresholds.tolerance_most_m
+
+    @cached_property
+    def shares(self) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
+        """Shares of the body's points in the other's convex hull, and of its corners well inside.
+
+        The points are its outermost ones, those halfway to its middle, and its middle; well inside
+        is deeper than bodies that touch cut each other.
+        """
+        corners = self.body.corners
+        points = np.concatenate([corners, 0.5 * corners, np.zeros((1, 3))])
+        within, deep = np.zeros(len(self.body.middles)), np.zeros(len(self.body.middles))
+        planes = self.other.planes
+        with np.errstate(invalid="ignore"):
+            frames = np.flatnonzero(self.gap <= 0.0)
+        if planes is not None:
+            length = max(1, BLOCK_VALUES // len(points))
+            for start in range(0, len(frames), length):
+                some = frames[start : start + length]
+                height = self._heights(points, planes, some)
+                within[some] = (height <= 0.0).mean(axis=1)
+                deep[some] = (height[:, : len(corners)] <= -self.give_m).mean(axis=1)
+        return within, deep
+
+    def _heights(
+        self,
+        points: Float[np.ndarray, "points 3"],
+        planes: Float[np.ndarray, "planes 4"],
+        frames: Int[np.ndarray, "some"],
+    ) -> Float[np.ndarray, "some points"]:
+        """How far each of the body's points is outside the other's hull, negative inside [m].
+
+        Infinite outside the other's box, where no plane needs to be asked.
+        """
+        back = self.other.turns_at(frames)
+        turns = np.swapaxes(self.body.turns_at(frames), 1, 2) @ back
+        offset = (self.body.middles[frames] - self.other.middles[frames])[:, None] @ back
+        local = points @ turns + offset
+        out = np.full(local.shape[:2], np.inf)
+        half = 0.5 * self.other.shape.size if self.other.shape else np.zeros(3)
+        boxed = (np.abs(local) <= half + 1e-9).all(axis=2)
+        candidates = local[boxed]
+        heights = np.empty(len(candidates))
+        for start in range(0, len(candidates), BLOCK_POINTS):
+            part = slice(start, start + BLOCK_POINTS)
+            heights[part] = (candidates[part] @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+        out[boxed] = heights
+        return out
+
+
+def inside(pair: Pair) -> Holds:
+    """At least half of the body lies in the other's hull."""
+    return np.asarray(pair.shares[0] >= pair.thresholds.inside_share)
+
+
+def dips(pair: Pair) -> Holds:
     """One end of it is in the other's hull, deeper than bodies that touch cut each other."""
-    return _share(body.corners, body, other, depth_m=_give(thresholds)) > 0.0
+    return np.asarray(pair.shares[1] > 0.0)
 
 
-def _share(
-    points: Float[np.ndarray, "points 3"], body: Figure, other: Figure, *, depth_m: float
-) -> Float[np.ndarray, "frames"]:
-    """Share of a body's points, from its middle, that lie so deep in the other's hull."""
-    out = np.zeros(len(body.middles))
-    planes = other.planes
-    frames = np.flatnonzero(_overlaps(body, other, 0.0))
-    if planes is not None:
-        for block in blocks(len(frames)):
-            some = frames[block]
-            world = points @ np.swapaxes(body.turns_at(some), 1, 2) + body.middles[some, None]
-            local = (world - other.middles[some, None]) @ other.turns_at(some)
-            within = np.ones(local.shape[:2], dtype=bool)
-            for plane in planes:
-                within &= local @ plane[:3] + plane[3] <= -depth_m
-            out[some] = within.mean(axis=1)
-    return out
-
-
-def above(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+def above(pair: Pair) -> Holds:
     """It is higher than the other's top, within 45 degrees of the vertical from its shadow."""
-    low, high = body.boxes[0][:, 2], other.boxes[1][:, 2]
-    aside = beyond_shadow(body.middles, *other.boxes)
-    rise = body.middles[:, 2] - high
+    low, high = pair.body.boxes[0][:, 2], pair.other.boxes[1][:, 2]
+    rise = pair.body.middles[:, 2] - high
     with np.errstate(invalid="ignore"):
-        return np.asarray((low >= high - _give(thresholds)) & (rise > 0.0) & (aside <= rise))
+        return np.asarray((low >= high - pair.give_m) & (rise > 0.0) & (pair.aside <= rise))
 
 
-def below(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+def below(pair: Pair) -> Holds:
     """It is lower than the other's bottom, under its shadow."""
-    high, low = body.boxes[1][:, 2], other.boxes[0][:, 2]
-    aside = beyond_shadow(body.middles, *other.boxes)
+    high, low = pair.body.boxes[1][:, 2], pair.other.boxes[0][:, 2]
     with np.errstate(invalid="ignore"):
-        return np.asarray((high <= low + _give(thresholds)) & (aside <= 0.0))
+        return np.asarray((high <= low + pair.give_m) & (pair.aside <= 0.0))
 
 
-def beside(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+def beside(pair: Pair) -> Holds:
     """It is near, at the same height, and not in its shadow."""
-    low, high = body.boxes
-    bottom, top = other.boxes
-    heights = (low[:, 2] <= top[:, 2]) & (high[:, 2] >= bottom[:, 2])
-    aside = beyond_shadow(body.middles, bottom, top)
-    near = _overlaps(body, other, thresholds.near_m)
+    low, high = pair.body.boxes
+    bottom, top = pair.other.boxes
     with np.errstate(invalid="ignore"):
-        return np.asarray(heights & near & (aside > 0.0))
+        heights = (low[:, 2] <= top[:, 2]) & (high[:, 2] >= bottom[:, 2])
+        return np.asarray(heights & pair.near & (pair.aside > 0.0))
 
 
-def along(body: Figure, other: Figure, thresholds: Thresholds) -> Holds:
+def along(pair: Pair) -> Holds:
     """It moves near the other, in the direction of its longest axis if it has one."""
+    body, other, thresholds = pair.body, pair.other, pair.thresholds
     out = np.zeros(len(body.middles), dtype=bool)
-    if other.shape is None:
+    if other.shape is None or not pair.near.any():
         return out
     sizes = np.sort(other.shape.size)
     if sizes[2] < 2.0 * sizes[1]:
         return out
     axis = other.turns_at(slice(None))[:, :, int(np.argmax(other.shape.size))]
-    times = body.where.smooth.times
-    step = np.gradient(body.middles, times, axis=0)
+    times = body.poses.smooth.times
+    step = derivative(body.middles, times)
     pace = np.linalg.norm(step, axis=1)
     with np.errstate(invalid="ignore"):
         straight = np.abs(np.einsum("ij,ij->i", step, axis)) >= np.cos(thresholds.along_rad) * pace
         moves = pace > thresholds.rest_speed_mps
-        return np.asarray(straight & moves & _overlaps(body, other, thresholds.near_m))
+        return np.asarray(straight & moves & pair.near)
 
 
-def between(body: Figure, one: Figure, other: Figure) -> Holds:
+def between(body: BodyGeometry, one: BodyGeometry, other: BodyGeometry) -> Holds:
     """Its middle is in a straight tube that joins two bodies, in neither of their boxes."""
     line = other.middles - one.middles
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -103,7 +163,7 @@ def between(body: Figure, one: Figure, other: Figure) -> Holds:
         return np.asarray(tube & ~_holds(one, body.middles) & ~_holds(other, body.middles))
 
 
-def gap(body: Figure, other: Figure) -> Float[np.ndarray, "frames"]:
+def gap(body: BodyGeometry, other: BodyGeometry) -> Float[np.ndarray, "frames"]:
     """Distance of the boxes of two bodies along the world's axes [m]; zero where they overlap."""
     low, high = body.boxes
     bottom, top = other.boxes
@@ -111,7 +171,7 @@ def gap(body: Figure, other: Figure) -> Float[np.ndarray, "frames"]:
     return np.asarray(np.linalg.norm(outside, axis=1))
 
 
-def sides(body: Figure, other: Figure, frames: Int[np.ndarray, "two"]) -> str:
+def sides(body: BodyGeometry, other: BodyGeometry, frames: Int[np.ndarray, "two"]) -> str:
     """Whether a body is at opposite sides of another at two frames, or merely at other ones."""
     ends = [
         other.turn(frame).T @ (body.middles[frame] - other.middles[frame])
@@ -123,7 +183,7 @@ def sides(body: Figure, other: Figure, frames: Int[np.ndarray, "two"]) -> str:
     return "opposite" if first[axis] * last[axis] < 0.0 else "other"
 
 
-ARRANGEMENTS: dict[str, Callable[[Figure, Figure, Thresholds], Holds]] = {
+ARRANGEMENTS: dict[str, Callable[[Pair], Holds]] = {
     "inside": inside,
     "dips": dips,
     "above": above,
@@ -132,16 +192,6 @@ ARRANGEMENTS: dict[str, Callable[[Figure, Figure, Thresholds], Holds]] = {
     "along": along,
 }
 """Every arrangement of two bodies by its name in facts."""
-
-
-def _give(thresholds: Thresholds) -> float:
-    """How far bodies may cut each other where they touch [m]."""
-    return thresholds.tolerance_most_m
-
-
-def _overlaps(body: Figure, other: Figure, reach_m: float) -> Holds:
-    with np.errstate(invalid="ignore"):
-        return np.asarray(gap(body, other) <= reach_m)
 
 
 def beyond_shadow(
@@ -154,10 +204,10 @@ def beyond_shadow(
     return np.asarray(np.linalg.norm(outside[:, :2], axis=1))
 
 
-def _radius(body: Figure) -> float:
+def _radius(body: BodyGeometry) -> float:
     return float(np.linalg.norm(body.corners, axis=1).max())
 
 
-def _holds(box: Figure, points: Float[np.ndarray, "frames 3"]) -> Holds:
+def _holds(box: BodyGeometry, points: Float[np.ndarray, "frames 3"]) -> Holds:
     low, high = box.boxes
     return np.asarray(((points >= low) & (points <= high)).all(axis=1))

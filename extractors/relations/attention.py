@@ -1,12 +1,12 @@
 """What the performer looks at: the nearest tag object on the line of sight (thesis 3.5)."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from capar.model.capture import Capture, Sensor
+from extractors.bodies.bodies import Bodies
 from extractors.bodies.poses import Poses, rotation_matrices
 from extractors.contact.surfaces import Surface, surface
 from extractors.signals.intervals import Interval, intervals
@@ -39,7 +39,7 @@ class Attention:
 def attention(
     capture: Capture,
     sensor: Sensor,
-    where: Mapping[tuple[str, str], Poses],
+    bodies: Bodies,
     thresholds: Thresholds,
 ) -> Attention:
     """The line of sight of an attending sensor, against boxes first and then surfaces.
@@ -48,10 +48,10 @@ def attention(
         capture: The trial, whose tag objects with a shape can be seen.
         sensor: The sensor, with the eye [m] and the gaze in its own frame. It does not see the
             object of its own name, in which its eye may lie.
-        where: Poses by ``("sensor", name)`` and ``("object", name)``.
+        bodies: Its bodies.
         thresholds: Least durations of a look and of its interruptions.
     """
-    origins, rays = _sight(sensor, where["sensor", sensor.name])
+    origins, rays = _sight(sensor, bodies.sensors[sensor.name].poses)
     names = sorted(each.name for each in capture.objects if each.shape and each.name != sensor.name)
     seen = np.full(len(origins), NOTHING)
     nearest = np.full(len(origins), np.inf)
@@ -59,7 +59,7 @@ def attention(
         shape = capture.tag_object(name).shape
         if shape is None:
             continue
-        reach = _distances(surface(shape), where["object", name], origins, rays, nearest)
+        reach = _distances(surface(shape), bodies.objects[name].poses, origins, rays, nearest)
         closer = reach < nearest
         seen[closer], nearest[closer] = index, reach[closer]
     hit = seen != NOTHING
@@ -89,18 +89,18 @@ def _looks(
 
 
 def _sight(
-    sensor: Sensor, where: Poses
+    sensor: Sensor, poses: Poses
 ) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
     """The eye's place [m] and the direction of sight [1] at each frame, in the world."""
-    turns = rotation_matrices(where.settled.orientations)
+    turns = rotation_matrices(poses.settled.orientations)
     gaze = np.asarray(sensor.gaze, float)
     rays = turns @ (gaze / np.linalg.norm(gaze))
-    return where.settled.positions + turns @ np.asarray(sensor.eye, float), rays
+    return poses.settled.positions + turns @ np.asarray(sensor.eye, float), rays
 
 
 def _distances(
     seen: Surface,
-    where: Poses,
+    poses: Poses,
     origins: Float[np.ndarray, "frames 3"],
     rays: Float[np.ndarray, "frames 3"],
     limit: Float[np.ndarray, "frames"],
@@ -108,14 +108,14 @@ def _distances(
     """How far along each ray it meets a surface [m]; infinite where it does not, or not sooner."""
     out = np.full(len(origins), np.inf)
     offset = seen.centre
-    back = np.swapaxes(rotation_matrices(where.settled.orientations), 1, 2)
-    centres = where.settled.positions + np.swapaxes(back, 1, 2) @ offset
+    back = np.swapaxes(rotation_matrices(poses.settled.orientations), 1, 2)
+    centres = poses.settled.positions + np.swapaxes(back, 1, 2) @ offset
     aside = np.cross(centres - origins, rays)
     with np.errstate(invalid="ignore"):
         may = np.flatnonzero(np.einsum("ij,ij->i", aside, aside) <= seen.radius**2)
     if not may.size:
         return out
-    start = (back[may] @ (origins[may] - where.settled.positions[may])[..., None])[..., 0]
+    start = (back[may] @ (origins[may] - poses.settled.positions[may])[..., None])[..., 0]
     ray = (back[may] @ rays[may][..., None])[..., 0]
     enters = _box(seen, start, ray)
     keep = enters < limit[may]

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from extractors.bodies.body_geometry import Figure
+from extractors.bodies.body_geometry import BodyGeometry
 from extractors.signals.filters import speed
 from extractors.signals.intervals import Interval
 from extractors.signals.zero_crossings import pauses, zero_crossings
@@ -15,7 +15,7 @@ SHORTEST = 5
 
 
 def shifts(
-    hand: Figure, thing: Figure, touching: Interval, thresholds: Thresholds
+    hand: BodyGeometry, thing: BodyGeometry, touching: Interval, thresholds: Thresholds
 ) -> Iterator[Interval]:
     """From the last pause at one place on an object to the first at another, as closed intervals.
 
@@ -35,9 +35,9 @@ def shifts(
     part = slice(first, last + 1)
     offset = hand.middles[part] - thing.middles[part]
     place = np.einsum("fij,fi->fj", thing.turns_at(part), offset)
-    times = hand.where.smooth.times[part]
+    times = hand.poses.smooth.times[part]
     pace = speed(place, times)
-    noise = max(hand.where.noise.position_m, thing.where.noise.position_m)
+    noise = max(hand.poses.noise.position_m, thing.poses.noise.position_m)
     crossings = zero_crossings(pace, times, noise_m=noise, thresholds=thresholds)
     seats = [int(each) for each in pauses(pace, crossings)]
     if not seats:

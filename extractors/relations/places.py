@@ -7,13 +7,13 @@ from jaxtyping import Bool, Float
 
 from capar.model import geometry
 from capar.model.facts import Apart, Fact, Place, Posture, Travelled, Wound
-from extractors.bodies.body_geometry import Figure
+from extractors.bodies.body_geometry import BodyGeometry
 from extractors.motion.leaning import lean, spin
 from extractors.relations.arrangement import beyond_shadow
 
 
 def places(
-    figure: Figure, upright: Float[np.ndarray, "3"], frames: tuple[int, ...]
+    figure: BodyGeometry, upright: Float[np.ndarray, "3"], frames: tuple[int, ...]
 ) -> Iterator[Fact]:
     """Place, way, turn and posture of a body at some frames; lost frames are left out.
 
@@ -22,33 +22,46 @@ def places(
         upright: The axis that points up while it stands, in its own frame.
         frames: Frames, ascending.
     """
+    if not frames:
+        return
     way, turn = _cumulated(figure)
-    leant, spun = lean(figure.orientations, upright), spin(figure.orientations)
-    for frame in frames:
-        middle = figure.middles[frame]
-        if not np.isnan(middle).any():
-            x, y, z = (round(1000.0 * float(each)) for each in middle)
-            yield Place(figure.name, frame, x, y, z)
-            yield Travelled(
-                figure.name, frame, round(1000.0 * way[frame]), round(1000.0 * turn[frame])
-            )
-            yield Posture(
-                figure.name, frame, round(1000.0 * leant[frame]), round(1000.0 * spun[frame])
-            )
+    at = np.asarray(frames)
+    at = at[~np.isnan(figure.middles[at]).any(axis=1)]
+    middles = _thousandths(figure.middles[at])
+    ways = _thousandths(np.stack([way[at], turn[at]], axis=1))
+    orientations = figure.orientations
+    postures = np.stack([lean(orientations[at], upright), spin(orientations)[at]], axis=1)
+    rows = zip(at.tolist(), middles, ways, _thousandths(postures), strict=True)
+    for frame, middle, travelled, posture in rows:
+        yield Place(figure.name, frame, *middle)
+        yield Travelled(figure.name, frame, *travelled)
+        yield Posture(figure.name, frame, *posture)
 
 
-def distances(figure: Figure, other: Figure, frames: tuple[int, ...]) -> Iterator[Fact]:
+def distances(figure: BodyGeometry, other: BodyGeometry, frames: tuple[int, ...]) -> Iterator[Fact]:
     """Distance of two bodies' middles, and the angle by which one has gone about the other."""
+    if not frames:
+        return
     offset = figure.middles - other.middles
-    apart = np.linalg.norm(offset, axis=1)
     wound = _wound(offset, beyond_shadow(figure.middles, *other.boxes) > 0.0)
-    for frame in frames:
-        if not np.isnan(apart[frame]):
-            yield Apart(figure.name, other.name, frame, round(1000.0 * float(apart[frame])))
-            yield Wound(figure.name, other.name, frame, round(1000.0 * float(wound[frame])))
+    at = np.asarray(frames)
+    apart = np.linalg.norm(offset[at], axis=1)
+    known = ~np.isnan(apart)
+    values = _thousandths(np.stack([apart[known], wound[at[known]]], axis=1))
+    for frame, (millimetres, milliradians) in zip(at[known].tolist(), values, strict=True):
+        yield Apart(figure.name, other.name, frame, millimetres)
+        yield Wound(figure.name, other.name, frame, milliradians)
 
 
-def _cumulated(figure: Figure) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
+def _thousandths(values: Float[np.ndarray, "rows columns"]) -> list[list[int]]:
+    """Metres as whole millimetres, radians as milliradians, row by row."""
+    rounded: list[list[int]] = np.rint(1000.0 * values).astype(np.int64).tolist()
+    return rounded
+
+
+def _cumulated(
+    figure: BodyGeometry,
+) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
     """Length of the path [m] and sum of the rotation [rad] up to each frame."""
     steps = np.linalg.norm(np.diff(figure.middles, axis=0), axis=1)
     angles = geometry.angle_between(figure.orientations[1:], figure.orientations[:-1])

@@ -1,14 +1,14 @@
 """Which foot bears the body's weight, from where the feet and the body's middle are."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model.capture import Capture, Sensor
 from capar.model.facts import Bears, Touching
-from extractors.bodies.body_geometry import Figure, figure
-from extractors.bodies.poses import Poses
+from extractors.bodies.bodies import Bodies
+from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
 from extractors.motion.rest import resting
 from extractors.signals.intervals import Interval, intervals, mask
@@ -25,7 +25,7 @@ WHOLE, PART, NONE = "whole", "part", "none"
 
 def bearing(
     capture: Capture,
-    where: Mapping[tuple[str, str], Poses],
+    bodies: Bodies,
     touches: Iterable[Touching],
     thresholds: Thresholds,
 ) -> Iterator[Bears]:
@@ -43,7 +43,7 @@ def bearing(
 
     Args:
         capture: The trial.
-        where: Poses by ``("sensor", name)`` and ``("object", name)``.
+        bodies: Its bodies.
         touches: Contacts, as facts.
         thresholds: Shares and distances that the measurement decides by.
     """
@@ -52,20 +52,20 @@ def bearing(
         own = [each for each in capture.sensors if capture.agent_of(each) == agent.name]
         feet = [each for each in own if each.end_effector == FOOT]
         if len(feet) == 2:
-            yield from _borne(capture, where, feet, _middle(own, where), known, thresholds)
+            yield from _borne(capture, bodies, feet, _middle(own, bodies), known, thresholds)
 
 
 def _borne(
     capture: Capture,
-    where: Mapping[tuple[str, str], Poses],
+    bodies: Bodies,
     feet: Sequence[Sensor],
     middle: Float[np.ndarray, "frames 3"] | None,
     touches: Sequence[Touching],
     thresholds: Thresholds,
 ) -> Iterator[Bears]:
     """What the two feet of one agent bear."""
-    figures = [figure(each, where["sensor", each.name]) for each in feet]
-    down = _down(capture, where, figures, touches, thresholds)
+    figures = [bodies.sensors[each.name] for each in feet]
+    down = _down(capture, bodies, figures, touches, thresholds)
     share = share_of_first(
         figures[0].middles, figures[1].middles, down[0], down[1], middle, thresholds
     )
@@ -130,24 +130,21 @@ def _spans(
     )
 
 
-def _middle(
-    sensors: Iterable[Sensor], where: Mapping[tuple[str, str], Poses]
-) -> Float[np.ndarray, "frames 3"] | None:
+def _middle(sensors: Iterable[Sensor], bodies: Bodies) -> Float[np.ndarray, "frames 3"] | None:
     """Where the trunk's sensor nearest to the body's middle is, if there is one."""
     trunk = {each.end_effector: each.name for each in sensors if each.end_effector in TRUNK}
     name = next((trunk[kind] for kind in TRUNK if kind in trunk), None)
-    return None if name is None else where["sensor", name].smooth.positions
+    return None if name is None else bodies.sensors[name].poses.smooth.positions
 
 
 def _down(
     capture: Capture,
-    where: Mapping[tuple[str, str], Poses],
-    feet: Sequence[Figure],
+    bodies: Bodies,
+    feet: Sequence[BodyGeometry],
     touches: Sequence[Touching],
     thresholds: Thresholds,
 ) -> list[Bool[np.ndarray, "frames"]]:
     """Frames in which each foot is down."""
-    things = {each.name: figure(each, where["object", each.name]) for each in capture.objects}
     frames = len(capture.times)
     out, resting_low = [], []
     for foot in feet:
@@ -155,10 +152,10 @@ def _down(
             (each.first, each.last)
             for each in touches
             if each.body == foot.name
-            and each.other in things
-            and _bears(foot, things[each.other], each.first, thresholds)
+            and each.other in bodies.objects
+            and _bears(foot, bodies.objects[each.other], each.first, thresholds)
         ]
-        still = mask(list(resting(foot.where, thresholds)), frames)
+        still = mask(list(resting(foot.poses, thresholds)), frames)
         out.append(mask(spans, frames))
         resting_low.append(np.where(still, foot.boxes[0][:, 2], np.nan))
     heights = np.concatenate(resting_low)
@@ -170,7 +167,7 @@ def _down(
         ]
 
 
-def _bears(foot: Figure, thing: Figure, frame: int, thresholds: Thresholds) -> bool:
+def _bears(foot: BodyGeometry, thing: BodyGeometry, frame: int, thresholds: Thresholds) -> bool:
     """Whether a thing that a foot begins to touch bears it from below."""
     normal = contact_normal(foot, thing, frame)
     return normal is not None and bool(normal[2] >= thresholds.steep)

@@ -1,93 +1,65 @@
-"""Where constraints are made, in the objects' own measures: normalised local transforms.
-
-A normalised local transform (NLT) has a place in an object's frame over the object's size, axis
-by axis, so that it holds for any object of its kind, and an orientation (thesis 4.4.2.2). An axis
-along which the object has no extent keeps its metres.
-"""
+"""Where the constraint that ends a segment is made: NLTs of the contact and of what is seen."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
-from capar.model import geometry
-from capar.model.capture import Capture, Sensor, TagObject
-from capar.model.par import Nlt
-from extractors.bodies.poses import Poses
+from capar.model.capture import Capture, TagObject
+from capar.model.nlt import Nlt, local_point, normalised, relative_orientation
+from capar.model.observation import Segment
+from capar.model.par import ConstraintLocation
+from extractors.bodies.bodies import Bodies
+from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.proximity import nearest, still
 from extractors.contact.surfaces import surface
 from extractors.relations.attention import NOTHING, Attention
 
-NO_EXTENT_M = 1e-6
-"""A size below this is none [m]."""
+_Point: TypeAlias = Float[np.ndarray, "3"]
 
 
-@dataclass(frozen=True, slots=True)
-class Location:
-    """The constraint that a contact makes at one frame."""
-
-    frame: int
-    dominant: str
-    """The object of ``ee_nlt``; empty if the end-effector itself makes the contact."""
-
-    goal: str
-    ee_nlt: Nlt | None
-    """Where on the dominant object the contact is, and how the end-effector holds that."""
-
-    goal_nlt: Nlt | None
-    """Where on the goal the contact is, and how the end-effector or the dominant object lies."""
-
-    seen: str = ""
-    """The object looked at; empty if none."""
-
-    v_nlt: Nlt | None = None
-    """Where on that object the line of sight meets it, and how the looking sensor lies."""
-
-
-def locate(
+def constraint_location(
     capture: Capture,
-    where: Mapping[tuple[str, str], Poses],
+    bodies: Bodies,
     attention: Mapping[str, Attention],
+    segment: Segment,
     *,
-    ee: str,
     dominant: str,
     goal: str,
-    frame: int,
-) -> Location:
-    """The NLTs of the contact of an end-effector, or of what it possesses, with a goal.
+) -> ConstraintLocation:
+    """The NLTs of the contact that ends a segment, and of what is looked at then.
 
     The contact's place is the middle of where the surfaces cut each other, or else the points
     at which they are nearest; where either has no shape, it is the origin of what comes.
 
     Args:
         capture: The trial.
-        where: Poses by ``("sensor", name)`` and ``("object", name)``.
+        bodies: Its bodies.
         attention: What the attending sensors look at.
-        ee: The end-effector's sensor.
-        dominant: The object in it that makes the contact; empty if the end-effector does.
+        segment: The segment; its last frame is that of the contact.
+        dominant: The object in the end-effector that makes the contact; empty if the
+            end-effector does.
         goal: The object that is touched.
-        frame: The frame of the contact.
 
     Raises:
         UnknownNameError: A sensor or object of that name is not in the capture.
     """
-    hand, target = capture.sensor(ee), capture.tag_object(goal)
-    comes = capture.tag_object(dominant) if dominant else hand
-    hand_pose = where["sensor", ee]
-    target_pose = where["object", goal]
-    comes_pose = where["object", dominant] if dominant else hand_pose
-    lost = [each.lost[frame] for each in (hand_pose, comes_pose, target_pose)]
-    seen, v_nlt = _sight(capture, where, attention, frame)
-    if any(lost):
-        return Location(frame, dominant, goal, None, None, seen, v_nlt)
-    on_comes, on_target = _points(comes, comes_pose, target, target_pose, frame)
-    ee_nlt = None
-    if isinstance(comes, TagObject):
-        ee_nlt = normalised(on_comes, _relative(comes_pose, hand_pose, frame), size(comes))
-    goal_nlt = normalised(on_target, _relative(target_pose, comes_pose, frame), size(target))
-    return Location(frame, dominant, goal, ee_nlt, goal_nlt, seen, v_nlt)
+    ee_nlt, goal_nlt = _contact(capture, bodies, segment.ee, dominant, goal, segment.last)
+    seen, v_nlt = _seen(capture, bodies, attention, segment.last)
+    return ConstraintLocation(
+        action=segment.name,
+        purpose=segment.purpose,
+        ee=segment.ee,
+        side=capture.sensor(segment.ee).side,
+        frame=segment.last,
+        dominant=dominant,
+        goal=goal,
+        ee_nlt=ee_nlt,
+        goal_nlt=goal_nlt,
+        seen=seen,
+        v_nlt=v_nlt,
+    )
 
 
 def size(each: TagObject) -> Float[np.ndarray, "3"]:
@@ -95,76 +67,56 @@ def size(each: TagObject) -> Float[np.ndarray, "3"]:
     return np.zeros(3) if each.shape is None else each.shape.size
 
 
-def normalised(
-    point: Float[np.ndarray, "3"],
-    orientation: Float[np.ndarray, "4"],
-    size_m: Float[np.ndarray, "3"],
-) -> Nlt:
-    """A place in an object's frame [m] over its size [m], with an orientation in that frame."""
-    x, y, z = map(float, point / _divisors(size_m))
-    w, i, j, k = map(float, orientation * (-1.0 if orientation[0] < 0.0 else 1.0))
-    return Nlt((x, y, z), (w, i, j, k))
+def _contact(
+    capture: Capture, bodies: Bodies, ee: str, dominant: str, goal: str, frame: int
+) -> tuple[Nlt | None, Nlt | None]:
+    """The contact on the dominant object, if there is one, and on the goal; None where lost."""
+    hand, target = capture.sensor(ee), capture.tag_object(goal)
+    comes = capture.tag_object(dominant) if dominant else None
+    holder, at = bodies.sensors[hand.name], bodies.objects[target.name]
+    moved = bodies.objects[dominant] if dominant else holder
+    if any(each.poses.lost[frame] for each in (holder, moved, at)):
+        return None, None
+    on_moved, on_target = _points(moved, at, frame)
+    ee_nlt = None
+    if comes is not None:
+        ee_nlt = normalised(on_moved, _relative(moved, holder, frame), size(comes))
+    return ee_nlt, normalised(on_target, _relative(at, moved, frame), size(target))
 
 
-def restored(
-    nlt: Nlt, size_m: Float[np.ndarray, "3"]
-) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]:
-    """The place [m] and orientation that an NLT means in the frame of an object of a size [m]."""
-    return np.asarray(nlt.position) * _divisors(size_m), np.asarray(nlt.orientation)
-
-
-def mirrored(nlt: Nlt, axis: int) -> Nlt:
-    """The NLT for the other side: reflected in the object's plane across an axis (0, 1 or 2)."""
-    signs = [-1.0 if each == axis else 1.0 for each in range(3)]
-    x, y, z = (sign * each for sign, each in zip(signs, nlt.position, strict=True))
-    w, *vector = nlt.orientation
-    i, j, k = (-sign * each for sign, each in zip(signs, vector, strict=True))
-    return Nlt((x, y, z), (w, i, j, k))
-
-
-def _divisors(size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
-    return np.where(np.asarray(size_m) > NO_EXTENT_M, size_m, 1.0)
-
-
-def _relative(base: Poses, other: Poses, frame: int) -> Float[np.ndarray, "4"]:
+def _relative(base: BodyGeometry, other: BodyGeometry, frame: int) -> Float[np.ndarray, "4"]:
     """The other's orientation in the base's frame."""
-    first = geometry.rotations(base.settled.orientations[frame])
-    second = geometry.rotations(other.settled.orientations[frame])
-    return geometry.quaternions(first.inv() * second)
+    return relative_orientation(
+        base.poses.settled.orientations[frame], other.poses.settled.orientations[frame]
+    )
 
 
-def _points(
-    comes: Sensor | TagObject, comes_pose: Poses, target: TagObject, target_pose: Poses, frame: int
-) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+def _points(moved: BodyGeometry, target: BodyGeometry, frame: int) -> tuple[_Point, _Point]:
     """The contact's place in the frame of what comes and in the target's [m]."""
-    if comes.shape is None or target.shape is None:
-        origin = comes_pose.settled.positions[frame]
-        return np.zeros(3), _local(target_pose, origin, frame)
-    one = still(surface(comes.shape), comes_pose.settled, frame)
-    two = still(surface(target.shape), target_pose.settled, frame)
-    _, on_comes, on_target = nearest(one, two, 0)
-    return on_comes, on_target
+    if moved.shape is None or target.shape is None:
+        return np.zeros(3), _local(target, moved.poses.settled.positions[frame], frame)
+    one = still(surface(moved.shape), moved.poses.settled, frame)
+    two = still(surface(target.shape), target.poses.settled, frame)
+    _, on_moved, on_target = nearest(one, two, 0)
+    return on_moved, on_target
 
 
-def _local(base: Poses, point: Float[np.ndarray, "3"], frame: int) -> Float[np.ndarray, "3"]:
+def _local(base: BodyGeometry, point: _Point, frame: int) -> _Point:
     """A point of the world [m] in a body's frame."""
-    turn: Rotation = geometry.rotations(base.settled.orientations[frame])
-    return turn.inv().apply(point - base.settled.positions[frame])
+    stream = base.poses.settled
+    return local_point(stream.positions[frame], stream.orientations[frame], point)
 
 
-def _sight(
-    capture: Capture,
-    where: Mapping[tuple[str, str], Poses],
-    attention: Mapping[str, Attention],
-    frame: int,
+def _seen(
+    capture: Capture, bodies: Bodies, attention: Mapping[str, Attention], frame: int
 ) -> tuple[str, Nlt | None]:
     """What the first attending sensor that sees anything looks at, and where on it."""
     for sensor in sorted(attention):
         look = attention[sensor]
         if look.seen[frame] != NOTHING:
             name = look.objects[look.seen[frame]]
-            pose = where["object", name]
-            point = _local(pose, look.points[frame], frame)
-            turn = _relative(pose, where["sensor", sensor], frame)
+            body = bodies.objects[name]
+            turn = _relative(body, bodies.sensors[sensor], frame)
+            point = _local(body, look.points[frame], frame)
             return name, normalised(point, turn, size(capture.tag_object(name)))
     return "", None

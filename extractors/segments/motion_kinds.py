@@ -1,30 +1,63 @@
-"""Whether an object that moves is shifted, turned or both (thesis 4.1.1)."""
+"""Whether an object that moves is shifted, turned or both (thesis 4.1.1), and between where."""
 
 import numpy as np
+from jaxtyping import Float
 
 from capar.model import geometry
+from capar.model.capture import Capture
+from capar.model.observation import Segment
 from capar.model.par import Motion
 from extractors.bodies.poses import Poses
+from extractors.measure import Measurements
 from extractors.motion.object_motion import motion_floor
+from extractors.signals.clock import frame_rate
 from extractors.thresholds import Thresholds
+
+Place = tuple[float, float, float]
+"""A place in the world [m]."""
+
+
+def moved_path(
+    capture: Capture, measurements: Measurements, segment: Segment, thresholds: Thresholds
+) -> tuple[Motion, tuple[Place, ...]]:
+    """How the object that a segment moves moves, and where it begins and ends [m].
+
+    Where the segment moves none, the motion is none and the places are the end-effector's. A place
+    at which the body was lost is left out.
+    """
+    positions = measurements.tracks[segment.ee].positions
+    kind = Motion.NONE
+    if "1" in segment.features.change_loc:
+        moved = capture.tag_object(segment.objects[segment.features.change_loc.index("1")])
+        poses = measurements.bodies.objects[moved.name].poses
+        positions = poses.smooth.positions
+        span = segment.first, segment.last
+        kind = motion_kind(poses, *span, own_m=moved.motion_floor_m, thresholds=thresholds)
+    ends = (positions[segment.first], positions[segment.last])
+    return kind, tuple(_place(each) for each in ends if not np.isnan(each).any())
+
+
+def _place(position: Float[np.ndarray, "3"]) -> Place:
+    x, y, z = map(float, position)
+    return x, y, z
 
 
 def motion_kind(
-    where: Poses, first: int, last: int, *, own_m: float | None, thresholds: Thresholds
+    poses: Poses, first: int, last: int, *, own_m: float | None, thresholds: Thresholds
 ) -> Motion:
     """How the body moves between two frames, against its pose at the first.
 
     Args:
-        where: The body's poses.
+        poses: The body's poses.
         first: Frame of the reference pose.
         last: Frame up to which motion counts.
         own_m: The object's own floor of motion [m], if it has one.
         thresholds: Least floors, and deviations of noise that they must exceed.
     """
     span = slice(first, last + 1)
-    places, turns = where.smooth.positions[span], where.smooth.orientations[span]
-    rate_hz = 1.0 / float(np.median(np.diff(where.smooth.times)))
-    floor = motion_floor(where.noise, rate_hz, own_m=own_m, thresholds=thresholds)
+    places, turns = poses.smooth.positions[span], poses.smooth.orientations[span]
+    rate_hz = frame_rate(poses.smooth.times)
+    floor = motion_floor(poses.noise, rate_hz, own_m=own_m, thresholds=thresholds)
     known = ~np.isnan(places[:, 0])
     if not known.any():
         return Motion.NONE

@@ -3,11 +3,27 @@
 import numpy as np
 from jaxtyping import Float, Int
 
-from capar.model.par import PathPoint
+from capar.model.observation import Segment
+from capar.model.par import PathPoint, Style
+from extractors.measure import Track
 from extractors.thresholds import Thresholds
 
 STEPS = 33
 """Samples of a VelStyle, at equal steps of time from the first to the last [1]."""
+
+
+def style(
+    segment: Segment, track: Track, times: Float[np.ndarray, "frames"], thresholds: Thresholds
+) -> Style:
+    """How a segment was performed: its VelStyle and its PathStyle."""
+    span = segment.first, segment.last
+    return Style(
+        action=segment.name,
+        purpose=segment.purpose,
+        ee=segment.ee,
+        velocity=velocity_style(track.positions, times, *span, thresholds=thresholds),
+        path=path_style(track.positions, times, track.crossings, *span),
+    )
 
 
 def velocity_style(

@@ -1,14 +1,27 @@
-"""Zero-phase low-pass filtering of sampled motion, and what it leaves of white noise."""
+"""Zero-phase low-pass filtering of sampled motion, and what it leaves of white noise.
+
+The filter is a Butterworth low-pass run forward and backward, cut off where its response has
+decayed to nothing: a weighted mean of the frames about each one. What is farther away than half
+its length has no part in a frame, so a part of a recording is filtered as the whole is.
+"""
+
+from functools import lru_cache
+from math import ceil
 
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy.ndimage import correlate1d
 from scipy.signal import butter, sosfiltfilt, sosfreqz
 
 from capar.model import geometry
+from extractors.signals.clock import time_step
 from extractors.thresholds import Thresholds
 
 ORDER = 2
 """Order of one pass of the Butterworth filter [1]; two passes make it twice that, without phase."""
+
+EXTENSION_S = 0.5
+"""How far a stretch is continued at its ends, point-symmetrically, before it is filtered [s]."""
 
 JITTER = 0.2
 """Steps of time that differ by more than this share of the median are resampled [1]."""
@@ -17,6 +30,25 @@ JITTER = 0.2
 def cutoff(rate_hz: float, thresholds: Thresholds) -> float:
     """The cutoff that the rate allows [Hz]."""
     return min(thresholds.cutoff_hz, thresholds.cutoff_rate_share * rate_hz)
+
+
+def filter_support_s(step_s: float, thresholds: Thresholds) -> float:
+    """Half the length of the low-pass filter [s]."""
+    return step_s * (len(kernel(step_s, thresholds)) // 2)
+
+
+@lru_cache
+def kernel(step_s: float, thresholds: Thresholds) -> Float[np.ndarray, "taps"]:
+    """The weights of the frames about each one: symmetric, of sum one."""
+    sos = _filter(1.0 / step_s, thresholds)
+    half = ceil(thresholds.filter_periods / (cutoff(1.0 / step_s, thresholds) * step_s))
+    impulse = np.zeros(4 * half + 1)
+    impulse[2 * half] = 1.0
+    response = sosfiltfilt(sos, impulse, padlen=0)[half : 3 * half + 1]
+    weights = response + response[::-1]
+    weights /= weights.sum()
+    weights.flags.writeable = False
+    return np.asarray(weights)
 
 
 def lowpass(
@@ -31,12 +63,12 @@ def lowpass(
         times: Clock [s]; if its steps are uneven, values are filtered on an even clock.
         thresholds: The cutoff [Hz].
     """
-    step = float(np.median(np.diff(times)))
-    sos = _filter(1.0 / step, thresholds)
+    step = time_step(times)
+    weights = kernel(step, thresholds)
     out = np.array(values, dtype=float)
-    for first, last in geometry.gaps(~np.isnan(values[:, 0])):
+    for first, last in geometry.runs(~np.isnan(values[:, 0])):
         part = slice(first, last + 1)
-        out[part] = _filtered(sos, values[part], times[part], step)
+        out[part] = _filtered(weights, values[part], times[part], step)
     return out
 
 
@@ -50,6 +82,7 @@ def lowpass_orientations(
     return np.asarray(smooth / np.linalg.norm(smooth, axis=1, keepdims=True))
 
 
+@lru_cache(maxsize=64)
 def gains(rate_hz: float, thresholds: Thresholds) -> tuple[float, float, float]:
     """What the filter makes of white noise of deviation one.
 
@@ -80,24 +113,56 @@ def velocity(
     """Rate of change by central differences [m/s]; each known stretch by itself, NaN stays."""
     out = np.full(positions.shape, np.nan)
     known: Bool[np.ndarray, "frames"] = ~np.isnan(positions[:, 0])
-    for first, last in geometry.gaps(known):
+    for first, last in geometry.runs(known):
         part = slice(first, last + 1)
-        out[part] = np.gradient(positions[part], times[part], axis=0) if last > first else 0.0
+        out[part] = derivative(positions[part], times[part]) if last > first else 0.0
     return out
 
 
+def derivative(
+    values: Float[np.ndarray, "frames *axes"], times: Float[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames *axes"]:
+    """Rate of change by differences with both neighbours, one-sided at the ends.
+
+    ``numpy.gradient`` chooses its formula by whether all steps are equal, so that it computes a
+    part otherwise than the whole.
+    """
+    steps = np.diff(times).reshape(-1, *[1] * (values.ndim - 1))
+    slopes = np.diff(values, axis=0) / steps
+    share = steps[:-1] / (steps[:-1] + steps[1:])
+    inner = share * slopes[1:] + (1.0 - share) * slopes[:-1]
+    return np.concatenate([slopes[:1], inner, slopes[-1:]])
+
+
+@lru_cache(maxsize=64)
 def _filter(rate_hz: float, thresholds: Thresholds) -> np.ndarray:
     return np.asarray(butter(ORDER, cutoff(rate_hz, thresholds), fs=rate_hz, output="sos"))
 
 
-def _filtered(sos: np.ndarray, values: np.ndarray, times: np.ndarray, step: float) -> np.ndarray:
+def _filtered(
+    weights: Float[np.ndarray, "taps"],
+    values: Float[np.ndarray, "frames axes"],
+    times: Float[np.ndarray, "frames"],
+    step: float,
+) -> Float[np.ndarray, "frames axes"]:
     if len(values) < 4:
         return values
-    pad = min(len(values) - 1, max(int(0.5 / step), 3 * (2 * len(sos) + 1)))
     if np.abs(np.diff(times) / step - 1.0).max() <= JITTER:
-        return np.asarray(sosfiltfilt(sos, values, axis=0, padlen=pad))
+        return _weighted(weights, values, step)
     even = np.linspace(times[0], times[-1], max(round((times[-1] - times[0]) / step) + 1, 4))
     columns = [np.interp(even, times, column) for column in values.T]
-    pad = min(pad, len(even) - 1)
-    smooth = sosfiltfilt(sos, np.stack(columns, axis=1), axis=0, padlen=pad)
+    smooth = _weighted(weights, np.stack(columns, axis=1), step)
     return np.stack([np.interp(times, even, column) for column in smooth.T], axis=1)
+
+
+def _weighted(
+    weights: Float[np.ndarray, "taps"], values: Float[np.ndarray, "frames axes"], step: float
+) -> Float[np.ndarray, "frames axes"]:
+    """The weighted mean about each frame; the ends are continued point-symmetrically, then held."""
+    half = len(weights) // 2
+    reach = min(len(values) - 1, half, max(int(EXTENSION_S / step), 1))
+    before = 2.0 * values[0] - values[reach:0:-1]
+    after = 2.0 * values[-1] - values[-2 : -reach - 2 : -1]
+    held = ((half - reach, half - reach), (0, 0))
+    extended = np.pad(np.concatenate([before, values, after]), held, mode="edge")
+    return np.asarray(correlate1d(extended, weights, axis=0)[half : len(extended) - half])

@@ -5,6 +5,7 @@ from jaxtyping import Float
 
 from capar.model import geometry
 from capar.model.capture import Stream
+from extractors.signals.clock import time_step
 
 DEGREE = 3
 """Positions in a gap lie on a polynomial of this degree [1] (spec 3: cubic)."""
@@ -17,7 +18,7 @@ def fill_gaps(stream: Stream, *, gap_s: float) -> Stream:
     the gap has (two at least), so that noise beside a gap is not thrown across it; it is exact
     for cubic motion. Orientations turn along great arcs. Losses at the ends stay lost.
     """
-    short = [each for each in geometry.gaps(stream.lost) if _inside(stream, each, gap_s)]
+    short = [each for each in geometry.runs(stream.lost) if _inside(stream, each, gap_s)]
     if not short:
         return stream
     positions, orientations = stream.positions.copy(), stream.orientations.copy()
@@ -33,15 +34,15 @@ def fill_gaps(stream: Stream, *, gap_s: float) -> Stream:
 
 def long_gaps(stream: Stream, *, gap_s: float) -> list[tuple[int, int]]:
     """Losses that are not filled, as closed intervals of frames."""
-    return [each for each in geometry.gaps(stream.lost) if not _inside(stream, each, gap_s)]
+    return [each for each in geometry.runs(stream.lost) if not _inside(stream, each, gap_s)]
 
 
 def _inside(stream: Stream, gap: tuple[int, int], gap_s: float) -> bool:
     first, last = gap
     if first == 0 or last == len(stream.times) - 1:
         return False
-    step = float(np.median(np.diff(stream.times)))
-    return bool(stream.times[last + 1] - stream.times[first - 1] - step < gap_s)
+    lasts_s = stream.times[last + 1] - stream.times[first - 1] - time_step(stream.times)
+    return bool(lasts_s < gap_s - 1e-9)
 
 
 def _cubic(stream: Stream, first: int, last: int) -> Float[np.ndarray, "gap 3"]:

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model import geometry
+from extractors.signals.clock import time_step
 
 Interval = tuple[int, int]
 """First and last frame, both inside."""
@@ -35,10 +36,12 @@ def intervals(
             step of time.
         known: Frames at which it can be known at all; unknown ones, if long, stay interruptions.
     """
-    step = float(np.median(np.diff(times)))
     seen = holds if known is None else holds & known
+    if not seen.any():
+        return []
+    step = time_step(times)
     closed: list[Interval] = []
-    for first, last in geometry.gaps(seen):
+    for first, last in geometry.runs(seen):
         if closed and times[first] - times[closed[-1][1]] - step < dropout_s - 1e-9:
             closed[-1] = (closed[-1][0], last)
         else:

@@ -3,8 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 
 from capar.model.capture import Stream
+from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains, lowpass
 from extractors.thresholds import Thresholds
 
@@ -30,14 +32,15 @@ def noise_at_rest(stream: Stream, thresholds: Thresholds) -> Noise:
     over the share of white noise that lies above the cutoff, gives the whole. Stretches of
     quick motion or loose tracking count no more than any other outlier.
     """
-    rate_hz = 1.0 / float(np.median(np.diff(stream.times)))
-    _, _, taken = gains(rate_hz, thresholds)
+    _, _, taken = gains(frame_rate(stream.times), thresholds)
     place = _deviation(stream.positions, stream, thresholds)
     # A small rotation changes the quaternion by half of its angle, along three directions.
     turn = 2.0 * _deviation(stream.orientations, stream, thresholds)
     return Noise(place / taken, turn / taken)
 
 
-def _deviation(values: np.ndarray, stream: Stream, thresholds: Thresholds) -> float:
+def _deviation(
+    values: Float[np.ndarray, "frames axes"], stream: Stream, thresholds: Thresholds
+) -> float:
     rest = (values - lowpass(values, stream.times, thresholds))[~stream.lost]
     return float(np.sqrt(np.median((rest**2).sum(axis=1)) / CHI_SQUARE)) if len(rest) else 0.0

@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float, Int
 from scipy.signal import find_peaks
 
 from capar.model import geometry
+from extractors.signals.clock import frame_rate, time_step
 from extractors.signals.filters import gains
 from extractors.signals.intervals import duration, intervals
 from extractors.thresholds import Thresholds
@@ -33,7 +34,7 @@ def zero_crossings(
         noise_m: Deviation of one unfiltered coordinate at rest [m].
         thresholds: Prominence and rest.
     """
-    rate_hz = 1.0 / float(np.median(np.diff(times)))
+    rate_hz = frame_rate(times)
     noise_mps = gains(rate_hz, thresholds)[1] * noise_m * np.sqrt(3.0)
     found: set[int] = {0, len(times) - 1}
     known = ~np.isnan(speed_mps)
@@ -44,7 +45,7 @@ def zero_crossings(
             thresholds.crossing_speed_share * float(np.nanmax(speed_mps)),
         )
         resting = rests(speed_mps, times, noise_mps=noise_mps, thresholds=thresholds)
-        for first, last in geometry.gaps(known):
+        for first, last in geometry.runs(known):
             part = slice(first, last + 1)
             turns = _extrema(speed_mps[part], prominence, resting[part])
             found.update(first + each for each in turns)
@@ -87,7 +88,7 @@ def rests(
     limit = max(thresholds.rest_speed_mps, thresholds.rest_sigmas * noise_mps)
     slow = _to_the_ends(np.nan_to_num(speed_mps, nan=np.inf) < limit, speed_mps, times, thresholds)
     out = np.zeros(len(speed_mps), dtype=bool)
-    step = float(np.median(np.diff(times)))
+    step = time_step(times)
     for first, last in intervals(slow, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
         begin, end = _trimmed(speed_mps, first, last)
         if duration((begin, end), times, step) < thresholds.rest_minimum_s:
@@ -107,8 +108,8 @@ def _to_the_ends(
     A filter knows a stretch's end from one side only, and makes more of the noise there.
     """
     out = slow.copy()
-    reach = int(0.5 * thresholds.rest_minimum_s / float(np.median(np.diff(times)))) + 1
-    for first, last in geometry.gaps(~np.isnan(speed_mps)):
+    reach = int(0.5 * thresholds.rest_minimum_s / time_step(times)) + 1
+    for first, last in geometry.runs(~np.isnan(speed_mps)):
         inside = np.flatnonzero(slow[first : last + 1]) + first
         if inside.size and inside[0] - first <= reach:
             out[first : inside[0]] = True
@@ -137,6 +138,6 @@ def _extrema(
     for signal in (speed, -speed):
         peaks, _ = find_peaks(signal, prominence=prominence)
         found.update(int(each) for each in peaks if not resting[each])
-    for first, last in geometry.gaps(resting):
+    for first, last in geometry.runs(resting):
         found.update({first, last} - {0, len(speed) - 1})
     return found

@@ -1,11 +1,11 @@
 """Facts as statements: each has its predicate as its class, and its arguments by name."""
 
-from dataclasses import fields
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
 from pyoxigraph import NamedNode
 
+from capar.model.atoms import arguments
 from kb.encode.scene import DERIVED
 from kb.store import names
 from kb.store.statements import Statements, Value
@@ -14,62 +14,31 @@ from ontology import CAPAR
 if TYPE_CHECKING:
     from capar.model.facts import Fact
 
-CLASSES = {
-    "frames": CAPAR.FramesFact,
-    "rate_mhz": CAPAR.RateFact,
-    "link": CAPAR.LinkFact,
-    "tag": CAPAR.TagFact,
-    "zero_crossing": CAPAR.ZeroCrossing,
-    "touching": CAPAR.Touching,
-    "gap": CAPAR.Gap,
-    "moving": CAPAR.Moving,
-    "looking_at": CAPAR.LookingAt,
-    "force_transfer": CAPAR.ForceTransfer,
-    "intended": CAPAR.Intended,
-}
-"""The class of each predicate that extractors state; others are plainly facts."""
-
-PROPERTIES = {
-    "first": CAPAR.firstFrame,
-    "last": CAPAR.lastFrame,
-    "frame": CAPAR.frame,
-    "ee": CAPAR.ee,
-    "kind": CAPAR.effectorType,
-    "side": CAPAR.side,
-    "body": CAPAR.body,
-    "other": CAPAR.other,
-    "object": CAPAR.objectName,
-    "sensor": CAPAR.sensor,
-    "type": CAPAR.tagName,
-    "rate": CAPAR.rateMhz,
-    "micrometres": CAPAR.micrometres,
-    "rank": CAPAR.rank,
-    "action": CAPAR.actionName,
-    "goal": CAPAR.goalName,
-    "purpose": CAPAR.purpose,
-}
-"""The property of each argument."""
-
 
 def facts(out: Statements, stated: "tuple[Fact, ...]", capture: NamedNode) -> list[NamedNode]:
     """Every fact, derived from its capture."""
     return [_fact(out, each, capture) for each in stated]
 
 
+def terms(kind: "type[Fact]") -> tuple[NamedNode, ...]:
+    """The class of a kind of fact, and the property of each argument where it has its own."""
+    return _terms(cast(Any, kind))
+
+
 @cache
-def _arguments(kind: Any) -> tuple[str, ...]:
-    return tuple(each.name for each in fields(kind))
+def _terms(kind: Any) -> tuple[NamedNode, ...]:
+    return tuple(getattr(CAPAR, each) for each in kind.declaration.rdf)
 
 
 def _fact(out: Statements, fact: "Fact", capture: NamedNode) -> NamedNode:
-    arguments = {each: getattr(fact, each) for each in _arguments(cast(Any, type(fact)))}
-    kind = CLASSES.get(fact.predicate)
-    said: dict[NamedNode, Value] = {}
-    if kind:
-        said = {PROPERTIES[name]: value for name, value in arguments.items()}
+    values = [getattr(fact, each) for each in arguments(cast(Any, type(fact)))]
+    kind, *properties = terms(type(fact))
+    if kind == CAPAR.Fact:
+        said: dict[NamedNode, Value] = {
+            CAPAR.name: fact.predicate,
+            CAPAR.parameters: " ".join(map(str, values)),
+        }
     else:
-        said[CAPAR.name] = fact.predicate
-        said[CAPAR.parameters] = " ".join(map(str, arguments.values()))
+        said = dict(zip(properties, values, strict=True))
     said[DERIVED] = capture
-    node = names.part(out.about, "fact", fact.predicate, *arguments.values())
-    return out.say(node, (kind or CAPAR.Fact,), said)
+    return out.say(names.part(out.about, "fact", fact.predicate, *values), (kind,), said)

@@ -6,6 +6,7 @@ from pyoxigraph import NamedNode
 
 from capar.model.errors import UnknownNameError
 from capar.model.par import UNKNOWN, FeatureSet
+from capar.model.segment_address import SegmentAddress
 from kb.encode.scene import GENERATED
 from kb.store import names
 from kb.store.statements import LABEL, Said, Statements
@@ -100,6 +101,7 @@ def _segment(
         CAPAR.ofLink: link_node,
         CAPAR.ee: seen.ee,
         CAPAR.index: seen.index,
+        CAPAR.address: str(SegmentAddress(seen.ee, seen.index, names.observation_name(out.about))),
         CAPAR.firstFrame: seen.first,
         CAPAR.lastFrame: seen.last,
         CAPAR.start: float(seen.start_s),

@@ -10,7 +10,7 @@ from pyoxigraph import Literal, NamedNode
 from capar.model.facts import STATED, Fact
 from capar.model.par import UNKNOWN
 from kb.encode import encode
-from kb.encode.facts import CLASSES, PROPERTIES
+from kb.encode.facts import terms
 from kb.store import names
 from kb.store import updates as writing
 from kb.store.shapes import prove
@@ -37,7 +37,7 @@ def facts(store: Store, name: str) -> tuple[Fact, ...]:
         else:
             said[str(fact)][str(key)] = value.value if isinstance(value, Literal) else str(value)
     found = [_fact(kinds[node], said[node]) for node in said]
-    rank = {kind: index for index, kind in enumerate(STATED)}
+    rank: dict[type[Fact], int] = {kind: index for index, kind in enumerate(STATED)}
     return tuple(sorted(found, key=lambda each: (rank[type(each)], each)))
 
 
@@ -97,14 +97,14 @@ def named_segments(store: Store, name: str) -> tuple[NamedSegment, ...]:
     return tuple(sorted(found))
 
 
-_BY_CLASS = {str(node): predicate for predicate, node in CLASSES.items()}
+_BY_CLASS = {str(terms(kind)[0]): kind for kind in STATED if terms(kind)[0] != CAPAR.Fact}
 _BY_PREDICATE = {each.predicate: each for each in STATED}
 
 
 def _fact(kind: str, said: dict[str, str]) -> Fact:
     if kind in _BY_CLASS:
-        cls = _BY_PREDICATE[_BY_CLASS[kind]]
-        values = [said[str(PROPERTIES[each.name])] for each in fields(cls)]
+        cls = _BY_CLASS[kind]
+        values = [said[str(each)] for each in terms(cls)[1:]]
     else:
         cls = _BY_PREDICATE[said[str(CAPAR.name)]]
         values = said[str(CAPAR.parameters)].split(" ")

@@ -1,8 +1,9 @@
 """A store in memory or in a folder, kept by pyoxigraph."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pyoxigraph import NamedNode, Quad, RdfFormat
 from pyoxigraph import Store as Oxigraph
@@ -12,7 +13,9 @@ from kb.store import answers, sparql
 from kb.store import timed_query as bounded
 from kb.store.answers import Answer
 from kb.store.lock import WriterLock
-from kb.store.readonly_folder import open_reader, read
+from kb.store.readonly_folder import open_reader, prove_whole, read, unusable
+
+_T = TypeVar("_T")
 
 DATA_FOLDER = "store"
 """Where in the Actionary's folder the database stands."""
@@ -45,29 +48,45 @@ class EmbeddedStore:
         data = self._folder / DATA_FOLDER
         if self._read_only:
             return _reader(self._folder, data)
-        try:
+        prove_whole(data)
+        with self._guarded():
             return Oxigraph(data)
-        except OSError as error:
-            raise StoreError(f"{self._folder}: its database cannot be opened ({error})") from None
+
+    @contextmanager
+    def _guarded(self) -> Iterator[None]:
+        """Report a failure of the database as an error of ours."""
+        try:
+            yield
+        except (OSError, RuntimeError) as error:
+            if self._folder is None:
+                raise
+            raise unusable(self._folder, error) from None
 
     def insert(self, quads: Iterable[Quad]) -> None:
         """Add statements, all or none of them; they are on disk when this returns."""
-        self._writable().extend(quads)
-        self._flush()
+        with self._guarded():
+            self._writable().extend(quads)
+            self._flush()
 
     def change(self, update: str) -> None:
         """Do an update, all or nothing of it; it is on disk when this returns."""
-        self._writable().update(update)
-        self._flush()
+        with self._guarded():
+            self._writable().update(update)
+            self._flush()
 
     def ask(self, query: str) -> Answer:
         """What a query of ours answers, over the union of all graphs if it names none."""
+        return self._read(lambda store: _answer(store, query))
+
+    def _read(self, reading: Callable[[Oxigraph], _T]) -> _T:
+        """What a reading gives; a reader opens the folder anew if files go meanwhile."""
+        if self._folder is None or not self._read_only:
+            with self._guarded():
+                return reading(self._store)
         try:
-            return _answer(self._store, query)
+            return reading(self._store)
         except (OSError, RuntimeError):
-            if not self._read_only or self._folder is None:
-                raise
-            found, self._store = read(self._folder / DATA_FOLDER, lambda s: _answer(s, query))
+            found, self._store = read(self._folder / DATA_FOLDER, reading)
             return found
 
     def ask_within(self, query: str, *, seconds: float) -> Answer:
@@ -79,11 +98,15 @@ class EmbeddedStore:
 
     def graph(self, name: NamedNode) -> list[Quad]:
         """Every statement of a graph."""
-        return list(self._store.quads_for_pattern(None, None, None, name))
+        return self._read(lambda store: list(store.quads_for_pattern(None, None, None, name)))
 
     def quads(self) -> Iterable[Quad]:
         """Every statement of every named graph."""
-        return iter(self._store)
+        return self._read(list)
+
+    def prove_readable(self) -> None:
+        """Read every statement by way of every index, so that damage anywhere is found."""
+        self._read(_read_all)
 
     def dataset(self) -> Any:
         """The same as rdflib's dataset, whose default graph is the union of all."""
@@ -94,8 +117,9 @@ class EmbeddedStore:
 
     def bulk(self, quads: Iterable[Quad]) -> None:
         """Add a great many statements fast; they are not one whole until this returns."""
-        self._writable().bulk_extend(quads)
-        self._flush()
+        with self._guarded():
+            self._writable().bulk_extend(quads)
+            self._flush()
 
     def refresh(self) -> None:
         """See what the writer has written since."""
@@ -124,6 +148,20 @@ class EmbeddedStore:
 def _answer(store: Oxigraph, query: str) -> Answer:
     union = not sparql.names_graphs(query)
     return answers.collect(store.query(query, use_default_graph_as_union=union))
+
+
+def _read_all(store: Oxigraph) -> None:
+    terms: set[tuple[Any, ...]] = set()
+    for quad in store:
+        for graph in (quad.graph_name, None):
+            terms |= {
+                (quad.subject, None, None, graph),
+                (None, quad.predicate, None, graph),
+                (None, None, quad.object, graph),
+            }
+    for pattern in terms:
+        for _ in store.quads_for_pattern(*pattern):
+            pass
 
 
 def _locked(folder: Path, wait_s: float) -> WriterLock:

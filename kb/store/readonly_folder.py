@@ -1,4 +1,4 @@
-"""Opening a folder's database to be read while its writer may be rearranging it."""
+"""Reading a folder's database while its writer may be merging its files, or after damage."""
 
 import time
 from collections.abc import Callable
@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from pyoxigraph import Store as Oxigraph
 
-from kb.errors import StoreError
+from kb.errors import DamagedError, StoreError
 
 TRIES = 60
 """How often a reader tries again when files are replaced under it."""
@@ -22,7 +22,7 @@ def open_reader(data: Path) -> Oxigraph:
     """The database as it is now.
 
     The writer merges its files now and then and removes the old ones; a reader that opens at
-    that instant meets a file that is gone, and tries again.
+    that instant finds a file missing, and tries again.
 
     Raises:
         StoreError: It cannot be opened even so.
@@ -44,6 +44,18 @@ def read(data: Path, reading: Callable[[Oxigraph], _T]) -> tuple[_T, Oxigraph]:
     return _again(both, data)
 
 
+def prove_whole(data: Path) -> None:
+    """Prove that a database's files have their table of contents, before it is written.
+
+    Without it the database would begin anew, and overwrite what is there.
+
+    Raises:
+        DamagedError: They have none.
+    """
+    if any(data.glob("*.sst")) and not (data / "CURRENT").is_file():
+        raise DamagedError(str(data.parent), f"{data / 'CURRENT'} is missing")
+
+
 def _again(action: Callable[[], _T], data: Path) -> _T:
     problem: Exception | None = None
     for _ in range(TRIES):
@@ -54,4 +66,12 @@ def _again(action: Callable[[], _T], data: Path) -> _T:
         except (OSError, RuntimeError) as error:
             problem = error
             time.sleep(PAUSE_S)
-    raise StoreError(f"{data.parent}: its database cannot be read ({problem})")
+    raise unusable(data.parent, problem)
+
+
+def unusable(folder: Path, problem: Exception | None) -> StoreError:
+    """The error for a database that fails: damage, where that is what the database reports."""
+    reason = " ".join(str(problem).split())
+    if "Corruption" in reason or "No such file" in reason:
+        return DamagedError(str(folder), reason)
+    return StoreError(f"{folder}: its database cannot be read or written ({reason})")

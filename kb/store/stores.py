@@ -42,6 +42,13 @@ class Store(Protocol):
     def quads(self) -> Iterable[Quad]:
         """Every statement of every named graph."""
 
+    def prove_readable(self) -> None:
+        """Prove that every statement can be read.
+
+        Raises:
+            DamagedError: One cannot.
+        """
+
     def dataset(self) -> Any:
         """The same as rdflib's dataset, whose default graph is the union of all."""
 

@@ -1,11 +1,13 @@
 """Changes to a store as SPARQL updates: each is one, so that nothing half-written is seen."""
 
-from pyoxigraph import NamedNode, Quad
+from pyoxigraph import Literal, NamedNode, Quad
 
+from kb.store import schema
 from kb.store.names import GRAPHS
 from kb.store.sparql import fill
 from kb.store.statements import insertion
 from ontology import CAPAR
+from ontology import files as ontology_files
 
 _ORPHANS = f"""DELETE {{ GRAPH ?shared {{ ?thing ?predicate ?value }} }}
 WHERE {{
@@ -35,3 +37,16 @@ def replacement(graph: NamedNode, quads: list[Quad]) -> str:
 def graph_replacement(graph: NamedNode, quads: list[Quad]) -> str:
     """The update that gives a graph these statements and no others."""
     return f"DROP SILENT GRAPH {graph} ;\n{insertion(quads)}"
+
+
+def ontology_digest() -> Quad:
+    """What tells the ontology that a store holds from another one."""
+    graph = GRAPHS["ontology"]
+    return Quad(graph, CAPAR.sha256, Literal(ontology_files.digest()), graph)
+
+
+def ontology_replacement() -> str:
+    """The update that gives a store the present ontology and schema version."""
+    graph = GRAPHS["ontology"]
+    stated = [Quad(s, p, o, graph) for s, p, o in ontology_files.ontology()]
+    return graph_replacement(graph, [*stated, ontology_digest(), schema.statement()])

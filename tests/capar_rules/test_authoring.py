@@ -22,7 +22,7 @@ from capar_rules.authoring.user_primitives import (
 from capar_rules.engine.profiles import profile
 from capar_rules.lint.admission import admitted_profile
 from capar_rules.pars.inference import infer
-from extractors.measure import extract
+from extractors.measure import measure
 
 SLIDE = FeatureSet("1", "1", "1", "hand", "0")
 
@@ -154,7 +154,7 @@ def test_a_file_without_examples_lacks_one_of_each_kind(grasp):
 
 
 def test_a_feature_set_becomes_a_rule_that_names_it(tmp_path):
-    facts = telling(extract(motions.slide_object(motions.TALL_MAN).capture).facts)
+    facts = telling(measure(motions.slide_object(motions.TALL_MAN).capture).facts)
     rules = profile("thesis")
     segment = infer(facts, profile=rules).links[0].segments[-1]
     path = tmp_path / "shove.lp"

@@ -15,7 +15,7 @@ from capar_rules.engine.profiles import profile
 from capar_rules.explain.explanation import Explainer, Reason, rule_base
 from capar_rules.explain.sentences import Key, Template
 from capar_rules.pars.inference import infer
-from extractors.measure import extract
+from extractors.measure import measure
 
 TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "against", 4, ""): "only prepositions rest on it, and no name on a preposition",
@@ -177,7 +177,7 @@ ATOMS = {
 
 def test_what_is_asked_of_the_solver_does_not_grow_with_the_capture() -> None:
     capture = motions.touch_cycle(motions.TALL_MAN).capture
-    facts = extract(capture).facts
+    facts = measure(capture).facts
     sizes = []
     for copies in (1, 40):
         longer = repeated(facts, copies)
@@ -213,7 +213,7 @@ def repeated(facts: tuple[Fact, ...], copies: int) -> tuple[Fact, ...]:
 def test_an_unknown_segment_is_told_how_far_it_agreed() -> None:
     capture = motions.slide_object(motions.TALL_MAN).capture
     seen = explained(capture, rules=profile("thesis"))
-    facts = [each for each in extract(capture).facts if not isinstance(each, ZeroCrossing)]
+    facts = [each for each in measure(capture).facts if not isinstance(each, ZeroCrossing)]
     crossings = [ZeroCrossing("right_hand", frame) for frame in (0, 227)]
     rules = profile("thesis")
     links = infer((*facts, *crossings), profile=rules).links

@@ -27,7 +27,7 @@ from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import profile
 from capar_rules.explain.explanation import Explainer
 from capar_rules.pars.inference import infer
-from extractors.measure import extract
+from extractors.measure import measure
 
 FLICKER = 15
 """Frames of 150 ms at 100 Hz: nobody lets go and takes again in less."""
@@ -198,7 +198,7 @@ def test_lost_contact_does_not_change_the_steps(
 ) -> None:
     """Without the rules, the same losses cut every hold in pieces."""
     capture = action(motions.WOMAN).capture
-    facts = extract(capture).facts
+    facts = measure(capture).facts
     lost = flickering(facts, capture.rate_hz, every_s=every_s)
     whole, mended, cut = (
         [[each.name for each in link.segments] for link in infer(each, profile=profile()).links]
@@ -217,7 +217,7 @@ def test_it_can_be_switched_off_and_is_off_in_the_thesis() -> None:
 
 def test_an_explanation_says_what_was_doubted() -> None:
     capture = motions.touch_cycle(motions.WOMAN).capture
-    facts = steady(flickering(extract(capture).facts, capture.rate_hz))
+    facts = steady(flickering(measure(capture).facts, capture.rate_hz))
     (link,) = infer(facts, profile=profile()).links
     explainer = Explainer(facts, profile=profile())
     told = {each.name: explainer.explain(each).summary for each in link.segments}

@@ -9,7 +9,7 @@ from capar.pipelines.explanation import Explained, explained
 from capar_rules.engine.profiles import profile
 from capar_rules.explain.why_not import why_not
 from capar_rules.pars.inference import infer
-from extractors.measure import extract
+from extractors.measure import measure
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def test_no_smaller_change_is_enough(drink):
 def test_made_so_in_the_facts_the_change_gives_the_name():
     """What slides would be touched, had it not moved: without its motion the rules say so."""
     capture = motions.slide_object(motions.TALL_MAN).capture
-    facts = extract(capture).facts
+    facts = measure(capture).facts
     seen = explained(capture, rules=profile("thesis"))
     (only,) = why_not(seen.explainer, segment(seen, "MoveObj"), "TouchWith", limit=10)
     (change,) = only.changes

@@ -36,7 +36,7 @@ COMMANDS = {
     "rules audit": [],
     "rules diff": ["sip.lp"],
     "rules list": [],
-    "rules new": ["Sip", "--from", f"{DEMO}:right_hand/2"],
+    "rules new": ["Sip", "--from", f"{DEMO}/right_hand/2"],
     "rules show": ["Reach"],
     "rules test": ["sip.lp"],
     "rules words": [],
@@ -154,7 +154,7 @@ def test_claims_are_judged_with_the_rules_that_count():
 
 def test_a_rule_is_added_beside_the_actionary_that_is_named_and_removed_from_there():
     words = ["--general", "MoveObj", "--definition", "it is held to what it touches"]
-    seen = ["--from", f"{DEMO}:right_hand/2", "--profile", "thesis"]
+    seen = ["--from", f"{DEMO}/right_hand/2", "--profile", "thesis"]
     example = run("rules", "new", "Sip", *seen, *words)
     other = (
         "\n%* Counter-example: a hand is laid on a table.\n"
@@ -252,11 +252,11 @@ def test_a_taken_name_and_an_unknown_general_are_refused():
 
 def test_a_rule_is_drafted_from_a_stored_observation():
     run("observe", DEMO, "--actionary", "known")
-    drafted = run("rules", "new", "Sip", "--from", "drink_from_mug_tall_man:right_hand/3",
+    drafted = run("rules", "new", "Sip", "--from", "drink_from_mug_tall_man/right_hand/3",
                   "--actionary", "known")  # fmt: skip
-    assert drafted == run("rules", "new", "Sip", "--from", f"{DEMO}:right_hand/3")
+    assert drafted == run("rules", "new", "Sip", "--from", f"{DEMO}/right_hand/3")
     with pytest.raises(RuleError, match="say --profile extended"):
-        run("rules", "new", "Sip", "--from", "drink_from_mug_tall_man:right_hand/3",
+        run("rules", "new", "Sip", "--from", "drink_from_mug_tall_man/right_hand/3",
             "--actionary", "known", "--profile", "thesis")  # fmt: skip
 
 

@@ -58,7 +58,7 @@ def test_verb_tells_what_it_knows() -> None:
 
 
 def test_verbs_fit_a_segment() -> None:
-    fits = json.loads(run("verb", "--for", f"{DEMO}:right_hand:2", "--json"))
+    fits = json.loads(run("verb", "--for", f"{DEMO}/right_hand/2", "--json"))
     assert fits[0]["verb"] == "move"
     assert fits[0]["reasons"]
 
@@ -69,8 +69,8 @@ def test_verbs_fit_a_segment() -> None:
         (("verb",), CaparError),
         (("verb", "zzz"), UnknownNameError),
         (("verb", "--for", "nowhere"), CaparError),
-        (("verb", "--for", f"{DEMO}:right_hand:99"), UnknownNameError),
-        (("verb", "--for", f"{DEMO}:third_hand:0"), UnknownNameError),
+        (("verb", "--for", f"{DEMO}/right_hand/99"), UnknownNameError),
+        (("verb", "--for", f"{DEMO}/third_hand/0"), UnknownNameError),
         (("parse", "mvoe the mug"), CaparError),
         (("lexicon", "import", "propbank", "."), UnknownNameError),
         (("report", "linguistics", "--actionary", "missing"), CaparError),

@@ -9,7 +9,7 @@ from motion_files import recordings_folder
 
 from capar.evaluation.carries import NEAR_S, Carry, Miss, measure, near
 from extractors.readers.bundle.capture_toml import read_files, takes
-from extractors.readers.bundle.place import open_bundle
+from extractors.readers.bundle.location import open_bundle
 
 SCENES = Path(__file__).parents[2] / "examples" / "boxed_vr" / "scenes.toml"
 

@@ -14,7 +14,7 @@ from capar.model.facts import Bears, LookingAt
 from capar.pipelines.explanation import explained
 from capar.pipelines.observation import observe
 from capar_rules.engine.profiles import profile
-from extractors.measure import extract
+from extractors.measure import measure
 from extractors.relations.weight_bearing import share_of_first
 from extractors.thresholds import Thresholds
 from kb.actionary import Actionary
@@ -109,7 +109,7 @@ def test_one_foot_alone_says_nothing_and_a_pelvis_looks_at_nothing() -> None:
     capture = motions.stand_on_one_leg(TALL_MAN).capture
     one = replace(capture, sensors=tuple(e for e in capture.sensors if e.name != "right_foot"))
     assert bears(one) == {}
-    assert not [each for each in extract(capture).facts if isinstance(each, LookingAt)]
+    assert not [each for each in measure(capture).facts if isinstance(each, LookingAt)]
 
 
 def test_an_explanation_says_what_the_foot_bore_and_when_that_was_measured() -> None:
@@ -135,7 +135,7 @@ def test_shifts_of_weight_are_borders_that_the_actionary_knows() -> None:
 def bears(capture: Capture) -> dict[str, list[tuple[str, int, int]]]:
     """What was measured of each foot, in time."""
     out: dict[str, list[tuple[str, int, int]]] = {}
-    found = [each for each in extract(capture).facts if isinstance(each, Bears)]
+    found = [each for each in measure(capture).facts if isinstance(each, Bears)]
     for each in sorted(found, key=lambda fact: (fact.foot, fact.first)):
         out.setdefault(each.foot, []).append((each.share, each.first, each.last))
     return out

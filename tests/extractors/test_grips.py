@@ -7,8 +7,7 @@ from measured_bodies import ball, box, eased, hand, stream
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import TagObject, TagType
-from extractors.bodies.body_geometry import figure
-from extractors.bodies.poses import poses
+from extractors.bodies.body_geometry import geometry_of
 from extractors.relations.grips import shifts
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
@@ -34,7 +33,7 @@ def found(
         box(0.2, 0.1, 0.1),
     )
     palm = hand(carry + turns.apply(place), ball(0.04))
-    figures = [figure(each, poses(each, LIMITS)) for each in (palm, thing)]
+    figures = [geometry_of(each, LIMITS) for each in (palm, thing)]
     return list(shifts(*figures, (0, len(TIMES) - 1), LIMITS))
 
 
@@ -64,5 +63,5 @@ def test_it_does_not_depend_on_where_the_object_is_carried(way_m: float, angle: 
 def test_a_contact_of_a_few_frames_tells_nothing() -> None:
     thing = TagObject("thing", TagType.MOBILE, stream(np.zeros((9, 3))), box(0.1, 0.1, 0.1))
     palm = hand(np.outer(np.arange(9), [0.1, 0.0, 0.0]), ball(0.04))
-    figures = [figure(each, poses(each, LIMITS)) for each in (palm, thing)]
+    figures = [geometry_of(each, LIMITS) for each in (palm, thing)]
     assert list(shifts(*figures, (2, 5), LIMITS)) == []

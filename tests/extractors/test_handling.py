@@ -10,16 +10,24 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.model.facts import Wound
-from extractors.bodies.body_geometry import Figure, figure
-from extractors.bodies.poses import poses
+from extractors.bodies.body_geometry import BodyGeometry, geometry_of
 from extractors.contact.normals import contact_normal
 from extractors.motion.impacts import closing_speed, falls
 from extractors.motion.leaning import leaning, spin
 from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import Floor, moving, stays
+from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.motion.rest import resting
 from extractors.motion.turning_points import reversals, swings, turning_points
-from extractors.relations.arrangement import above, below, beside, between, dips, inside, sides
+from extractors.relations.arrangement import (
+    Pair,
+    above,
+    below,
+    beside,
+    between,
+    dips,
+    inside,
+    sides,
+)
 from extractors.relations.places import distances
 from extractors.thresholds import Thresholds
 
@@ -30,14 +38,16 @@ BOX = shapes.box(0.1, 0.1, 0.1)
 TABLE = shapes.table(1.0, 1.0)
 
 
-def body(places: np.ndarray, *, turns: Rotation | None = None, shape: Shape | None = BOX) -> Figure:
+def body(
+    places: np.ndarray, *, turns: Rotation | None = None, shape: Shape | None = BOX
+) -> BodyGeometry:
     """A body at these places [m]; one place stands for all frames."""
     positions = np.broadcast_to(np.asarray(places, float), (len(TIMES), 3)).copy()
     identity = np.tile([1.0, 0.0, 0.0, 0.0], (len(TIMES), 1))
     orientations = identity if turns is None else geometry.quaternions(turns)
     stream = Stream(TIMES, positions, geometry.continuous(orientations))
     thing = TagObject("thing", TagType.MOBILE, stream, shape)
-    return figure(thing, poses(thing, LIMITS))
+    return geometry_of(thing, LIMITS)
 
 
 def along_x(start: float, end: float) -> np.ndarray:
@@ -66,8 +76,8 @@ def test_height_reverses_only_after_a_real_way() -> None:
     high[:, 2] = 0.3 * np.sin(np.pi * TIMES / 4.0)
     low[:, 2] = 0.04 * np.sin(np.pi * TIMES / 4.0)
     whole = ((0, len(TIMES) - 1),)
-    assert reversals(body(high).where, whole, LIMITS) == pytest.approx((200,), abs=1)
-    assert reversals(body(low).where, whole, LIMITS) == ()
+    assert reversals(body(high).poses, whole, LIMITS) == pytest.approx((200,), abs=1)
+    assert reversals(body(low).poses, whole, LIMITS) == ()
 
 
 def test_what_moves_to_and_fro_swings() -> None:
@@ -75,11 +85,11 @@ def test_what_moves_to_and_fro_swings() -> None:
     during = (TIMES > 1.0) & (TIMES < 3.0)
     wave[during, 1] = 0.03 * np.sin(2.0 * np.pi * 2.0 * (TIMES[during] - 1.0))
     whole = ((0, len(TIMES) - 1),)
-    ((first, last),) = swings(body(wave).where, whole, LIMITS)
+    ((first, last),) = swings(body(wave).poses, whole, LIMITS)
     assert (first, last) == pytest.approx((112, 287), abs=5)
     slow = np.zeros((len(TIMES), 3))
     slow[:, 1] = 0.03 * np.sin(2.0 * np.pi * 0.5 * TIMES)
-    assert swings(body(slow).where, whole, LIMITS) == ()
+    assert swings(body(slow).poses, whole, LIMITS) == ()
 
 
 @pytest.mark.parametrize(("speed_mps", "swinging"), [(0.0, True), (0.1, True), (0.5, False)])
@@ -88,16 +98,16 @@ def test_what_bobs_as_it_is_carried_along_does_not_swing(speed_mps: float, swing
     wave = np.zeros((len(TIMES), 3))
     wave[:, 0] = speed_mps * TIMES
     wave[:, 2] = 0.03 * np.sin(2.0 * np.pi * 2.0 * TIMES)
-    assert bool(swings(body(wave).where, ((0, len(TIMES) - 1),), LIMITS)) is swinging
+    assert bool(swings(body(wave).poses, ((0, len(TIMES) - 1),), LIMITS)) is swinging
 
 
 def test_motion_to_and_fro_begins_and_ends_with_the_motion_that_is_soon_before_and_after() -> None:
     wave = np.zeros((len(TIMES), 3))
     during = (TIMES > 1.0) & (TIMES < 3.0)
     wave[during, 1] = 0.03 * np.sin(2.0 * np.pi * 2.0 * (TIMES[during] - 1.0))
-    assert swings(body(wave).where, ((100, 300),), LIMITS) == ((100, 300),)
+    assert swings(body(wave).poses, ((100, 300),), LIMITS) == ((100, 300),)
     wave[:, 0] = 0.5 * np.clip((TIMES - 0.9) / 0.2, 0.0, 1.0)
-    ((first, last),) = swings(body(wave).where, ((80, 300),), LIMITS)
+    ((first, last),) = swings(body(wave).poses, ((80, 300),), LIMITS)
     assert first == pytest.approx(112, abs=5), "what was carried further than a stroke is no swing"
     assert last == 300
 
@@ -107,17 +117,17 @@ def test_what_is_lost_for_a_while_turns_back_and_swings_before_and_after() -> No
     wave[:, 2] = 0.06 * np.sin(2.0 * np.pi * 2.0 * TIMES)
     whole = ((0, len(TIMES) - 1),)
     wave[190:230] = np.nan
-    turns = np.array(reversals(body(wave).where, whole, LIMITS))
+    turns = np.array(reversals(body(wave).poses, whole, LIMITS))
     assert turns.min() < 50
     assert turns.max() > 350
-    spans = swings(body(wave).where, whole, LIMITS)
+    spans = swings(body(wave).poses, whole, LIMITS)
     assert [each[1] < 190 or each[0] >= 230 for each in spans] == [True, True]
 
 
 def leant(angle: np.ndarray, *, speed_mps: float = 0.0) -> tuple[int, int]:
     """When a body leans that is tipped by these angles as it travels."""
     way = np.outer(TIMES * speed_mps, [1.0, 0.0, 0.0])
-    where = body(way, turns=Rotation.from_euler("y", angle[:, None])).where
+    where = body(way, turns=Rotation.from_euler("y", angle[:, None])).poses
     ((first, last),) = leaning(where, np.array([0.0, 0.0, 1.0]), LIMITS, length_m=0.2)
     return first, last
 
@@ -184,14 +194,14 @@ def test_bodies_lie_inside_above_below_and_beside() -> None:
     }
     for arrangement, place in places.items():
         thing = body(np.array(place), shape=small)
-        held = [each for each in places if each(thing, other, LIMITS).all()]
+        held = [each for each in places if each(Pair(thing, other, LIMITS)).all()]
         assert held == [arrangement]
 
 
 def test_what_sticks_out_by_half_is_inside_and_what_stands_on_top_is_not() -> None:
     other = body(np.zeros(3), shape=shapes.box(0.4, 0.4, 0.4))
-    assert inside(body(np.array([0.0, 0.0, 0.34])), other, LIMITS).all()
-    assert not inside(body(np.array([0.0, 0.0, 0.4])), other, LIMITS).any()
+    assert inside(Pair(body(np.array([0.0, 0.0, 0.34])), other, LIMITS)).all()
+    assert not inside(Pair(body(np.array([0.0, 0.0, 0.4])), other, LIMITS)).any()
 
 
 def test_between_is_on_the_way_from_one_to_the_other() -> None:
@@ -208,7 +218,7 @@ def test_who_goes_through_leaves_at_the_opposite_side() -> None:
 
 
 def test_a_hand_rests_where_it_does_not_move() -> None:
-    spans = resting(body(along_x(0.0, 1.0)).where, LIMITS)
+    spans = resting(body(along_x(0.0, 1.0)).poses, LIMITS)
     assert [each[0] for each in spans] == pytest.approx([0, 300], abs=10)
     assert [each[1] for each in spans] == pytest.approx([100, 399], abs=10)
 
@@ -216,10 +226,10 @@ def test_a_hand_rests_where_it_does_not_move() -> None:
 def test_a_motion_begins_before_it_is_beyond_its_floor() -> None:
     share = np.clip((TIMES - 1.0) / 2.0, 0.0, 1.0)[:, None]
     places = (share**3 * (10.0 - 15.0 * share + 6.0 * share**2)) * np.array([0.5, 0.0, 0.0])
-    where = body(places).where
+    where = body(places).poses
     floor = Floor(LIMITS.motion_floor_m, LIMITS.motion_floor_rad)
     ((first, last),) = moving(where, floor, LIMITS)
-    rests = stays(where, floor, LIMITS)
+    rests = rest_poses(where, floor, LIMITS)
     begin, end = motion_edges(where, (first, last), rests, LIMITS)
     assert 100 <= begin < first
     assert last < end <= 301
@@ -231,8 +241,8 @@ def test_a_rod_that_stands_in_a_bowl_dips_into_it_and_one_beside_or_above_it_doe
     places = {(0.0, 0.0, 0.01): True, (0.15, 0.0, 0.01): False, (0.0, 0.0, 0.09): False}
     for place, within in places.items():
         there = body(np.array(place), shape=rod)
-        assert dips(there, bowl, LIMITS).all() == within
-        assert not inside(there, bowl, LIMITS).any()
+        assert dips(Pair(there, bowl, LIMITS)).all() == within
+        assert not inside(Pair(there, bowl, LIMITS)).any()
 
 
 def test_what_turns_above_a_thing_goes_about_nothing() -> None:

@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.capture import (
     Capture,
-    Notice,
     PivotContact,
     Purpose,
     Role,
@@ -19,6 +18,7 @@ from capar.model.capture import (
     ShapeSource,
     TagObject,
     TagType,
+    notice,
 )
 from capar.model.facts import (
     MEASURED,
@@ -30,11 +30,11 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
-from extractors.measure import extract
+from extractors.measure import measure
 
 
 def of_kind(capture: Capture, kind: type[Fact]) -> list[Fact]:
-    return [each for each in extract(capture).facts if type(each) is kind]
+    return [each for each in measure(capture).facts if type(each) is kind]
 
 
 def pairs(capture: Capture) -> list[tuple[str, str]]:
@@ -77,13 +77,13 @@ def test_facts_do_not_depend_on_how_the_world_is_turned(seed: int) -> None:
 def _without_up(capture: Capture) -> list[Fact]:
     """The facts that need not know which way is up."""
     kinds = (ZeroCrossing, Touching, Gap, Moving, LookingAt)
-    return [each for each in extract(capture).facts if isinstance(each, kinds)]
+    return [each for each in measure(capture).facts if isinstance(each, kinds)]
 
 
 def test_facts_do_not_depend_on_names() -> None:
-    plain = extract(pick_and_place()).facts
+    plain = measure(pick_and_place()).facts
     names = {"right_hand": "zz_paw", "thing": "a_cup", "table": "mesa"}
-    named = extract(pick_and_place(names=("zz_paw", "a_cup", "mesa"))).facts
+    named = measure(pick_and_place(names=("zz_paw", "a_cup", "mesa"))).facts
     expected = {_renamed(str(each), names) for each in plain}
     assert {str(each) for each in named} == expected
 
@@ -95,17 +95,17 @@ def _renamed(text: str, names: dict[str, str]) -> str:
 
 
 def test_facts_are_in_the_order_of_their_kinds_then_by_value_and_the_same_each_time() -> None:
-    facts = extract(pick_and_place()).facts
+    facts = measure(pick_and_place()).facts
     ranks = [MEASURED.index(type(each)) for each in facts]
     assert ranks == sorted(ranks)
     for kind in MEASURED:
         same = [each for each in facts if type(each) is kind]
         assert same == sorted(same)
-    assert facts == extract(pick_and_place()).facts
+    assert facts == measure(pick_and_place()).facts
 
 
 def test_the_gap_where_a_contact_begins_is_within_the_tolerance() -> None:
-    measured = extract(pick_and_place())
+    measured = measure(pick_and_place())
     gaps = [each for each in measured.facts if isinstance(each, Gap)]
     assert gaps
     assert all(0 <= each.micrometres <= 1e6 * measured.tolerance_m + 50 for each in gaps)
@@ -139,7 +139,7 @@ def test_bodies_without_shapes_touch_while_their_origins_are_near_and_it_is_said
     capture = Capture(
         "pivot", (hand,), (thing,), pivot_contacts=(PivotContact("thing", "hand", 0.1025),)
     )
-    measured = extract(capture)
+    measured = measure(capture)
     touching = [each for each in measured.facts if isinstance(each, Touching)]
     assert touching == [Touching("hand", "thing", 80, 120)]
     assert "pivot-distance" in {each.code for each in measured.notices}
@@ -153,7 +153,7 @@ def test_what_is_assumed_lost_or_stood_in_for_is_told() -> None:
     shelf = TagObject(
         "shelf", TagType.FIXED, still((0, 0, 0), 200), box(1, 1, 0.1), assumed="from rest poses"
     )
-    codes = {each.code for each in extract(Capture("x", (hand,), (shelf,))).notices}
+    codes = {each.code for each in measure(Capture("x", (hand,), (shelf,))).notices}
     assert codes == {"contact-tolerance", "stand-in-shape", "assumed-support", "long-gap"}
 
 
@@ -184,8 +184,8 @@ def test_each_loss_is_told_once_in_words(
         way[first : last + 1] = np.nan
     hand = Sensor("hand", "hand", "right", "arm", still((0, 0, 0), 200), ball(0.04))
     thing = TagObject("thing", tag, stream(way), ball(0.04))
-    read = Notice("long-gap", "thing is lost from 0.50 s to 0.99 s")
-    found = extract(Capture("x", (hand,), (thing,), notices=(read,))).notices
+    read = notice("long-gap", "thing", start_s=0.5, end_s=0.99)
+    found = measure(Capture("x", (hand,), (thing,), notices=(read,))).notices
     (loss,) = [each.message for each in found if each.code == "long-gap"]
     unknown = "no contact of it is known"
     lasts = "a contact before and after is taken to last"
@@ -196,7 +196,7 @@ def test_a_moments_loss_at_an_end_of_the_capture_is_no_long_one() -> None:
     way = np.tile([0.0, 0.0, 1.0], (200, 1))
     way[-1] = np.nan
     hand = Sensor("hand", "hand", "right", "arm", stream(way), ball(0.04))
-    assert "long-gap" not in {each.code for each in extract(Capture("x", (hand,), ())).notices}
+    assert "long-gap" not in {each.code for each in measure(Capture("x", (hand,), ())).notices}
 
 
 def test_purposes_and_force_are_stated_in_the_users_order() -> None:
@@ -208,7 +208,7 @@ def test_purposes_and_force_are_stated_in_the_users_order() -> None:
         Intended(0, "Reach", "any", "any", "drink"),
         Intended(1, "any", "any", "any", "tidy"),
     ]
-    assert "force_transfer" in map(str, extract(capture).facts)
+    assert "force_transfer" in map(str, measure(capture).facts)
 
 
 def test_the_nearest_object_on_the_line_of_sight_is_looked_at_and_where() -> None:
@@ -222,7 +222,7 @@ def test_the_nearest_object_on_the_line_of_sight_is_looked_at_and_where() -> Non
         TagObject("far", TagType.FIXED, still((2.0, 0, 0), 400), box(0.2, 2.0, 0.2)),
         TagObject("head", TagType.SELF, seen, ball(0.1)),
     )
-    measured = extract(Capture("sight", (hand, head), objects))
+    measured = measure(Capture("sight", (hand, head), objects))
     looks = [each for each in measured.facts if isinstance(each, LookingAt)]
     assert [each.object for each in looks] == ["far", "near"]
     edge = np.arctan(0.1 / 0.9) / (np.pi / 2) * 400
@@ -234,7 +234,7 @@ def test_the_nearest_object_on_the_line_of_sight_is_looked_at_and_where() -> Non
 
 def test_a_fixed_table_with_a_shaky_tracker_stands_still() -> None:
     capture = pick_and_place(noise_m=0.003, noise_rad=0.0175)
-    settled = extract(capture).poses["object", "table"].settled
+    settled = measure(capture).bodies.objects["table"].poses.settled
     assert (settled.positions == settled.positions[0]).all()
     assert np.abs(settled.positions[0] - [0.5, 0.0, 0.0]).max() < 0.001
     assert np.abs(settled.orientations[0] - UP).max() < 0.002

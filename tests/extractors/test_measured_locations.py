@@ -7,60 +7,48 @@ from hypothesis import strategies as st
 from measured_bodies import eased, pick_and_place
 
 from capar.model.capture import Capture
-from capar.model.par import Nlt
-from extractors.measure import extract
-from extractors.segments.locations import Location, locate, mirrored, normalised, restored
+from capar.model.observation import Segment
+from capar.model.par import ConstraintLocation, FeatureSet
+from extractors.measure import measure
+from extractors.segments.locations import constraint_location
 from extractors.segments.styles import STEPS, path_style, velocity_style
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()
-NUMBERS = st.floats(-5.0, 5.0, allow_subnormal=False)
-PLACES = st.tuples(NUMBERS, NUMBERS, NUMBERS)
-TURNS = st.tuples(NUMBERS, NUMBERS, NUMBERS, NUMBERS).filter(
-    lambda turn: float(np.linalg.norm(turn)) > 0.1
-)
 
 
-def unit(turn: tuple[float, float, float, float]) -> np.ndarray:
-    return np.array(turn) / np.linalg.norm(turn)
-
-
-def where(capture: Capture, *, dominant: str, goal: str, frame: int) -> Location:
-    measured = extract(capture)
-    return locate(
-        capture,
-        measured.poses,
-        measured.attention,
+def ending(frame: int) -> Segment:
+    """A segment of the right hand that ends at a frame, of which nothing else matters here."""
+    return Segment(
         ee="right_hand",
-        dominant=dominant,
-        goal=goal,
-        frame=frame,
+        index=0,
+        first=0,
+        last=frame,
+        start_s=0.0,
+        end_s=1.0,
+        name="Touch",
+        general=(),
+        candidates=(),
+        level="",
+        objects=("thing",),
+        possessed=False,
+        features=FeatureSet("0", "1", "0", "hand", "0"),
+        begins=(),
+        ends=(),
+        purpose="",
     )
 
 
-@given(PLACES, TURNS, st.integers(0, 2))
-def test_mirroring_twice_changes_nothing(
-    place: tuple[float, float, float], turn: tuple[float, float, float, float], axis: int
-) -> None:
-    nlt = Nlt(place, tuple(map(float, unit(turn))))  # type: ignore[arg-type]
-    assert mirrored(mirrored(nlt, axis), axis) == nlt
-
-
-@given(PLACES, TURNS, st.tuples(*[st.floats(0.01, 3.0)] * 3))
-def test_a_location_is_restored_from_its_nlt(
-    place: tuple[float, float, float],
-    turn: tuple[float, float, float, float],
-    size_m: tuple[float, float, float],
-) -> None:
-    nlt = normalised(np.array(place), unit(turn), np.array(size_m))
-    point, orientation = restored(nlt, np.array(size_m))
-    assert point == pytest.approx(place)
-    assert abs(orientation @ unit(turn)) == pytest.approx(1.0)
-
-
-def test_an_axis_without_extent_keeps_its_metres() -> None:
-    nlt = normalised(np.array([0.1, 0.2, 0.3]), np.array([1.0, 0, 0, 0]), np.array([0.2, 0.0, 0.6]))
-    assert nlt.position == pytest.approx((0.5, 0.2, 0.5))
+def where(capture: Capture, *, dominant: str, goal: str, frame: int) -> ConstraintLocation:
+    measured = measure(capture)
+    return constraint_location(
+        capture,
+        measured.bodies,
+        measured.attention,
+        ending(frame),
+        dominant=dominant,
+        goal=goal,
+    )
 
 
 def test_a_grip_at_the_side_of_a_box_is_half_a_size_from_its_middle() -> None:

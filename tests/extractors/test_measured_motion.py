@@ -8,7 +8,7 @@ from measured_bodies import eased, still, stream
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Stream, TagObject, TagType
-from extractors.bodies.poses import poses
+from extractors.bodies.poses import poses_of
 from extractors.measure import _track
 from extractors.motion.object_motion import motion_floor, moving
 from extractors.signals.gaps import fill_gaps, long_gaps
@@ -20,12 +20,12 @@ RATES = st.sampled_from([30.0, 60.0, 100.0, 120.0, 240.0])
 
 
 def crossings(of: Stream) -> list[int]:
-    pose = poses(TagObject("hand", TagType.MOBILE, of), LIMITS)
+    pose = poses_of(TagObject("hand", TagType.MOBILE, of), LIMITS)
     return [int(each) for each in _track(pose, LIMITS).crossings]
 
 
 def motions(of: Stream, floor_m: float | None = None) -> tuple[tuple[int, int], ...]:
-    pose = poses(TagObject("thing", TagType.MOBILE, of), LIMITS)
+    pose = poses_of(TagObject("thing", TagType.MOBILE, of), LIMITS)
     rate_hz = 1.0 / float(np.median(np.diff(of.times)))
     floor = motion_floor(pose.noise, rate_hz, own_m=floor_m, thresholds=LIMITS)
     return moving(pose, floor, LIMITS)

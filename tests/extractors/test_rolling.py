@@ -13,8 +13,7 @@ from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.model.facts import Rolls
 from capar.pipelines.observation import observe
-from extractors.bodies.body_geometry import Figure, figure
-from extractors.bodies.poses import poses
+from extractors.bodies.body_geometry import BodyGeometry, geometry_of
 from extractors.motion.rolling import angular_velocity, rolling
 from extractors.thresholds import Thresholds
 
@@ -29,14 +28,14 @@ def way(length_m: float) -> np.ndarray:
     return length_m * np.clip((TIMES - 1.0) / 2.0, 0.0, 1.0)
 
 
-def body(places: np.ndarray, turns: Rotation, shape: Shape | None = BALL) -> Figure:
+def body(places: np.ndarray, turns: Rotation, shape: Shape | None = BALL) -> BodyGeometry:
     """A body at these places [m] in these turns."""
     stream = Stream(TIMES, places, geometry.continuous(geometry.quaternions(turns)))
     thing = TagObject("thing", TagType.MOBILE, stream, shape)
-    return figure(thing, poses(thing, LIMITS))
+    return geometry_of(thing, LIMITS)
 
 
-def ball(length_m: float, share: float, *, heading: float = 0.0, spin: float = 0.0) -> Figure:
+def ball(length_m: float, share: float, *, heading: float = 0.0, spin: float = 0.0) -> BodyGeometry:
     """A ball that turns by that share of what rolling would be, and about the vertical beside."""
     gone = way(length_m)
     ahead = np.array([np.cos(heading), np.sin(heading), 0.0])

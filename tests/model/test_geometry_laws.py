@@ -111,7 +111,7 @@ def test_no_transform_fits_noisy_markers_better_than_the_fitted_one(seed: int) -
 def test_gaps_are_the_runs_and_nothing_else(missing: list[bool]) -> None:
     array = np.array(missing, dtype=bool)
     rebuilt = np.zeros_like(array)
-    runs = geometry.gaps(array)
+    runs = geometry.runs(array)
     for first, last in runs:
         assert first <= last
         rebuilt[first : last + 1] = True

@@ -19,7 +19,7 @@ from capar.pipelines.explanation import Explained, distances
 from capar.pipelines.observation import observe_measured
 from capar_rules.engine.profiles import profile
 from capar_rules.explain.explanation import Explainer, Explanation
-from extractors.measure import extract
+from extractors.measure import measure
 from recomputed.known import Known
 
 Change = Callable[[tuple[Fact, ...], float], tuple[Fact, ...]]
@@ -53,7 +53,7 @@ def told(name: str) -> Told:
     story = STORIES[name]
     trial = story.make()
     rules = profile(story.rules)
-    measurements = extract(trial.capture)
+    measurements = measure(trial.capture)
     facts = measurements.facts
     if story.change:
         facts = story.change(facts, trial.capture.rate_hz)

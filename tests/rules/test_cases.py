@@ -1,84 +1,96 @@
-"""Every rule case is a story and its end: the facts of a .lp file, and what the rules make of them.
-
-A case opens with a comment that tells it. `% profile: thesis` chooses the rules; else they are the
-extended ones. Its .expected file holds one atom a line that must follow; `not` before an atom says
-that it must not.
-"""
+"""Every rule case ends as its expectations say; a case is reported by its file and title."""
 
 import re
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 import pytest
+from case_batches import solve_batch
+from rule_cases import HERE, Case, all_cases, read_cases
 
-from capar.model.facts import read_fact
+from capar.model.errors import RuleError
+from capar.model.facts import Fact
 from capar_rules.borders.deflicker import steady
 from capar_rules.borders.ranking import rank
-from capar_rules.engine.profiles import profile
 from capar_rules.engine.solver import rule_file, solve, text_of
 
-HERE = Path(__file__).parent
-CASES = sorted(HERE.glob("*/*.lp"))
+SHOWN = HERE / "everything.lp"
+CASES = pytest.mark.parametrize("case", all_cases(), ids=str)
+ROOMS = ("segmentation", "naming", "composition")
 CONCEPTS = sorted(
-    path.stem
-    for room in ("segmentation", "naming", "composition", "explain")
+    f"{room}/{path.stem}"
+    for room in ROOMS
     for path in rule_file(room).glob("*.lp")
-    if path.stem
-    not in {
-        "inputs",
-        "thresholds",
-        "bit_strings",
-        "answers",
-        "thesis",
-        "extended",
-        "derived",
-        "explaining",
-        "sentences",
-    }
+    if path.stem != "bit_strings"
 )
-
 
 _SEGMENT = re.compile(r"seg\(\w+,\d+\)")
 """What an expectation is about; of a segment that is not there nothing could be expected."""
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_a_story_ends_as_expected(case: Path) -> None:
-    answer = _answer(case)
-    lines = case.with_suffix(".expected").read_text().splitlines()
-    wanted = [line.removesuffix(".") for line in lines if line and not line.startswith("%")]
-    assert wanted, "a case expects something"
-    told = set(_SEGMENT.findall(" ".join(wanted)))
-    assert told <= {each for line in answer for each in _SEGMENT.findall(line)}
-    for line in wanted:
-        if line.startswith("not "):
-            assert line.removeprefix("not ") not in answer
+def facts_of(case: Case) -> tuple[Fact, ...]:
+    """The facts of a case as the rules take them, with the numbers of their borders."""
+    facts = steady(case.measured()) if case.profile.steady else case.measured()
+    return (*facts, *rank(facts, crossings_only=case.profile.crossings_only))
+
+
+def solved_alone(case: Case) -> set[str]:
+    """What the rules make of one case by itself, as of any capture."""
+    answer = solve((*case.profile.files, SHOWN), facts_of(case))
+    return {text_of((name, *arguments)) for name, arguments in answer.atoms}
+
+
+@cache
+def solved_together(profile: str) -> Mapping[Case, set[str]]:
+    """What the rules make of all cases of a profile; nothing if they have no answer together."""
+    cases = [case for case in all_cases() if case.profile.name == profile]
+    try:
+        found = solve_batch((*cases[0].profile.files, SHOWN), [facts_of(case) for case in cases])
+    except RuleError:
+        return {}
+    return dict(zip(cases, found, strict=True))
+
+
+@CASES
+def test_a_story_ends_as_expected(case: Case) -> None:
+    answer = solved_together(case.profile.name).get(case) or solved_alone(case)
+    assert case.expected, "a case expects something"
+    told = set(_SEGMENT.findall(" ".join(case.expected)))
+    assert told <= {each for atom in answer for each in _SEGMENT.findall(atom)}
+    for wanted in case.expected:
+        if wanted.startswith("not "):
+            assert wanted.removeprefix("not ") not in answer
         else:
-            assert line in answer
+            assert wanted in answer
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_a_case_tells_its_story_first(case: Path) -> None:
-    assert case.read_text().startswith("% ")
+@pytest.mark.parametrize("case", all_cases()[::25], ids=str)
+def test_cases_that_are_solved_together_do_not_meet(case: Case) -> None:
+    assert solved_together(case.profile.name)[case] == solved_alone(case)
+
+
+@CASES
+def test_a_case_tells_its_story_first(case: Case) -> None:
+    assert case.story.startswith("% ")
+
+
+def test_each_case_has_a_name_of_its_own() -> None:
+    names = [str(case) for case in all_cases()]
+    assert len(set(names)) == len(names)
 
 
 @pytest.mark.parametrize("concept", CONCEPTS)
 def test_every_rule_file_has_a_case(concept: str) -> None:
-    assert list((HERE / concept).glob("*.lp")), f"tests/rules/{concept}/ holds no case"
+    assert any(case.concept == concept for case in all_cases()), f"tests/rules/{concept}.cases"
 
 
-def test_every_expectation_has_its_case() -> None:
-    assert [
-        each for each in HERE.glob("*/*.expected") if not each.with_suffix(".lp").exists()
-    ] == []
+def test_every_file_of_cases_belongs_to_a_rule_file() -> None:
+    found = {case.concept for case in all_cases() if not case.concept.startswith("prepositions/")}
+    assert [each for each in sorted(found) if not rule_file(f"{each}.lp").exists()] == []
 
 
-def _answer(case: Path) -> set[str]:
-    text = case.read_text()
-    rules = profile("thesis" if "% profile: thesis" in text else "extended")
-    facts = tuple(read_fact(text_of((name, *args))) for name, args in solve([], text).atoms)
-    if rules.steady:
-        facts = steady(facts)
-    ranked = rank(facts, crossings_only=rules.crossings_only)
-    whole = HERE / "everything.lp"
-    answer = solve((*rules.files, whole), (*facts, *ranked))
-    return {text_of((name, *arguments)) for name, arguments in answer.atoms}
+def test_what_stands_before_the_first_case_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "lift.cases").write_text("tag(cup,mobile).\n%% Lifted\n")
+    with pytest.raises(ValueError, match="begins with '%% title'"):
+        list(read_cases(tmp_path / "lift.cases"))

@@ -2,14 +2,13 @@
 
 import re
 from collections import defaultdict
-from pathlib import Path
 
 import pytest
+from rule_cases import all_cases
 
 from capar_rules.engine.profiles import profile
 from capar_rules.engine.solver import rule_file, solve
 
-HERE = Path(__file__).parent
 LEAST = 3
 PRIMITIVES = sorted(
     str(name) for (name,) in solve(profile().files, "#show primitive/1.").of("primitive")
@@ -31,11 +30,11 @@ def _cases() -> tuple[dict[str, set[str]], dict[str, set[str]]]:
     """By primitive or preposition, the cases in which it must hold, and those in which not."""
     must: dict[str, set[str]] = defaultdict(set)
     must_not: dict[str, set[str]] = defaultdict(set)
-    for path in HERE.glob("*/*.expected"):
-        for line in path.read_text().splitlines():
+    for case in all_cases():
+        for line in case.expected:
             match = NAMED.match(line) or RELATED.match(line)
             if match:
-                (must_not if match[1] else must)[match[2]].add(path.stem)
+                (must_not if match[1] else must)[match[2]].add(str(case))
     return must, must_not
 
 
@@ -58,6 +57,6 @@ def test_no_case_names_what_there_is_not() -> None:
 
 
 def test_no_segment_of_a_case_bears_two_names() -> None:
-    for path in HERE.glob("vocabulary/*.expected"):
-        named = re.findall(r"^named\((seg\(\w+,\d+\)),", path.read_text(), re.MULTILINE)
-        assert len(named) == len(set(named)), path.stem
+    for case in all_cases():
+        named = re.findall(r"^named\((seg\(\w+,\d+\)),", "\n".join(case.expected), re.MULTILINE)
+        assert len(named) == len(set(named)), str(case)

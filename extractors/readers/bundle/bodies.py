@@ -4,21 +4,21 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
-from capar.model.capture import Notice, Stream
-from capar.model.errors import CaptureError, UnknownNameError
-from extractors.readers.bundle.rigid import Cluster, arrangement, check_fit, fit_cluster
-from extractors.readers.bundle.shapes import Frame, read_pose
-from extractors.readers.bundle.toml_table import Table
+from capar.model.capture import Notice, Stream, notice
+from capar.model.errors import CaptureError
+from extractors.readers.bundle.marker_fit import Cluster, arrangement, check_fit, fit_cluster
+from extractors.readers.bundle.shapes import Frame, transform
 from extractors.readers.bundle.world import WorldRecording
 
-RESIDUAL_M = 0.010
-"""How far markers may lie from their rigid places in the median [m]."""
+if TYPE_CHECKING:
+    from extractors.readers.schema.bodies import Tracked
 
 Files = Mapping[str, WorldRecording]
 
@@ -32,38 +32,33 @@ class Body:
     notices: tuple[Notice, ...] = field(default=())
 
 
-def find_body(table: Table, files: Files) -> Body:
+def find_body(entry: "Tracked", files: Files) -> Body:
     """The body that a sensor's or object's table names, moved by its ``offset``.
 
     Raises:
         UnknownNameError: No file has a body or marker of that name.
         CaparError: The markers are not rigid, or the name is in several files.
     """
-    offset_table = table.table("offset")
-    offset = read_pose(offset_table) if offset_table else RigidTransform.identity()
-    if offset_table:
-        offset_table.close()
-    markers = table.texts("markers")
-    if markers:
-        return _from_markers(table, files, markers, offset)
-    if isinstance(table.raw("body"), list):
-        return _carried(table, files, offset)
-    name = table.text("body")
-    file = _file_of(table, files, "body", name)
+    offset = transform(entry.offset)
+    if entry.markers:
+        return _from_markers(entry, files, entry.markers, offset)
+    if not isinstance(entry.body, str):
+        return _carried(entry, files, entry.body or [], offset)
+    file = _file_of(entry, files, "body", entry.body)
     recording = files[file]
-    stream = offset_by(recording.bodies[name], offset)
-    return Body(stream, skeleton_frame(recording, name, stream, offset))
+    stream = offset_by(recording.bodies[entry.body], offset)
+    return Body(stream, skeleton_frame(recording, entry.body, stream))
 
 
-def _carried(table: Table, files: Files, offset: RigidTransform) -> Body:
+def _carried(entry: "Tracked", files: Files, patterns: list[str], offset: RigidTransform) -> Body:
     """What is recorded only through what it carries: the poses of several bodies, one at a time."""
-    names = [name for each in table.texts("body") for name in _fitting(each, files)]
-    streams = [files[_file_of(table, files, "body", each)].bodies[each] for each in names]
-    order = np.argsort([each.times[0] for each in streams])
+    names = [name for pattern in patterns for name in _fitting(pattern, files)]
+    streams = [files[_file_of(entry, files, "body", name)].bodies[name] for name in names]
+    order = np.argsort([stream.times[0] for stream in streams])
     for earlier, later in pairwise(order):
         if streams[later].times[0] <= streams[earlier].times[-1]:
             first, second = names[earlier], names[later]
-            raise table.error("body", f"{first!r} and {second!r} are recorded at the same time.")
+            raise entry.error("body", f"{first!r} and {second!r} are recorded at the same time.")
     parts = [streams[each] for each in order]
     whole = Stream(
         np.concatenate([each.times for each in parts]),
@@ -91,100 +86,86 @@ def offset_by(stream: Stream, offset: RigidTransform) -> Stream:
     return Stream(times=stream.times, positions=positions, orientations=orientations)
 
 
-def _file_of(table: Table, files: Files, key: str, name: str) -> str:
+def _file_of(entry: "Tracked", files: Files, key: str, name: str) -> str:
     """The file that has a body or marker of that name."""
-    group = "bodies" if key == "body" else "markers"
-    wanted = table.text("file", "")
-    if wanted and wanted not in files:
-        raise UnknownNameError("file", wanted, files, where=table.where("file"))
-    choice = [wanted] if wanted else list(files)
-    found = [each for each in choice if name in getattr(files[each], group)]
+    if entry.file and entry.file not in files:
+        raise entry.unknown("file", entry.file, files, "file")
+    names = {
+        file: files[file].bodies if key == "body" else files[file].markers
+        for file in ([entry.file] if entry.file else files)
+    }
+    found = [file for file in names if name in names[file]]
     if not found:
-        known = {each for file in choice for each in getattr(files[file], group)}
-        raise UnknownNameError(key.removesuffix("s"), name, known, where=table.where(key))
+        known = {each for group in names.values() for each in group}
+        raise entry.unknown(key.removesuffix("s"), name, known, key)
     if len(found) > 1:
-        raise table.error(key, f"{name!r} is in files {found}.", "Say which: file = ...")
+        raise entry.error(key, f"{name!r} is in files {found}.", "Say which: file = ...")
     return found[0]
 
 
-def _from_markers(table: Table, files: Files, names: list[str], offset: RigidTransform) -> Body:
-    recording = files[_file_of(table, files, "markers", names[0])]
+def _from_markers(entry: "Tracked", files: Files, names: list[str], offset: RigidTransform) -> Body:
+    recording = files[_file_of(entry, files, "markers", names[0])]
     for name in names:
         if name not in recording.markers:
-            where = table.where("markers")
-            raise UnknownNameError("marker", name, recording.markers, where=where)
+            raise entry.unknown("marker", name, recording.markers, "markers")
     markers = {name: recording.markers[name] for name in names}
-    label = table.text("name")
+    label = str(entry.given()["name"])
     points = np.stack(list(markers.values()), axis=1)
-    limit = table.number("residual_m", RESIDUAL_M)
     try:
-        cluster = _given(table, names) or _own_frame(table, arrangement(label, markers))
+        cluster = _stated(entry, names) or _own_frame(entry, arrangement(label, markers))
         fit = fit_cluster(cluster, points)
-        check_fit(label, cluster, points, fit, limit_m=limit)
+        check_fit(label, cluster, points, fit, limit_m=entry.residual_m)
     except CaptureError as error:
-        raise CaptureError(f"{table.where('markers')}: {error}") from error
-    wild = fit.residuals > 3.0 * limit
+        raise CaptureError(f"{entry.where('markers')}: {error}") from error
+    wild = fit.residuals > 3.0 * entry.residual_m
     positions = np.where(wild[:, None], np.nan, fit.positions)
     stream = offset_by(Stream(recording.marker_times, positions, fit.orientations), offset)
     places = offset.inv().apply(cluster.local)
     points_here = MeanPlaces(recording, stream, dict(zip(names, places, strict=True)))
     frame = Frame(points=points_here, markers=tuple(names), mirrored=recording.mirrored)
-    text = f"{label}: {wild.sum()} frames in which its markers are not rigid are taken as lost"
-    return Body(stream, frame, (Notice("markers-not-rigid", text),) if wild.any() else ())
+    wrong = notice("markers-not-rigid", label, frames=int(wild.sum()))
+    return Body(stream, frame, (wrong,) if wild.any() else ())
 
 
-def _given(table: Table, names: list[str]) -> Cluster | None:
+def _stated(entry: "Tracked", names: list[str]) -> Cluster | None:
     """The arrangement that capture.toml itself states."""
-    places = table.table("arrangement")
-    if places is None:
+    if entry.arrangement is None:
         return None
-    local = np.array([places.vector(name, 3) for name in names])
-    places.close()
-    return Cluster(tuple(names), local)
+    for name in names:
+        if name not in entry.arrangement:
+            raise entry.unknown("marker", name, entry.arrangement, "arrangement")
+    return Cluster(tuple(names), np.array([entry.arrangement[name] for name in names]))
 
 
-def _own_frame(table: Table, cluster: Cluster) -> Cluster:
+def _own_frame(entry: "Tracked", cluster: Cluster) -> Cluster:
     """The arrangement in the frame that ``origin`` and ``axes`` state."""
     places = dict(zip(cluster.names, cluster.local, strict=True))
-    origin = [_place(table, "origin", places, each) for each in table.texts("origin")]
+    origin = [_place(entry, "origin", places, name) for name in entry.origin]
     centre = np.mean(origin, axis=0) if origin else np.zeros(3)
-    axes = table.table("axes")
-    turn = _axes(axes, places) if axes else Rotation.identity()
+    turn = _axes(entry, places) if entry.axes else Rotation.identity()
     return Cluster(cluster.names, turn.inv().apply(cluster.local - centre))
 
 
-def _axes(table: Table, places: Mapping[str, Float[np.ndarray, "3"]]) -> Rotation:
-    """Axes from pairs of markers: the first stands as it is, the second is made square to it."""
-    keys = [each for each in table.given() if each in ("x", "y", "z")]
-    if len(keys) != 2:
-        raise table.error("", "axes takes two of x, y, z, each from one marker to another.")
-    ways = {}
-    for key in keys:
-        ends = table.texts(key)
-        if len(ends) != 2:
-            raise table.error(key, f"{key} takes two markers, from and to.")
-        ways[key] = _place(table, key, places, ends[1]) - _place(table, key, places, ends[0])
-    table.close()
-    first, second = (np.eye(3)["xyz".index(key)] for key in keys)
-    turn, _ = Rotation.align_vectors(
-        np.stack([ways[each] / np.linalg.norm(ways[each]) for each in keys]),
-        np.stack([first, second]),
-        weights=[np.inf, 1.0],
-    )
+def _axes(entry: "Tracked", places: Mapping[str, Float[np.ndarray, "3"]]) -> Rotation:
+    """Axes from pairs of markers: the first is kept, the second is made square to it."""
+    ways, units = [], []
+    for axis, (start, end) in (entry.axes or {}).items():
+        way = _place(entry, "axes", places, end) - _place(entry, "axes", places, start)
+        ways.append(way / np.linalg.norm(way))
+        units.append(np.eye(3)["xyz".index(axis)])
+    turn, _ = Rotation.align_vectors(np.stack(ways), np.stack(units), weights=[np.inf, 1.0])
     return turn
 
 
 def _place(
-    table: Table, key: str, places: Mapping[str, Float[np.ndarray, "3"]], name: str
+    entry: "Tracked", key: str, places: Mapping[str, Float[np.ndarray, "3"]], name: str
 ) -> Float[np.ndarray, "3"]:
     if name not in places:
-        raise UnknownNameError("marker", name, places, where=table.where(key))
+        raise entry.unknown("marker", name, places, key)
     return places[name]
 
 
-def skeleton_frame(
-    recording: WorldRecording, name: str, stream: Stream, offset: RigidTransform
-) -> Frame:
+def skeleton_frame(recording: WorldRecording, name: str, stream: Stream) -> Frame:
     """Where the file's other bodies and markers lie in a body's frame, in the mean."""
     below = [each for each in recording.parents if _is_below(recording.parents, each, name)]
     bones = {

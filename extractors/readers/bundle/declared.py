@@ -1,12 +1,15 @@
 """The sensors and objects that a capture.toml declares, on one clock."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform
 
+from capar.model import geometry
 from capar.model.capture import (
     Notice,
     PivotContact,
@@ -17,22 +20,21 @@ from capar.model.capture import (
     Stream,
     TagObject,
     TagType,
+    notice,
 )
 from extractors.readers.bundle.bodies import Body, find_body
-from extractors.readers.bundle.bulk import Bulk, bulk_sensors
-from extractors.readers.bundle.bulk_objects import bulk_objects
-from extractors.readers.bundle.clock import resampled, shared_clock
-from extractors.readers.bundle.shapes import Frame, assumed, read_pose, read_shape
+from extractors.readers.bundle.many import many_objects, many_sensors, pivots
+from extractors.readers.bundle.resampling import rate_notices, resampled, shared_clock
+from extractors.readers.bundle.shapes import Frame, assumed, build_shape
 from extractors.readers.bundle.support import under_object
-from extractors.readers.bundle.toml_table import Table
 from extractors.readers.bundle.world import WorldRecording
+
+if TYPE_CHECKING:
+    from extractors.readers.schema.bodies import ObjectEntry, SensorEntry
+    from extractors.readers.schema.capture import CaptureFile
 
 LINKS = {"hand": "arm", "foot": "leg", "head": "neck"}
 """The chain that an end-effector ends, where capture.toml does not say."""
-
-ROLES: dict[str, Role] = {each.value: each for each in Role}
-TAGS: dict[str, TagType] = {each.value: each for each in TagType}
-EXTEND = {"none": None, "rest": None}
 
 
 @dataclass(frozen=True)
@@ -46,167 +48,168 @@ class Declared:
 
     notices: tuple[Notice, ...]
     sources: tuple[Source, ...]
-    pivot_contacts: tuple[PivotContact, ...] = ()
+    pivot_contacts: tuple[PivotContact, ...]
     """Those that many objects declared at once share."""
 
 
-@dataclass
-class _Pending:
-    """A sensor or object whose stream waits for the common clock."""
+@dataclass(frozen=True)
+class _Tracked:
+    """The body and the shape of a sensor or object, before it is on the common clock."""
 
-    table: Table
     body: Body | None
     shape: Shape | None
-    bulk: Bulk | None = None
-    place: Callable[[Sequence[TagObject]], tuple[Any, str]] | None = field(default=None)
+    frame: Frame
 
 
-def declared(
-    table: Table,
-    files: Mapping[str, WorldRecording],
-    *,
-    rate_hz: float | None,
-    span_s: tuple[float | None, float | None],
-) -> Declared:
-    """The sensors and objects of a capture.toml.
-
-    Args:
-        table: The whole of it.
-        files: Its files, in the world.
-        rate_hz: The clock to resample to; None keeps the files' own, if they share one.
-        span_s: What is kept, after the first frame [s].
+def declared(document: "CaptureFile", files: Mapping[str, WorldRecording]) -> Declared:
+    """The sensors and objects of a capture.toml, resampled to one clock.
 
     Raises:
-        CaparError: A name is unknown, a value is not of its kind, or clocks differ.
+        CaparError: A name is unknown, a body cannot be found, or clocks differ.
     """
-    sources: list[Source] = []
-    sensors = [_pending(each, files, sources) for each in table.tables("sensor")]
-    for each in table.tables("sensors_from"):
-        sensors += [_Pending(each, b.body, b.shape, b) for b in bulk_sensors(each, files, sources)]
-    objects = [_pending(each, files, sources) for each in table.tables("object")]
-    many = [bulk_objects(each, files) for each in table.tables("objects_from")]
-    objects += [_pending(each, files, sources) for group in many for each in group.tables]
-    if not sensors:
-        raise table.error("", "declares no sensor.", "Add [[sensor]] with a name and a body.")
-    streams = [each.body.stream for each in (*sensors, *objects) if each.body]
-    times, start = shared_clock(streams, rate_hz=rate_hz, span_s=span_s, where=table.where())
+    many = [many_objects(entry, files) for entry in document.objects_from]
+    sensors = [*document.sensor]
+    sensors += [each for entry in document.sensors_from for each in many_sensors(entry, files)]
+    objects = [*document.object, *(each for found, _ in many for each in found)]
+    entries: list[SensorEntry | ObjectEntry] = [*sensors, *objects]
+    tracked = [_tracked(entry, files) for entry in entries]
+    streams = [each.body.stream for each in tracked if each.body]
+    times, start = shared_clock(
+        streams,
+        rate_hz=document.rate_hz,
+        span_s=(document.from_s, document.to_s),
+        where=document.where(),
+    )
+    count = len(sensors)
+    pairs = zip(document.objects_from, many, strict=True)
     return Declared(
-        sensors=tuple(_sensor(each, times, start) for each in sensors),
-        objects=_objects(objects, times, start),
+        sensors=tuple(
+            _sensor(entry, each, times, start)
+            for entry, each in zip(sensors, tracked[:count], strict=True)
+        ),
+        objects=_objects(objects, tracked[count:], times, start),
         start_s=start,
         notices=(
-            *(n for each in (*sensors, *objects) if each.body for n in each.body.notices),
-            *(notice for group in many for notice in group.notices),
+            *(notice for each in tracked if each.body for notice in each.body.notices),
+            *(notice for _, notices in many for notice in notices),
+            *(notice for each in tracked for notice in each.frame.notices),
+            *(notice for entry in document.sensor for notice in _doubtful_kind(entry)),
+            *rate_notices(streams, document.rate_hz),
         ),
-        sources=tuple(sources),
-        pivot_contacts=tuple(pair for group in many for pair in group.pivot_contacts),
+        sources=tuple(source for each in tracked for source in each.frame.sources),
+        pivot_contacts=tuple(pair for entry, (found, _) in pairs for pair in pivots(entry, found)),
     )
 
 
-def _pending(table: Table, files: Mapping[str, WorldRecording], sources: list[Source]) -> _Pending:
-    moves = "body" in table or "markers" in table
-    body = find_body(table, files) if moves else None
+def _tracked(entry: "SensorEntry | ObjectEntry", files: Mapping[str, WorldRecording]) -> _Tracked:
+    body = find_body(entry, files) if entry.body or entry.markers else None
     frame = body.frame if body else Frame()
-    shape_table = table.table("shape")
-    shape = read_shape(shape_table, frame) if shape_table else None
-    sources += frame.sources
-    return _Pending(table, body, shape)
+    frame.owner = entry.name
+    return _Tracked(body, build_shape(entry.shape, frame) if entry.shape else None, frame)
 
 
-def _stream(pending: _Pending, times: Float[np.ndarray, "frames"], start: float) -> Stream:
-    table, body = pending.table, pending.body
-    if body is None:
-        raise table.error("", "says not where it is.", "Give body, markers or a fixed position.")
+def _stream(body: Body, extend: str, times: Float[np.ndarray, "frames"], start: float) -> Stream:
     own = body.stream
     shifted = Stream(own.times - start, own.positions, own.orientations)
-    extend = table.choice("extend", EXTEND, "none")
     return resampled(shifted, times, extend=extend)
 
 
-def _sensor(pending: _Pending, times: Float[np.ndarray, "frames"], start: float) -> Sensor:
-    stream = _stream(pending, times, start)
-    if pending.bulk:
-        return pending.bulk.sensor(stream)
-    table = pending.table
-    kind = table.text("end_effector")
-    side = table.choice("side", {"right": 0, "left": 0, "none": 0}, "none")
+def _sensor(
+    entry: "SensorEntry", tracked: _Tracked, times: Float[np.ndarray, "frames"], start: float
+) -> Sensor:
+    assert tracked.body is not None
+    if not any(entry.gaze):
+        raise entry.error("gaze", "gaze of no length.", "It is a direction in the sensor's frame.")
+    kind = entry.end_effector
     chain = LINKS.get(kind, kind)
-    gaze, eye = table.vector("gaze", 3, (1.0, 0.0, 0.0)), table.vector("eye", 3, (0.0, 0.0, 0.0))
-    if not np.linalg.norm(gaze) > 0.0:
-        raise table.error("gaze", "gaze of no length.", "It is a direction in the sensor's frame.")
-    default = Role.ATTENDS if kind == "head" else Role.ACTS
-    sensor = Sensor(
-        name=table.text("name"),
+    role = entry.role or ("attends" if kind == "head" else "acts")
+    return Sensor(
+        name=entry.name,
         end_effector=kind,
-        side=side,
-        link=table.text("link", chain if side == "none" else f"{side}_{chain}"),
-        stream=stream,
-        shape=pending.shape,
-        role=ROLES[table.choice("role", ROLES, default.value)],
-        gaze=(gaze[0], gaze[1], gaze[2]),
-        eye=(eye[0], eye[1], eye[2]),
-        agent=table.text("agent", ""),
+        side=entry.side,
+        link=entry.link or (chain if entry.side == "none" else f"{entry.side}_{chain}"),
+        stream=_stream(tracked.body, entry.extend, times, start),
+        shape=tracked.shape,
+        role=Role(role),
+        gaze=(entry.gaze[0], entry.gaze[1], entry.gaze[2]),
+        eye=(entry.eye[0], entry.eye[1], entry.eye[2]),
+        agent=entry.agent,
     )
-    table.close()
-    return sensor
+
+
+def _doubtful_kind(entry: "SensorEntry") -> list[Notice]:
+    """A notice if an end-effector is almost, but not quite, one of those that rules know."""
+    near = get_close_matches(entry.end_effector.lower(), LINKS, n=1)
+    if not near or entry.end_effector in LINKS:
+        return []
+    return [
+        notice(
+            "end-effector-unknown",
+            entry.name,
+            stated=entry.end_effector,
+            known=", ".join(LINKS),
+            near=near[0],
+        )
+    ]
 
 
 def _objects(
-    pending: list[_Pending], times: Float[np.ndarray, "frames"], start: float
+    entries: "list[ObjectEntry]",
+    tracked: list[_Tracked],
+    times: Float[np.ndarray, "frames"],
+    start: float,
 ) -> tuple[TagObject, ...]:
-    """Every object in its order; those that stand under others are placed after them."""
+    """Every object in its order; those that are put under others are built after them."""
     built: dict[int, TagObject] = {}
-    waiting = [n for n, each in enumerate(pending) if "top_at_bottom_of" in each.table]
-    for index in [n for n in range(len(pending)) if n not in waiting] + waiting:
-        built[index] = _object(pending[index], times, start, list(built.values()))
-    return tuple(built[index] for index in range(len(pending)))
+    order = sorted(range(len(entries)), key=lambda index: bool(entries[index].top_at_bottom_of))
+    for index in order:
+        others = list(built.values())
+        built[index] = _object(entries[index], tracked[index], times, start, others)
+    return tuple(built[index] for index in range(len(entries)))
 
 
 def _object(
-    pending: _Pending,
+    entry: "ObjectEntry",
+    tracked: _Tracked,
     times: Float[np.ndarray, "frames"],
     start: float,
     others: list[TagObject],
 ) -> TagObject:
-    table = pending.table
-    derivation = table.text("assumed", "")
-    if pending.body is not None:
-        stream = _stream(pending, times, start)
-    elif "top_at_bottom_of" in table:
-        pose, derived = under_object(table, pending.shape, others)
-        stream = _still(times, pose[0], pose[1])
+    derivation, shape = entry.assumed, tracked.shape
+    if tracked.body is not None:
+        stream = _stream(tracked.body, entry.extend, times, start)
+    elif entry.top_at_bottom_of:
+        pose, derived = under_object(entry, shape, others)
+        stream = _still(times, *pose)
         derivation = f"{derivation}; {derived}" if derivation else derived
-    elif "position" in table:
-        pose = read_pose(table)
-        turn = pose.rotation.as_quat(scalar_first=True)
-        stream = _still(times, pose.translation, turn)
     else:
-        stream = _stream(pending, times, start)
-    name = table.text("name")
-    shape = assumed(pending.shape) if pending.shape and derivation else pending.shape
-    out = TagObject(
-        name=name,
-        tag=TAGS[table.choice("tag", TAGS)],
+        fixed = _fixed_pose(entry)
+        stream = _still(times, fixed.translation, fixed.rotation.as_quat(scalar_first=True))
+    return TagObject(
+        name=entry.name,
+        tag=TagType(entry.tag),
         stream=stream,
-        shape=shape,
-        kind=table.text("kind", name),
+        shape=assumed(shape) if shape and derivation else shape,
+        kind=entry.kind or entry.name,
         assumed=derivation,
-        deformable=table.flag("deformable"),
-        motion_floor_m=_length(table, "motion_floor_m"),
-        mass_kg=_length(table, "mass_kg"),
-        agent=table.text("agent", ""),
+        deformable=entry.deformable,
+        motion_floor_m=entry.motion_floor_m,
+        mass_kg=entry.mass_kg,
+        agent=entry.agent,
     )
-    table.close()
-    return out
 
 
-def _length(table: Table, key: str) -> float | None:
-    if key not in table:
-        return None
-    value = table.number(key)
-    if value <= 0.0:
-        raise table.error(key, f"{key} = {value:g}; it is positive.")
-    return value
+def _fixed_pose(entry: "ObjectEntry") -> RigidTransform:
+    """The stated pose of an object in the world, whose z axis points up."""
+    position = entry.position or []
+    if len(position) != 3:
+        raise entry.error(
+            "position",
+            f"position = {position}; without top_at_bottom_of it takes x, y and z.",
+            "They are in the world, whose z axis points up whatever `up` says of the files.",
+        )
+    orientation = np.array([entry.orientation or (1.0, 0.0, 0.0, 0.0)])
+    return geometry.transforms(np.array(position), geometry.unit(orientation)[0])
 
 
 def _still(

@@ -49,6 +49,19 @@ def read_mesh(path: Path) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarr
     return vertices, faces
 
 
+def open_edges(vertices: Float[np.ndarray, "vertices 3"], faces: Int[np.ndarray, "faces 3"]) -> int:
+    """How many edges bound one triangle only; a closed surface has none.
+
+    Vertices at the same place count as one, as files with textures repeat them.
+    """
+    _, which = np.unique(vertices, axis=0, return_inverse=True)
+    corners = which.reshape(-1)[faces]
+    corners = corners[(corners != np.roll(corners, 1, axis=1)).all(axis=1)]
+    edges = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2))
+    _, counts = np.unique(edges, axis=0, return_counts=True)
+    return int((counts == 1).sum())
+
+
 def _load(
     path: Path, suffix: str
 ) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "faces 3"]]:

@@ -1,27 +1,43 @@
-"""Shapes as capture.toml states them: mesh files, primitives, capsules over joints, and parts."""
+"""Shapes that capture.toml states, as meshes: files, primitives, capsules over joints, parts."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
-from capar.model.capture import Shape, ShapeSource, Source
-from capar.model.errors import UnknownNameError
-from extractors.readers.bundle.mesh import read_mesh
-from extractors.readers.bundle.toml_table import Table, expanded
+from capar.model.capture import Notice, Shape, ShapeSource, Source, notice
+from extractors.readers.bundle.mesh import open_edges, read_mesh
 from extractors.readers.bundle.world import mirrored
 from extractors.readers.files import source_of
-from extractors.readers.formats.trc import UNITS
+from extractors.readers.recording import UNITS
+from extractors.readers.schema.document import expanded
 
-FORMS = ("mesh", "box", "cylinder", "sphere", "capsule", "capsules", "parts")
-HANDS = {"right": False, "left": True}
+if TYPE_CHECKING:
+    from extractors.readers.schema.shapes import (
+        BoxShape,
+        CapsuleShape,
+        CapsulesShape,
+        CylinderShape,
+        MarkerBoxShape,
+        MeshShape,
+        PartsShape,
+        Pose,
+        SphereShape,
+    )
+
+LARGEST_M = 20.0
+"""No shape is longer [m]."""
 
 Mesh = tuple[np.ndarray, np.ndarray]
 """Corners [m] and faces."""
+
+Described = tuple[np.ndarray, np.ndarray, str]
+"""Corners [m], faces, and what the shape is in words."""
 
 
 @dataclass
@@ -40,18 +56,24 @@ class Frame:
     mirrored: bool = False
     """Whether the body's file is left-handed."""
 
+    owner: str = ""
+    """Name of the sensor or object, for notices."""
+
     sources: list[Source] = field(default_factory=list)
     """Mesh files that were read, for the capture's provenance."""
 
+    notices: list[Notice] = field(default_factory=list)
+    """What is doubtful about the mesh files."""
 
-def read_shape(table: Table, frame: Frame) -> Shape:
+
+def build_shape(entry: "Pose", frame: Frame) -> Shape:
     """The shape that a table states.
 
     Raises:
-        CaparError: The table states none, or several, or a mesh cannot be read.
+        CaparError: A mesh cannot be read, or a marker or joint is unknown.
     """
-    vertices, faces, description = _placed(table, frame)
-    stand_in = "mesh" not in table and not any("mesh" in each for each in table.tables("parts"))
+    vertices, faces, description = _placed(entry, frame)
+    stand_in = not any("mesh" in part.given() for part in [entry, *getattr(entry, "parts", [])])
     source = ShapeSource.STAND_IN if stand_in else ShapeSource.MESH
     return Shape(vertices=vertices, faces=faces, source=source, description=description)
 
@@ -61,157 +83,129 @@ def assumed(shape: Shape) -> Shape:
     return replace(shape, source=ShapeSource.ASSUMED)
 
 
-def _placed(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    """A shape's corners in the body's frame, after its own pose."""
-    form = _form(table)
-    vertices, faces, description = _MAKERS[form](table, frame)
-    pose = read_pose(table)
-    table.close()
-    return pose.apply(vertices), faces, description
+def _placed(entry: "Pose", frame: Frame) -> Described:
+    """A shape's corners in the body's frame, after its own pose, its faces and description."""
+    vertices, faces, description = _MAKERS[type(entry).__name__](entry, frame)
+    return transform(entry).apply(vertices), faces, description
 
 
-def _form(table: Table) -> str:
-    given = [each for each in table.given() if each in FORMS]
-    if len(given) != 1:
-        raise table.error("", f"a shape states one of {', '.join(FORMS)}, not {given or 'none'}.")
-    return given[0]
+def transform(pose: "Pose | None") -> RigidTransform:
+    """The rigid transform of a stated pose; none stated is no motion."""
+    if pose is None:
+        return RigidTransform.identity()
+    quaternion = geometry.unit(np.array([pose.orientation]))[0]
+    return geometry.transforms(np.array(pose.position), quaternion)
 
 
-def read_pose(table: Table) -> RigidTransform:
-    """``position`` [m] and ``orientation`` (w x y z) of a table; nothing given is no move."""
-    position = table.vector("position", 3, (0.0, 0.0, 0.0))
-    quaternion = np.array([table.vector("orientation", 4, (1.0, 0.0, 0.0, 0.0))])
-    if abs(float(np.linalg.norm(quaternion)) - 1.0) > geometry.UNIT_TOLERANCE:
-        raise table.error(
-            "orientation",
-            f"a quaternion of norm {np.linalg.norm(quaternion):.4g}.",
-            "It is a unit quaternion w x y z.",
-        )
-    return geometry.transforms(np.array(position), geometry.unit(quaternion)[0])
-
-
-def _mesh(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    text = table.text("mesh")
-    path = expanded(table, "mesh", text)
+def _mesh(entry: "MeshShape", frame: Frame) -> Described:
+    path = expanded(entry, "mesh")
     if not path.is_file():
-        raise table.error("mesh", f"no mesh file {text!r} ({path}).", _others(path))
+        raise entry.error("mesh", f"no mesh file {entry.mesh!r} ({path}).", _others(path))
     vertices, faces = read_mesh(path)
-    frame.sources.append(replace(source_of(path, "mesh"), path=text))
-    vertices = vertices * UNITS[table.choice("unit", UNITS, "m")]
-    left = HANDS[table.choice("handedness", HANDS, "left" if frame.mirrored else "right")]
-    if left:
+    frame.sources.append(replace(source_of(path, "mesh"), path=entry.mesh))
+    if edges := open_edges(vertices, faces):
+        frame.notices.append(notice("mesh-not-closed", frame.owner, mesh=path.name, edges=edges))
+    vertices = vertices * UNITS[entry.unit]
+    if (entry.handedness or ("left" if frame.mirrored else "right")) == "left":
         vertices, faces = mirrored(vertices), faces[:, ::-1]
-    _check_size(table, vertices)
+    _check_size(entry, vertices)
     return vertices, faces, path.name
 
 
-def _others(path: Any) -> str:
+def _others(path: Path) -> str:
     if not path.parent.is_dir():
         return f"There is no folder {path.parent}."
-    return (
-        f"The folder holds: {', '.join(sorted(each.name for each in path.parent.iterdir())[:12])}"
-    )
+    names = sorted(file.name for file in path.parent.iterdir())
+    return f"The folder holds: {', '.join(names[:12])}"
 
 
-def _check_size(table: Table, vertices: np.ndarray) -> None:
+def _check_size(entry: "MeshShape", vertices: np.ndarray) -> None:
     size = float((vertices.max(axis=0) - vertices.min(axis=0)).max())
-    if not 0.001 <= size <= 20.0:
-        raise table.error(
+    if not 0.001 <= size <= LARGEST_M:
+        raise entry.error(
             "mesh",
             f"in its unit the mesh is {size:.4g} m long.",
             'State its unit: unit = "mm" (or cm, dm, m, in, ft).',
         )
 
 
-def _sizes(table: Table, key: str, values: list[float]) -> list[float]:
-    if not all(0.0 < each <= 20.0 for each in values):
-        raise table.error(key, f"{key} of {values} m; sizes lie between 0 and 20 m.")
-    return values
+def _box(entry: "BoxShape", frame: Frame) -> Described:
+    return _box_about(np.zeros(3), entry.box)
 
 
-def _box(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    import trimesh
-
-    if table.raw("box") == "markers":
-        return _box_around(table, frame)
-    size = _sizes(table, "box", table.vector("box", 3))
-    box = trimesh.creation.box(extents=size)
-    return np.array(box.vertices), np.array(box.faces), f"box {_text(size)} m"
-
-
-def _box_around(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    import trimesh
-
-    names = table.texts("around") or list(frame.markers)
+def _marker_box(entry: "MarkerBoxShape", frame: Frame) -> Described:
+    names = entry.around or list(frame.markers)
     if len(names) < 2:
-        raise table.error("box", 'box = "markers" needs markers: a body\'s own, or around = [..].')
-    points = np.stack([_point(table, "around", frame, each) for each in names])
-    margin = table.number("margin_m", 0.0)
-    low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
-    size = _sizes(table, "box", [float(each) for each in np.maximum(high - low, 0.001)])
-    box = trimesh.creation.box(extents=size)
-    return np.array(box.vertices) + (low + high) / 2, np.array(box.faces), f"box {_text(size)} m"
+        problem = 'box = "markers" needs markers: a body\'s own, or around = [..].'
+        raise entry.error("box", problem)
+    points = np.stack([_point(entry, "around", frame, name) for name in names])
+    low, high = points.min(axis=0) - entry.margin_m, points.max(axis=0) + entry.margin_m
+    size = [float(length) for length in np.maximum(high - low, 0.001)]
+    if max(size) > LARGEST_M:
+        raise entry.error(
+            "box", f"the box would be {_text(size)} m.", "Are the markers of one body?"
+        )
+    return _box_about((low + high) / 2, size)
 
 
-def _cylinder(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
+def _box_about(middle: np.ndarray, size: list[float]) -> Described:
     import trimesh
 
-    radius, height = _sizes(table, "cylinder", table.vector("cylinder", 2))
+    box = trimesh.creation.box(extents=size)
+    return np.array(box.vertices) + middle, np.array(box.faces), f"box {_text(size)} m"
+
+
+def _cylinder(entry: "CylinderShape", frame: Frame) -> Described:
+    import trimesh
+
+    radius, height = entry.cylinder
     mesh = trimesh.creation.cylinder(radius=radius, height=height, sections=32)
     text = f"cylinder of radius {radius:.3g} m, height {height:.3g} m"
     return np.array(mesh.vertices), np.array(mesh.faces), text
 
 
-def _sphere(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    (radius,) = _sizes(table, "sphere", [table.number("sphere")])
+def _sphere(entry: "SphereShape", frame: Frame) -> Described:
     zero = np.zeros(3)
-    return *_capsule_between(zero, zero, radius), f"sphere of radius {radius:.3g} m"
+    return *_capsule_between(zero, zero, entry.sphere), f"sphere of radius {entry.sphere:.3g} m"
 
 
-def _capsule(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    radius, height = _sizes(table, "capsule", table.vector("capsule", 2))
+def _capsule(entry: "CapsuleShape", frame: Frame) -> Described:
+    radius, height = entry.capsule
     half = np.array([0.0, 0.0, height / 2])
     text = f"capsule of radius {radius:.3g} m, height {height:.3g} m"
     return *_capsule_between(-half, half, radius), text
 
 
-def _capsules(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    (radius,) = _sizes(table, "radius_m", [table.number("radius_m")])
-    wanted = table.raw("capsules")
-    if isinstance(wanted, str):
-        if wanted not in frame.bones:
-            known = frame.bones or {"children": (), "descendants": ()}
-            raise UnknownNameError("bones", wanted, known, where=table.where("capsules"))
-        pairs = list(frame.bones[wanted]) or [("", "")]
-    else:
-        pairs = [_pair(table, each) for each in wanted]
+def _capsules(entry: "CapsulesShape", frame: Frame) -> Described:
+    pairs = _pairs(entry, frame)
     points = {"": np.zeros(3)}
     for name in {name for pair in pairs for name in pair} - {""}:
-        points[name] = _point(table, "capsules", frame, name)
-    meshes = [_capsule_between(points[a], points[b], radius) for a, b in pairs]
-    return *joined(meshes), f"{len(pairs)} capsules of radius {radius:.3g} m"
+        points[name] = _point(entry, "capsules", frame, name)
+    meshes = [_capsule_between(points[a], points[b], entry.radius_m) for a, b in pairs]
+    return *joined(meshes), f"{len(pairs)} capsules of radius {entry.radius_m:.3g} m"
 
 
-def _pair(table: Table, value: Any) -> tuple[str, str]:
-    if not (isinstance(value, list) and len(value) == 2 and all(map(_is_text, value))):
-        raise table.error("capsules", f"{value!r} is no pair of names.", 'Like ["WRIST", "INDEX"].')
-    return (value[0], value[1])
+def _pairs(entry: "CapsulesShape", frame: Frame) -> list[tuple[str, str]]:
+    """The pairs of points that capsules are put between; the body itself is ``""``."""
+    if not isinstance(entry.capsules, str):
+        return [(first, second) for first, second in entry.capsules]
+    if entry.capsules not in frame.bones:
+        raise entry.error(
+            "capsules",
+            f"capsules = {entry.capsules!r} needs a body with a skeleton.",
+            'Give pairs of names: [["WRIST", "INDEX"]].',
+        )
+    return list(frame.bones[entry.capsules]) or [("", "")]
 
 
-def _is_text(value: object) -> bool:
-    return isinstance(value, str)
-
-
-def _point(table: Table, key: str, frame: Frame, name: str) -> Float[np.ndarray, "3"]:
+def _point(entry: "Pose", key: str, frame: Frame, name: str) -> Float[np.ndarray, "3"]:
     if name not in frame.points:
-        raise UnknownNameError("point", name, frame.points, where=table.where(key))
+        raise entry.unknown("point", name, frame.points, key)
     return frame.points[name]
 
 
-def _parts(table: Table, frame: Frame) -> tuple[np.ndarray, np.ndarray, str]:
-    parts = [_placed(each, frame) for each in table.tables("parts")]
-    if not parts:
-        raise table.error("parts", "parts is a list of shapes, and it is empty.")
+def _parts(entry: "PartsShape", frame: Frame) -> Described:
+    parts = [_placed(part, frame) for part in entry.parts]
     meshes = [(vertices, faces) for vertices, faces, _ in parts]
     return *joined(meshes), " + ".join(text for _, _, text in parts)
 
@@ -244,12 +238,14 @@ def _text(size: list[float]) -> str:
     return " x ".join(f"{each:.3g}" for each in size)
 
 
-_MAKERS = {
-    "mesh": _mesh,
-    "box": _box,
-    "cylinder": _cylinder,
-    "sphere": _sphere,
-    "capsule": _capsule,
-    "capsules": _capsules,
-    "parts": _parts,
+_MAKERS: dict[str, Callable[[Any, Frame], Described]] = {
+    "MeshShape": _mesh,
+    "BoxShape": _box,
+    "MarkerBoxShape": _marker_box,
+    "CylinderShape": _cylinder,
+    "SphereShape": _sphere,
+    "CapsuleShape": _capsule,
+    "CapsulesShape": _capsules,
+    "PartsShape": _parts,
 }
+"""What builds each kind of shape of the schema."""

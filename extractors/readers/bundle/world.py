@@ -10,8 +10,7 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Notice, Source, Stream
 from capar.model.errors import CaptureError
-from extractors.readers.formats.trc import UNITS
-from extractors.readers.recording import Recording
+from extractors.readers.recording import UNITS, Recording
 
 LARGEST_M = 100.0
 """No room for motion capture spans more [m]."""

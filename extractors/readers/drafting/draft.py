@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from extractors.readers.bundle.names import constant_name
 from extractors.readers.drafting.clusters import limb_of, marker_sets, side_of
 from extractors.readers.recording import Recording
+from extractors.readers.schema.names import constant_name
 
 TODO = "# EDIT:"
 """What marks a line that a person must look at."""

@@ -53,7 +53,7 @@ class NearPair:
 def survey(name: str, kind: str, stream: Stream) -> StreamSurvey:
     """A stream's figures; positions in metres."""
     steps = np.diff(stream.times)
-    lost = geometry.gaps(stream.lost)
+    lost = geometry.runs(stream.lost)
     known = stream.positions[~stream.lost]
     extent = known.max(axis=0) - known.min(axis=0) if len(known) else None
     quiet = _quietest(stream)

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
-from capar.model.capture import Notice
+from capar.model.capture import Notice, notice
 from capar.model.errors import FileError
 from extractors.readers.files import read_text, source_of
 from extractors.readers.formats.numbers import read_rows
@@ -195,12 +195,4 @@ def _doubtful(joints: list[Joint]) -> list[Notice]:
         for each in joints
         if any(each.offset) and any(name.endswith("position") for name in each.channels)
     ]
-    if not moved:
-        return []
-    return [
-        Notice(
-            "offset-and-position",
-            f"{', '.join(moved[:5])}: OFFSET and position channels both given; a root adds "
-            "them, any other joint takes the channels alone",
-        )
-    ]
+    return [notice("offset-and-position", *moved)] if moved else []

@@ -11,8 +11,7 @@ from capar.model.errors import FileError
 from extractors.readers.files import read_bytes, source_of
 from extractors.readers.formats.c3d_layout import BLOCK, Layout, read_layout, reals
 from extractors.readers.formats.qualisys import rotation_quaternions
-from extractors.readers.formats.trc import UNITS
-from extractors.readers.recording import Recording, track, uniform_clock
+from extractors.readers.recording import UNITS, Recording, track, uniform_clock
 
 _ROTATION = 17
 """Numbers a rotation: a matrix of 4 x 4 by columns, and its reliability."""

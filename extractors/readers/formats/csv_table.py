@@ -10,7 +10,7 @@ from jaxtyping import Float
 from capar.model.errors import FileError, UnknownNameError
 from extractors.readers.files import read_text, source_of
 from extractors.readers.formats.numbers import read_rows
-from extractors.readers.recording import Recording, track, uniform_clock
+from extractors.readers.recording import Recording, check_rate, track, uniform_clock
 
 OPTIONS = frozenset({"time", "columns", "order", "rate_hz", "delimiter"})
 """``time``: the column of seconds; ``columns``: body to its 3 or 7 columns; ``order``: of its
@@ -129,6 +129,7 @@ def _times(
     lowered = {each.lower(): each for each in reversed(list(table))}
     name = wanted or next((lowered[each] for each in TIMES if each in lowered), None)
     if name is not None:
+        check_rate(table[str(name)], options)
         return table[str(name)]
     if "rate_hz" in options:
         return uniform_clock(len(next(iter(table.values()))), float(options["rate_hz"]))

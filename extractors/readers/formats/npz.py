@@ -13,13 +13,11 @@ from numpy.lib import format as npy
 from capar.model.errors import FileError, UnknownNameError
 from extractors.readers.files import EXPANDED_LIMIT, check_zip, source_of
 from extractors.readers.formats.csv_table import ORDERS
-from extractors.readers.recording import Recording, track, uniform_clock
+from extractors.readers.recording import Recording, check_rate, track, uniform_clock
 
 OPTIONS = frozenset({"arrays", "time", "fps", "rate_hz"})
 """``arrays``: a list of ``{positions, quaternions, order, names | body}``; ``time``: the array of
 seconds; ``fps``: the array that holds the rate; ``rate_hz``: the rate itself."""
-
-_KEYS = {"positions", "quaternions", "order", "names", "body"}
 
 
 def recognises(path: Path, head: bytes) -> bool:
@@ -97,9 +95,6 @@ def _array(path: Path, arrays: Mapping[str, np.ndarray], name: object) -> np.nda
 def _group(
     path: Path, arrays: Mapping[str, np.ndarray], group: Mapping[str, Any]
 ) -> tuple[list[str], np.ndarray, np.ndarray | None]:
-    for key in group:
-        if key not in _KEYS:
-            raise UnknownNameError("key of arrays", key, _KEYS, where=str(path))
     positions = _stacked(path, _array(path, arrays, group.get("positions")), 3)
     names = (
         [str(group["body"])]
@@ -133,7 +128,9 @@ def _times(
     path: Path, arrays: Mapping[str, np.ndarray], options: Mapping[str, Any], frames: int
 ) -> Float[np.ndarray, "frames"]:
     if "time" in options:
-        return np.asarray(_array(path, arrays, options["time"]), dtype=float).reshape(-1)
+        times = np.asarray(_array(path, arrays, options["time"]), dtype=float).reshape(-1)
+        check_rate(times, options)
+        return times
     if "fps" in options:
         return uniform_clock(frames, float(_array(path, arrays, options["fps"])))
     if "rate_hz" in options:

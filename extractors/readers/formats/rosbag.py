@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from capar.model.capture import Notice, Source, Stream
+from capar.model.capture import Source, Stream, notice
 from capar.model.errors import FileError
 from extractors.readers.files import source_of
 from extractors.readers.recording import Recording, track
@@ -47,12 +47,11 @@ def read(path: Path, options: Any) -> Recording:
         raise FileError(path, f"no message of a kind that is read here: {kinds}.")
     start = min(min(each) for each in samples.values())
     bodies = {name: _stream(name, each, start) for name, each in sorted(samples.items())}
-    notice = Notice("doubled-stamps", f"{doubled} samples repeat a stamp; the last of each is kept")
     return Recording(
         source=_source(path),
         bodies=bodies,
         unit_m=1.0,
-        notices=(notice,) if doubled else (),
+        notices=(notice("doubled-stamps", samples=doubled),) if doubled else (),
     )
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from capar.model.errors import CaparError, CaptureError, FileError
 from extractors.readers.bundle.capture_toml import read_capture
-from extractors.readers.bundle.place import find_place
+from extractors.readers.bundle.location import find_place
 
 TRIAL = """name = "trial"
 unit = "m"
@@ -45,11 +45,11 @@ WRONG = (
     ('name = "trial"', 'name = "  "', "name is empty."),
     ('name = "ann"', 'name = ""', "name is empty."),
     ('kind = "cup"', 'kind = ""', "kind is empty."),
-    ('name = "right_hand"', 'name = "Right Hand!"', "sensor 'Right Hand!': names begin"),
-    ('name = "right_hand"', 'name = ""', "sensor '': names begin"),
+    ('name = "right_hand"', 'name = "Right Hand!"', "name 'Right Hand!': names begin"),
+    ('name = "right_hand"', 'name = ""', "name '': names begin"),
     ('name = "table"', 'name = "mug" #', "two objects are called 'mug'; also "),
-    ("rate_hz = 100", "rate_hz = -5", "rate_hz = -5; it is positive."),
-    ("rate_hz = 100", "rate_hz = 0", "rate_hz = 0; it is positive."),
+    ("rate_hz = 100", "rate_hz = -5", "rate_hz = -5; it must be greater than 0."),
+    ("rate_hz = 100", "rate_hz = 0", "rate_hz = 0; it must be greater than 0."),
 )
 
 

@@ -155,10 +155,12 @@ def test_cases_are_found_in_rule_files_and_beside_them(tmp_path: Path) -> None:
         "%* Example: a little push.\nframes(0, 9).\nlink(right_hand, hand, right).\n"
         "=> right_hand: Nudge\n*%\n"
     )
-    (tmp_path / "pushed.expected").write_text('named(seg(right_hand,1),"Push")\nnot x("Pull")\n')
+    (tmp_path / "push.cases").write_text(
+        '%% Pushed aside\n% A story.\n=> named(seg(right_hand,1),"Push")\n=> not x("Pull")\n'
+    )
     assert cases_of([rule], tmp_path) == (
         Case("Nudge", f"{tmp_path.name}/nudge.lp: a little push."),
-        Case("Push", "pushed"),
+        Case("Push", "push: Pushed aside"),
     )
 
 

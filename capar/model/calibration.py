@@ -1,0 +1,181 @@
+"""What is decided once for a whole recording, before what happens in it is measured.
+
+A calibration is made from a recording, or from its beginning; with it any part of the recording is
+measured as the whole would be, as far as the horizons that it states reach.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from capar.model.errors import UnknownNameError
+
+
+@dataclass(frozen=True, slots=True)
+class FixedPose:
+    """Where a body stands throughout."""
+
+    position_m: tuple[float, float, float]
+    """World position [m]."""
+
+    orientation: tuple[float, float, float, float]
+    """Unit quaternion w x y z that takes the body's axes to the world's."""
+
+
+@dataclass(frozen=True, slots=True)
+class BodyCalibration:
+    """What one sensor's or object's stream shows."""
+
+    name: str
+    noise_m: float
+    """Standard deviation of one coordinate [m]."""
+
+    noise_rad: float
+    """Standard deviation of the rotation about one axis [rad]."""
+
+    motion_floor_m: float
+    """Displacement from a place of rest below which the body is still there [m]."""
+
+    motion_floor_rad: float
+    """The same for its orientation [rad]."""
+
+    highest_speed_mps: float
+    """Highest speed of its low-passed origin [m/s], of which extrema of speed are a share."""
+
+    upright: tuple[float, float, float]
+    """The axis that points up where it first rests, in its own frame; a unit vector."""
+
+    still: bool
+    """Whether its recorded pose is one and the same in every frame."""
+
+    fixed: FixedPose | None = None
+    """Of a FIXED object, the median of its poses, at which it is taken to stand; else None."""
+
+
+@dataclass(frozen=True, slots=True)
+class PairCalibration:
+    """At which distances two bodies begin and cease to touch."""
+
+    first: str
+    second: str
+    touch_m: float
+    """Distance up to which they touch [m]: of surfaces, or of origins where ``pivots``."""
+
+    release_m: float
+    """Between two frames of contact they touch while they are nearer than this [m]."""
+
+    pivots: bool = False
+    """Whether the distance is that of their origins, as the capture states."""
+
+
+@dataclass(frozen=True, slots=True)
+class FootLevel:
+    """On what level an agent's feet stand."""
+
+    agent: str
+    height_m: float
+    """Height of the lowest point of a foot at its lowest rest [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Horizons:
+    """How far measurements look: what is farther from a frame than this has no part in it.
+
+    Rest poses and what follows from them have no horizon; ``extractors.calibration`` lists them.
+    """
+
+    filter_s: float
+    """Half the length of the low-pass filter [s]."""
+
+    gap_s: float
+    """Longest loss that is interpolated [s]; as many frames on each side take part."""
+
+    extremum_s: float
+    """How far about an extremum of speed its prominence and its neighbours are sought [s]."""
+
+    interval_s: float
+    """Longest interruption that is closed, and shortest interval that counts [s]."""
+
+    @property
+    def margin_s(self) -> float:
+        """What a window has to hold on either side of the part that it is asked about [s].
+
+        Speeds reach two frames beyond the filter, which the interval's horizon covers.
+        """
+        return 3.0 * self.gap_s + self.filter_s + 2.0 * self.extremum_s + 2.0 * self.interval_s
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Everything that is decided once for a whole recording."""
+
+    step_s: float
+    """Median step of the clock [s]."""
+
+    cutoff_hz: float
+    """Where the zero-phase low-pass halves the amplitude [Hz]."""
+
+    contact_tolerance_m: float
+    """Distance up to which surfaces count as touching [m]."""
+
+    contact_dropout_s: float
+    """A shorter interruption of a contact is closed [s]."""
+
+    contact_minimum_s: float
+    """A shorter contact is dropped [s]."""
+
+    sensors: tuple[BodyCalibration, ...]
+    objects: tuple[BodyCalibration, ...]
+    pairs: tuple[PairCalibration, ...]
+    """Pairs of bodies whose contact is sought, as they are sought."""
+
+    foot_levels: tuple[FootLevel, ...]
+    """Of each agent with feet that rest."""
+
+    horizons: Horizons
+    thresholds: Mapping[str, float]
+    """Every number that extraction decides by, by its name in ``extractors.thresholds``."""
+
+    def __post_init__(self) -> None:
+        """Make the thresholds read-only."""
+        object.__setattr__(self, "thresholds", MappingProxyType(dict(self.thresholds)))
+
+    def sensor(self, name: str) -> BodyCalibration:
+        """That of the sensor of a name.
+
+        Raises:
+            UnknownNameError: There is none.
+        """
+        return _named("sensor", name, self.sensors)
+
+    def tag_object(self, name: str) -> BodyCalibration:
+        """That of the object of a name.
+
+        Raises:
+            UnknownNameError: There is none.
+        """
+        return _named("object", name, self.objects)
+
+    def pair(self, first: str, second: str) -> PairCalibration:
+        """That of two bodies.
+
+        Raises:
+            UnknownNameError: Their contact is not sought.
+        """
+        for pair in self.pairs:
+            if (pair.first, pair.second) == (first, second):
+                return pair
+        known = [f"{pair.first}-{pair.second}" for pair in self.pairs]
+        raise UnknownNameError("pair", f"{first}-{second}", known, where="calibration")
+
+    def foot_level(self, agent: str) -> float:
+        """Height on which an agent's feet stand [m]; infinite where no foot rests."""
+        known = {level.agent: level.height_m for level in self.foot_levels}
+        return known.get(agent, float("inf"))
+
+
+def _named(kind: str, name: str, known: tuple[BodyCalibration, ...]) -> BodyCalibration:
+    for body in known:
+        if body.name == name:
+            return body
+    raise UnknownNameError(kind, name, [body.name for body in known], where="calibration")

@@ -1,0 +1,147 @@
+"""What every kind of observed fact declares, once, where it is defined."""
+
+import re
+from dataclasses import dataclass, replace
+from enum import Enum
+from functools import cache
+from inspect import get_annotations
+from types import ModuleType
+from typing import Any, ClassVar, Self, cast
+
+from capar.model.atoms import Fact
+from capar.model.errors import FactError
+
+
+class Span(Enum):
+    """When the facts of a kind hold."""
+
+    ALWAYS = ()
+    INSTANT = ("frame",)
+    INTERVAL = ("first", "last")
+
+
+GENERIC = ("Fact",)
+"""In RDF: a fact with the name of its predicate and its arguments as one text."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Declaration:
+    """What one kind of fact says of itself; what others need to know of it is derived from this."""
+
+    about: str | None
+    """The field that names the body which the fact is about; None where it is about no body."""
+
+    span: "Span | type[Observed]"
+    """When it holds. A kind of facts instead: throughout one of those intervals, which has the
+    same bodies and the same first frame."""
+
+    border: bool | frozenset[str]
+    """Whether segments of the body that it is about, and of end-effectors that touch this body
+    meanwhile, may begin or end where the fact begins or ends, so that places are measured there;
+    a set: only those of its stretches."""
+
+    told: bool
+    """Whether an explanation has a sentence for it, in ``capar_rules/explain/sentences.lp``."""
+
+    stretch: str = ""
+    """Under which name rules find the ticks in it (``spans/6``, ``encloses/6``); it may contain
+    fields in braces. Empty: rules do not join it by ticks."""
+
+    others: tuple[str, ...] = ()
+    """The fields that name the other body of such a stretch, one each; none: the body itself."""
+
+    negated: str = ""
+    """What a measured interval is taken for that is contradicted as flicker, such as ``apart``;
+    empty where flicker is not resolved."""
+
+    rdf: tuple[str, ...] = GENERIC
+    """The class in the ontology, and the property of each argument, where it has its own."""
+
+
+class Observed(Fact):
+    """A fact that an observation rests on; its class carries a declaration."""
+
+    __slots__ = ()
+
+    declaration: ClassVar[Declaration]
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Check the declaration against the fields.
+
+        Raises:
+            FactError: There is none, or it does not fit the fields.
+        """
+        super().__init_subclass__(**options)
+        declared = cls.__dict__.get("declaration")
+        if declared is None:
+            raise FactError(f"{cls.__name__} lacks a declaration: what it is about, its span ...")
+        _check(cls.__name__, declared, list(get_annotations(cls)))
+
+    def subject(self) -> str:
+        """The body that the fact is about; empty where it is about none."""
+        about = self.declaration.about
+        return "" if about is None else str(getattr(self, about))
+
+    def ends(self) -> tuple[int, ...]:
+        """The frames that the fact itself states: an instant, or the first and the last frame."""
+        span = self.declaration.span
+        names = span.value if isinstance(span, Span) else ("first",)
+        return tuple(getattr(self, each) for each in names)
+
+    def other_bodies(self) -> tuple[str, ...]:
+        """The other body of each stretch that the fact states; at least the body itself."""
+        others = self.declaration.others
+        return tuple(str(getattr(self, each)) for each in others) or (self.subject(),)
+
+    def stretch(self) -> str:
+        """The name under which rules find the ticks in it; empty where they do not."""
+        pattern = self.declaration.stretch
+        return _BRACES.sub(lambda found: str(getattr(self, found[1])), pattern)
+
+    def is_border(self) -> bool:
+        """Whether a segment may begin or end where it does."""
+        border = self.declaration.border
+        return border if isinstance(border, bool) else self.stretch() in border
+
+    def name(self, kind: "type[Observed]") -> tuple[object, ...]:
+        """The name of an interval of a kind: of this one, or of the one that its span is."""
+        return kind, *(getattr(self, each) for each in _naming_fields(cast(Any, kind)))
+
+    def between(self, first: int, last: int) -> Self:
+        """The same fact of another interval."""
+        return replace(cast(Any, self), first=first, last=last)
+
+
+_BRACES = re.compile(r"\{(\w+)\}")
+
+
+@cache
+def _naming_fields(kind: Any) -> tuple[str, ...]:
+    """The fields by which other facts name an interval of a kind."""
+    return tuple(each for each in get_annotations(kind) if each != "last")
+
+
+def _check(name: str, declared: Declaration, fields: list[str]) -> None:
+    span = declared.span
+    braces = _BRACES.findall(declared.stretch)
+    frames = span.value if isinstance(span, Span) else _naming_fields(cast(Any, span))
+    about = () if declared.about is None else (declared.about,)
+    needed = (*about, *frames, *declared.others, *braces)
+    missing = [each for each in needed if each not in fields]
+    if missing:
+        raise FactError(f"{name} declares the fields {missing}, but has {fields}")
+    if declared.rdf != GENERIC and len(declared.rdf) != len(fields) + 1:
+        raise FactError(f"{name} declares {declared.rdf}: expected a class and {len(fields)} terms")
+    if declared.negated and span is not Span.INTERVAL:
+        raise FactError(f"{name} cannot flicker: it is no interval")
+
+
+def kinds_of(module: ModuleType) -> tuple[type[Observed], ...]:
+    """The kinds of facts that a module defines, in their order."""
+    return tuple(
+        each
+        for each in vars(module).values()
+        if isinstance(each, type)
+        and issubclass(each, Observed)
+        and each.__module__ == module.__name__
+    )

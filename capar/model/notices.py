@@ -1,0 +1,224 @@
+"""Notices: what a user ought to know of a capture that is no error, as values with their prose.
+
+A notice carries its bodies, times and numbers as fields. Its sentence is made from them by the
+table here, one row a code, and is never parsed.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from capar.model.errors import CaparError, UnknownNameError
+
+Value = str | int | float | bool
+
+Field = tuple[str, Value]
+"""A name and what it is, such as ``("tolerance_m", 0.005)``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """Something about a capture that is no error and that its user ought to know."""
+
+    code: str
+    """A stable name in kebab case, of those in ``KINDS``."""
+
+    bodies: tuple[str, ...] = ()
+    """The bodies that it is about."""
+
+    start_s: float | None = None
+    """When what it says begins [s]; None where it is about no time."""
+
+    end_s: float | None = None
+    values: tuple[Field, ...] = ()
+    """Further numbers and words, sorted by name; a unit ends the name: ``tolerance_m``."""
+
+    def __post_init__(self) -> None:
+        """Prove that its sentence can be made."""
+        if self.code not in KINDS:
+            raise UnknownNameError("kind of notice", self.code, KINDS)
+        try:
+            _ = self.message
+        except (KeyError, IndexError, TypeError, ValueError) as error:
+            raise CaparError(f"notice {self.code!r} lacks a field for its text: {error}") from None
+
+    def __getitem__(self, name: str) -> Value:
+        """The value of that name; KeyError where it has none."""
+        return dict(self.values)[name]
+
+    def __lt__(self, other: "Notice") -> bool:
+        """Notices are sorted by code, bodies and time."""
+        return self._order < other._order
+
+    @property
+    def _order(self) -> tuple[Any, ...]:
+        times = [-1.0 if each is None else each for each in (self.start_s, self.end_s)]
+        return self.code, self.bodies, *times, [(name, str(value)) for name, value in self.values]
+
+    @property
+    def message(self) -> str:
+        """The notice in words."""
+        text = KINDS[self.code].text
+        if callable(text):
+            return text(self)
+        fields = {"start_s": self.start_s, "end_s": self.end_s, **dict(self.values)}
+        return text.format(*self.bodies, **fields)
+
+    def document(self) -> dict[str, Any]:
+        """Its JSON form: the fields that it has, and the message for those who read no code."""
+        out: dict[str, Any] = {"code": self.code, "bodies": list(self.bodies)}
+        times = {"start_s": self.start_s, "end_s": self.end_s}
+        out |= {name: value for name, value in times.items() if value is not None}
+        return out | {"values": dict(self.values), "message": self.message}
+
+
+def notice(
+    code: str,
+    *bodies: str,
+    start_s: float | None = None,
+    end_s: float | None = None,
+    **values: Value,
+) -> Notice:
+    """A notice about some bodies, with such values as its code needs.
+
+    Raises:
+        UnknownNameError: There is no such code.
+        CaparError: A field that its sentence needs is missing.
+    """
+    return Notice(code, bodies, start_s, end_s, tuple(sorted(values.items())))
+
+
+def read_notice(document: Mapping[str, Any]) -> Notice:
+    """The notice that a JSON form states; its message is made anew.
+
+    Raises:
+        CaparError: It has other fields, or a field of another type.
+    """
+    known = {"code", "bodies", "start_s", "end_s", "values", "message"}
+    for name in document:
+        if name not in known:
+            raise UnknownNameError("field of a notice", name, known)
+    code, bodies = document.get("code"), document.get("bodies")
+    values, times = document.get("values"), (document.get("start_s"), document.get("end_s"))
+    if not isinstance(code, str):
+        raise CaparError(f"code: expected a text, found {code!r}")
+    if not isinstance(bodies, list) or not all(isinstance(each, str) for each in bodies):
+        raise CaparError(f"bodies: expected a list of names, found {bodies!r}")
+    if not isinstance(values, dict) or not all(map(_is_value, values.values())):
+        raise CaparError(f"values: expected names with numbers or texts, found {values!r}")
+    if not all(each is None or _is_number(each) for each in times):
+        raise CaparError(f"start_s, end_s: expected seconds, found {times!r}")
+    return notice(code, *bodies, start_s=times[0], end_s=times[1], **values)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _is_value(value: object) -> bool:
+    return isinstance(value, str | int | float)
+
+
+def _contact_tolerance(each: Notice) -> str:
+    source = "as the capture states" if each["stated"] else "from the sensors' noise at rest"
+    return f"bodies count as touching within {1e3 * float(each['tolerance_m']):.1f} mm, {source}"
+
+
+def _long_gap(each: Notice) -> str:
+    """Of one gap as it was read, or of all of a body's, with what follows from them."""
+    (body,), values = each.bodies, dict(each.values)
+    if "times" not in values:
+        span = "throughout" if each.start_s is None else f"from {each.start_s:.2f} s"
+        return f"{body} is lost {span}" + ("" if each.end_s is None else f" to {each.end_s:.2f} s")
+    if each.start_s is None:
+        return f"{body!r} was lost throughout; no contact of it is known"
+    times = values["times"]
+    often = {1: "once", 2: "twice"}.get(int(times), f"{times} times")
+    most = " at most" if times != 1 else ""
+    follows = "it is held to stay" if values["fixed"] else (
+        "a contact before and after is taken to last"
+    )  # fmt: skip
+    span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
+    return f"{body!r} was lost {often} for long,{most} from {span}; {follows}"
+
+
+def _objects_left_out(each: Notice) -> str:
+    return (
+        f"{len(each.bodies)} of {each['objects']} objects have no shape and are left out: "
+        f"{', '.join(each.bodies)}"
+    )
+
+
+def _offset_and_position(each: Notice) -> str:
+    return (
+        f"{', '.join(each.bodies[:5])}: OFFSET and position channels both given; a root adds "
+        "them, any other joint takes the channels alone"
+    )
+
+
+def _pivot_distance(each: Notice) -> str:
+    first, second = each.bodies
+    return (
+        f"{first!r} and {second!r} count as touching while their origins are within "
+        f"{1e3 * float(each['distance_m']):.0f} mm"
+    )
+
+
+def _flicker(each: Notice) -> str:
+    return (
+        f"{' with '.join(each.bodies)}: {each['length_s']:.2f} s at {each.start_s:.2f} s taken for "
+        f"{each['taken']}, not as measured: so the fewest changes explain it"
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class NoticeKind:
+    """What is said of notices of a code."""
+
+    text: str | Callable[[Notice], str]
+    """A template over the bodies by number and the other fields by name, or what makes the text."""
+
+    several: str = ""
+    """What many of it are called; empty where it does not bear on the truth of what is told.
+
+    Without one that does, what is told would be taken for more certain than it is.
+    """
+
+
+KINDS: Mapping[str, NoticeKind] = {
+    "long-gap": NoticeKind(_long_gap, "bodies lost for long"),
+    "markers-not-rigid": NoticeKind(
+        "{0}: {frames} frames in which its markers are not rigid are taken as lost",
+        "bodies whose markers are not rigid",
+    ),
+    "stand-in-shape": NoticeKind("{0!r} is a stand-in: {shape}", "stand-in shapes"),
+    "no-shape": NoticeKind(
+        "{0!r} has no shape, so no contact of it is known", "bodies without a shape"
+    ),
+    "objects-left-out": NoticeKind(_objects_left_out, "groups of objects left out"),
+    "assumed-support": NoticeKind("{0!r} is assumed: {assumed}", "assumed supports"),
+    "pivot-distance": NoticeKind(
+        _pivot_distance, "pairs that touch by the distance of their origins"
+    ),
+    "contact-tolerance": NoticeKind(_contact_tolerance),
+    "doubled-stamps": NoticeKind("{samples} samples repeat a stamp; the last of each is kept"),
+    "flicker": NoticeKind(_flicker),
+    "no-unit": NoticeKind("the file states no unit; lengths are shown as if it were metres"),
+    "offset-and-position": NoticeKind(_offset_and_position),
+    "rate-mistyped": NoticeKind(
+        "rate_hz = {stated_hz:g}, but the files have {recorded_hz} frames a second; is it mistyped?"
+    ),
+    "rate-contradicted": NoticeKind(
+        "the header states {stated_hz:g} frames a second, the time stamps {rate_hz:.4g}; "
+        "the time stamps are taken"
+    ),
+    "frames-missing": NoticeKind(
+        "the header states {stated} frames, the file holds {frames}; was it cut short?"
+    ),
+    "end-effector-unknown": NoticeKind(
+        "{0}: end_effector {stated!r} is none of {known}, which rules know; did you mean {near!r}?"
+    ),
+    "mesh-not-closed": NoticeKind("{0}: the mesh {mesh} is not closed, it has {edges} open edges"),
+    "rule-violation": NoticeKind("{violation}"),
+}
+"""Each code with its text: every sentence of a notice is here."""

@@ -1,0 +1,202 @@
+"""Facts about the scene: who acts, what there is, and what touches, moves and looks."""
+
+from dataclasses import dataclass
+
+from capar.model.declarations import Declaration, Observed, Span
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Frames(Observed):
+    """The capture's first and last frame."""
+
+    predicate = "frames"
+    declaration = Declaration(
+        about=None,
+        span=Span.ALWAYS,
+        border=False,
+        told=False,
+        rdf=("FramesFact", "firstFrame", "lastFrame"),
+    )
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class RateMhz(Observed):
+    """Frames in a thousand seconds."""
+
+    predicate = "rate_mhz"
+    declaration = Declaration(
+        about=None, span=Span.ALWAYS, border=False, told=False, rdf=("RateFact", "rateMhz")
+    )
+    rate: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Link(Observed):
+    """An end-effector that acts, its general type and its side."""
+
+    predicate = "link"
+    declaration = Declaration(
+        about="ee",
+        span=Span.ALWAYS,
+        border=False,
+        told=False,
+        rdf=("LinkFact", "ee", "effectorType", "side"),
+    )
+    ee: str
+    kind: str
+    side: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Tag(Observed):
+    """An object or body part watched for contact: self, fixed or mobile."""
+
+    predicate = "tag"
+    declaration = Declaration(
+        about="object",
+        span=Span.ALWAYS,
+        border=False,
+        told=True,
+        rdf=("TagFact", "objectName", "tagName"),
+    )
+    object: str
+    type: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class OfAgent(Observed):
+    """Whose an end-effector or a body part is; stated where several agents perform."""
+
+    predicate = "of_agent"
+    declaration = Declaration(about="body", span=Span.ALWAYS, border=False, told=True)
+    body: str
+    agent: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class ZeroCrossing(Observed):
+    """The end-effector's acceleration crosses zero at this frame (thesis 3.2.1)."""
+
+    predicate = "zero_crossing"
+    declaration = Declaration(
+        about="ee", span=Span.INSTANT, border=False, told=False, rdf=("ZeroCrossing", "ee", "frame")
+    )
+    ee: str
+    frame: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Pause(Observed):
+    """A zero crossing at which the end-effector is slow: it starts, stops or turns."""
+
+    predicate = "pause"
+    declaration = Declaration(about="ee", span=Span.INSTANT, border=True, told=False)
+    ee: str
+    frame: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Touching(Observed):
+    """Two bodies touch from the first to the last frame; an end-effector stands first."""
+
+    predicate = "touching"
+    declaration = Declaration(
+        about="body",
+        span=Span.INTERVAL,
+        border=True,
+        told=True,
+        others=("other",),
+        negated="apart",
+        rdf=("Touching", "body", "other", "firstFrame", "lastFrame"),
+    )
+    body: str
+    other: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Gap(Observed):
+    """How far two bodies are apart when they begin to touch [micrometres]; zero where they cut."""
+
+    predicate = "gap"
+    declaration = Declaration(
+        about="body",
+        span=Touching,
+        border=False,
+        told=False,
+        rdf=("Gap", "body", "other", "firstFrame", "micrometres"),
+    )
+    body: str
+    other: str
+    first: int
+    micrometres: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Moving(Observed):
+    """An object is away from each place where it rests, from the first to the last frame."""
+
+    predicate = "moving"
+    declaration = Declaration(
+        about="object",
+        span=Span.INTERVAL,
+        border=True,
+        told=True,
+        negated="still",
+        rdf=("Moving", "objectName", "firstFrame", "lastFrame"),
+    )
+    object: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class LookingAt(Observed):
+    """The line of sight of a sensor that attends, or of a head that acts, meets it first."""
+
+    predicate = "looking_at"
+    declaration = Declaration(
+        about="sensor",
+        span=Span.INTERVAL,
+        border=True,
+        told=True,
+        stretch="looks",
+        others=("object",),
+        rdf=("LookingAt", "sensor", "objectName", "firstFrame", "lastFrame"),
+    )
+    sensor: str
+    object: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class ForceTransfer(Observed):
+    """The user says that force passes to objects in this trial (thesis 4.4.1)."""
+
+    predicate = "force_transfer"
+    declaration = Declaration(
+        about=None, span=Span.ALWAYS, border=False, told=True, rdf=("ForceTransfer",)
+    )
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Intended(Observed):
+    """The user's purpose for steps of an action with an object and a goal; "any" fits all."""
+
+    predicate = "intended"
+    declaration = Declaration(
+        about=None,
+        span=Span.ALWAYS,
+        border=False,
+        told=False,
+        rdf=("Intended", "rank", "actionName", "objectName", "goalName", "purpose"),
+    )
+    rank: int
+    action: str
+    object: str
+    goal: str
+    purpose: str

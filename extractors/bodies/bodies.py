@@ -1,0 +1,33 @@
+"""Every body of a capture with its geometry and poses, by sensor and by object."""
+
+from dataclasses import dataclass
+
+from capar.model.capture import Capture
+from extractors.bodies.body_geometry import BodyGeometry, geometry_of
+from extractors.bodies.poses import Poses
+from extractors.thresholds import Thresholds
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """The bodies of one capture; an object that is also a sensor is in both."""
+
+    sensors: dict[str, BodyGeometry]
+    objects: dict[str, BodyGeometry]
+
+    @property
+    def poses(self) -> dict[str, Poses]:
+        """The poses of every body by name; of an object that is also a sensor, the object's."""
+        return {name: each.poses for name, each in (self.sensors | self.objects).items()}
+
+    def named(self, name: str) -> BodyGeometry:
+        """The object of that name, or else the sensor."""
+        return self.objects[name] if name in self.objects else self.sensors[name]
+
+
+def bodies_of(capture: Capture, thresholds: Thresholds) -> Bodies:
+    """The bodies of a capture, gaps filled and noise taken out."""
+    return Bodies(
+        {each.name: geometry_of(each, thresholds) for each in capture.sensors},
+        {each.name: geometry_of(each, thresholds) for each in capture.objects},
+    )

@@ -1,0 +1,1 @@
+"""The schema of capture.toml: its tables and keys, validation, messages and reference page."""

@@ -1,0 +1,95 @@
+"""The version of the form in which statements are kept, stated in each store and proved on opening.
+
+Version 1 stated no version. Version 2 states it, and gives each segment its address.
+"""
+
+from collections.abc import Iterable
+
+from pyoxigraph import Literal, NamedNode, Quad
+
+from kb.errors import SchemaError
+from kb.store.names import GRAPHS
+from kb.store.statements import TYPE
+from kb.store.stores import Store
+from ontology import CAPAR
+
+SCHEMA = 2
+"""The version that this program reads and writes."""
+
+FIRST = 1
+"""The version of a store that states none."""
+
+_ADDRESSES = f"""INSERT {{ GRAPH ?graph {{ ?segment {CAPAR.address} ?address }} }}
+WHERE {{
+  GRAPH ?graph {{
+    ?graph {CAPAR.capture}/{CAPAR.name} ?capture ; {CAPAR.segment} ?segment .
+    ?segment {CAPAR.ee} ?ee ; {CAPAR.index} ?index .
+  }}
+  BIND(CONCAT(?capture, "/", ?ee, "/", STR(?index)) AS ?address)
+}}"""
+
+STEPS = {1: _ADDRESSES}
+"""The update that brings a store of each older version to the next one."""
+
+_STATED = f"SELECT ?version WHERE {{ {GRAPHS['ontology']} {CAPAR.schemaVersion} ?version }}"
+_WRITTEN = (
+    f"ASK {{ {{ {GRAPHS['ontology']} {CAPAR.sha256} ?digest }} "
+    f"UNION {{ ?seen a {CAPAR.Observation} }} }}"
+)
+
+
+def statement() -> Quad:
+    """What a store of this version says of itself."""
+    graph = GRAPHS["ontology"]
+    return Quad(graph, CAPAR.schemaVersion, Literal(SCHEMA), graph)
+
+
+def version(store: Store) -> int | None:
+    """The version of a store; None if it is empty."""
+    rows = store.ask(_STATED).rows
+    if rows:
+        return _number(rows[0][0])
+    return FIRST if store.ask(_WRITTEN).boolean else None
+
+
+def version_of(quads: Iterable[Quad]) -> int | None:
+    """The version of exported statements; None if there is no observation among them."""
+    written = False
+    for each in quads:
+        if each.predicate == CAPAR.schemaVersion and each.subject == GRAPHS["ontology"]:
+            return _number(each.object)
+        written = written or (each.predicate == TYPE and each.object == CAPAR.Observation)
+    return FIRST if written else None
+
+
+def _number(term: object) -> int:
+    text = term.value if isinstance(term, Literal | NamedNode) else ""
+    return int(text) if text.isascii() and text.isdecimal() else 0
+
+
+def migration(found: int) -> tuple[str, ...]:
+    """The updates that bring statements of an older version to this one."""
+    return tuple(STEPS[each] for each in range(found, SCHEMA))
+
+
+def prove_current(store: Store) -> None:
+    """Prove that a store is empty or of this version.
+
+    Raises:
+        SchemaError: It is of another one; the message says what to do.
+    """
+    found = version(store)
+    if found is not None and found != SCHEMA:
+        raise SchemaError(store.place, found, remedy(store.place, found))
+
+
+def remedy(place: str, found: int) -> str:
+    """What to do about a store of another version."""
+    if FIRST <= found < SCHEMA:
+        return f"this program reads schema {SCHEMA}; run: capar migrate --actionary {place}"
+    if found > SCHEMA:
+        return (
+            f"a newer program wrote it, this one reads schema {SCHEMA}; install a capar that "
+            "reads it, or observe the captures again into another Actionary"
+        )
+    return "no program wrote such a version; restore the Actionary from an export (capar import)"

@@ -1,0 +1,124 @@
+"""Every kind of fact declares what others derive from it, as rules and ontology know it."""
+
+import re
+from dataclasses import fields
+
+import pytest
+
+from capar.model import facts as exported
+from capar.model import handling, scene_facts
+from capar.model.declarations import GENERIC, Declaration, Observed, Span, kinds_of
+from capar.model.errors import FactError
+from capar.model.fact_intervals import FactIntervals
+from capar.model.facts import (
+    MEASURED,
+    STATED,
+    Bears,
+    Doubted,
+    Frames,
+    Lies,
+    Passage,
+    Touching,
+    Upward,
+)
+from capar_rules.engine.solver import rule_file
+from ontology import CAPAR
+
+SENTENCES = rule_file("explain/sentences.lp").read_text()
+INPUTS = rule_file("inputs.lp").read_text()
+KINDS = pytest.mark.parametrize("kind", STATED, ids=lambda kind: kind.__name__)
+
+
+def test_a_kind_without_a_declaration_is_refused_where_it_is_defined() -> None:
+    with pytest.raises(FactError, match="Silent lacks a declaration"):
+
+        class Silent(Observed):
+            predicate = "silent"
+            body: str
+
+
+def declare(**changes: object) -> None:
+    told: dict[str, object] = {"about": "body", "span": Span.INTERVAL, "border": False}
+    declared = Declaration(**{**told, "told": False, **changes})  # type: ignore[arg-type]
+
+    class Wrong(Observed):
+        predicate = "wrong"
+        declaration = declared
+        body: str
+        first: int
+        last: int
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"about": "hand"},
+        {"span": Span.INSTANT},
+        {"span": Lies},
+        {"others": ("other",)},
+        {"stretch": "bears_{share}"},
+        {"rdf": ("Touching", "body")},
+        {"span": Span.ALWAYS, "negated": "apart"},
+    ],
+    ids=str,
+)
+def test_a_declaration_that_does_not_fit_the_fields_is_refused(changes: dict[str, object]) -> None:
+    declare()
+    with pytest.raises(FactError, match="Wrong"):
+        declare(**changes)
+
+
+@KINDS
+def test_a_kind_is_exported_where_everybody_looks_for_it(kind: type[Observed]) -> None:
+    assert getattr(exported, kind.__name__) is kind
+
+
+def test_the_kinds_are_the_inputs_of_the_rules() -> None:
+    measured = INPUTS.split("% Borders.")[0] + INPUTS.split("% What was doubted")[1]
+    stated = {(kind.predicate, len(fields(kind))) for kind in STATED}
+    found = re.findall(r"^#defined (\w+)/(\d+)\.", measured, re.MULTILINE)
+    assert {(name, int(arity)) for name, arity in found} == stated
+
+
+@KINDS
+def test_explanations_have_a_sentence_for_exactly_what_declares_one(kind: type[Observed]) -> None:
+    pattern = rf"^%!!? {kind.predicate}/{len(fields(kind))}( \w+)?:"
+    assert bool(re.search(pattern, SENTENCES, re.MULTILINE)) == kind.declaration.told
+
+
+@KINDS
+def test_the_ontology_has_the_declared_class_and_properties(kind: type[Observed]) -> None:
+    assert set(kind.declaration.rdf) <= set(CAPAR.__annotations__)
+
+
+def test_no_two_kinds_share_a_class_of_their_own() -> None:
+    own = [kind.declaration.rdf[0] for kind in STATED if kind.declaration.rdf != GENERIC]
+    assert len(set(own)) == len(own)
+
+
+def test_explanations_have_a_sentence_for_each_way_to_doubt() -> None:
+    flickering = [kind for kind in STATED if kind.declaration.negated]
+    assert {"touching", "moving", "resting"} == {kind.predicate for kind in flickering}
+    for kind in flickering:
+        assert f"%!! doubted/5 {kind.predicate}:" in SENTENCES
+        assert f"%!! doubted/5 {kind.declaration.negated}:" in SENTENCES
+
+
+def test_facts_are_written_in_the_order_of_their_definitions() -> None:
+    assert (*kinds_of(scene_facts), *kinds_of(handling)) == MEASURED
+    assert (*MEASURED, Doubted) == STATED
+    assert MEASURED[0] is Frames
+
+
+def test_a_foot_draws_borders_only_where_it_bears_all_or_nothing() -> None:
+    found = {share: Bears("foot", share, 0, 9).is_border() for share in ("whole", "part", "none")}
+    assert found == {"whole": True, "part": False, "none": True}
+
+
+def test_a_fact_about_a_contact_holds_while_the_contact_lasts() -> None:
+    intervals = FactIntervals([Touching("hand", "cup", 3, 9), Lies("cup", "inside", "box", 3, 5)])
+    assert intervals.of(Upward("hand", "cup", 3, 900)) == (3, 9)
+    assert intervals.of(Upward("hand", "cup", 4, 900)) is None
+    assert intervals.of(Passage("cup", "inside", "box", 3, "other")) == (3, 5)
+    assert intervals.of(Passage("cup", "above", "box", 3, "other")) is None
+    assert intervals.of(Frames(0, 9)) is None

@@ -1,0 +1,119 @@
+"""A notice is a value; its sentence is made from its fields, and nothing reads sentences back."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from capar.model.errors import CaparError, UnknownNameError
+from capar.model.notices import KINDS, Notice, notice, read_notice
+
+ROOT = Path(__file__).parents[2]
+ONE_OF_EACH = {
+    notice("contact-tolerance", tolerance_m=0.0051, stated=False):
+        "bodies count as touching within 5.1 mm, from the sensors' noise at rest",
+    notice("contact-tolerance", tolerance_m=0.01, stated=True):
+        "bodies count as touching within 10.0 mm, as the capture states",
+    notice("pivot-distance", "hand", "mug", distance_m=0.12):
+        "'hand' and 'mug' count as touching while their origins are within 120 mm",
+    notice("no-shape", "mug"): "'mug' has no shape, so no contact of it is known",
+    notice("stand-in-shape", "mug", shape="ball of {radius}"):
+        "'mug' is a stand-in: ball of {radius}",
+    notice("assumed-support", "table", assumed="a box"): "'table' is assumed: a box",
+    notice("long-gap", "mug"): "mug is lost throughout",
+    notice("long-gap", "mug", start_s=0.5, end_s=0.994): "mug is lost from 0.50 s to 0.99 s",
+    notice("long-gap", "mug", times=1, fixed=False):
+        "'mug' was lost throughout; no contact of it is known",
+    notice("long-gap", "mug", start_s=1.0, end_s=2.0, times=1, fixed=True):
+        "'mug' was lost once for long, from 1.00 to 2.00 s; it is held to stay",
+    notice("long-gap", "mug", start_s=1.0, end_s=2.0, times=3, fixed=False):
+        "'mug' was lost 3 times for long, at most from 1.00 to 2.00 s; "
+        "a contact before and after is taken to last",
+    notice("markers-not-rigid", "mug", frames=3):
+        "mug: 3 frames in which its markers are not rigid are taken as lost",
+    notice("objects-left-out", "a", "b", objects=9):
+        "2 of 9 objects have no shape and are left out: a, b",
+    notice("doubled-stamps", samples=4): "4 samples repeat a stamp; the last of each is kept",
+    notice("flicker", "hand", "mug", start_s=1.0, end_s=1.1, length_s=0.1, taken="apart"):
+        "hand with mug: 0.10 s at 1.00 s taken for apart, not as measured: "
+        "so the fewest changes explain it",
+    notice("flicker", "mug", start_s=1.0, end_s=1.1, length_s=0.1, taken="still"):
+        "mug: 0.10 s at 1.00 s taken for still, not as measured: so the fewest changes explain it",
+    notice("no-unit"): "the file states no unit; lengths are shown as if it were metres",
+    notice("offset-and-position", "hip", "knee"):
+        "hip, knee: OFFSET and position channels both given; a root adds them, any other joint "
+        "takes the channels alone",
+    notice("rule-violation", violation="violation(x)"): "violation(x)",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("each", ONE_OF_EACH, ids=lambda each: each.code)
+def test_its_sentence_is_made_from_its_fields(each: Notice) -> None:
+    assert each.message == ONE_OF_EACH[each]
+
+
+def test_every_code_is_told_here() -> None:
+    assert {each.code for each in ONE_OF_EACH} == set(KINDS)
+
+
+@pytest.mark.parametrize("each", ONE_OF_EACH, ids=lambda each: each.code)
+def test_it_comes_back_from_json(each: Notice) -> None:
+    assert read_notice(json.loads(json.dumps(each.document()))) == each
+
+
+@given(st.permutations(list(ONE_OF_EACH)))
+def test_notices_have_one_order(shuffled: list[Notice]) -> None:
+    assert sorted(shuffled) == sorted(ONE_OF_EACH)
+
+
+def test_an_unknown_code_is_refused_with_those_that_there_are() -> None:
+    with pytest.raises(UnknownNameError, match=r"no kind of notice 'long_gap'.*'long-gap'"):
+        notice("long_gap", "mug")
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: notice("stand-in-shape", "mug"),
+        lambda: notice("stand-in-shape", shape="ball"),
+        lambda: notice("pivot-distance", "mug", distance_m=0.1),
+        lambda: notice("flicker", "mug", length_s=0.1, taken="still"),
+    ],
+)
+def test_a_notice_without_what_its_sentence_needs_is_refused(make: object) -> None:
+    with pytest.raises(CaparError, match="lacks a field"):
+        make()  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"code": 3}, "code: expected a text"),
+        ({"bodies": "mug"}, "bodies: expected a list of names"),
+        ({"values": []}, "values: expected names"),
+        ({"start_s": "now"}, "expected seconds"),
+        ({"body": "mug"}, "no field of a notice 'body'"),
+    ],
+)
+def test_a_wrong_document_is_refused_with_what_was_expected(
+    changed: dict[str, object], message: str
+) -> None:
+    right = notice("stand-in-shape", "mug", shape="ball").document()
+    with pytest.raises(CaparError, match=message):
+        read_notice({**right, **changed})
+
+
+def test_no_source_matches_against_a_message() -> None:
+    """Who wants a field asks for it; no pattern is laid on a notice's message."""
+    reading = re.compile(
+        r"re\.\w+\([^\n]*\.message|\w+\.(?:match|search|fullmatch|findall)\(\w+\.message"
+        r"|\.message\.(?:split|partition|startswith|removeprefix)"
+    )
+    sources = [path for room in ("capar", "extractors", "capar_rules", "kb")
+               for path in (ROOT / room).rglob("*.py")]  # fmt: skip
+    assert len(sources) > 100
+    found = [str(path) for path in sources if reading.search(path.read_text(encoding="utf-8"))]
+    assert found == []

@@ -1,0 +1,102 @@
+"""An observation shows itself: in a terminal, in a notebook, and as data frames."""
+
+import re
+import sys
+from base64 import b64decode
+from dataclasses import replace
+from html.parser import HTMLParser
+from xml.etree import ElementTree
+
+import pandas as pd
+import pytest
+from observations import MUG, drink_from_mug, pick_up_with_both_hands
+
+import capar
+from capar.model.errors import CaparError
+from capar.model.facts import Touching
+
+
+class Page(HTMLParser):
+    """What a page holds: its tags, the rows of its table, and where its pictures come from."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.rows: list[list[str]] = []
+        self.sources: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        if tag == "tr":
+            self.rows.append([])
+        if tag in ("td", "th"):
+            self.rows[-1].append("")
+        self.sources += [value or "" for name, value in attrs if name in ("src", "href")]
+
+    def handle_data(self, data: str) -> None:
+        if self.tags and self.tags[-1] in ("td", "th"):
+            self.rows[-1][-1] += data
+
+
+def test_a_notebook_shows_a_row_a_segment_and_a_picture_that_is_part_of_the_page() -> None:
+    seen = drink_from_mug()
+    page = Page(seen._repr_html_())
+    assert len(page.rows) == 1 + len(seen.segments)
+    names = [row[page.rows[0].index("name")] for row in page.rows[1:]]
+    assert names == [each.name for each in seen.segments]
+    (source,) = page.sources
+    head, _, data = source.partition(",")
+    assert head == "data:image/svg+xml;base64"
+    assert ElementTree.fromstring(b64decode(data)).tag.endswith("svg")
+
+
+def test_nothing_in_a_capture_becomes_markup() -> None:
+    bad = "<script>alert(1)</script>"
+    seen = drink_from_mug()
+    odd = replace(seen, capture=bad, objects=(replace(MUG, assumed=bad), *seen.objects[1:]))
+    assert "script" not in Page(odd._repr_html_()).tags
+    assert bad not in odd._repr_html_()
+
+
+def test_the_same_observation_gives_the_same_page() -> None:
+    assert drink_from_mug()._repr_html_() == drink_from_mug()._repr_html_()
+
+
+def test_in_a_terminal_it_is_one_short_line_with_its_segments() -> None:
+    seen = drink_from_mug()
+    text = repr(seen)
+    assert "\n" not in text
+    assert len(text) < 400
+    assert re.search(r"right_hand: Reach MoveObjTo", text)
+
+
+def test_a_frame_has_a_row_for_each_segment_contact_or_fact() -> None:
+    seen = pick_up_with_both_hands()
+    frame = seen.to_frame()
+    assert isinstance(frame, pd.DataFrame)
+    assert list(frame["name"]) == [each.name for each in seen.segments]
+    assert list(frame["end_s"]) == [each.end_s for each in seen.segments]
+    touches = [each for each in seen.facts if isinstance(each, Touching)]
+    contacts = seen.to_frame("contacts")
+    assert list(zip(contacts["body"], contacts["other"], strict=True)) == [
+        (each.body, each.other) for each in touches
+    ]
+    assert list(seen.to_frame("facts")["atom"]) == [str(each) for each in seen.facts]
+
+
+def test_an_observation_without_contacts_gives_a_frame_with_the_same_columns() -> None:
+    seen = pick_up_with_both_hands()
+    nothing = replace(seen, facts=())
+    assert list(nothing.to_frame("contacts").columns) == list(seen.to_frame("contacts").columns)
+
+
+def test_without_pandas_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(CaparError, match=r"pip install 'capar\[frames\]'"):
+        drink_from_mug().to_frame()
+
+
+def test_another_frame_is_refused_with_those_that_there_are() -> None:
+    with pytest.raises(capar.CaparError, match=r"no data frame 'segment'.*Did you mean 'segments'"):
+        drink_from_mug().to_frame("segment")  # type: ignore[arg-type]
