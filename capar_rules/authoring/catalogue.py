@@ -1,5 +1,6 @@
-"""The primitives of a rule base: where each comes from, what it specialises, and what it is."""
+"""The primitives of rule bases and files: where each comes from, and which depend on which."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -7,7 +8,9 @@ from pathlib import Path
 from capar.model.errors import UnknownNameError
 from capar_rules.authoring.user_rules import actionary_rules
 from capar_rules.engine.profiles import Profile
+from capar_rules.engine.slicing import FITS
 from capar_rules.engine.syntax import Statement, parse, split_arguments
+from capar_rules.lint.rule_text import read_rules
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -88,3 +91,46 @@ def _pairs(statements: Sequence[Statement], predicate: str) -> Iterator[tuple[st
 def _definition(comment: str) -> str:
     text = " ".join(comment.strip("%* \n").split())
     return text.partition(": ")[2] or text
+
+
+_LIKELY = re.compile(r'\bprimitive\s*\(\s*"([^"\n]*)"\s*\)\s*\.')
+
+
+def introduced(path: Path) -> list[str]:
+    """The primitives that a rule file introduces, in order.
+
+    Of a file with syntax errors, those that it seems to introduce, so that it can be removed.
+    """
+    reading = read_rules(path, folders=(path.parent,))
+    if reading.findings:
+        return list(dict.fromkeys(_LIKELY.findall(reading.text)))
+    return list(
+        dict.fromkeys(
+            split_arguments(head.text)[0].strip('"')
+            for each in reading.statements
+            for head in each.heads
+            if head.signature == ("primitive", 1)
+        )
+    )
+
+
+def dependants(path: Path, *, files: Sequence[Path]) -> dict[str, Path]:
+    """Primitives of other rule files that depend on what a file introduces, each with its file.
+
+    They specialise it, or a rule of theirs asks whether a segment fits it.
+    """
+    names = set(introduced(path))
+    found: dict[str, Path] = {}
+    for each in files:
+        if each.resolve() != path.resolve():
+            reading = read_rules(each, folders=(each.parent,))
+            if any(names & _read(rule) for rule in reading.statements):
+                found |= dict.fromkeys(introduced(each) or [each.stem], each)
+    return found
+
+
+def _read(rule: Statement) -> set[str]:
+    """The primitives that a rule depends on."""
+    atoms = [each for each in rule.heads if each.signature == ("specialises", 2)]
+    atoms += [atom for each in rule.body for atom in each.atoms if atom.signature == FITS]
+    return {split_arguments(each.text)[1].strip('"') for each in atoms}

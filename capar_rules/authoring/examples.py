@@ -1,4 +1,4 @@
-"""Examples that a rule file carries: facts in a comment, and the names that they must lead to."""
+"""Examples in comments of a rule file: facts, and the names that must be inferred from them."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -16,11 +16,11 @@ _FACT = re.compile(r"([a-z]\w*(?:\([^()]*\))?)\.(?=\s|$)")
 
 @dataclass(frozen=True)
 class Example:
-    """A story in facts, and the names of each link's segments that it must lead to."""
+    """Facts, and the names of each link's segments that must be inferred from them."""
 
     story: str
     positive: bool
-    """Whether the file's primitive is to occur in it, or must not."""
+    """Whether the file's primitive must occur in it; in a counter-example it must not."""
 
     facts: tuple[Fact, ...]
     names: tuple[tuple[str, tuple[str, ...]], ...]
@@ -31,7 +31,7 @@ class Example:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of an example."""
+    """An example with the names that were inferred."""
 
     example: Example
     found: tuple[tuple[str, tuple[str, ...]], ...]
@@ -69,7 +69,7 @@ def _examples(text: str, file: str) -> Iterator[Example]:
 
 
 def _facts(stated: str, where: str, file: str, first: int) -> Iterator[Fact]:
-    """Every fact of an example, one after another with nothing else between them."""
+    """Every fact of an example; nothing else may stand between them."""
     at = 0
     while rest := stated[at:].lstrip():
         at = len(stated) - len(rest)
@@ -96,10 +96,10 @@ def _expectation(text: str, file: str, line: int) -> tuple[str, tuple[str, ...]]
 
 
 def try_examples(examples: Sequence[Example], *, profile: Profile) -> tuple[Outcome, ...]:
-    """What the rules say of each example.
+    """The names that the rules infer for each example.
 
     Raises:
-        RuleError: The rules have a fault.
+        RuleError: The rules have an error.
     """
     outcomes = []
     for each in examples:
@@ -110,7 +110,7 @@ def try_examples(examples: Sequence[Example], *, profile: Profile) -> tuple[Outc
 
 
 def lacking(examples: Sequence[Example], name: str) -> tuple[str, ...]:
-    """What the examples do not show of a primitive: that it matches, and that it does not."""
+    """Which examples of a primitive are missing: one that it matches, one that it does not."""
     shown = {
         each.positive
         for each in examples

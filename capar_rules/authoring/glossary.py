@@ -1,7 +1,8 @@
-"""The words of rules: what a rule file may read or state, as the comments of the rules explain it.
+"""The glossary of a rule base, read from the comments of its files.
 
-A comment explains a word in a line such as ``   rises(Segment, Body)   it goes up``; an input and a
-number have their explanation behind them. What has none is read within its own file alone.
+A comment explains a predicate in a line such as ``   rises(Segment, Body)   it goes up``; inputs
+and constants are explained at the end of their line. A predicate without explanation is internal
+to its file.
 """
 
 import re
@@ -24,7 +25,7 @@ _ENTRY = re.compile(rf" {{3}}({_ATOM})(?: +(\S.*)|$)")
 _NOTE = re.compile(rf"%\s*({_ATOM}):\s+(.*)")
 _COMMENT = re.compile(r"%\*.*?\*%", re.DOTALL)
 _INDENT = 3
-"""How far the entries of a comment are indented; what goes on from one is indented further."""
+"""Indentation of the entries of a comment; continuation lines are indented further."""
 
 
 STATED = (
@@ -34,16 +35,16 @@ STATED = (
     ("purpose_of(Name, Purpose)", "a rule file may state it: what the primitive is done for"),
     ("also(Atom, Other)", "a rule file may state it: where Atom is told in reasons, Other is too"),
 )
-"""What a rule file may state of a primitive that no rule of those that ship reads or defines."""
+"""Predicates that a rule file may define, though no shipped rule reads or defines them."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Word:
-    """A predicate, or a number, that rules speak with, where a comment explains it."""
+    """A predicate or constant with its explanation."""
 
     file: str
     line: int
-    """From one; zero where no rule file explains it."""
+    """From one; zero if no rule file explains it."""
 
     name: str
     arguments: tuple[str, ...]
@@ -60,7 +61,7 @@ class Word:
 
 
 def words_of_text(text: str, *, file: str) -> Iterator[Word]:
-    """The words that the comments of a rule file explain, in their order.
+    """The predicates and constants that the comments of a rule file explain, in order.
 
     Args:
         text: The rule file.
@@ -73,7 +74,7 @@ def words_of_text(text: str, *, file: str) -> Iterator[Word]:
 
 
 def _lines(text: str) -> Iterator[tuple[int, str, str]]:
-    """Words that one line explains: of inputs and numbers, and in a comment beside the rules."""
+    """Entries of one line: inputs, constants, and comments between the rules."""
     for number, line in enumerate(text.splitlines(), 1):
         if found := _DEFINED.match(line):
             yield number, found[1] or found[3], found[2] or found[4]
@@ -84,7 +85,7 @@ def _lines(text: str) -> Iterator[tuple[int, str, str]]:
 
 
 def _entries(text: str) -> Iterator[tuple[int, str, str]]:
-    """Words that a comment over several lines explains, one after the other."""
+    """Entries of comments that span several lines."""
     for comment in _COMMENT.finditer(text):
         first = text.count("\n", 0, comment.start()) + 1
         entry: tuple[int, str, str] | None = None
@@ -106,7 +107,7 @@ def _entries(text: str) -> Iterator[tuple[int, str, str]]:
 
 
 def _continued(before: str, meaning: str) -> str:
-    """The meaning, with what it goes on from in place of three dots."""
+    """The meaning; three dots at its start stand for the meaning of the entry before."""
     rest = meaning.removeprefix("...").strip()
     if rest == meaning or not before:
         return meaning
@@ -115,13 +116,13 @@ def _continued(before: str, meaning: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Glossary:
-    """Every word of a rule base."""
+    """Every predicate and constant of a rule base."""
 
     words: tuple[Word, ...]
-    """Those that are explained, file by file: inputs and numbers first, the user's own last."""
+    """Those with an explanation, file by file: inputs and constants first, the user's own last."""
 
     internal: tuple[tuple[str, Signature], ...]
-    """Files, each with a predicate that it defines for itself alone."""
+    """Predicates without explanation, each with its file."""
 
     defined: tuple[tuple[Signature, Place], ...]
     """Each predicate with the rules that define it."""
@@ -144,12 +145,12 @@ class Glossary:
         return found
 
     def rules_of(self, signature: Signature) -> tuple[Place, ...]:
-        """Where the rules stand that define a predicate."""
+        """The places of the rules that define a predicate."""
         return tuple(dict.fromkeys(place for each, place in self.defined if each == signature))
 
 
 class UnknownNearError(UnknownNameError):
-    """A word that there is not; of the many that there are it tells the nearest alone."""
+    """An unknown word; the message lists only similar ones, as there are hundreds."""
 
     def __init__(self, name: str, known: set[str]) -> None:
         super().__init__("word of rules", name, known)
@@ -159,7 +160,7 @@ class UnknownNearError(UnknownNameError):
 
 
 def glossary(rules: Profile) -> Glossary:
-    """The words of a rule base, as the comments of its files explain them.
+    """The glossary of a rule base, from the comments of its files.
 
     Raises:
         RuleError: A file is no logic program.
@@ -194,6 +195,6 @@ def words_of_file(path: Path) -> tuple[Word, ...]:
 
 
 def _short(file: str) -> str:
-    """A file as people find it: those that ship by their place in capar_rules."""
+    """A file's path; for shipped files relative to capar_rules."""
     path, home = Path(file), rule_file("inputs.lp").parent
     return str(path.relative_to(home)) if path.is_relative_to(home) else file

@@ -1,4 +1,4 @@
-"""Rule files put in place and taken away as one step with something else: both, or neither."""
+"""Adding and removing rule files as one transaction with something else: both, or neither."""
 
 import signal
 import threading
@@ -8,14 +8,14 @@ from pathlib import Path
 from types import FrameType
 
 HELD = (signal.SIGINT, signal.SIGTERM)
-"""What asks a process to end, and can wait for a moment."""
+"""Signals that ask a process to end, which are delayed during a transaction."""
 
 
 @contextmanager
 def unbroken() -> Iterator[None]:
-    """Let nobody interrupt what is done here; who asked for it meanwhile is heard afterwards."""
+    """Delay signals that would interrupt this block until its end."""
     if threading.current_thread() is not threading.main_thread():
-        yield  # Only the main thread is interrupted, and only it may say how.
+        yield  # only the main thread receives signals and may set handlers
         return
     asked: list[int] = []
 
@@ -33,14 +33,14 @@ def unbroken() -> Iterator[None]:
 
 
 def take_away(path: Path) -> Path:
-    """Take a rule file from among the rules, and keep it beside them until it is certain.
+    """Rename a rule file so that it is no longer loaded, until its removal is certain.
 
     Returns:
-        Where it is kept.
+        Its new path.
     """
     return path.replace(path.with_suffix(".removed"))
 
 
 def put_back(aside: Path, path: Path) -> None:
-    """Put back what was taken away."""
+    """Undo the renaming."""
     aside.replace(path)

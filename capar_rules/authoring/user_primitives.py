@@ -21,10 +21,10 @@ from capar.model.facts import (
 )
 from capar.model.par import FeatureSet
 from capar_rules.authoring.catalogue import RuleInfo as RuleInfo
+from capar_rules.authoring.catalogue import dependants
+from capar_rules.authoring.catalogue import introduced as introduced
 from capar_rules.authoring.catalogue import rule_of as rule_of
 from capar_rules.authoring.catalogue import rules_of as rules_of
-from capar_rules.authoring.dependencies import dependants
-from capar_rules.authoring.dependencies import introduced as introduced
 from capar_rules.authoring.examples import Example, lacking, read_examples, try_examples, written
 from capar_rules.authoring.user_rules import make_folder, taught
 from capar_rules.authoring.user_rules import user_rules as user_rules
@@ -33,7 +33,7 @@ from capar_rules.lint.admission import admitted_profile
 from capar_rules.lint.checking import check, require
 
 TELLING = (Frames, RateMhz, Link, Tag, ZeroCrossing, Touching, Gap, Moving, ForceTransfer)
-"""The facts that an example tells: contacts and motions, without places and courses."""
+"""The facts that an example contains: contacts and motions, without places and courses."""
 
 
 def new_rule(
@@ -46,16 +46,16 @@ def new_rule(
     verb: str = "",
     examples: Sequence[Example] = (),
 ) -> str:
-    """The rule file of a primitive that has these features.
+    """The text of a rule file for a primitive with these features.
 
     Args:
         name: What it is called.
         features: The feature set that a segment has.
         definition: What it is, in words.
-        general: The primitives that it specialises, if any.
-        besides: Others that name some of the same segments, and that it is ordered before.
+        general: The primitives that it specialises.
+        besides: Others that fit some of the same segments, over which it takes precedence.
         verb: The verb for it; its name in small letters if empty.
-        examples: Stories that it must, or must not, match.
+        examples: Examples and counter-examples.
 
     Raises:
         RuleError: The name is no name of a primitive, or a text would not stay a text.
@@ -80,15 +80,15 @@ def new_rule(
 
 
 def telling(facts: Sequence[Fact]) -> tuple[Fact, ...]:
-    """Of a capture's facts those that an example tells."""
+    """The facts of a capture that an example contains."""
     return tuple(each for each in facts if isinstance(each, TELLING))
 
 
 def try_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) -> tuple[str, ...]:
-    """What the examples of a rule file do not show as they say; empty if all is well.
+    """A message for each example whose names are not inferred; empty if all hold.
 
     Raises:
-        RuleError: An example cannot be read, or the rules have a fault.
+        RuleError: An example cannot be read, or the rules have an error.
     """
     examples = read_examples(_text(path), file=path)
     names = introduced(path)
@@ -117,14 +117,14 @@ def add_rule(
     over: Sequence[str] = (),
     beside: Sequence[Path] | None = None,
 ) -> Path:
-    """Take a rule file among the user's rules, once it is checked and its examples hold.
+    """Add a rule file to the user's rules, if its check finds no error and its examples hold.
 
     Args:
         path: The file.
-        folder: The folder of rules that it goes to.
+        folder: The folder of rules to which it is copied.
         base: The profile that it joins.
-        over: Primitives that it is to be more specific than, which orders what is ambiguous.
-        beside: Every rule file that counts already; None for those of the folder.
+        over: Primitives that it is to specialise, which resolves ambiguities.
+        beside: Every rule file loaded already; None for those of the folder.
 
     Returns:
         Where it now is.
@@ -146,7 +146,7 @@ def proven(
     over: Sequence[str] = (),
     beside: Sequence[Path] | None = None,
 ) -> Iterator[Path]:
-    """The same up to the last step: a copy that need only be moved to the folder of rules.
+    """The same up to the last step: a checked copy that only needs to be moved into the folder.
 
     Raises:
         RuleError: The check finds errors, an ambiguity among them, or an example fails.
@@ -181,32 +181,17 @@ def proven(
         yield draft
 
 
-def remove_rule(name: str, *, files: Sequence[Path], every: Sequence[Path] = ()) -> Path:
-    """Take a primitive out of rule files that people wrote.
+def removable(name: str, *, files: Sequence[Path], every: Sequence[Path] = ()) -> Path:
+    """The rule file that introduces a primitive, if it can be removed.
 
     Args:
         name: The primitive.
-        files: The files to look through.
-        every: All rule files that count together, some of which may rest on it.
-
-    Returns:
-        The first file that introduces it, which is gone.
+        files: The files to search; the first that introduces it is returned.
+        every: All rule files that are loaded together, some of which may depend on it.
 
     Raises:
-        UnknownNameError: None of them introduces it.
-        RuleError: Another rule rests on it.
-    """
-    path = removable(name, files=files, every=every)
-    path.unlink()
-    return path
-
-
-def removable(name: str, *, files: Sequence[Path], every: Sequence[Path] = ()) -> Path:
-    """The same, and nothing is removed yet.
-
-    Raises:
-        UnknownNameError: None of them introduces it.
-        RuleError: Another rule rests on it.
+        UnknownNameError: None of the files introduces it.
+        RuleError: Another rule depends on it.
     """
     info = {each: path for path in reversed(files) for each in introduced(path)}
     if name not in info:

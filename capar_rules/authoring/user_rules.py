@@ -1,4 +1,4 @@
-"""Names that a user gives: a feature set becomes a rule file, which joins the feature table."""
+"""Folders of users' rule files, and new files for feature sets that users name."""
 
 import os
 import re
@@ -20,7 +20,7 @@ FOLDER = "rules"
 
 
 def rules_folder(named: Path | None = None) -> Path:
-    """Where the project's rule files are: the folder named, else ``CAPAR_RULES``, else ./rules."""
+    """The folder of the project's rules: the given one, else ``CAPAR_RULES``, else ./rules."""
     return named or Path(os.environ.get(RULES_VARIABLE) or FOLDER)
 
 
@@ -38,9 +38,9 @@ def actionary_rules(actionary: str | Path | None = None) -> Path | None:
 
 
 def new_rules_folder(named: Path | None = None, *, actionary: str | Path | None = None) -> Path:
-    """Where a new rule of the user's goes.
+    """The folder for a new rule of the user.
 
-    That is the folder named, else ``CAPAR_RULES``, else beside the Actionary that is named or that
+    That is the given folder, else ``CAPAR_RULES``, else beside the Actionary that is named or that
     ``CAPAR_ACTIONARY`` names, else ./rules.
     """
     if named is None and not os.environ.get(RULES_VARIABLE):
@@ -71,9 +71,8 @@ def user_rules(
 ) -> tuple[Path, ...]:
     """The rule files that people wrote: the project's, then those beside the Actionary.
 
-    All of them count alike, whatever their order. A file that stands in both folders with the same
-    content counts once; two that introduce one primitive differently are refused when they are
-    judged.
+    Their order does not matter. A file that is in both folders with the same content is loaded
+    once; two that introduce one primitive differently are refused by the check.
 
     Args:
         project: Their folder; None for ``CAPAR_RULES``, else ``./rules``.
@@ -91,17 +90,17 @@ def user_rules(
 
 
 def _content(path: Path) -> object:
-    """What makes two files one: the same content under the same name."""
+    """Files with equal values are one: they have the same name and content."""
     if not path.is_file() or path.stat().st_size > LARGEST_BYTES:
         return path
     try:
         return path.name, path.read_bytes()
-    except OSError:  # whoever judges the file says so
+    except OSError:  # the check reports it
         return path
 
 
 def taught(name: str, features: FeatureSet, *, verb: str = "") -> str:
-    """The rule file of a primitive that has just these features.
+    """The text of a rule file for a primitive with exactly these features.
 
     Raises:
         RuleError: The name is no name of a primitive.
@@ -119,7 +118,7 @@ def taught(name: str, features: FeatureSet, *, verb: str = "") -> str:
 
 
 def teach(names: Iterable[tuple[str, FeatureSet]], *, folder: Path) -> tuple[Path, ...]:
-    """Write a rule file for each name; a file appears whole or not at all, and none is replaced.
+    """Write a rule file for each name, each atomically; no file is replaced.
 
     Raises:
         RuleError: A name is no name of a primitive.
@@ -138,7 +137,7 @@ def teach(names: Iterable[tuple[str, FeatureSet]], *, folder: Path) -> tuple[Pat
 
 
 def make_folder(folder: Path) -> Path:
-    """A folder for rule files, made if it is not there.
+    """A folder for rule files, created if missing.
 
     Raises:
         FileError: It cannot be made.

@@ -1,4 +1,4 @@
-"""The rule profiles: which main file asks, and at which frames a link has its ticks."""
+"""Rule profiles: the main rule file, and at which frames a link has its ticks."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,21 +9,21 @@ from capar_rules.engine.solver import fingerprint, rule_file
 
 @dataclass(frozen=True)
 class Profile:
-    """A rule base to reason with."""
+    """A rule base: shipped rules and those that users add."""
 
     name: str
     crossings_only: bool
     """Whether events can stand at zero crossings alone (thesis 4.3.2)."""
 
     added: tuple[Path, ...] = ()
-    """Rule files of the user's, beside those that ship."""
+    """Rule files of the user, in addition to the shipped ones."""
 
     steady: bool = False
-    """Whether flicker is resolved before anything is derived, to the fewest changes."""
+    """Whether flicker is resolved with the fewest changes before anything is derived."""
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """Every file to load: the main one includes the rest of what ships."""
+        """Every file to load; the main one includes the other shipped ones."""
         return (rule_file(f"{self.name}.lp"), *self.added)
 
     @property
@@ -40,11 +40,11 @@ _CROSSINGS_ONLY = {"extended": False, "thesis": True}
 def profile(
     name: str = DEFAULT, *, added: tuple[Path, ...] = (), steady: bool | None = None
 ) -> Profile:
-    """The profile of that name, with rule files added to it, taken as they are.
+    """The profile of that name, with rule files added to it unchecked.
 
     Args:
         name: Of the profile.
-        added: Rule files of the user's.
+        added: Rule files of the user.
         steady: Whether to resolve flicker; None for what is usual in the profile: ``extended``
             does, and ``thesis`` takes contacts as they were measured.
 

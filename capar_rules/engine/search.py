@@ -1,4 +1,4 @@
-"""The solver asked about many worlds: which there are, what holds in them, and what is least."""
+"""Programs with several answers: all of them, their union, and the optimal ones."""
 
 from collections.abc import Iterable, Sequence
 
@@ -16,7 +16,7 @@ def worlds(text: str) -> list[tuple[str, ...]]:
     """The shown atoms of every answer, each as a fact's text; answers in order.
 
     Raises:
-        RuleError: The program has a fault.
+        RuleError: The program has an error.
     """
     control = _grounded(text, ["--models=0", "--project=show"])
     found: list[tuple[str, ...]] = []
@@ -25,10 +25,10 @@ def worlds(text: str) -> list[tuple[str, ...]]:
 
 
 def optima(text: str, shown: Iterable[Signature], *, limit: int = 1) -> list[frozenset[Atom]]:
-    """What is shown in each of the best answers, none twice, at most so many; none if impossible.
+    """The shown atoms of each optimal answer, without duplicates; none if there is no answer.
 
     Raises:
-        RuleError: The program has a fault.
+        RuleError: The program has an error.
     """
     control = _grounded(
         _showing(text, shown), ["--opt-mode=optN", "--project=show", f"--models={limit + 1}"]
@@ -44,10 +44,10 @@ def optima(text: str, shown: Iterable[Signature], *, limit: int = 1) -> list[fro
 
 
 def understand(text: str) -> None:
-    """Have the solver read a program, and judge whether it could ground it; it grounds nothing.
+    """Have the solver read a program and check its safety without grounding anything.
 
     Raises:
-        RuleError: The program has a fault, such as a variable that nothing binds.
+        RuleError: The program has an error, such as an unsafe variable.
     """
     _grounded(text, (), part="nothing")
 
@@ -69,15 +69,15 @@ def _grounded(text: str, options: Sequence[str], *, part: str = "base") -> cling
 
 
 def brave(text: str, shown: Iterable[Signature]) -> frozenset[Atom]:
-    """What is shown in at least one answer of a program.
+    """The atoms that are shown in at least one answer of a program.
 
     Raises:
-        RuleError: The program has a fault, or no answer.
+        RuleError: The program has an error, or no answer.
     """
     control = _grounded(_showing(text, shown), ["--enum-mode=brave", "--models=0"])
     with control.solve(yield_=True) as handle:
         for _ in handle:
-            pass  # each answer adds to what the ones before have shown
+            pass  # each model contains the atoms of those before
         last = handle.last()
         if last is None:
             raise RuleError("these rules contradict each other: they have no answer")

@@ -1,4 +1,4 @@
-"""The part of a rule base that some predicates rest on."""
+"""The part of a rule base that some predicates depend on."""
 
 import re
 from collections import defaultdict
@@ -13,12 +13,12 @@ def towards(
     *,
     given: Iterable[Signature] = (),
 ) -> list[Statement]:
-    """The rules that targets rest on, and the constants, in their order.
+    """The rules that targets depend on, and the constants, in order.
 
     Args:
         statements: A rule base.
-        targets: Predicates asked for.
-        given: Predicates that are stated elsewhere, so that their own rules are left out.
+        targets: Predicates to derive.
+        given: Predicates that are defined elsewhere, whose rules are left out.
     """
     heads: dict[Signature, list[Statement]] = defaultdict(list)
     for each in statements:
@@ -47,11 +47,11 @@ def towards(
 
 
 def firing(statements: Sequence[Statement], measured: Iterable[Signature]) -> list[Statement]:
-    """The rules that can fire at all where only these are measured, and the constants.
+    """The rules that can fire if only these predicates have facts, and the constants.
 
     Args:
         statements: A rule base.
-        measured: Predicates of which there is a fact.
+        measured: Predicates that have a fact.
     """
     known, fired = set(measured), set[int]()
     needs = [(number, each, _needed(each)) for number, each in enumerate(statements)]
@@ -63,7 +63,7 @@ def firing(statements: Sequence[Statement], measured: Iterable[Signature]) -> li
 
 
 def _needed(statement: Statement) -> set[Signature]:
-    """The predicates that must hold somewhere for a rule to fire."""
+    """The predicates that must have an atom for a rule to fire."""
     return {
         literal.atoms[0].signature
         for literal in statement.body
@@ -76,12 +76,12 @@ _NAME = re.compile(r'"(\w+)"')
 
 
 def named_node(name: str) -> Signature:
-    """The node that stands for fitting one primitive."""
+    """The node of the dependency graph for fitting one primitive."""
     return f"fits {name}", 2
 
 
 def nodes(atom: Atom) -> list[Signature]:
-    """The predicate; fits is one for each name, as a name may well rest on another."""
+    """The predicate; fits has one node for each primitive, as one may depend on another."""
     if atom.signature == FITS:
         names = _NAME.findall(split_arguments(atom.text)[1])
         return [named_node(each) for each in names] or [FITS]
@@ -89,7 +89,7 @@ def nodes(atom: Atom) -> list[Signature]:
 
 
 def nodes_read(atom: Atom, named: set[Signature]) -> list[Signature]:
-    """What an atom of a body reads: of fits, rules for any name stand for each."""
+    """The nodes that an atom of a body reads; fits of a variable reads those of every primitive."""
     found = nodes(atom)
     if FITS in found:
         return sorted({each for each in named if each[0].startswith("fits ")} | {FITS})

@@ -1,4 +1,4 @@
-"""Rule files as plain values: parsed and never run, each rule with its place and its literals."""
+"""Rule files parsed into plain values: each rule with its place, head and literals."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,19 +16,19 @@ Signature = tuple[str, int]
 """A predicate: its name and its number of arguments."""
 
 LARGEST_BYTES = 256 * 1024
-"""A rule file is a definition that a person reads; none is larger [bytes]."""
+"""Greatest size of a rule file, which people are to read [bytes]."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Place:
-    """Where something stands in a file; lines and columns from one."""
+    """A place in a file; lines and columns from one."""
 
     file: str
     line: int
     column: int
 
     def __str__(self) -> str:
-        """The place as people and editors read it."""
+        """The place in the form that editors recognise."""
         return f"{self.file}:{self.line}:{self.column}"
 
 
@@ -63,10 +63,10 @@ class Atom:
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """A rule, or anything else that a rule file can hold."""
+    """A rule or another statement of a rule file."""
 
     kind: str
-    """``rule``, or the parser's own word in lower case: ``script``, ``external`` ..."""
+    """``rule``, or clingo's name in lower case: ``script``, ``external`` ..."""
 
     place: Place
     text: str
@@ -76,17 +76,17 @@ class Statement:
     heads: tuple[Atom, ...] = ()
     body: tuple[Literal, ...] = ()
     external: tuple[Place, ...] = field(default=())
-    """Where it calls a function of the host's language."""
+    """Places of calls of external functions (``@name``)."""
 
     defines: Signature | str = ""
     """What ``#defined`` or ``#const`` names."""
 
 
 def parse(files: Iterable[Path]) -> tuple[Statement, ...]:
-    """The statements of rule files and of all that they include, in order.
+    """The statements of rule files and of the files that they include, in order.
 
     Raises:
-        RuleError: A file is no logic program.
+        RuleError: A file has a syntax error.
     """
     names = [str(each) for each in files]
     return _parsed(lambda note, log: ast.parse_files(names, note, logger=log))
@@ -96,7 +96,7 @@ def parse_text(text: str) -> tuple[Statement, ...]:
     """The statements of a logic program.
 
     Raises:
-        RuleError: The text is no logic program; the message has one line a mistake.
+        RuleError: The text has syntax errors; the message has one line for each.
     """
     return _parsed(lambda note, log: ast.parse_string(text, note, logger=log))
 
@@ -150,7 +150,7 @@ def _statement(node: ast.AST) -> Statement:
 
 
 class _Named(ast.Transformer):
-    """Gives every anonymous variable of a positive body atom a name, so that it can be told."""
+    """Names anonymous variables of positive body atoms, so that explanations show their values."""
 
     def __init__(self) -> None:
         self.count = 0

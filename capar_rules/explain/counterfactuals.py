@@ -1,4 +1,4 @@
-"""The worlds in which a segment might have been otherwise, and what it was in truth."""
+"""The program of counterfactual worlds of a segment, and what was measured of it."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
@@ -14,36 +14,36 @@ from capar_rules.lint.audit import physics, words_of
 READ: tuple[Signature, ...] = (("reads", 5), ("holding", 4), ("moved", 2))
 SCENE: tuple[Signature, ...] = (("link", 3), ("tag", 2), ("gap", 4), ("lifted", 2))
 BESIDE: Signature = ("read_beside", 5)
-"""Contacts at the borders of what the end-effector does not possess."""
+"""Contacts at the borders of objects that the end-effector does not possess."""
 
 MOVED: frozenset[Signature] = frozenset((("moves", 2), ("carried_off", 2)))
-"""What some relations presuppose, which are measured all the same."""
+"""Preconditions of relations that are measured even where the preconditions do not hold."""
 
 BODILY: frozenset[Signature] = frozenset((("figure", 2), ("meets", 5)))
-"""What relations of the body rest on that the segment is about."""
+"""Preconditions of relations of the body that the segment is about."""
 
 COURSE: frozenset[Signature] = frozenset(
     (name, 2) for name in ("course", "rises", "comes_down", "sinks", "travels", "stays_near")
 )
-"""Relations of the course of a body; they are one choice, which changes.lp counts."""
+"""Relations of the course of a body: one choice, counted as one change (changes.lp)."""
 
 MOST_OBJECTS = 5
-"""So many objects a change may speak of, nearest to the segment's own first."""
+"""Greatest number of objects that changes may involve, nearest to the segment's own first."""
 
 
 def counted(words: Iterable[Statement]) -> list[Signature]:
-    """The relations beside contacts, possession and motion of which each change counts."""
+    """The relations, apart from contacts, possession and motion, whose changes are counted."""
     return sorted(heads_of(words) - COURSE - {("member", 3)})
 
 
 def measured(
     base: Sequence[Statement], facts: Sequence[Fact], segment: Segment, ticks: tuple[int, int]
 ) -> list[str]:
-    """What the rules read of a segment, as atoms, and would read of it were it about other bodies.
+    """The atoms that hold of a segment, also those that would if it were about other bodies.
 
     Args:
         base: A rule base.
-        facts: Those around the segment.
+        facts: Facts around the segment.
         segment: The segment.
         ticks: The numbers of its borders.
     """
@@ -64,7 +64,7 @@ def _measured(
     instead: Iterable[Signature],
     lines: Iterable[str],
 ) -> tuple[str, ...]:
-    """What follows from facts, where some relations are stated instead of derived."""
+    """The shown atoms that follow from facts, with some relations stated instead of derived."""
     others = [each for each in base if not {head.signature for head in each.heads} & {*instead}]
     rules = towards(others, [*shown, ("contact_at", 5)])
     shows = (f"#show {name}/{arity}." for name, arity in shown)
@@ -74,10 +74,7 @@ def _measured(
 
 
 def _every_move(segment: Segment, ticks: tuple[int, int]) -> list[str]:
-    """The relations of what is moved, of the segment's own object whether or not it is moved.
-
-    Also its contacts with others, possessed or not.
-    """
+    """State that the segment's object moves, and read contacts of objects not possessed."""
     term, ee = f"seg({segment.ee},{ticks[0]})", segment.ee
     own = [
         f"{name}({term},{each}) :- tag({each},mobile)."
@@ -92,7 +89,7 @@ def _every_move(segment: Segment, ticks: tuple[int, int]) -> list[str]:
 
 
 def _every_figure(segment: Segment, ticks: tuple[int, int]) -> list[str]:
-    """The relations of the body that a segment is about, of every body that it might be about."""
+    """State that the segment is about each body that it might be about."""
     term = f"seg({segment.ee},{ticks[0]})"
     return [
         f"figure({term},{segment.ee}).",
@@ -106,7 +103,7 @@ def _every_figure(segment: Segment, ticks: tuple[int, int]) -> list[str]:
 
 
 def _bearing(atoms: Iterable[str], segment: Segment, ticks: tuple[int, int]) -> list[str]:
-    """The atoms that bear on a segment; of what was possessed, its readings are known already."""
+    """The atoms about a segment; contacts of possessed objects are among its readings already."""
     term, borders = f"seg({segment.ee},{ticks[0]})", {str(each) for each in ticks}
     kept, beside = [], []
     for atom in atoms:
@@ -131,7 +128,7 @@ def worlds_of(
     segment: Segment,
     ticks: tuple[int, int],
 ) -> str:
-    """The rules over what might have been read, with the fewest changes from what was."""
+    """The program of counterfactual worlds, which minimises changes from what was measured."""
     changes, words = _changes(), words_of(base)
     free = [
         each for each in words if not any(head.signature == ("course", 2) for head in each.heads)
@@ -168,7 +165,7 @@ def _counting(word: Signature) -> list[str]:
 
 
 def _possible(words: Iterable[Statement]) -> Iterator[str]:
-    """For each choice, when an atom of it that held could hold again: when its rule's body does."""
+    """For each choice, when an atom of it could hold: when the body of its rule does."""
     for each in words:
         if each.head_kind != "choice":
             continue
@@ -179,7 +176,7 @@ def _possible(words: Iterable[Statement]) -> Iterator[str]:
 
 
 def _scene(actual: Sequence[str], segment: Segment, ticks: tuple[int, int]) -> list[str]:
-    """The segment as it was: what cannot have been otherwise, and what might."""
+    """The segment as measured: fixed facts, and actual atoms that worlds may change."""
     first, last = ticks
     ee = segment.ee
     fixed = tuple(f"{name}(" for name, _ in SCENE)
@@ -196,7 +193,7 @@ def _scene(actual: Sequence[str], segment: Segment, ticks: tuple[int, int]) -> l
 
 
 def _unfolded(text: str) -> str:
-    """A rule that reads the four features one by one: together they are too many to ground."""
+    """The rule with its features read one by one: all combinations are too many to ground."""
     head, sign, body = text.partition(" :- ")
     if not sign or head.startswith("features("):
         return "" if head.startswith("features(") else text

@@ -14,20 +14,20 @@ from capar_rules.engine.slicing import firing, towards
 from capar_rules.engine.syntax import Literal, Place, Signature, Statement
 
 ABSENT = "absent"
-"""Marks, among the grounds of an atom, another that must not hold and does not."""
+"""Functor of a negated literal among the children of a derivation."""
 
 
 @dataclass(frozen=True)
 class Grounds:
-    """One atom and why it holds."""
+    """A node of a derivation tree: an atom and the literals that its rule instance needed."""
 
     atom: str
     predicate: str
     arguments: tuple[str, ...]
-    """Each as it is written; a text without its quotes."""
+    """Each as it is written; texts without quotes."""
 
     rule: Place | None
-    """The rule that derived it; None for a fact, and for what does not hold."""
+    """The rule that derived it; None for a fact and for a negated atom."""
 
     absent: bool
     because: tuple["Grounds", ...]
@@ -37,7 +37,7 @@ _SHOWN = ("#show because/3.", "#show because_part/3.", "#show also/2.")
 
 
 class Recorder:
-    """A rule base that tells, beside its answer, which instances of its rules fired."""
+    """A rule base extended by rules that record which instances of its rules fired."""
 
     def __init__(self, statements: Iterable[Statement], *, targets: Iterable[Signature]) -> None:
         self.rules = towards(list(statements), targets)
@@ -47,16 +47,16 @@ class Recorder:
 
     @cache  # noqa: B019 - recorders are few and kept
     def text(self, measured: frozenset[Signature]) -> str:
-        """The rules that can fire where these are measured, and what records each of them."""
+        """The rules that can fire if these predicates have facts, each with its recording rules."""
         rules = firing(self.rules, measured)
         records = [line for rule in rules for line in self._records.get(rule, ())]
         return "\n".join([*(each.text for each in rules), *records, *_SHOWN])
 
     def solve(self, facts: Sequence[Fact]) -> "Derivations":
-        """What follows from facts, and why.
+        """Derive what follows from facts, and record how.
 
         Raises:
-            RuleError: The rules have a fault over these facts, or no answer.
+            RuleError: The rules have an error over these facts, or no answer.
         """
         messages: list[str] = []
         control = clingo.Control(["--models=1"], logger=lambda _, text: messages.append(text))
@@ -74,7 +74,7 @@ class Recorder:
 
 
 class Derivations:
-    """The recorded instances of one answer, read only as far as they are asked for."""
+    """The recorded rule instances of one answer; trees are built on demand."""
 
     def __init__(self, places: Sequence[Place], symbols: Sequence[clingo.Symbol]) -> None:
         self.places = places
@@ -98,7 +98,7 @@ class Derivations:
         return [tuple(map(_plain, each.arguments)) for each in sorted(self._derived(predicate))]
 
     def why(self, atom: str) -> Grounds:
-        """The tree that derives an atom.
+        """The derivation tree of an atom.
 
         Raises:
             RuleError: It was not derived.
@@ -148,7 +148,7 @@ class Derivations:
     def _instance(
         self, symbol: clingo.Symbol, above: frozenset[clingo.Symbol]
     ) -> tuple[Place | None, list[clingo.Symbol]]:
-        """The first rule instance that does not rest on what it is to support."""
+        """The first rule instance that does not depend on an atom above it in the tree."""
         for number, body in sorted(self.instances.get(symbol, ())):
             children = list(body.arguments)
             for part in sorted(self.parts.get((number, symbol), ())):
@@ -173,7 +173,7 @@ def _plain(symbol: clingo.Symbol) -> str:
 
 
 def _records(number: int, rule: Statement) -> list[str]:
-    """Rules that tell each instance of a rule, and each element of its aggregates."""
+    """Rules that record each instance of a rule, and each element of its aggregates."""
     if rule.head_kind != "atom" or (len(rule.heads) != 1 and ";" not in rule.heads[0].text):
         return []
     head = rule.heads[0].text
@@ -196,8 +196,8 @@ _POOL = re.compile(r"(?<![\w\"])\([^()]*;[^()]*\)")
 def _chosen(body: Sequence[Literal]) -> tuple[list[Literal], list[str]]:
     """The body with a variable for each pool of its atoms, and what those variables may be.
 
-    A pool that stood in the head as well would there be expanded on its own, and the grounds told
-    would be of every choice, not of the one that held.
+    A pool in the recording rule's head would be expanded separately, and the record would name
+    every alternative, not the one that held.
     """
     literals: list[Literal] = []
     choices: list[str] = []
@@ -223,12 +223,12 @@ def _variables(text: str) -> set[str]:
 
 
 def _renamed(text: str, names: set[str]) -> str:
-    """The text with those variables renamed: outside their aggregate they are others."""
+    """The text with variables local to an aggregate renamed."""
     return _TOKEN.sub(lambda found: found[0] + "Inner" * (found[0] in names), text)
 
 
 def _tuple(literals: Iterable[Literal]) -> str:
-    """The grounds among the literals as one term."""
+    """The positive and negated atoms among the literals as one term."""
     terms = []
     for each in literals:
         if each.kind == "atom" and each.sign == 0:

@@ -1,4 +1,4 @@
-"""Why a segment has its name: the tree of rules and facts behind it, told in sentences."""
+"""Why a segment has its name: its derivation tree as sentences."""
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
@@ -39,14 +39,14 @@ class Explanation:
 
 @dataclass(frozen=True, eq=False)
 class RuleBase:
-    """A profile made ready to explain by."""
+    """The rules of a profile with the sentence templates of their comments."""
 
     sentences: Sentences
     statements: tuple[Statement, ...]
 
     @cache  # noqa: B019 - rule bases are few and kept
     def recorder(self, name: str) -> Recorder:
-        """What tells why a segment has a name, or, for ``Unknown``, why it has none."""
+        """The recorder of why a segment has a name, or, for ``Unknown``, why it has none."""
         if name == UNKNOWN:
             return Recorder(self.statements, targets=(("parted_at", 2), ("nearest", 2), *ALWAYS))
         others = [each for each in self.statements if not _names(each) and not _overrules(each)]
@@ -62,7 +62,7 @@ def _overrules(statement: Statement) -> bool:
 
 
 def _naming(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
-    """The rule that names segments, for one name: whether others fit better is known by then."""
+    """The rule that names segments, for one name: that it is not overruled is known already."""
     rule = f'named(Segment,"{name}") :- fits(Segment,"{name}"); not overruled(Segment,"{name}").'
     for each in statements:
         if _names(each):
@@ -70,7 +70,7 @@ def _naming(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
 
 
 def rule_base(profile: Profile) -> RuleBase:
-    """The rules of a profile, parsed once and kept."""
+    """The rules of a profile, parsed once."""
     return _rule_base(profile.files, profile.fingerprint)
 
 
@@ -81,7 +81,7 @@ def _rule_base(files: tuple[Path, ...], fingerprint: str) -> RuleBase:
 
 
 class Explainer:
-    """Explains the segments of one capture, each at a cost that its length does not change."""
+    """Explains the segments of a capture, each at a cost independent of the capture's length."""
 
     def __init__(
         self,
@@ -95,7 +95,7 @@ class Explainer:
         Args:
             facts: What the extractors measured.
             profile: The rules to explain by.
-            distance_m: How far an object moved between two frames [m], if sentences shall say so.
+            distance_m: How far an object moved between two frames [m]; None to leave it out.
         """
         self.base = rule_base(profile)
         self.windows = Windows(facts, rank(facts, crossings_only=profile.crossings_only))
@@ -139,7 +139,7 @@ class Explainer:
         return found[0], found[1]
 
     def windows_of(self, ee: str, ticks: tuple[int, int]) -> Iterator[tuple[Fact, ...]]:
-        """Ever wider cuts of the facts; the first nearly always does."""
+        """Windows of facts of growing width; the first nearly always suffices."""
         for widen in (0, 3):
             yield self.windows.around(ee, *ticks, widen=widen)
         yield self.windows.whole()
@@ -168,7 +168,7 @@ class Explainer:
         return found
 
     def _mood(self, grounds: Grounds) -> str:
-        """How an atom is told: it does not hold, it was mended, or else it holds as measured."""
+        """Which template tells an atom: negated, mended (partly doubted) or plain."""
         if grounds.absent:
             return "not"
         doubted = any(each.predicate == "doubted" for each in grounds.because)

@@ -18,7 +18,7 @@ _FIELDS = {
 
 
 def frames_of(predicate: str, arguments: Sequence[str], clock: Clock) -> tuple[int, int] | None:
-    """When a measurement holds; or the instant of a tick, or the span of a segment."""
+    """First and last frame of a measurement, a tick or a segment; None for other atoms."""
     names = _FIELDS.get((predicate, len(arguments)), ())
     named = dict(zip(names, arguments, strict=False))
     if "first" in named:
@@ -33,7 +33,7 @@ def frames_of(predicate: str, arguments: Sequence[str], clock: Clock) -> tuple[i
 
 
 def mended(facts: Sequence[Fact]) -> frozenset[str]:
-    """The contacts, motions and rests, as atoms, that were not measured throughout."""
+    """The contacts, motions and rests, as atoms, that contain doubted frames."""
     doubts: dict[Key, list[int]] = defaultdict(list)
     for each in facts:
         if isinstance(each, Doubted):

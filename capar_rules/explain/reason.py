@@ -1,4 +1,4 @@
-"""Nodes of an explanation: a sentence, the atom that it tells, and what the atom rests on."""
+"""Nodes of an explanation: a sentence, its atom, and what the atom was derived from."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -9,14 +9,14 @@ class Reason:
     """One node of an explanation."""
 
     sentence: str
-    """Empty where the step is told by the nodes below it."""
+    """Empty if no template tells this atom; then the nodes below it do."""
 
     atom: str
     rule: str
-    """File and line of the rule; empty for a measurement, and for what does not hold."""
+    """File and line of the rule; empty for a measurement and for a negated atom."""
 
     frames: tuple[int, int] | None
-    """Of a measurement, first and last."""
+    """First and last frame of a measurement."""
 
     leading: bool
     """Whether the sentence belongs in the summary."""
@@ -24,7 +24,7 @@ class Reason:
     because: tuple["Reason", ...]
 
     def told(self) -> "Reason":
-        """The tree of those nodes that have a sentence; what was told is not told again."""
+        """The tree of the nodes that have a sentence, each subtree only once."""
         return _told(self, set())
 
     def walk(self) -> Iterator["Reason"]:
@@ -35,7 +35,7 @@ class Reason:
 
 
 def _told(reason: Reason, known: set[str]) -> Reason:
-    """The tree of sentences; one that is known already has nothing below it."""
+    """The tree of sentences; a repeated sentence has nothing below it."""
     below: list[Reason] = []
     if reason.sentence not in known:
         known.add(reason.sentence)

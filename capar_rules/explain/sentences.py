@@ -12,27 +12,27 @@ _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """How one predicate is told."""
+    """The sentence of one predicate."""
 
     text: str
     leading: bool
-    """Whether it belongs in the one sentence that sums up an explanation."""
+    """Whether it belongs in the summary of an explanation."""
 
 
 Key = tuple[str, str, int, str]
 """Mood, predicate, arity and an argument.
 
-Moods: it holds, ""; it does "not"; "had" it held, "had not"; it was "mended": taken to hold,
-though not all of it was measured so.
+Moods: "" (it holds), "not", "had" and "had not" (counterfactual), "mended" (taken to hold though
+some frames are doubted).
 """
 
 LEAST_M = 0.01
-"""The least distance that is told of a motion [m]: nearer than that it ended where it began."""
+"""Shorter distances are left out of sentences [m]: the body ended where it began."""
 
 
 @dataclass(frozen=True)
 class Clock:
-    """When the ticks of links are, and where their segments end."""
+    """Times of ticks and segments for sentences."""
 
     rate_hz: float
     frames: Mapping[str, Sequence[int]]
@@ -45,7 +45,7 @@ class Clock:
     """How far an object moved between two frames [m], where that was measured."""
 
     objects: Mapping[str, str] = field(default_factory=dict)
-    """What segments are about, by their terms."""
+    """The object that each segment is about, by the segment's term."""
 
     def at(self, frame: int) -> str:
         """A frame as a time."""
@@ -86,9 +86,9 @@ class Sentences:
     def template(
         self, predicate: str, arguments: Sequence[str], *, mood: str = ""
     ) -> Template | None:
-        """The template for an atom; the one for a certain argument before the general one.
+        """The template for an atom; one for a certain argument precedes the general one.
 
-        What was mended is told like what was measured, where no template tells it otherwise.
+        Without a template of its own, the mood ``mended`` uses the plain template.
         """
         if mood == "mended" and (mood, predicate, len(arguments), "") not in self.templates:
             mood = ""
@@ -101,7 +101,7 @@ class Sentences:
     def tell(
         self, predicate: str, arguments: Sequence[str], clock: Clock, *, mood: str = ""
     ) -> str:
-        """The sentence for an atom; empty where nothing tells it."""
+        """The sentence for an atom; empty if it has no template."""
         template = self.template(predicate, arguments, mood=mood)
         if template is None:
             return ""
@@ -110,7 +110,7 @@ class Sentences:
 
 
 class _Value:
-    """An argument that a template shows as a name, a time or a distance."""
+    """An argument, formatted as a name, a time or a distance."""
 
     def __init__(self, text: str, beside: Sequence[str], clock: Clock) -> None:
         self.text, self.beside, self.clock = text, beside, clock
@@ -124,7 +124,7 @@ class _Value:
         return self.text.replace("_", " ") if told is None else told
 
     def _of_segment(self, form: str) -> str | None:
-        """What is told of the segment that this argument names, or else the first one."""
+        """The text for the segment that this argument, or else the first one, names."""
         if form in ("start", "end"):
             return self.clock.border(self.text, form)
         if form == "border":

@@ -1,4 +1,4 @@
-"""The one sentence that sums up an explanation: a name's own conditions first."""
+"""The summary of an explanation in one sentence: the name's own conditions first."""
 
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -6,13 +6,13 @@ from capar_rules.engine.syntax import split_arguments
 from capar_rules.explain.reason import Reason
 
 BESIDE = ("joins_in(", "looks(")
-"""How what begins that is told beside a name, and is no reason for it."""
+"""Prefixes of atoms that accompany a name and are no reason for it."""
 
 FEATURES = "features("
-"""How what begins that a primitive shares with others, which its own conditions come before."""
+"""Prefix of atoms that primitives share; a primitive's own conditions precede them."""
 
 BORDERS = ("segment(", "border(", "member(")
-"""How what begins that says where a segment begins and ends, and not what it is."""
+"""Prefixes of atoms that say where a segment begins and ends, not what it is."""
 
 
 def summary(name: str, reason: Reason) -> str:
@@ -21,7 +21,7 @@ def summary(name: str, reason: Reason) -> str:
 
 
 def _leading(reason: Reason) -> list[str]:
-    """The telling sentences, each once; of the same at several times, one."""
+    """The leading sentences, each once; sentences that differ only in their time are merged."""
     places: dict[str, list[str]] = {}
     for each in _deciding(reason):
         if each.leading:
@@ -37,7 +37,7 @@ def _leading(reason: Reason) -> list[str]:
 
 
 def _deciding(reason: Reason) -> list[Reason]:
-    """The nodes on which the name rests: first its own conditions, then its features."""
+    """The nodes from which the name follows: first its own conditions, then its features."""
     passed = set[int]()
     own = list(_resting_on([reason], passed))
     shared = [each for each in own if each.atom.startswith(FEATURES)]
@@ -60,9 +60,9 @@ def _resting_on(tops: "Iterable[Reason]", passed: set[int]) -> Iterator[Reason]:
 
 
 def _bears(reason: Reason, below: Reason) -> bool:
-    """Whether what is below a node bears on the name, and not on where a border is alone.
+    """Whether a child of a node is relevant to the name, not only to where a border is.
 
-    Doubts count there too, but none of a measurement at whatever time.
+    Doubts are relevant to derived atoms, not to the measurements themselves.
     """
     if below.atom.startswith("doubted("):
         return bool(reason.rule)
@@ -70,7 +70,7 @@ def _bears(reason: Reason, below: Reason) -> bool:
 
 
 def _rank(reason: Reason) -> int:
-    """Features in the order in which they are told: what the end-effector touches comes first."""
+    """Sort key of features: contacts of the end-effector come first."""
     predicate = reason.atom.partition("(")[0]
     if predicate == "contact_at":
         hand, body = split_arguments(reason.atom)[:2]

@@ -1,4 +1,4 @@
-"""Why a segment has not another name: the fewest changes that would have given it that name."""
+"""Why a segment does not have another name: the fewest changes that would give it that name."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ BEYOND = "Contacts, possession and motion as they were do not settle what it is 
 
 @dataclass(frozen=True)
 class Change:
-    """One thing that would have been otherwise."""
+    """One atom that would have to change."""
 
     holds: bool
-    """Whether it would hold that did not, or else fail that did."""
+    """Whether the atom would hold; otherwise it would cease to hold."""
 
     atom: str
     sentence: str
@@ -27,14 +27,14 @@ class Change:
 
 @dataclass(frozen=True)
 class Alternative:
-    """Changes that together would have made the segment what it is not."""
+    """Changes that together would give the segment another name."""
 
     name: str
     changes: tuple[Change, ...]
-    """None where no world that can be has the name, and ``note`` is all there is to say."""
+    """Empty if the segment has that name in no possible world; then ``note`` says why."""
 
     note: str = ""
-    """What is to be said first: that it is so named too, or that the reason lies elsewhere."""
+    """What precedes the changes: that the name fits too, or that the reason lies elsewhere."""
 
     @property
     def sentence(self) -> str:
@@ -48,15 +48,15 @@ class Alternative:
 def why_not(
     explainer: Explainer, segment: Segment, name: str, *, limit: int = 1
 ) -> tuple[Alternative, ...]:
-    """The smallest changes of what was read that would give a segment a name.
+    """The smallest changes of what was measured that would give a segment a name.
 
-    First it is proven that without a change the segment is called what it is called.
+    First it is proven that without a change the segment keeps its name.
 
     Args:
-        explainer: Of the segment's capture.
+        explainer: The explainer of the segment's capture.
         segment: A segment of it.
-        name: The name that it has not.
-        limit: How many equally small answers to give, at most.
+        name: A name that it does not have.
+        limit: Greatest number of equally small answers.
 
     Returns:
         One for each answer; none if no segment between these borders could be so named.
@@ -91,19 +91,19 @@ def why_not(
 
 
 SPARE = 3
-"""So many worlds are asked for, for each answer: some differ in nothing but their objects."""
+"""Worlds to find for each answer, as some differ only in their objects."""
 
 
 def _about(atoms: Iterable[Atom], term: str) -> dict[str, str]:
-    """What the segment would be about."""
+    """The object that the segment would be about, by its term."""
     found = sorted(str(each[1]) for name, each in atoms if name == "dominant")
     return {term: found[0]} if found else {}
 
 
 def worlds_around(explainer: Explainer, segment: Segment) -> str:
-    """The worlds in which a segment might have been otherwise, as a program.
+    """The program of counterfactual worlds of a segment.
 
-    Empty if in the one in which nothing is otherwise it is not called what it is called.
+    Empty if in the world without changes the segment does not have its own name.
     """
     base, ticks = explainer.base.statements, explainer.ticks(segment)
     term = _term(segment, ticks)
@@ -121,7 +121,7 @@ def _term(segment: Segment, ticks: tuple[int, int]) -> str:
 
 
 def _note(segment: Segment, name: str) -> str:
-    """That it is what it is asked about too, if its own name only says more."""
+    """That the other name fits too, if the segment's own name is more specific."""
     if name not in segment.general:
         return ""
     article = "an" if name[0] in "AEIOU" else "a"

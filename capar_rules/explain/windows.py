@@ -1,4 +1,4 @@
-"""The facts around one segment, cut so that asking about it costs the same in any capture."""
+"""The facts around one segment, so that explaining it costs the same in any capture."""
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
@@ -11,7 +11,7 @@ from capar_rules.borders.ranking import LastTick, MovesDuring, Shares, Tick, Wit
 from capar_rules.borders.times import in_frames, times
 
 BUCKET = 256
-"""How many frames, or ticks, share an entry of the index."""
+"""Number of frames, or ticks, for each entry of the index."""
 
 Span = tuple[int, int]
 
@@ -52,13 +52,13 @@ class Windows:
             self.always.append(fact)
 
     def around(self, ee: str, first: int, last: int, *, widen: int = 0) -> tuple[Fact, ...]:
-        """What bears on the segment of a link between two ticks.
+        """The facts that can affect the segment of a link between two ticks.
 
         Args:
             ee: The link's end-effector.
             first: The tick where the segment begins.
             last: The tick where it ends.
-            widen: By how many further settled places to widen the window.
+            widen: By how many further gaps between ticks to widen the window.
         """
         spans = {ee: self._settled(ee, first, last, widen)}
         begin, end = (self.frames[ee][tick] for tick in spans[ee])
@@ -75,14 +75,14 @@ class Windows:
         return tuple(sorted(found, key=lambda each: (type(each).predicate, each)))
 
     def whole(self) -> tuple[Fact, ...]:
-        """Everything, should no window do."""
+        """All facts, if no window suffices."""
         facts = {*self.always, *self.timed.everything()}
         for ee, frames in self.frames.items():
             facts |= set(self._cut(ee, (0, len(frames) - 1)))
         return tuple(sorted(facts, key=lambda each: (type(each).predicate, each)))
 
     def _settled(self, ee: str, first: int, last: int, widen: int) -> Span:
-        """Ticks around a segment between which and the rest nothing merges, and one beyond."""
+        """The ticks around a segment that could merge with its own, and one beyond on each side."""
         frames, gap = self.frames[ee], in_frames(times().settled_ms, self.rate)
         for _ in range(widen + 1):
             while first > 0 and frames[first] - frames[first - 1] < gap:
@@ -129,9 +129,9 @@ class _Index:
 
 
 def _span(fact: Fact, intervals: FactIntervals) -> Span | None:
-    """When a measurement holds [frames]; None: always.
+    """First and last frame of a measurement; None if it always holds.
 
-    Of what holds throughout an interval that no fact states any more, its first frame.
+    A fact about an interval that no other fact states any more has only its first frame.
     """
     found = intervals.of(fact)
     if found is None and isinstance(fact, Observed) and fact.ends():

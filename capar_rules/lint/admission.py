@@ -10,7 +10,7 @@ from capar_rules.lint.checking import answers
 from capar_rules.lint.file_checks import Request
 from capar_rules.lint.findings import Finding, errors
 
-HARMLESS = {"no-primitive"}
+HARMLESS = {"no-primitive", "nothing-fits"}
 """Errors of `rules check` that do not keep a file from being loaded: it may only help others."""
 
 

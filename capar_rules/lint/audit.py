@@ -1,4 +1,4 @@
-"""The rule base over every segment that can be: uncovered, ambiguous and shadowed cases."""
+"""Audit of a rule base over every possible segment: uncovered, ambiguous and shadowed cases."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -27,33 +27,33 @@ Features = tuple[str, str, str, str]
 
 @dataclass(frozen=True, slots=True, order=True)
 class Clash:
-    """Two names that one segment can have, without order between them."""
+    """Two primitives that fit one segment, neither of which specialises the other."""
 
     first: str
     second: str
     features: tuple[Features, ...]
-    """Feature sets at which they meet, sorted."""
+    """Feature sets of the segments that both fit, sorted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Audit:
-    """What the solver found over every segment that can be."""
+    """What the solver found over every possible segment."""
 
     possible: int
-    """How many feature sets there can be."""
+    """Number of possible feature sets."""
 
     uncovered: tuple[Features, ...]
-    """Those that no rule names, sorted."""
+    """Feature sets that no rule names, sorted."""
 
     excused: tuple[tuple[Features, str], ...]
-    """Of the uncovered ones, those for which ``audit/uncovered.lp`` gives a reason."""
+    """Uncovered feature sets for which ``worlds/uncovered.lp`` gives a reason."""
 
     ambiguous: tuple[Clash, ...]
     shadowed: tuple[str, ...]
-    """Primitives that can fit and never win."""
+    """Primitives that fit some segment, but never as the most specific one."""
 
     unreachable: tuple[str, ...]
-    """Primitives that fit no segment of the audit's world."""
+    """Primitives that fit no possible segment."""
 
     @property
     def clean(self) -> bool:
@@ -66,13 +66,13 @@ def audit(profile: Profile) -> Audit:
     """Audit the rules of a profile.
 
     Raises:
-        RuleError: The rules have a fault.
+        RuleError: The rules have an error.
     """
     return summarise(evaluate(parse(profile.files), ASKED))
 
 
 def summarise(atoms: frozenset[Atom]) -> Audit:
-    """What the answers over all worlds come to."""
+    """The audit of what holds in some world."""
     primitives = {str(each) for (each,) in _rows(atoms, "primitive")}
     fitting = {str(each) for (each,) in _rows(atoms, "fitting")}
     winning = {str(each) for (each,) in _rows(atoms, "winning")}
@@ -88,7 +88,7 @@ def summarise(atoms: frozenset[Atom]) -> Audit:
 
 @cache
 def given_in_audit() -> frozenset[Signature]:
-    """The predicates that the audit's world states itself."""
+    """The predicates that the worlds of the audit define, in place of measurements."""
     return heads_of([*_own("space.lp"), *_own("scene.lp"), *_own("words.lp")]) | {
         ("force_transfer", 0),
         ("gap", 4),
@@ -96,10 +96,10 @@ def given_in_audit() -> frozenset[Signature]:
 
 
 def evaluate(rules: Sequence[Statement], asked: Iterable[Signature]) -> frozenset[Atom]:
-    """What rules derive over all segments that can be: each stands in the world beside the others.
+    """What rules derive in some possible segment; a call of the solver holds many at a time.
 
     Raises:
-        RuleError: The rules have a fault.
+        RuleError: The rules have an error.
     """
     words = [*_own("scene.lp"), *words_of(rules)]
     given = heads_of([*_own("space.lp"), *words])
@@ -115,7 +115,7 @@ def evaluate(rules: Sequence[Statement], asked: Iterable[Signature]) -> frozense
 
 
 def words_of(rules: Sequence[Statement]) -> list[Statement]:
-    """The free relations of the audit's world, as far as a rule base speaks of them."""
+    """The rules of ``words.lp`` for relations that a rule base uses."""
     words = _own("words.lp")
     spoken = heads_of([*rules, *_own("space.lp")]) | {("course", 2), ("member", 3)}
     return [each for each in words if signatures_below([each]) | heads_of([each]) <= spoken]
@@ -123,18 +123,18 @@ def words_of(rules: Sequence[Statement]) -> list[Statement]:
 
 @cache
 def chosen_in_audit() -> frozenset[Signature]:
-    """The relations that the audit's world leaves free, some only for a few of their words."""
+    """The relations that the worlds choose freely, some only over a few of their arguments."""
     return heads_of(each for each in _own("words.lp") if each.head_kind == "choice")
 
 
 def physics() -> tuple[Statement, ...]:
-    """What no segment can be."""
+    """The rules that exclude impossible segments."""
     return _own("physical.lp")
 
 
 @cache
 def _worlds() -> tuple[str, ...]:
-    """Every world of the audit as facts about an end-effector of its own, in batches."""
+    """Every world as facts about an end-effector of its own, in batches."""
     rules = (*_own("space.lp"), *_own("physical.lp"))
     fixed = "\n".join(each.text for each in rules if not each.body and each.head_kind == "atom")
     texts = []
@@ -145,8 +145,8 @@ def _worlds() -> tuple[str, ...]:
 
 
 BATCH = 30
-"""How many worlds one call of the solver holds: fewer read the rules more often, more take longer
-to search; this many cost least of 10 to 200."""
+"""Worlds for each call of the solver: with fewer the rules are grounded more often, with more the
+search takes longer; of 10 to 200 this was the fastest."""
 
 _LIMB = re.compile(r"\blimb\b")
 

@@ -1,4 +1,4 @@
-"""Rules that rest on their own negation, which would leave several answers or none."""
+"""Negative cycles: rules that depend on their own negation, with several answers or none."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -11,7 +11,7 @@ Graph = Mapping[Signature, set[Signature]]
 
 
 def cycle_findings(own: Sequence[Statement], base: Sequence[Statement]) -> Iterator[Finding]:
-    """Each rule of a file through which a predicate comes to depend on its own absence."""
+    """Each rule of a file through which a predicate depends on its own negation."""
     everything = [*base, *own]
     graph = _graph(everything)
     component = _components(graph)
@@ -26,20 +26,20 @@ def cycle_findings(own: Sequence[Statement], base: Sequence[Statement]) -> Itera
                 path = " -> ".join(name for name, _ in [head, *_path(graph, below, head)])
                 yield Finding(
                     rule.place, "negative-cycle",
-                    f"{head[0]} rests on its own negation: {path}; there would be several "
+                    f"{head[0]} depends on its own negation: {path}; there would be several "
                     "answers, or none.",
-                    "Rest it on measurements and features, which names do not change.",
+                    "Make it depend on measurements and features, which names do not change.",
                 )  # fmt: skip
                 break
 
 
 def components(rules: Sequence[Statement]) -> dict[Signature, int]:
-    """For each predicate that rules define or read, the number of the circle that it is in."""
+    """The number of the strongly connected component of each predicate."""
     return _components(_graph(rules))
 
 
 def _edges(rules: Iterable[Statement]) -> Iterator[tuple[Signature, Signature, bool]]:
-    """Head, what it reads, and whether by its absence; an aggregate reads both ways."""
+    """Edges of the dependency graph: head, predicate of the body, whether it is negated."""
     rules = list(rules)
     named = {node for rule in rules for head in rule.heads for node in nodes(head)}
     for rule in rules:
@@ -61,7 +61,7 @@ def _graph(rules: Iterable[Statement]) -> Graph:
 
 
 def _components(graph: Graph) -> dict[Signature, int]:
-    """The strongly connected component of each predicate: a forward and a backward walk."""
+    """The strongly connected component of each predicate, by Kosaraju's algorithm."""
     order: list[Signature] = []
     seen: set[Signature] = set()
     for start in sorted(graph):
@@ -79,7 +79,7 @@ def _components(graph: Graph) -> dict[Signature, int]:
 
 
 def _walk(graph: Graph, start: Signature, seen: set[Signature]) -> list[Signature]:
-    """What is reached from a start and was not seen, in order of leaving it."""
+    """What a depth-first search newly reaches from a start, in postorder."""
     if start in seen:
         return []
     seen.add(start)
@@ -98,7 +98,7 @@ def _walk(graph: Graph, start: Signature, seen: set[Signature]) -> list[Signatur
 
 
 def _path(graph: Graph, start: Signature, goal: Signature) -> list[Signature]:
-    """A shortest way between two predicates."""
+    """A shortest path between two predicates."""
     before: dict[Signature, Signature] = {}
     waiting = [start]
     for node in waiting:

@@ -17,7 +17,7 @@ from capar_rules.lint.findings import Finding, errors
 from capar_rules.lint.rule_text import Reading, read_rules
 from capar_rules.lint.termination import growth_findings
 from capar_rules.lint.text_checks import Known, known, static_findings
-from capar_rules.lint.word_checks import slip_findings
+from capar_rules.lint.word_checks import fitting_findings, single_findings, slip_findings
 from capar_rules.lint.world_checks import safety_findings, unsafe_findings, world_findings
 
 Message = Finding | Path
@@ -111,6 +111,7 @@ def text_findings(reading: Reading, base: Known) -> Iterator[Finding]:
         unsafe_findings(reading.text, reading.file),
         growth_findings(own),
         cycle_findings(own, base.rules),
+        (*fitting_findings(own, base), *single_findings(own)),
     )
     for stage in stages:
         found = tuple(stage)

@@ -1,4 +1,4 @@
-"""What a check says of a rule file: each finding with its place and what would have been right."""
+"""Findings of `rules check`: each with its place, a message and a remedy."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -10,7 +10,7 @@ ERROR, NOTE = "error", "note"
 
 @dataclass(frozen=True, slots=True, order=True)
 class Finding:
-    """One remark on a rule file."""
+    """One error or note about a rule file."""
 
     place: Place
     code: str
@@ -19,10 +19,10 @@ class Finding:
     message: str
     remedy: str
     level: str = ERROR
-    """``error``: the file does not count; ``note``: it may."""
+    """``error``: the file is not loaded; ``note``: it may be."""
 
     def __str__(self) -> str:
-        """The finding as one line, the way compilers write."""
+        """The finding as one line, as compilers print theirs."""
         return f"{self.place}: {self.level}: {self.message} {self.remedy}".rstrip()
 
     def as_json(self) -> dict[str, Any]:
@@ -36,5 +36,5 @@ class Finding:
 
 
 def errors(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
-    """Those for which a file does not count."""
+    """The findings that keep a file from being loaded."""
     return tuple(each for each in findings if each.level == ERROR)

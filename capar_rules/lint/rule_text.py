@@ -1,4 +1,4 @@
-"""A rule file read with care: its size, its letters, what it includes; then its statements."""
+"""Read a rule file defensively: its size, characters and includes, then its statements."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -12,7 +12,7 @@ from capar_rules.lint.findings import Finding
 from capar_rules.lint.world_checks import solver_findings
 
 DEEPEST = 100
-"""Brackets nest no deeper."""
+"""Greatest depth of nested brackets: deeper ones overflow the parser's stack."""
 
 _INCLUDE = re.compile(r"#include\s*(\"([^\"\n]*)\"|<([^>\n]*)>|\S*)[^.\n]*\.?")
 _STRING_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|%\*.*?\*%|%[^\n]*', re.DOTALL)
@@ -20,7 +20,7 @@ _STRING_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|%\*.*?\*%|%[^\n]*', re.DOT
 
 @dataclass(frozen=True)
 class Reading:
-    """A rule file's statements, or what stands in the way of them."""
+    """A rule file's statements, or the findings that prevent parsing it."""
 
     file: str
     text: str
@@ -31,7 +31,7 @@ class Reading:
 
 
 def read_rules(path: Path, *, folders: Iterable[Path] = ()) -> Reading:
-    """Read a rule file without running anything of it.
+    """Read a rule file; nothing in it is executed.
 
     Args:
         path: The file.
@@ -80,7 +80,7 @@ def _text(path: Path) -> tuple[str, list[Finding]]:
 
 
 def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Finding]:
-    """What is refused before anything is parsed."""
+    """What is refused before anything is parsed: it could harm the parser or read other files."""
     bare = _STRING_OR_COMMENT.sub(_blank, text)
     if "\0" in text:
         yield _at(text, text.index("\0"), path, "encoding", "there is a zero byte.", "Remove it.")
@@ -88,8 +88,8 @@ def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Findin
         yield _at(text, 0, path, "encoding", "there is a byte-order mark.", "Save it without one.")
     for found in list(re.finditer(r"(?!\A)[^\x00-\x7f]|\A[^\x00-\x7f\ufeff]", bare))[:1]:
         yield _at(
-            text, found.start(), path, "syntax", f"{found[0]!r} is no letter of rules.",
-            "Outside of texts in quotes and of comments, write letters a to z and digits.",
+            text, found.start(), path, "syntax", f"{found[0]!r} is not allowed in rules.",
+            "Outside quoted texts and comments, write ASCII letters and digits.",
         )  # fmt: skip
     for found in re.finditer(r"\b\d{10,}\b", bare):
         if int(found[0][:20]) > LARGEST:
@@ -129,7 +129,7 @@ def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Findin
 
 
 def _includes(text: str) -> list[re.Match[str]]:
-    """Every #include that stands in no comment; a % in a text in quotes begins none."""
+    """Every #include outside comments; a % in a quoted text begins no comment."""
     return list(_INCLUDE.finditer(_STRING_OR_COMMENT.sub(_blank_comment, text)))
 
 
@@ -147,7 +147,7 @@ def _at(text: str, at: int, path: Path, code: str, message: str, remedy: str) ->
 
 
 def _placed(statement: Statement, file: str) -> Statement:
-    """The statement with its file's name at all its places."""
+    """The statement with its file's name in all its places."""
 
     def here(place: Place) -> Place:
         return replace(place, file=file)

@@ -1,4 +1,4 @@
-"""Rules that would never come to an end, or nearly: told from their text, before they are run."""
+"""Rules whose grounding would not terminate, or hardly: found by their text."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -9,7 +9,7 @@ from capar_rules.lint.cycles import components
 from capar_rules.lint.findings import Finding
 
 WIDEST = 100_000
-"""A range between two written numbers holds no more: longer ones are taken from measurements."""
+"""Greatest length of a range between two literal numbers."""
 
 _RANGE = re.compile(r"(-?\d+)\.\.(-?\d+)")
 _TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"')
@@ -18,7 +18,7 @@ _PLAIN = re.compile(r"_*[A-Z]\w*")
 
 
 def growth_findings(own: Sequence[Statement]) -> Iterator[Finding]:
-    """Ranges that are too wide, and recursions that make new values of their own."""
+    """Ranges that are too wide, and recursions that keep making new values."""
     component = components(own)
     for rule in own:
         if rule.kind != "rule":
@@ -32,15 +32,15 @@ def growth_findings(own: Sequence[Statement]) -> Iterator[Finding]:
                 )  # fmt: skip
         for name in _growing(rule, component):
             yield Finding(
-                rule.place, "unbounded", f"this rule makes new values of {name} from its own, "
-                "without an end.",
-                f"Bind {name} by a measurement that does not rest on this rule, such as "
+                rule.place, "unbounded", f"this rule keeps making new values of {name} from "
+                "its own.",
+                f"Bind {name} by a measurement that does not depend on this rule, such as "
                 "tick(Hand, Tick, Frame).",
             )  # fmt: skip
 
 
 def _growing(rule: Statement, component: dict[Signature, int]) -> list[str]:
-    """Variables of the head whose values only the recursion itself bounds, and changes."""
+    """Variables of the head that the recursion changes and nothing outside it binds."""
     mine = {component[node] for head in rule.heads for node in nodes(head) if node in component}
     again = [each for each in rule.body if _positive(each) and _within(each, component, mine)]
     if not again:

@@ -1,4 +1,4 @@
-"""Checks that read a rule file and never run it: what it may hold, and what it speaks of."""
+"""Checks of a rule file by its statements: which are allowed, and which predicates they use."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -20,7 +20,7 @@ AUTHORED: dict[Signature, str] = {
     ("fits", 2): 'fits(Segment, "Lift") :- ...',
     ("also", 2): "also(Atom, Other) :- ...",
 }
-"""What a user's file may state, each with an example, beside predicates of its own."""
+"""Predicates of the rule base that a user's file may define, each with an example."""
 
 HARMLESS = {"rule", "comment", "defined", "definition"}
 REFUSED = {
@@ -50,15 +50,15 @@ HEADS = {
 
 @dataclass(frozen=True)
 class Known:
-    """What a rule base already speaks of."""
+    """The vocabulary of a rule base."""
 
     rules: tuple[Statement, ...]
     heads: frozenset[Signature]
     inputs: frozenset[Signature]
-    """Predicates that may have no rule: measurements, and what a profile leaves out."""
+    """Predicates that may have no rule: measurements, and those of other profiles."""
 
     measured: frozenset[Signature]
-    """Of those, the measurements."""
+    """Predicates of measurements (``inputs.lp``)."""
 
     primitives: Mapping[str, str]
     """Names of primitives, each with the file that introduces it."""
@@ -67,7 +67,7 @@ class Known:
 
 
 def known(rules: Sequence[Statement]) -> Known:
-    """The words of a rule base."""
+    """The vocabulary of the rules."""
     return Known(
         tuple(rules),
         heads_of(rules),
@@ -171,7 +171,7 @@ def _unknown(atom: Atom, words: Iterable[Signature]) -> Finding:
 
 
 def introduced_names(own: Iterable[Statement]) -> set[str]:
-    """The primitives that rules state."""
+    """The primitives that rules introduce."""
     return {name for name, _ in _named(own, "primitive")}
 
 
@@ -194,7 +194,7 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
             subjects = arguments if name == "specialises" else [arguments[at]]
             quoted = all(each.startswith('"') for each in subjects)
             if name == "fits" and not quoted:
-                continue  # The quotes that are missing are told with other slips.
+                continue  # word_checks.py reports missing quotes
             if not quoted or not {each.strip('"') for each in subjects} & mine:
                 yield Finding(
                     head.place, "foreign-name",
@@ -206,7 +206,7 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
                 yield from _ordered(head, arguments, mine | set(base.primitives))
                 if _circular(arguments, [*base.rules, *own]):
                     yield Finding(
-                        head.place, "circular", f"{head.text} makes a circle: neither would ever "
+                        head.place, "circular", f"{head.text} makes a cycle: neither would ever "
                         "be named.", "State only which is the more specific.",
                     )  # fmt: skip
             if name == "feature_row":
@@ -219,7 +219,7 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
 
 
 def _circular(arguments: Sequence[str], rules: Iterable[Statement]) -> bool:
-    """Whether what is said to be more general comes to specialise it."""
+    """Whether the more general one specialises the other, directly or not."""
     general: dict[str, set[str]] = {}
     for each in rules:
         for head in each.heads:
@@ -265,7 +265,7 @@ def _documentation(own: Sequence[Statement]) -> Iterator[Finding]:
 
 
 def _named(rules: Iterable[Statement], predicate: str) -> Iterator[tuple[str, str]]:
-    """What facts of a predicate of one argument name, each with the file that says so."""
+    """The arguments of a unary predicate's facts, each with its file."""
     for each in rules:
         for head in each.heads:
             if head.signature == (predicate, 1):

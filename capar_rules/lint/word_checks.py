@@ -1,4 +1,4 @@
-"""Slips of the pen that are no mistakes of logic: constants for variables, words that are none."""
+"""Likely typing errors in rules: constants for variables, missing quotes, unknown words."""
 
 import re
 from collections import Counter
@@ -21,7 +21,7 @@ from capar_rules.lint.word_places import (
 )
 
 MOST = 12
-"""How many words a finding lists where none is near."""
+"""How many words a finding lists where none is similar."""
 
 _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
 _OWN_NAME = re.compile(r"Any\d+")
@@ -29,7 +29,7 @@ _ANY_VARIABLE = re.compile(r"(?<!\w)[A-Z]\w*'*")
 
 
 def slip_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
-    """Every finding on the words that rules use."""
+    """Every finding about the constants and texts that rules use."""
     mine = introduced_names(own)
     names = mine | set(base.primitives)
     words = closed([*base.rules, *(each for each in own if not _authored(each))])
@@ -47,7 +47,7 @@ def slip_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
 
 
 def _authored(rule: Statement) -> bool:
-    """Whether it states fits: what a file says of that must not widen what segments are."""
+    """Whether it defines fits, whose arguments must not count as words of a segment."""
     return any(head.signature == FITS for head in rule.heads)
 
 
@@ -83,7 +83,7 @@ def _unquoted(atom: Atom, name: str, names: set[str]) -> Finding:
     close = get_close_matches(name.lower(), [each.lower() for each in names], n=1)
     meant = next((each for each in sorted(names) if [each.lower()] == close), name)
     return Finding(
-        atom.place, "missing-quotes", f"the quotes are missing about {name}.",
+        atom.place, "missing-quotes", f"quotes are missing around {name}.",
         f'Names of primitives are texts: "{meant}".',
     )  # fmt: skip
 
@@ -94,7 +94,7 @@ def _foreign(
     constants: frozenset[str],
     names: set[str],
 ) -> Iterator[Finding]:
-    """Words at places where they can never stand, or of kinds that captures rarely have."""
+    """Words that can never occur in their argument, or kinds that captures rarely have."""
     if atom.signature in AUTHORED and atom.signature != FITS:
         return
     for place, text in enumerate(arguments_of(atom)):
@@ -110,29 +110,29 @@ def _foreign(
         bare = sorted(each.strip('"') for each in known if not each.endswith("("))
         if f'"{text}"' in known:
             code, message, remedy = (
-                "missing-quotes", f"the quotes are missing about {text}.", f'Write "{text}".'
+                "missing-quotes", f"quotes are missing around {text}.", f'Write "{text}".'
             )  # fmt: skip
         elif text.strip('"') in known:
             code, message, remedy = (
-                "needless-quotes", f"{text} stands without quotes in {atom.signature[0]}.",
+                "needless-quotes", f"{text} is written without quotes in {atom.signature[0]}.",
                 f"Write {text.strip(chr(34))}.",
             )  # fmt: skip
         elif not bare:
             code, message, remedy = (
-                "constant-argument", f"{text} is a constant in {atom.text}, and can never stand "
+                "constant-argument", f"{text} is a constant in {atom.text}, and can never occur "
                 "there.", f"Variables begin with a capital: {text.capitalize()}.",
             )  # fmt: skip
         else:
             code, message, remedy = (
-                "unknown-word", f"{text} is no word that {atom.signature[0]} has in place "
-                f"{place + 1}.",
+                "unknown-word", f"{text} never occurs as argument {place + 1} of "
+                f"{atom.signature[0]}.",
                 _nearest(text.strip('"'), bare),
             )  # fmt: skip
         yield Finding(atom.place, code, message, remedy, NOTE if known == KINDS else ERROR)
 
 
 def _names(own: Iterable[Statement]) -> Iterator[Finding]:
-    """Names that no primitive may bear."""
+    """Names that a primitive may not have."""
     for each in own:
         for head in each.heads:
             if head.signature == ("primitive", 1):
@@ -140,7 +140,7 @@ def _names(own: Iterable[Statement]) -> Iterator[Finding]:
                 name = argument.strip('"')
                 if not argument.startswith('"'):
                     yield Finding(
-                        head.place, "missing-quotes", f"the quotes are missing about {argument}.",
+                        head.place, "missing-quotes", f"quotes are missing around {argument}.",
                         f'Names of primitives are texts: primitive("{argument.capitalize()}").',
                     )  # fmt: skip
                 elif not ACTION_NAME.fullmatch(name):
@@ -151,7 +151,7 @@ def _names(own: Iterable[Statement]) -> Iterator[Finding]:
 
 
 def fitting_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
-    """Primitives that no segment can fit, as nothing says when; others may yet specialise them."""
+    """Primitives without a rule or feature row that says which segments fit them."""
     heads = [head for each in (*base.rules, *own) for head in each.heads]
     where = {("fits", 2): 1, ("feature_row", 6): 0, ("specialises", 2): 1}
     spoken = {
@@ -171,7 +171,7 @@ def fitting_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]
 
 
 def single_findings(own: Iterable[Statement]) -> Iterator[Finding]:
-    """Variables that join nothing, as they occur once in their rule."""
+    """Variables that occur only once in their rule."""
     for rule in own:
         counts = Counter(_ANY_VARIABLE.findall(_TEXT.sub('""', rule.text)))
         once = [
@@ -183,8 +183,8 @@ def single_findings(own: Iterable[Statement]) -> Iterator[Finding]:
             several = len(once) > 1
             yield Finding(
                 rule.place, "single-variable",
-                f"{', '.join(once)} {'occur' if several else 'occurs'} once alone in this rule.",
-                "If that is meant, write _ instead; if not, look for a slip of the pen.", NOTE,
+                f"{', '.join(once)} {'occur' if several else 'occurs'} only once in this rule.",
+                "If that is meant, write _ instead; if not, look for a typing error.", NOTE,
             )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""The words that can stand at each place of each predicate, as the rules themselves tell them."""
+"""The constants and texts that can occur in each argument of a predicate, by the rules' heads."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from capar_rules.engine.syntax import Atom, Signature, Statement, split_arguments
 
 Slot = tuple[Signature, int]
-"""A predicate and the place of an argument, from zero."""
+"""A predicate and the index of an argument, from zero."""
 
 KINDS = frozenset({"hand", "foot", "head"})
 """The usual kinds of end-effectors (thesis 4.4.1); a capture may have others."""
@@ -16,7 +16,7 @@ MEASURED: Mapping[Slot, frozenset[str]] = {
     (("link", 3), 1): KINDS,
     (("link", 3), 2): frozenset({"right", "left", "none"}),
 }
-"""Words at places of measurements, which no rule tells (inputs.lp)."""
+"""Words in arguments of measurements (inputs.lp), which no rule defines."""
 
 VARIABLE = re.compile(r"_*[A-Z]\w*'*")
 CONSTANT = re.compile(r"_*[a-z]\w*'*")
@@ -25,10 +25,10 @@ _TERM = re.compile(r"(_*[a-z]\w*)\(")
 
 
 def closed(rules: Sequence[Statement]) -> dict[Slot, frozenset[str]]:
-    """The places at which rules leave a limited choice of words, each with those words.
+    """The arguments for which rules have only a finite set of words, each with those words.
 
-    A compound such as ``seg(Hand, From)`` is told as ``seg(``. Where a number or any term may
-    stand, or what was measured, there is no entry.
+    A compound such as ``seg(Hand, From)`` is listed as ``seg(``. Arguments that can be a number,
+    any term or a measured value have no entry.
     """
     constants = {each.defines for each in rules if isinstance(each.defines, str)}
     told = [_row(head, each) for each in rules for head in each.heads]
@@ -67,7 +67,7 @@ def _row(head: Atom, rule: Statement) -> tuple[Signature, list[str], dict[str, l
 
 
 def arguments_of(atom: Atom) -> list[str]:
-    """An atom's arguments as they are written; none of a pool of atoms."""
+    """An atom's arguments as they are written; empty texts for a pool of atoms."""
     found = split_arguments(atom.text) if atom.signature[1] else []
     return found if len(found) == atom.signature[1] else [""] * atom.signature[1]
 
@@ -78,7 +78,7 @@ def _words(
     found: Mapping[Slot, frozenset[str] | None],
     constants: set[str],
 ) -> frozenset[str] | None:
-    """What an argument of a head may be; None for anything."""
+    """The words that an argument of a head can be; None for anything."""
     if STRING.fullmatch(text) or (CONSTANT.fullmatch(text) and text not in constants):
         return frozenset({text})
     if (term := _TERM.match(text)) and text.endswith(")"):

@@ -1,4 +1,4 @@
-"""Checks that ask the solver: safety, and what the rules of a file do in every possible segment."""
+"""Checks that ask the solver: safety, and what a file's rules do over every possible segment."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -18,13 +18,12 @@ from capar_rules.lint.audit import (
 )
 from capar_rules.lint.findings import NOTE, Finding
 from capar_rules.lint.text_checks import Known
-from capar_rules.lint.word_checks import fitting_findings, single_findings
 from capar_rules.lint.word_places import STRING
 
 FIRED, IDLE, HELD = ("fired", 1), ("idle", 1), ("held", 3)
 
 MOST_RIVALS = 5
-"""How many of those that share its segments an ambiguity names."""
+"""How many rivals an ambiguity lists."""
 
 _MESSAGE = re.compile(r"[^:\n]*:(\d+):(\d+)(?:-[\d:]+)?: (?:error|info): (.*)")
 _COMPUTES = re.compile(r"[-+*/\\|&?^~;]|\.\.")
@@ -33,7 +32,7 @@ _UNSAFE = re.compile(r": note: '(\w+)' is unsafe")
 
 
 def safety_findings(text: str, file: str) -> Iterator[Finding]:
-    """What the solver refuses of a file by itself: unsafe variables above all."""
+    """What the solver reports when it grounds a file by itself."""
     try:
         brave(text, ())
     except RuleError as error:
@@ -41,7 +40,7 @@ def safety_findings(text: str, file: str) -> Iterator[Finding]:
 
 
 def unsafe_findings(text: str, file: str) -> Iterator[Finding]:
-    """The same without grounding anything: it costs no more than reading the file."""
+    """What the solver reports when it only reads a file: unsafe variables above all."""
     try:
         understand(text)
     except RuleError as error:
@@ -49,7 +48,7 @@ def unsafe_findings(text: str, file: str) -> Iterator[Finding]:
 
 
 def solver_findings(message: str, file: str) -> Iterator[Finding]:
-    """The solver's own remarks as findings."""
+    """The solver's messages as findings."""
     variables = _UNSAFE.findall(message)
     found = False
     for line in message.splitlines():
@@ -86,18 +85,16 @@ def world_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
     for each in rules:
         if each not in judged:
             words = ", ".join(f"{name}/{arity}" for name, arity in _beyond(each, own, base))
-            yield _not_judged(each, f"{words}, measured outside the audit's world")
+            yield _not_judged(each, f"{words}, which the worlds of the audit do not contain")
     asked = (*ASKED, FIRED, IDLE, HELD, ("feature_row", 6))
     atoms = evaluate([*base.rules, *own, *_probes(judged)], asked)
     yield from _firing(judged, atoms, lambda number: _missing(number, judged, own, base, atoms))
     yield from _clashes(own, summarise(atoms))
-    yield from fitting_findings(own, base)
-    yield from single_findings(own)
 
 
 def _not_judged(rule: Statement, what: str) -> Finding:
     return Finding(
-        rule.place, "not-judged", f"whether it can fire was not judged: it rests on {what}.",
+        rule.place, "not-judged", f"whether it can fire was not checked: it depends on {what}.",
         "Give the file examples that it must and must not match.", NOTE,
     )  # fmt: skip
 
@@ -120,7 +117,7 @@ def _probes(rules: Sequence[Statement]) -> Iterator[Statement]:
 
 
 def _plain(rule: Statement) -> Iterator[tuple[int, Atom]]:
-    """The conditions of a rule that must hold by themselves and compute nothing, by place."""
+    """The positive conditions of a rule without arithmetic, each with its index."""
     for place, literal in enumerate(rule.body):
         if literal.kind == "atom" and literal.sign == 0:
             atom = literal.atoms[0]
@@ -129,7 +126,7 @@ def _plain(rule: Statement) -> Iterator[tuple[int, Atom]]:
 
 
 def _loosened(text: str) -> str:
-    """An atom's text with whatever may stand for its variables."""
+    """An atom's text with its variables anonymous."""
     return _TOKEN.sub(lambda found: found[0] if found[0].startswith('"') else "_", text)
 
 
@@ -140,9 +137,9 @@ def _missing(
     base: Known,
     atoms: frozenset[Answered],
 ) -> str:
-    """A condition that the audit's world does not have, though a segment may; else nothing.
+    """A condition that no world fulfils though a real segment may; else an empty text.
 
-    It has no such relation at all, or leaves what the relation rests on free for few words only.
+    No world has such a relation, or the relation depends on one chosen over few arguments only.
     """
     held = {row[1:] for name, row in atoms if name == "held" and row[0] == number}
     for place, atom in _plain(judged[number]):
@@ -165,7 +162,7 @@ def _firing(
         row = head.signature == ("feature_row", 6) and tuple(arguments[2:]) not in possible
         unfired = bool(rule.body) and number not in fired
         if unfired and (beyond := missing(number)):
-            yield _not_judged(rule, f"{beyond}, which the audit's world does not have")
+            yield _not_judged(rule, f"{beyond}, which the worlds of the audit do not contain")
         elif unfired or row:
             what = f"the features {', '.join(arguments[2:])}" if row else "what it asks for"
             yield Finding(
@@ -181,12 +178,12 @@ def _firing(
 
 
 def rivals(name: str, own: Sequence[Statement], base: Known) -> tuple[str, ...]:
-    """The primitives that name the same segments as one of a file's, neither more specific."""
+    """The primitives that are ambiguous with one of a file's, most shared feature sets first."""
     return _rivals(name, summarise(evaluate([*base.rules, *own], ASKED)))
 
 
 def _rivals(name: str, audit: Audit) -> tuple[str, ...]:
-    """The same, those first that it shares most feature sets with."""
+    """The same of an audit."""
     shared = {
         each.second if each.first == name else each.first: len(each.features)
         for each in audit.ambiguous
@@ -225,7 +222,7 @@ def _clashes(own: Sequence[Statement], audit: Audit) -> Iterator[Finding]:
 
 
 def _beyond(rule: Statement, own: Sequence[Statement], base: Known) -> tuple[Signature, ...]:
-    """The measurements below a rule that the audit's world does not have."""
+    """The measurements that a rule depends on and no world of the audit contains."""
     read = _below((atom.signature for each in rule.body for atom in each.atoms), own, base)
     defined = heads_of([*base.rules, *own])
     return tuple(sorted((read & base.measured) - given_in_audit() - defined))
@@ -234,7 +231,7 @@ def _beyond(rule: Statement, own: Sequence[Statement], base: Known) -> tuple[Sig
 def _below(
     signatures: Iterable[Signature], own: Sequence[Statement], base: Known
 ) -> frozenset[Signature]:
-    """Predicates and what they rest on, down to what the audit's world states."""
+    """Predicates and what they depend on, down to what the worlds of the audit define."""
     below, given = frozenset(signatures), given_in_audit()
     slice_ = towards([*base.rules, *own], below - given, given=given)
     return below | signatures_below(each for each in slice_ if each.kind == "rule")

@@ -12,7 +12,7 @@ from capar_rules.authoring.user_primitives import (
     add_rule,
     introduced,
     new_rule,
-    remove_rule,
+    removable,
     rule_of,
     rules_of,
     telling,
@@ -186,10 +186,11 @@ def test_an_added_rule_is_the_users_until_it_is_removed(grasp, tmp_path):
     assert rule_of(base, "Grasp", actionary=tmp_path).origin == "user"
     with pytest.raises(FileError, match="exists already"):
         add_rule(grasp, folder=folder, base="thesis")
-    assert remove_rule("Grasp", files=user_rules(folder)) == added
+    assert removable("Grasp", files=user_rules(folder)) == added
+    added.unlink()
     assert user_rules(folder) == ()
     with pytest.raises(UnknownNameError, match="rule of the user's"):
-        remove_rule("Grasp", files=user_rules(folder))
+        removable("Grasp", files=user_rules(folder))
 
 
 def test_an_ambiguity_is_refused_unless_it_is_ordered(grasp, tmp_path):

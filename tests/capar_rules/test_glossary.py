@@ -86,7 +86,10 @@ def test_the_words_of_the_user_s_rules_are_explained_too(tmp_path):
 def test_a_word_tells_the_rules_that_define_it(words):
     (word,) = words.find("possesses")
     (place,) = words.rules_of(word.signature)
-    assert (word.file, word.arguments) == ("possession.lp", ("Hand", "Object", "Since"))
+    assert (word.file, word.arguments) == (
+        "segmentation/possession.lp",
+        ("Hand", "Object", "Since"),
+    )
     assert place.file == str(rule_file("segmentation/possession.lp"))
 
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from capar_rules.lint.checking import check, check_all
-from capar_rules.lint.file_checks import base_of
+from capar_rules.lint.checking import answers, check
+from capar_rules.lint.file_checks import Request, base_of
 from capar_rules.lint.findings import ERROR, NOTE, Finding, errors
 from capar_rules.lint.word_checks import slip_findings
 from capar_rules.lint.word_places import closed
@@ -57,20 +57,20 @@ def checked(folder: Path, *texts: str) -> list[tuple[Finding, ...]]:
     paths = [folder / f"nip_{number}.lp" for number in range(len(texts))]
     for path, text in zip(paths, texts, strict=True):
         path.write_text(text)
-    return check_all(paths)
+    return answers([Request((str(path),), "extended") for path in paths])
 
 
 @pytest.fixture(scope="module")
-def answers(tmp_path_factory) -> dict[str, tuple[Finding, ...]]:
+def found_in(tmp_path_factory) -> dict[str, tuple[Finding, ...]]:
     found = checked(tmp_path_factory.mktemp("slips"), *(f"{HEAD}{each}\n" for each in SLIPS))
     return dict(zip(SLIPS, found, strict=True))
 
 
 @pytest.mark.parametrize("rule", SLIPS)
-def test_a_slip_is_found_with_the_word_that_was_meant(answers, rule):
+def test_a_slip_is_found_with_the_word_that_was_meant(found_in, rule):
     code, remedy = SLIPS[rule]
-    found = [each for each in errors(answers[rule]) if each.code == code]
-    assert any(each.remedy.endswith(remedy) for each in found), answers[rule]
+    found = [each for each in errors(found_in[rule]) if each.code == code]
+    assert any(each.remedy.endswith(remedy) for each in found), found_in[rule]
     assert {each.place.line for each in found} == {4}
 
 
@@ -110,25 +110,32 @@ def test_a_variable_that_joins_nothing_is_noted_and_an_anonymous_one_is_not(tmp_
     rule += "tag(Object, mobile).\n"
     loose, fine = checked(tmp_path, HEAD + rule.format("Place"), HEAD + rule.format("_"))
     (note,) = [each for each in loose if each.code == "single-variable"]
-    assert (note.level, note.message) == (NOTE, "Place occurs once alone in this rule.")
+    assert (note.level, note.message) == (NOTE, "Place occurs only once in this rule.")
     assert [each for each in fine if each.code == "single-variable"] == []
 
 
-@pytest.mark.parametrize(
-    ("stated", "code"),
-    [
-        ('primitive("nip it; good").', "bad-name"),
-        ('primitive( "nip" ).', "bad-name"),
-        ("primitive(nip).", "missing-quotes"),
-        ("primitive(nip).", "missing-quotes"),
-        ('primitive("Nip").', "nothing-fits"),
-        ('primitive("Nip"). primitive("Touch").', "taken-name"),
-        ('primitive( "Touch" ).', "taken-name"),
-    ],
-)
-def test_names_that_cannot_be_and_what_nothing_fits_are_told(tmp_path, stated, code):
-    (found,) = checked(tmp_path, f"%* Nip: a slip. *%\n{stated}\n")
-    assert (code, ERROR) in {(each.code, each.level) for each in found}
+STATED = {
+    'primitive("nip it; good").': "bad-name",
+    'primitive( "nip" ).': "bad-name",
+    "primitive(nip).": "missing-quotes",
+    'primitive("Nip").': "nothing-fits",
+    'primitive("Nip"). primitive("Touch").': "taken-name",
+    'primitive( "Touch" ).': "taken-name",
+}
+"""Primitives stated alone, each with what is wrong with it."""
+
+
+@pytest.fixture(scope="module")
+def found_in_names(tmp_path_factory) -> dict[str, tuple[Finding, ...]]:
+    texts = (f"%* Nip: a slip. *%\n{each}\n" for each in STATED)
+    found = checked(tmp_path_factory.mktemp("names"), *texts)
+    return dict(zip(STATED, found, strict=True))
+
+
+@pytest.mark.parametrize("stated", STATED)
+def test_names_that_cannot_be_and_what_nothing_fits_are_told(found_in_names, stated):
+    found = {(each.code, each.level) for each in found_in_names[stated]}
+    assert (STATED[stated], ERROR) in found
 
 
 def test_what_others_specialise_needs_no_rule_of_its_own(tmp_path):
