@@ -1,4 +1,4 @@
-"""What was observed, as knowledge that lasts and answers questions."""
+"""The knowledge base: observations as RDF, questions about them, and sentences."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""The Actionary: what was observed, as knowledge that lasts and answers (thesis 4.1.2)."""
+"""The Actionary: observations kept as RDF, and the questions it answers (thesis 4.1.2)."""
 
 from pathlib import Path
 from types import TracebackType
@@ -80,7 +80,7 @@ class Actionary(Knowledge):
         self.close()
 
     def close(self) -> None:
-        """Let go of the store."""
+        """Close the store."""
         self.store.close()
 
     def refresh(self) -> None:
@@ -102,7 +102,7 @@ class Actionary(Knowledge):
     def add(
         self, observation: "Observation", *, name: str | None = None, replace: bool = False
     ) -> Added:
-        """Keep an observation; it is whole, checked and lasting when this returns.
+        """Keep an observation; it is checked, complete and on disk when this returns.
 
         An observation of the same capture (its files, frames and performer) is replaced.
 
@@ -119,7 +119,7 @@ class Actionary(Knowledge):
         return stored.add(self.store, observation, name=name, replace=replace)
 
     def forget(self, name: str) -> None:
-        """Take an observation back, and everything that nothing else says.
+        """Remove an observation, and everything that no other one mentions.
 
         Raises:
             UnknownNameError: There is no observation of that name.
@@ -142,14 +142,14 @@ class Actionary(Knowledge):
         return list(self.store.ask(question(name).bind(parameters)).plain())
 
     def query(self, text: str, *, seconds: float = TIME_LIMIT_S) -> Answer:
-        """What anybody's SPARQL query answers: it cannot write, reach out or run for ever.
+        """The answer to a user's SPARQL query, which can neither write nor call services.
 
         Raises:
             QueryError: It is no query, or does what it may not.
-            TimeLimitError: It takes longer than it may [s].
+            TimeLimitError: It takes longer than its time limit [s].
         """
         return self.store.ask_within(sparql.prepare(text), seconds=seconds)
 
     def dataset(self) -> Any:
-        """The whole as rdflib's dataset, whose default graph is the union of all."""
+        """The store as an rdflib dataset whose default graph is the union of all graphs."""
         return self.store.dataset()

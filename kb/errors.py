@@ -1,4 +1,4 @@
-"""What goes wrong with a store or a question, said so that its user can mend it."""
+"""Errors of stores and queries, each with its remedy."""
 
 from capar.model.errors import CaparError
 
@@ -45,11 +45,11 @@ class LockedError(StoreError):
 
 
 class QueryError(CaparError):
-    """A question that is no SPARQL, or that does what a question may not."""
+    """A query that is no SPARQL, or that does what a query may not."""
 
 
 class TimeLimitError(QueryError):
-    """A question that took longer than it may.
+    """A query that took longer than its time limit.
 
     Attributes:
         seconds: The limit.
@@ -64,7 +64,7 @@ class TimeLimitError(QueryError):
 
 
 class ExistsError(CaparError):
-    """An observation whose name another capture already bears."""
+    """An observation whose name is already another capture's."""
 
 
 class ShapeError(CaparError):

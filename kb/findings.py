@@ -1,4 +1,4 @@
-"""What the Actionary's methods answer with: plain frozen values."""
+"""Values that the methods of the Actionary return."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What an Actionary knows, and how it is found: actions, features, objects, agents, styles."""
+"""Lookups of an Actionary: actions, features, objects, agents, styles."""
 
 from collections.abc import Iterable
 
@@ -17,7 +17,7 @@ from kb.store.stores import Store
 
 
 class Knowledge:
-    """What is known over a store."""
+    """The lookups over a store."""
 
     store: Store
 

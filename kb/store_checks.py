@@ -1,4 +1,4 @@
-"""Whether what is stored is whole and right: shapes, NLTs, and nothing that points nowhere."""
+"""Checks of what is stored: shapes, NLTs, dangling references, incomplete observations."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -35,17 +35,17 @@ _NLTS = (
 
 @dataclass(frozen=True, slots=True, order=True)
 class Problem:
-    """Something stored that ought not to be so."""
+    """A fault in what is stored."""
 
     observation: str
-    """Empty for what no observation says."""
+    """Empty where the fault is of no observation."""
 
     thing: str
     message: str
 
 
 def check(store: Store, *, full: bool = True) -> tuple[Problem, ...]:
-    """Everything that is wrong in a store, observation by observation.
+    """The faults of a store, observation by observation.
 
     Args:
         store: What to look at.
@@ -135,7 +135,7 @@ def _within(nlt: str, size: str) -> bool:
 
 
 def _dangling(store: Store, name: str) -> list[str]:
-    """Things that an observation speaks of and of which nothing is said."""
+    """Things that an observation refers to and that have no statements."""
     graph = names.observation(name)
     rows = store.ask(fill(_DANGLING, graph=str(graph))).rows
     return [
@@ -149,7 +149,7 @@ def _tail(term: object) -> str:
 
 
 def _unlisted(store: Store) -> list[Problem]:
-    """Graphs of observations that are not whole enough to be listed."""
+    """Graphs of observations that are too incomplete to be listed."""
     rows = store.ask("SELECT DISTINCT ?g WHERE { GRAPH ?g { ?s ?p ?o } }").rows
     listed = {each.name for each in observations(store)}
     found = []

@@ -1,4 +1,8 @@
-"""What contact facts say of a scene for its telling: what rests on what, and what came back."""
+"""How a sentence may put what a segment did: where a thing stood, or that it was there before.
+
+This is wording only. It chooses among ways to say an action that the rules have named ("put it
+down", "put it back"), reads measured contacts alone, and names, splits or drops no segment.
+"""
 
 from collections.abc import Iterable
 
@@ -8,7 +12,7 @@ from kb.lexicon.english import the_agent
 
 
 class Scene:
-    """Contacts between the objects of an observation."""
+    """Measured contacts of an observation, asked for the wording of its sentences."""
 
     def __init__(self, observation: Observation) -> None:
         effectors = {link.ee for link in observation.links}

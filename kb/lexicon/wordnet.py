@@ -62,7 +62,6 @@ class WordNet:
     def __init__(self, lines: Iterable[str]) -> None:
         self._rows: dict[str, str] = {}
         self._by_key: dict[str, str] = {}
-        self._by_ili: dict[str, str] = {}
         self._by_lemma: dict[str, list[tuple[int, str]]] = {}
         self._below: dict[str, list[str]] = {}
         for line in lines:
@@ -70,10 +69,8 @@ class WordNet:
         self._synset = cache(self._parse)
 
     def _index(self, line: str) -> None:
-        offset, ili, _, words, above, _ = line.split("\t", 5)
+        offset, _, _, words, above, _ = line.split("\t", 5)
         self._rows[offset] = line
-        if ili:
-            self._by_ili[ili] = offset
         for word in words.split(" "):
             lemma, key, number = word.split(",")
             lemma = lemma.lower()
@@ -122,26 +119,6 @@ class WordNet:
             raise UnknownNameError("WordNet 3.1 verb sense", key, known)
         return self._synset(self._by_key[full])
 
-    def of_ili(self, ili: str) -> Synset:
-        """The synset of an interlingual index.
-
-        Raises:
-            UnknownNameError: No verb synset of WordNet 3.1 has it.
-        """
-        if ili not in self._by_ili:
-            raise UnknownNameError("interlingual index of a verb", ili, ())
-        return self._synset(self._by_ili[ili])
-
-    def of_offset(self, offset: str) -> Synset:
-        """The synset at an offset of WordNet 3.1.
-
-        Raises:
-            UnknownNameError: No verb synset stands there.
-        """
-        if offset not in self._rows:
-            raise UnknownNameError("offset of a WordNet 3.1 verb", offset, ())
-        return self._synset(offset)
-
     def of_lemma(self, lemma: str) -> tuple[tuple[Sense, Synset], ...]:
         """The senses of a verb in their order, none if WordNet lacks it."""
         word = lemma.strip().lower().replace(" ", "_")
@@ -152,10 +129,6 @@ class WordNet:
             for sense in synset.senses
             if sense.lemma.lower() == word
         )
-
-    def kinds_of(self, synset: Synset) -> tuple[Synset, ...]:
-        """Every synset below this one in the hierarchy, nearest first."""
-        return tuple(self._walk(synset, lambda each: self._below.get(each.offset, ())))
 
     def directly_below(self, synset: Synset) -> tuple[Synset, ...]:
         """The synsets one step below this one, by offset."""

@@ -28,7 +28,10 @@ _TYPE = NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#type")
 
 
 def facts(store: Store, name: str) -> tuple[Fact, ...]:
-    """What was measured in the capture of an observation, in the order of the extractors."""
+    """What was measured in the capture of an observation, in the order of the extractors.
+
+    Facts of kinds that an older program measured, and this one does not, are left out.
+    """
     said: dict[str, dict[str, str]] = defaultdict(dict)
     kinds: dict[str, str] = {}
     for fact, key, value in store.ask(fill(_FACTS, graph=str(names.observation(name)))).rows:
@@ -36,7 +39,8 @@ def facts(store: Store, name: str) -> tuple[Fact, ...]:
             kinds[str(fact)] = str(value)
         else:
             said[str(fact)][str(key)] = value.value if isinstance(value, Literal) else str(value)
-    found = [_fact(kinds[node], said[node]) for node in said]
+    stated = [_fact(kinds[node], said[node]) for node in said]
+    found = [each for each in stated if each is not None]
     rank: dict[type[Fact], int] = {kind: index for index, kind in enumerate(STATED)}
     return tuple(sorted(found, key=lambda each: (rank[type(each)], each)))
 
@@ -101,12 +105,13 @@ _BY_CLASS = {str(terms(kind)[0]): kind for kind in STATED if terms(kind)[0] != C
 _BY_PREDICATE = {each.predicate: each for each in STATED}
 
 
-def _fact(kind: str, said: dict[str, str]) -> Fact:
+def _fact(kind: str, said: dict[str, str]) -> Fact | None:
+    cls = _BY_CLASS.get(kind) or _BY_PREDICATE.get(said.get(str(CAPAR.name), ""))
+    if cls is None:
+        return None
     if kind in _BY_CLASS:
-        cls = _BY_CLASS[kind]
         values = [said[str(each)] for each in terms(cls)[1:]]
     else:
-        cls = _BY_PREDICATE[said[str(CAPAR.name)]]
         values = said[str(CAPAR.parameters)].split(" ")
     return cls(
         *(

@@ -12,6 +12,7 @@ from kb.exchange import part
 from kb.findings import Stored
 from kb.lookup import pars
 from kb.lookup.stored import observations
+from kb.reports import svg
 from kb.store import names
 from kb.store.answers import turtle
 from kb.store.stores import Store
@@ -94,11 +95,11 @@ def as_svg(store: Store, name: str) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" '
         f'viewBox="0 0 {WIDTH} {height}" font-family="sans-serif" font-size="12" role="img">',
         f"<title>{escape(title)}</title>",
-        f'<text x="{LEFT}" y="22" font-size="15">{escape(title)}</text>',
+        svg.text(LEFT, 22, title, font_size=15),
     ]
     for row, ee in enumerate(links):
         y = TOP + ROW * row
-        lines.append(f'<text x="8" y="{y + 22}">{escape(ee)}</text>')
+        lines.append(svg.text(8, y + 22, ee))
     for ee, steps in _rows(value):
         row, rows = (0, len(links)) if ee == COMMON else (links.index(ee), 1)
         for step in steps:
@@ -113,11 +114,11 @@ def _bar(step: Step, y: int, height: int, colour: str) -> list[str]:
     about = f"{text}: {step.share:.3f} of the whole" + (
         f", to {step.purpose}" if step.purpose else ""
     )
+    box = svg.rect(f"{x:.1f}", y, f"{width:.1f}", height, radius=3, fill=colour, stroke="white")
+    label = svg.text(4, f"{height / 2 + 4:.1f}", text, fill="white")
     return [
-        f'<g><title>{escape(about)}</title><rect x="{x:.1f}" y="{y}" width="{width:.1f}" '
-        f'height="{height}" rx="3" fill="{colour}" stroke="white"/>',
-        f'<svg x="{x:.1f}" y="{y}" width="{width:.1f}" height="{height}"><text x="4" '
-        f'y="{height / 2 + 4:.1f}" fill="white">{escape(text)}</text></svg></g>',
+        f"<g><title>{escape(about)}</title>{box}",
+        f'<svg x="{x:.1f}" y="{y}" width="{width:.1f}" height="{height}">{label}</svg></g>',
     ]
 
 

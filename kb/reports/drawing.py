@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from html import escape
 
 from kb.lexicon.levin import above, levin_class
 from kb.lexicon.links import ThesisStatus
 from kb.reports.linguistics import ClassReport, How, LinguisticReport
+from kb.reports.svg import rect, text
 
 WIDTH = 960
 LEFT, BOX, GUTTER = 190, 360, 30
@@ -48,7 +48,7 @@ def draw(report: LinguisticReport) -> str:
         if top != group:
             group = top
             y += 14
-            parts.append(_text(0, y + 12, _heading(top), "group"))
+            parts.append(text(0, y + 12, _heading(top), class_="group"))
             parts.append(f'<line x1="0" y1="{y + 20}" x2="{WIDTH}" y2="{y + 20}" class="rule"/>')
             y += 30
         y = _row(parts, each, y)
@@ -65,9 +65,9 @@ def _heading(number: str) -> str:
 
 def _row(parts: list[str], each: ClassReport, y: int) -> int:
     thesis, ours = _thesis_boxes(each), _own_boxes(each)
-    parts.append(_text(0, y + 20, each.number, "number"))
+    parts.append(text(0, y + 20, each.number, class_="number"))
     for index, line in enumerate(_wrapped(each.title.split(), 22, " ")):
-        parts.append(_text(44, y + 20 + index * 14, line, "title"))
+        parts.append(text(44, y + 20 + index * 14, line, class_="title"))
     bottoms = [
         _column(parts, thesis, LEFT, y) if thesis else _nothing(parts, LEFT, y),
         _column(parts, ours, LEFT + BOX + GUTTER, y),
@@ -77,18 +77,15 @@ def _row(parts: list[str], each: ClassReport, y: int) -> int:
 
 
 def _nothing(parts: list[str], x: int, y: int) -> int:
-    parts.append(_text(x + PAD, y + 20, "not mentioned", "none"))
+    parts.append(text(x + PAD, y + 20, "not mentioned", class_="none"))
     return y + LINE + 2 * PAD
 
 
 def _column(parts: list[str], boxes: Sequence[Box], x: int, y: int) -> int:
     for box in boxes:
-        parts.append(
-            f'<rect x="{x}" y="{y}" width="{BOX}" height="{box.height}" rx="3" '
-            f'class="{box.style}"/>'
-        )
+        parts.append(rect(x, y, BOX, box.height, radius=3, class_=box.style))
         for index, line in enumerate(box.lines):
-            parts.append(_text(x + PAD + 2, y + PAD + 12 + index * LINE, line, "verbs"))
+            parts.append(text(x + PAD + 2, y + PAD + 12 + index * LINE, line, class_="verbs"))
         y += box.height + 4
     return y
 
@@ -129,10 +126,6 @@ def _wrapped(words: Sequence[str], width: int, between: str) -> list[str]:
     return [line.rstrip() for line in lines]
 
 
-def _text(x: int, y: int, text: str, style: str) -> str:
-    return f'<text x="{x}" y="{y}" class="{style}">{escape(text)}</text>'
-
-
 _STYLE = """
 svg { font-family: Charter, "Bitstream Charter", "Iowan Old Style", Palatino, Georgia, serif; }
 text { fill: #1d1b18; font-size: 13px; }
@@ -158,14 +151,12 @@ def _page(parts: Sequence[str], height: int) -> str:
     marks: list[str] = []
     x = LEFT
     for style, words in legend:
-        marks.append(
-            f'<rect x="{x}" y="{height - 32}" width="22" height="14" rx="2" class="{style}"/>'
-        )
-        marks.append(_text(x + 30, height - 20, words, "title"))
+        marks.append(rect(x, height - 32, 22, 14, radius=2, class_=style))
+        marks.append(text(x + 30, height - 20, words, class_="title"))
         x += 60 + 11 * len(words) // 2
     heads = [
-        _text(LEFT, 22, "The thesis (section 6.1)", "column"),
-        _text(LEFT + BOX + GUTTER, 22, "This system, by its rules", "column"),
+        text(LEFT, 22, "The thesis (section 6.1)", class_="column"),
+        text(LEFT + BOX + GUTTER, 22, "This system, by its rules", class_="column"),
     ]
     return "\n".join(
         [

@@ -116,7 +116,7 @@ class EmbeddedStore:
         return Dataset(store=OxigraphStore(store=self._store), default_union=True)
 
     def bulk(self, quads: Iterable[Quad]) -> None:
-        """Add a great many statements fast; they are not one whole until this returns."""
+        """Add a great many statements fast; a reader may see a part of them before this returns."""
         with self._guarded():
             self._writable().bulk_extend(quads)
             self._flush()
@@ -127,7 +127,7 @@ class EmbeddedStore:
             self._store = self._open()
 
     def close(self) -> None:
-        """Let go of the folder."""
+        """Close the database and release the lock."""
         del self._store
         self._release()
 

@@ -1,4 +1,4 @@
-"""One writer at a time for a folder; the lock dies with its process, whatever kills it."""
+"""One writer at a time for a folder; the lock ends with its process, however that ends."""
 
 import fcntl
 import json
@@ -17,8 +17,8 @@ POLL_S = 0.05
 class WriterLock:
     """The right to write a store's folder, held from construction to release.
 
-    The system drops the lock of a process that ends in any way; what a killed one left
-    written in the file names nobody who still holds it.
+    The system releases the lock of a process that ends in any way; the text that a killed
+    process left in the file does not count.
     """
 
     def __init__(self, folder: Path, *, wait_s: float = 0.0) -> None:
@@ -66,7 +66,7 @@ class WriterLock:
             return "another process"
 
     def release(self) -> None:
-        """Let others write; safe to call twice."""
+        """Release the lock; safe to call twice."""
         if self._file >= 0:
             os.ftruncate(self._file, 0)
             os.close(self._file)

@@ -1,4 +1,4 @@
-"""What things are called in the store: IRIs that follow from what they name, and nothing else."""
+"""The IRIs of things in the store, each derived from what it names alone."""
 
 import hashlib
 from functools import lru_cache
@@ -57,7 +57,7 @@ def _quoted(word: str) -> str:
 
 
 def observation(name: str) -> NamedNode:
-    """The observation of a capture of that name; its graph bears the same IRI."""
+    """The observation of a capture of that name; its graph has the same IRI."""
     return NamedNode(OBSERVATION + _quoted(name))
 
 

@@ -15,10 +15,10 @@ from kb.store import answers, sparql
 from kb.store.readonly_folder import read
 
 LONGEST = 160
-"""Letters of a parser's complaint that are worth reading."""
+"""After how many letters a parser's message is cut."""
 
-UNTOLD = {"LATERAL", "SERVICE", "[_]"}
-"""What a parser would have taken and we would not, and its sign for the end of a query."""
+NOT_ACCEPTED = {"LATERAL", "SERVICE", "[_]"}
+"""What a parser expects but a query may not use, and its sign for the end of a query."""
 
 _NO_FUNCTION = re.compile(r"custom function <([^>]*)> is not supported")
 
@@ -36,14 +36,14 @@ def answer(source: BinaryIO) -> bytes:
 
 
 def told(problem: str) -> str:
-    """A parser's complaint in short, with nothing that is refused; a slip in a function's name."""
+    """A parser's message in short; an unknown function with the names of those that exist."""
     if slip := _NO_FUNCTION.search(problem):
         known = [*(f"capar:{each}" for each in sparql.FUNCTIONS), "those of SPARQL"]
         return str(UnknownNameError("function", answers.short(slip[1]), known))
     first = problem.splitlines()[0] if problem else ""
     place, expected, listed = first.partition("expected ")
     if expected:
-        taken = [e for e in listed.removeprefix("one of ").split(", ") if e not in UNTOLD]
+        taken = [e for e in listed.removeprefix("one of ").split(", ") if e not in NOT_ACCEPTED]
         several = "one of " if len(taken) > 1 else ""
         missing = "something is missing here or before"
         first = place + (expected + several + ", ".join(taken) if taken else missing)

@@ -10,7 +10,7 @@ from pyoxigraph import Store as Oxigraph
 from kb.errors import DamagedError, StoreError
 
 TRIES = 60
-"""How often a reader tries again when files are replaced under it."""
+"""How often a reader tries again when files are replaced while it reads."""
 
 PAUSE_S = 0.02
 """How long it waits between [s]."""

@@ -30,10 +30,10 @@ class RemoteStore:
     """
 
     def __init__(self, address: str) -> None:
-        """Greet the server.
+        """Prove that a server answers there.
 
         Raises:
-            StoreError: Nobody answers there.
+            StoreError: No server answers there.
         """
         self.place = address.rstrip("/")
         self.ask("ASK {}")
@@ -84,7 +84,7 @@ class RemoteStore:
         """A server always shows what was written."""
 
     def close(self) -> None:
-        """Nothing is held."""
+        """There is nothing to release."""
 
 
 def post_query(address: str, query: str) -> tuple[str, bytes]:
@@ -92,7 +92,7 @@ def post_query(address: str, query: str) -> tuple[str, bytes]:
 
     Raises:
         QueryError: The server says that it is no query.
-        StoreError: The server does not answer, or takes no heed of the graphs that a query names.
+        StoreError: The server does not answer, or ignores the graphs that a query names.
     """
     kind = "application/sparql-query"
     if not sparql.names_graphs(query):
@@ -100,7 +100,7 @@ def post_query(address: str, query: str) -> tuple[str, bytes]:
     asked = f"{address}/query"
     if answers.decode(*_post(asked, f"ASK FROM <{NOWHERE}> {{ ?s ?p ?o }}", kind)).boolean:
         raise StoreError(
-            f"{address}: this server takes no heed of FROM; write GRAPH <...> {{ ... }} in its "
+            f"{address}: this server ignores FROM; write GRAPH <...> {{ ... }} in its "
             "place, or start the server without --union-default-graph"
         )
     return _post(asked, query, kind)
@@ -120,6 +120,6 @@ def _post(url: str, text: str, kind: str) -> tuple[str, bytes]:
     except (urllib.error.URLError, OSError) as error:
         reason = getattr(error, "reason", error)
         raise StoreError(
-            f"{url}: nobody answers ({reason}); start a server there, for example "
+            f"{url}: no server answers ({reason}); start a server there, for example "
             "`oxigraph serve --location FOLDER --bind 127.0.0.1:7878`"
         ) from None

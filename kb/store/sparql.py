@@ -1,4 +1,4 @@
-"""What a user's query may say, and the functions that open compact literals in it."""
+"""Preparing a user's query: refusing writes, declaring prefixes, expanding our functions."""
 
 import re
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Where statements are kept: in memory, in a folder, or by a server; all behave alike."""
+"""The interface of a store, and opening one: in memory, in a folder, or at a server."""
 
 import os
 from collections.abc import Iterable
@@ -23,13 +23,13 @@ class Store(Protocol):
         """Add statements."""
 
     def change(self, update: str) -> None:
-        """Do a SPARQL update of ours, as one."""
+        """Run a SPARQL update of ours as one transaction."""
 
     def ask(self, query: str) -> Answer:
         """What a query of ours answers, over the union of all graphs."""
 
     def ask_within(self, query: str, *, seconds: float) -> Answer:
-        """What anybody's query answers, stopped for certain after so many seconds.
+        """What anybody's query answers, stopped after so many seconds.
 
         Raises:
             QueryError: It is no SPARQL query.
@@ -56,7 +56,7 @@ class Store(Protocol):
         """See what others have written since."""
 
     def close(self) -> None:
-        """Let go of the store."""
+        """Close the store."""
 
 
 def place(given: str | None = None) -> str:

@@ -24,7 +24,7 @@ def ask(
     """What a query answers over a folder, a dump of N-Quads or a server.
 
     Raises:
-        QueryError: It is no query, or its time no positive number of seconds.
+        QueryError: It is no query, or its time limit is no positive number of seconds.
         StoreError: The store does not answer.
         TimeLimitError: It took longer than it may; the process was ended.
     """

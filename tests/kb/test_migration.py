@@ -178,3 +178,29 @@ def test_an_observation_as_json_of_another_schema_is_refused(schema: object, tol
     content = document(drink_from_mug()) | {"schema": schema}
     with pytest.raises(ParError, match=told):
         from_json(json.dumps(content), where="a.json")
+
+
+def test_facts_of_a_kind_that_is_no_longer_measured_are_left_out(
+    older: Path, tmp_path: Path
+) -> None:
+    from kb.lookup.changes import facts
+
+    target = Actionary.in_memory()
+    bring_in(target.store, read(stored(older), "nquads"))
+    (seen,) = target.observations()
+    before = facts(target.store, seen.name)
+    graph = f"<https://w3id.org/capar/data/observation/{seen.name}>"
+    target.store.change(
+        f"INSERT DATA {{ GRAPH {graph} {{ {graph} {CAPAR.fact} <http://x/1> . <http://x/1> "
+        f'a {CAPAR.Fact} ; {CAPAR.name} "phlogiston" ; {CAPAR.parameters} "mug 3" }} }}'
+    )
+    assert before and facts(target.store, seen.name) == before
+
+
+def test_an_older_document_may_state_facts_that_are_no_longer_measured(older: Path) -> None:
+    from capar.model.json_migration import migrated
+
+    content = json.loads(gzip.decompress((older / "observation.json.gz").read_bytes()))
+    count = len(from_json(migrated(json.dumps(content))).facts)
+    content["facts"].append("phlogiston(mug,3)")
+    assert len(from_json(migrated(json.dumps(content))).facts) == count

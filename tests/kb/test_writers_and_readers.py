@@ -97,5 +97,5 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
 
 
 def test_a_server_that_does_not_answer_is_named() -> None:
-    with pytest.raises(StoreError, match=r"http://127\.0\.0\.1:9/query.*nobody answers"):
+    with pytest.raises(StoreError, match=r"http://127\.0\.0\.1:9/query.*no server answers"):
         Actionary.open("http://127.0.0.1:9")

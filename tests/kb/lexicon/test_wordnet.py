@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from capar.model.errors import UnknownNameError
 from kb.lexicon.links import thesis_senses
 from kb.lexicon.tables import table
-from kb.lexicon.wordnet import frame_sentence, normal_key, wordnet
+from kb.lexicon.wordnet import Synset, frame_sentence, normal_key, wordnet
 
 SETTLED = [
     ("reach%2:42:00::", 6, "02691488", "i35083"),
@@ -24,7 +24,7 @@ SETTLED = [
 ]
 """Senses that the thesis cites, and the one of reach that fits: key, number, offset, index."""
 
-OFFSETS = st.sampled_from([each.offset for each in wordnet()])
+SYNSETS = st.sampled_from(list(wordnet()))
 
 
 def test_the_lexicon_holds_every_verb_synset_of_wordnet_3_1() -> None:
@@ -57,23 +57,20 @@ def test_the_thesis_table_of_senses_is_whole() -> None:
     ]
 
 
-@given(OFFSETS)
-def test_a_synset_is_found_by_each_of_its_names(offset: str) -> None:
+@given(SYNSETS)
+def test_a_synset_is_found_by_each_of_its_names(synset: Synset) -> None:
     words = wordnet()
-    synset = words.of_offset(offset)
     for sense in synset.senses:
         assert words.of_key(sense.key) == synset
         assert (sense, synset) in words.of_lemma(sense.lemma)
-    if synset.ili:
-        assert words.of_ili(synset.ili) == synset
 
 
-@given(OFFSETS)
-def test_what_is_above_a_synset_has_it_below(offset: str) -> None:
+@given(SYNSETS)
+def test_what_is_above_a_synset_has_it_below(synset: Synset) -> None:
     words = wordnet()
-    synset = words.of_offset(offset)
-    for above in words.what_it_is(synset):
-        assert synset in words.kinds_of(above)
+    for above, steps in words.steps_above(synset).items():
+        assert (synset in words.directly_below(above)) == (above.offset in synset.hypernyms)
+        assert steps > 0
     assert all(frame_sentence(each) for each in synset.frames)
 
 
@@ -96,8 +93,6 @@ def test_a_key_in_verbnets_form_is_found() -> None:
 def test_an_unknown_sense_is_answered_with_the_verbs_own() -> None:
     with pytest.raises(UnknownNameError, match=r"hit%2:35:99.*hit%2:35:00::"):
         wordnet().of_key("hit%2:35:99::")
-    with pytest.raises(UnknownNameError):
-        wordnet().of_ili("i0")
 
 
 def test_every_sense_that_we_claim_is_one_of_its_verb() -> None:
