@@ -40,7 +40,7 @@ class BodyCalibration:
     """The same for its orientation [rad]."""
 
     highest_speed_mps: float
-    """Highest speed of its low-passed origin [m/s]: extrema of speed are judged by a share of it."""
+    """Highest speed of its low-passed origin [m/s]: extrema of speed are compared with it."""
 
     upright: tuple[float, float, float]
     """The axis that points up where it first rests, in its own frame; a unit vector."""

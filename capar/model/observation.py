@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from capar.model.calibration import Calibration
 from capar.model.capture import Agent, Notice, Source
 from capar.model.facts import Fact
 from capar.model.par import (
@@ -177,6 +178,9 @@ class Observation:
 
     others: tuple[Agent, ...] = ()
     """Who else performed, where several agents did."""
+
+    calibration: Calibration | None = None
+    """What was decided once for the whole recording; None where it was not kept."""
 
     @property
     def segments(self) -> tuple[Segment, ...]:

@@ -9,6 +9,7 @@ import trimesh
 from jaxtyping import Float, Int
 from scipy.spatial import ConvexHull, QhullError
 
+from capar.model.calibration import BodyCalibration
 from capar.model.capture import Sensor, Shape, TagObject
 from extractors.bodies.poses import Poses, poses_of, rotation_matrices
 from extractors.thresholds import Thresholds
@@ -98,9 +99,11 @@ class BodyGeometry:
         return low, high
 
 
-def geometry_of(body: Sensor | TagObject, thresholds: Thresholds) -> BodyGeometry:
+def geometry_of(
+    body: Sensor | TagObject, thresholds: Thresholds, known: BodyCalibration | None = None
+) -> BodyGeometry:
     """The geometry of a sensor or an object, with the poses that its stream gives."""
-    return BodyGeometry(body.name, body.shape, poses_of(body, thresholds))
+    return BodyGeometry(body.name, body.shape, poses_of(body, thresholds, known))
 
 
 def blocks(count: int) -> Iterator[slice]:
