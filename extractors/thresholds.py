@@ -53,7 +53,7 @@ class Thresholds:
     crossing_speed_share: float = 0.03
     """Least prominence as a share of the stream's largest speed [1]."""
 
-    extremum_horizon_s: float = 2.0
+    extremum_horizon_s: float = 4.0
     """How far about an extremum of speed its prominence and its neighbours are sought [s]: longer
     than people take to speed up or to slow down."""
 

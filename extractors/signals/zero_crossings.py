@@ -65,7 +65,8 @@ def pauses(
 ) -> Int[np.ndarray, "pauses"]:
     """Those crossings, the capture's first and last frame aside, that are no maximum of speed.
 
-    A maximum is faster than the crossing before and the one after, as far as these are near.
+    A maximum is faster than the crossing before and the one after. Where one of these is far away,
+    it is faster than the frames beside it.
 
     Args:
         speed_mps: Speed of the low-passed stream [m/s].
@@ -76,8 +77,15 @@ def pauses(
         return crossings[:0]
     here, before, after = (speed_mps[crossings[each]] for each in (_INNER, _EARLIER, _LATER))
     near = np.diff(crossings) <= reach
-    highest = (near[:-1] | near[1:]) & (~near[:-1] | (here > before)) & (~near[1:] | (here > after))
+    top = _local_maxima(speed_mps)[crossings[1:-1]]
+    highest = np.where(near[:-1], here > before, top) & np.where(near[1:], here > after, top)
     return crossings[1:-1][~highest]
+
+
+def _local_maxima(speed_mps: Float[np.ndarray, "frames"]) -> Bool[np.ndarray, "frames"]:
+    """Whether each frame is faster than the one before and no slower than the one after."""
+    rises = np.diff(speed_mps) > 0.0
+    return np.concatenate(([False], rises[:-1] & ~rises[1:], [False]))
 
 
 _INNER, _EARLIER, _LATER = slice(1, -1), slice(None, -2), slice(2, None)
