@@ -13,6 +13,7 @@ falls, rolling, and how bodies are arranged. It does not hold for these:
 * ``Place``, ``Posture``, ``Apart``, ``Travelled`` and ``Wound``: their frames are those of the
   facts above; and ways and angles are summed up from the first frame. It would take sums per
   segment instead.
+* Which mobile objects are measured at all: those that an end-effector touches in the window.
 * ``Lies`` of a shifted grip: it compares all pauses of one contact, however long.
 * Contacts across a loss or a stay within the release distance that is longer than the margin: the
   contact before and after is taken to last.

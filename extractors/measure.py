@@ -130,7 +130,9 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
     facts += handling(capture, bodies, facts, calibration, limits)
     own = [each for each in capture.notices if each.code != LOSS]
     notices = (*own, *_notices(capture, calibration, limits))
-    return Measurements(_ordered(facts), notices, calibration, tracks, looks, bodies)
+    return Measurements(
+        _ordered(facts), notices, calibration, tracks, looks, bodies.without_caches()
+    )
 
 
 LOSS = "long-gap"
@@ -263,8 +265,8 @@ def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
         ]
         if lost:
             fixed = isinstance(each, TagObject) and each.tag is TagType.FIXED
-            told = _when(lost, capture, fixed=fixed)
-            yield Notice(LOSS, f"{each.name!r} was lost {told}")
+            when = _when(lost, capture, fixed=fixed)
+            yield Notice(LOSS, f"{each.name!r} was lost {when}")
 
 
 def _when(lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> str:

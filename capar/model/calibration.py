@@ -81,7 +81,7 @@ class FootLevel:
 class Horizons:
     """How far measurements look: what is farther from a frame than this has no part in it.
 
-    Rest poses and what follows from them have no horizon; ``extractors.calibration`` lists them.
+    Rest poses and what follows from them have no horizon; see ``extractors.calibration``.
     """
 
     filter_s: float

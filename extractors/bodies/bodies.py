@@ -1,6 +1,6 @@
 """Every body of a capture with its geometry and poses, by sensor and by object."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, TagType
@@ -20,6 +20,13 @@ class Bodies:
     def poses(self) -> dict[str, Poses]:
         """The poses of every body by name; of an object that is also a sensor, the object's."""
         return {name: each.poses for name, each in (self.sensors | self.objects).items()}
+
+    def without_caches(self) -> "Bodies":
+        """The same bodies without what was computed of them, which takes more memory than poses."""
+        return Bodies(
+            {name: replace(each) for name, each in self.sensors.items()},
+            {name: replace(each) for name, each in self.objects.items()},
+        )
 
     def named(self, name: str) -> BodyGeometry:
         """The object of that name, or else the sensor."""

@@ -72,7 +72,7 @@ class BodyGeometry:
     def planes(self) -> Float[np.ndarray, "planes 4"] | None:
         """Its convex hull as outward normals and offsets from its middle; None without volume.
 
-        A hull of very many sides, as of a scan, is told by the planes that lean on it from
+        A hull of very many sides, as of a scan, is described by the planes that lean on it from
         directions all around, which stand off it by no more than a hundredth of its size.
         """
         if self.shape is None:

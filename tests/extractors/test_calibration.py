@@ -132,3 +132,9 @@ def test_a_calibration_that_lacks_a_body_is_refused() -> None:
     known = calibrate(replace(capture, objects=capture.objects[:1]))
     with pytest.raises(UnknownNameError, match="table"):
         measure(capture, known)
+
+
+def test_measurements_keep_poses_and_nothing_computed_of_them() -> None:
+    measured = measure(pick_and_place())
+    for body in (*measured.bodies.sensors.values(), *measured.bodies.objects.values()):
+        assert set(vars(body)) == {"name", "shape", "poses"}
