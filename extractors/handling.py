@@ -6,7 +6,8 @@ from itertools import combinations
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.capture import Capture, TagObject, TagType
+from capar.model.calibration import Calibration
+from capar.model.capture import Capture, TagType
 from capar.model.facts import (
     Between,
     ClosingSpeed,
@@ -27,8 +28,7 @@ from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
 from extractors.motion.impacts import closing_speed, falls
-from extractors.motion.leaning import leaning, upright_axis
-from extractors.motion.object_motion import motion_floor, rest_poses
+from extractors.motion.leaning import leaning
 from extractors.motion.rest import resting
 from extractors.motion.rolling import rolling
 from extractors.motion.turning_points import reversals, swings
@@ -54,6 +54,7 @@ def handling(
     capture: Capture,
     bodies: Bodies,
     known: Iterable[Fact],
+    calibration: Calibration,
     thresholds: Thresholds,
 ) -> tuple[Fact, ...]:
     """Rest, turning points, leaning, falls, arrangements and places of handled bodies.
@@ -64,6 +65,7 @@ def handling(
         capture: The trial.
         bodies: Its bodies.
         known: Contacts and motions, as facts.
+        calibration: What was decided for the whole recording.
         thresholds: What the measurements decide by.
     """
     seen = list(known)
@@ -73,29 +75,27 @@ def handling(
     hands = {each.name: bodies.sensors[each.name] for each in capture.acting}
     things = bodies.objects
     mobile = [each for each in capture.objects if each.tag is TagType.MOBILE and each.name in held]
-    floors = {each.name: each.motion_floor_m for each in mobile}
+    mobiles = {each.name for each in mobile}
+    upright = {each.name: np.array(each.upright) for each in calibration.objects}
+    upright |= {each.name: np.array(each.upright) for each in calibration.sensors}
     out: list[Fact] = []
     for name, hand in hands.items():
         out += (Resting(name, *each) for each in resting(hand.poses, thresholds))
-    uprights = {
-        name: _upright(one, floors.get(name), capture.rate_hz, thresholds)
-        for name, one in {**{each.name: things[each.name] for each in mobile}, **hands}.items()
-    }
     for each in mobile:
-        out += _motion(each, things[each.name], seen, uprights[each.name], thresholds)
-    out += bearing(capture, bodies, touches, thresholds)
+        out += _motion(things[each.name], seen, upright[each.name], thresholds)
+    out += bearing(capture, bodies, touches, calibration, thresholds)
     borders = marks([*seen, *out], acting, len(capture.times) - 1)
     figures = [*hands.values(), *(things[each.name] for each in mobile if each.name not in hands)]
     for one in figures:
         frames = tuple(borders.get(one.name, ()))
-        out += places(one, uprights[one.name], frames)
+        out += places(one, upright[one.name], frames)
         for other in things.values():
             if other.name != one.name:
                 out += distances(one, other, frames)
                 out += _arranged(one, other, touches, thresholds)
         out += _between(one, [each for each in things.values() if each is not one], thresholds)
     for touch in touches:
-        if touch.body in hands and touch.other in floors and touch.body != touch.other:
+        if touch.body in hands and touch.other in mobiles and touch.body != touch.other:
             touching = (touch.first, touch.last)
             spans = shifts(hands[touch.body], things[touch.other], touching, thresholds)
             out += (Lies(touch.body, SHIFTS, touch.other, *span) for span in spans)
@@ -104,32 +104,21 @@ def handling(
 
 
 def _motion(
-    each: TagObject,
-    one: BodyGeometry,
-    known: list[Fact],
-    upright: Float[np.ndarray, "3"],
-    thresholds: Thresholds,
+    one: BodyGeometry, known: list[Fact], upright: Float[np.ndarray, "3"], thresholds: Thresholds
 ) -> Iterator[Fact]:
     pose = one.poses
     moves = tuple(
         (fact.first, fact.last)
         for fact in known
-        if isinstance(fact, Moving) and fact.object == each.name
+        if isinstance(fact, Moving) and fact.object == one.name
     )
-    yield from (Reverses(each.name, frame) for frame in reversals(pose, moves, thresholds))
-    yield from (Swings(each.name, *span) for span in swings(pose, moves, thresholds))
+    yield from (Reverses(one.name, frame) for frame in reversals(pose, moves, thresholds))
+    yield from (Swings(one.name, *span) for span in swings(pose, moves, thresholds))
     length_m = float(one.shape.size.max()) if one.shape else 0.0
     leans = leaning(pose, upright, thresholds, length_m=length_m)
-    yield from (Leans(each.name, *span) for span in leans)
-    yield from (Flies(each.name, *span) for span in falls(one, thresholds))
-    yield from (Rolls(each.name, *span) for span in rolling(one, thresholds))
-
-
-def _upright(
-    one: BodyGeometry, own_m: float | None, rate_hz: float, thresholds: Thresholds
-) -> Float[np.ndarray, "3"]:
-    floor = motion_floor(one.poses.noise, rate_hz, own_m=own_m, thresholds=thresholds)
-    return upright_axis(one.poses, rest_poses(one.poses, floor, thresholds))
+    yield from (Leans(one.name, *span) for span in leans)
+    yield from (Flies(one.name, *span) for span in falls(one, thresholds))
+    yield from (Rolls(one.name, *span) for span in rolling(one, thresholds))
 
 
 def _arranged(

@@ -2,13 +2,14 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from operator import attrgetter
 from typing import Any, cast
 
 import numpy as np
 from jaxtyping import Float, Int
 
+from capar.model.calibration import Calibration
 from capar.model.capture import (
     Capture,
     Notice,
@@ -39,15 +40,16 @@ from capar.model.facts import (
 )
 from extractors.bodies.bodies import Bodies, bodies_of
 from extractors.bodies.poses import Poses
-from extractors.contact.contacts import Contact, contact_tolerance, contacts
+from extractors.calibration import calibrated, prove_clock, thresholds_of
+from extractors.contact.contacts import Contact, contacts
 from extractors.handling import handling
 from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import motion_floor, moving, rest_poses
+from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.relations.attention import Attention, attention
 from extractors.relations.weight_bearing import TRUNK
 from extractors.signals.filters import speed
 from extractors.signals.gaps import long_gaps
-from extractors.signals.zero_crossings import pauses, zero_crossings
+from extractors.signals.zero_crossings import horizon_frames, pauses, zero_crossings
 from extractors.thresholds import Thresholds
 
 ANY = "any"
@@ -76,8 +78,8 @@ class Measurements:
     notices: tuple[Notice, ...]
     """What the capture's user ought to know, the capture's own first."""
 
-    tolerance_m: float
-    """Distance up to which bodies counted as touching [m]."""
+    calibration: Calibration
+    """What was decided for the whole recording."""
 
     tracks: Mapping[str, Track]
     """By sensor, acting or attending."""
@@ -88,25 +90,35 @@ class Measurements:
     bodies: Bodies
 
 
-def measure(capture: Capture, *, thresholds: Thresholds | None = None) -> Measurements:
+def measure(capture: Capture, calibration: Calibration | None = None) -> Measurements:
     """Measure a capture: zero crossings, contacts, motions and looks, as facts.
 
     Args:
-        capture: The trial.
-        thresholds: What separates motion from rest and contact from nearness; None for the
-            usual ones.
+        capture: The trial, or a part of it.
+        calibration: What was decided for the whole recording; None decides it by this capture.
+
+    Raises:
+        CaptureError: The calibration is for another rate.
+        UnknownNameError: The calibration lacks a body of the capture.
     """
-    limits = thresholds or Thresholds()
-    bodies = bodies_of(capture, limits)
-    noises = {name: each.poses.noise.position_m for name, each in bodies.sensors.items()}
-    tolerance = contact_tolerance(capture, noises, limits)
+    if calibration is None:
+        calibration, bodies = calibrated(capture, Thresholds())
+    else:
+        prove_clock(capture, calibration)
+        bodies = bodies_of(capture, thresholds_of(calibration), calibration)
+    return measured(capture, calibration, bodies)
+
+
+def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Measurements:
+    """The same with bodies that were made by the calibration."""
+    limits = thresholds_of(calibration)
     tracks = {
-        each.name: _track(bodies.sensors[each.name].poses, limits) for each in capture.sensors
+        name: _track(body.poses, calibration.sensor(name).highest_speed_mps, limits)
+        for name, body in bodies.sensors.items()
     }
     looks = {each.name: attention(capture, each, bodies, limits) for each in _seeing(capture)}
-    touches = contacts(
-        capture, bodies, tolerance_m=tolerance, thresholds=_of_contact(capture, limits)
-    )
+    touches = contacts(capture, bodies, calibration)
+    reach = horizon_frames(capture.times, limits)
     facts = [
         *_scene(capture),
         *(
@@ -117,20 +129,22 @@ def measure(capture: Capture, *, thresholds: Thresholds | None = None) -> Measur
         *(
             Pause(each.name, int(frame))
             for each in capture.acting
-            for frame in pauses(tracks[each.name].speed_mps, tracks[each.name].crossings)
+            for frame in pauses(tracks[each.name].speed_mps, tracks[each.name].crossings, reach)
         ),
         *_touching(capture, touches),
-        *_moving(capture, bodies, limits),
+        *_moving(capture, bodies, calibration, limits),
         *(
             LookingAt(sensor, name, *interval)
             for sensor, look in looks.items()
             for name, interval in look.looks
         ),
     ]
-    facts += handling(capture, bodies, facts, limits)
+    facts += handling(capture, bodies, facts, calibration, limits)
     own = [each for each in capture.notices if each.code != LOSS]
-    notices = (*own, *_notices(capture, tolerance, limits))
-    return Measurements(_ordered(facts), notices, tolerance, tracks, looks, bodies)
+    notices = (*own, *_notices(capture, calibration, limits))
+    return Measurements(
+        _ordered(facts), notices, calibration, tracks, looks, bodies.without_caches()
+    )
 
 
 LOSS = "long-gap"
@@ -148,21 +162,15 @@ def _seeing(capture: Capture) -> tuple[Sensor, ...]:
     )
 
 
-def _of_contact(capture: Capture, thresholds: Thresholds) -> Thresholds:
-    """The thresholds of contact, where the capture states its own."""
-    dropout, minimum = capture.contact_dropout_s, capture.contact_minimum_s
-    return replace(
-        thresholds,
-        dropout_s=thresholds.dropout_s if dropout is None else dropout,
-        contact_minimum_s=thresholds.contact_minimum_s if minimum is None else minimum,
-    )
-
-
-def _track(poses: Poses, thresholds: Thresholds) -> Track:
+def _track(poses: Poses, highest_mps: float, thresholds: Thresholds) -> Track:
     stream = poses.smooth
     pace = speed(stream.positions, stream.times)
     crossings = zero_crossings(
-        pace, stream.times, noise_m=poses.noise.position_m, thresholds=thresholds
+        pace,
+        stream.times,
+        noise_m=poses.noise.position_m,
+        highest_mps=highest_mps,
+        thresholds=thresholds,
     )
     return Track(stream.positions, pace, crossings)
 
@@ -204,16 +212,17 @@ def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
             yield Gap(first, second, each.interval[0], round(1e6 * each.gap_m))
 
 
-def _moving(capture: Capture, bodies: Bodies, thresholds: Thresholds) -> Iterator[Fact]:
+def _moving(
+    capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
+) -> Iterator[Fact]:
     """When each object moves, as its floor tells, and when that truly began and ended."""
     for each in capture.objects:
         if each.tag is TagType.MOBILE:
             pose = bodies.objects[each.name].poses
-            floor = motion_floor(
-                pose.noise, capture.rate_hz, own_m=each.motion_floor_m, thresholds=thresholds
-            )
+            known = calibration.tag_object(each.name)
+            floor = Floor(known.motion_floor_m, known.motion_floor_rad)
             rests = rest_poses(pose, floor, thresholds)
-            for interval in moving(pose, floor, thresholds):
+            for interval in moving(pose, rests, floor, thresholds):
                 yield Moving(each.name, *interval)
                 yield Displaced(each.name, *motion_edges(pose, interval, rests, thresholds))
 
@@ -236,9 +245,11 @@ def _values(kind: Any) -> Callable[[Fact], Any]:
     return attrgetter(*names) if names else str
 
 
-def _notices(capture: Capture, tolerance_m: float, thresholds: Thresholds) -> Iterator[Notice]:
+def _notices(
+    capture: Capture, calibration: Calibration, thresholds: Thresholds
+) -> Iterator[Notice]:
     stated = capture.contact_tolerance_m is not None
-    yield notice("contact-tolerance", tolerance_m=tolerance_m, stated=stated)
+    yield notice("contact-tolerance", tolerance_m=calibration.contact_tolerance_m, stated=stated)
     for pair in capture.pivot_contacts:
         yield notice("pivot-distance", pair.first, pair.second, distance_m=pair.distance_m)
     pivots = {name for pair in capture.pivot_contacts for name in (pair.first, pair.second)}

@@ -112,7 +112,7 @@ def test_extracted_contacts_are_the_true_ones_within_two_frames(
     rate = trial.capture.rate_hz
     true = sorted(
         ("-".join(sorted((each.body, each.other))), each.begin_s * rate, each.end_s * rate)
-        for each in trial.truth.contacts(tolerance_m=measured.tolerance_m)
+        for each in trial.truth.contacts(tolerance_m=measured.calibration.contact_tolerance_m)
     )
     assert [pair for pair, _, _ in found] == [pair for pair, _, _ in true]
     np.testing.assert_allclose(

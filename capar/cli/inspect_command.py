@@ -15,13 +15,36 @@ def inspect(
         str, typer.Argument(help="A folder with a capture.toml (and :take), or a motion file.")
     ],
     as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
+    calibration: Annotated[
+        bool,
+        typer.Option("--calibration", help="Say what is decided once for the whole capture."),
+    ] = False,
 ) -> None:
     """Say what a capture holds: streams, rate, gaps, noise, ranges and near pairs."""
+    if calibration:
+        _calibration(place, as_json=as_json)
+        return
     report = _report(place)
     if as_json:
         typer.echo(json.dumps(report, indent=2, sort_keys=True))
     else:
         _show(report)
+
+
+def _calibration(place: str, *, as_json: bool) -> None:
+    from rich.console import Console
+
+    from capar.model.json_form import to_json
+    from capar.views.calibration import calibration_tables
+    from extractors.calibration import calibrate
+    from extractors.readers.bundle.capture_toml import read_capture
+
+    known = calibrate(read_capture(place))
+    if as_json:
+        typer.echo(to_json(known), nl=False)
+        return
+    for table in calibration_tables(known):
+        Console().print(table)
 
 
 def _report(place: str) -> dict[str, Any]:

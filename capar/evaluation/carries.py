@@ -73,12 +73,12 @@ def measure(name: str, recorded: Stream, thresholds: Thresholds | None = None) -
     stream = Stream(clock - clock[0], whole.positions, whole.orientations)
     poses = poses_of(TagObject("thing", TagType.MOBILE, stream), limits)
     floor = motion_floor(poses.noise, RATE_HZ, own_m=None, thresholds=limits)
-    found = moving(poses, floor, limits)
+    rests = rest_poses(poses, floor, limits)
+    found = moving(poses, rests, floor, limits)
     if not found:
         ends = (_end(recorded, finish, 0, limits), _end(recorded, begin, -1, limits))
         onset, offset = (replace(each, error_s=float("nan")) for each in ends)
         return Carry(name, onset, offset)
-    rests = rest_poses(poses, floor, limits)
     first = motion_edges(poses, found[0], rests, limits)[0]
     last = motion_edges(poses, found[-1], rests, limits)[1]
     return Carry(

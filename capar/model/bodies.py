@@ -63,9 +63,9 @@ class Stream:
         positions = np.where(lost[:, None], np.nan, self.positions)
         orientations = np.where(lost[:, None], np.nan, self.orientations)
         object.__setattr__(self, "times", _frozen(self.times))
-        object.__setattr__(self, "positions", _frozen(positions))
+        object.__setattr__(self, "positions", _owned(positions))
         turned = geometry.continuous(geometry.unit(orientations))
-        object.__setattr__(self, "orientations", _frozen(turned))
+        object.__setattr__(self, "orientations", _owned(turned))
 
     @cached_property
     def lost(self) -> Bool[np.ndarray, "frames"]:
@@ -185,6 +185,15 @@ def _check_times(times: Float[np.ndarray, "frames"]) -> None:
 
 
 def _frozen(array: np.ndarray) -> np.ndarray:
+    """The array read-only: itself if nobody can write to it, else a copy."""
+    if array.base is None and not array.flags.writeable:
+        return array
     out = np.array(array)
     out.flags.writeable = False
     return out
+
+
+def _owned(array: np.ndarray) -> np.ndarray:
+    """An array that was made here, read-only without a copy."""
+    array.flags.writeable = False
+    return array

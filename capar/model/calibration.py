@@ -40,7 +40,7 @@ class BodyCalibration:
     """The same for its orientation [rad]."""
 
     highest_speed_mps: float
-    """Highest speed of its low-passed origin [m/s], of which extrema of speed are a share."""
+    """Highest speed of its low-passed origin [m/s]: extrema of speed are compared with it."""
 
     upright: tuple[float, float, float]
     """The axis that points up where it first rests, in its own frame; a unit vector."""
@@ -81,7 +81,7 @@ class FootLevel:
 class Horizons:
     """How far measurements look: what is farther from a frame than this has no part in it.
 
-    Rest poses and what follows from them have no horizon; ``extractors.calibration`` lists them.
+    Rest poses and what follows from them have no horizon; see ``extractors.calibration``.
     """
 
     filter_s: float

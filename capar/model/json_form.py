@@ -1,4 +1,4 @@
-"""The JSON form of observations and PARs, and the schemas that describe it."""
+"""The JSON form of observations, PARs and calibrations, and the schemas that describe it."""
 
 import json
 from collections.abc import Callable, Iterable, Mapping
@@ -8,6 +8,7 @@ from importlib import resources
 from math import isfinite
 from typing import Any, TypeAlias, TypeVar
 
+from capar.model.calibration import Calibration
 from capar.model.errors import CaparError, ParError
 from capar.model.facts import Fact, read_fact
 from capar.model.json_migration import SCHEMA, take_schema
@@ -16,7 +17,7 @@ from capar.model.notices import Notice, read_notice
 from capar.model.observation import Observation
 from capar.model.par import ComplexPar, FeatureSet, Ipar, Upar
 
-Value: TypeAlias = Observation | ComplexPar | Upar | Ipar
+Value: TypeAlias = Observation | ComplexPar | Upar | Ipar | Calibration
 """What has a JSON form."""
 
 KINDS: dict[str, type[Value]] = {
@@ -24,13 +25,14 @@ KINDS: dict[str, type[Value]] = {
     "complex_par": ComplexPar,
     "upar": Upar,
     "ipar": Ipar,
+    "calibration": Calibration,
 }
 """Each kind by the name of its schema."""
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 FACT_PATTERN = r"^[a-z][A-Za-z0-9_]*(\(.+\))?$"
 _Part = TypeVar("_Part", Fact, Notice)
-_T = TypeVar("_T", Observation, ComplexPar, Upar, Ipar)
+_T = TypeVar("_T", Observation, ComplexPar, Upar, Ipar, Calibration)
 
 
 def to_json(value: Value) -> str:
@@ -66,7 +68,7 @@ def from_json(text: str, *, where: str = "") -> Observation:
 
 
 def value_from_json(text: str, kind: type[_T], *, where: str = "") -> _T:
-    """The observation or PAR of a given kind that a JSON text states.
+    """The observation, PAR or calibration of a given kind that a JSON text states.
 
     Raises:
         ParError: No JSON, or not of the schema; it says at which place and what was expected.

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from capar.model.calibration import Calibration
 from capar.model.capture import Agent, Notice, Source
 from capar.model.display import display
 from capar.model.facts import Fact
@@ -186,6 +187,9 @@ class Observation:
 
     others: tuple[Agent, ...] = ()
     """Who else performed, where several agents did."""
+
+    calibration: Calibration | None = None
+    """What was decided once for the whole recording; None where it was not kept."""
 
     @property
     def segments(self) -> tuple[Segment, ...]:

@@ -16,6 +16,7 @@ from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key, infer
 from capar_rules.pars.primitive_pars import Measured, ipars, upars
 from extractors.bodies.observed_objects import observed_object
+from extractors.calibration import calibrate, thresholds_of
 from extractors.measure import Measurements, measure
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.segments.locations import constraint_location
@@ -43,8 +44,7 @@ def observe(
         CaparError: The capture or the rules have a fault.
     """
     trial = capture if isinstance(capture, Capture) else read_capture(capture)
-    measurements = measure(trial, thresholds=thresholds)
-    return observe_measured(trial, measurements, rules=rules, name=name, thresholds=thresholds)
+    return observe_measured(trial, _measurements(trial, thresholds), rules=rules, name=name)
 
 
 def observe_measured(
@@ -53,11 +53,10 @@ def observe_measured(
     *,
     rules: Profile | str = DEFAULT,
     name: str = "",
-    thresholds: Thresholds | None = None,
 ) -> Observation:
     """The same for a capture whose measurements are at hand."""
     base = profile(rules) if isinstance(rules, str) else rules
-    limits = thresholds or Thresholds()
+    limits = thresholds_of(measurements.calibration)
     action = name or capture.name
     facts = steady(measurements.facts) if base.steady else measurements.facts
     inference = infer(facts, profile=base)
@@ -93,6 +92,7 @@ def observe_measured(
         ),
         joint=inference.joint,
         others=capture.others,
+        calibration=measurements.calibration,
     )
 
 
@@ -104,9 +104,13 @@ def facts_program(
     Flicker is resolved, and borders are numbered, as the profile has it.
     """
     base = profile(rules) if isinstance(rules, str) else rules
-    measurements = measure(capture, thresholds=thresholds)
+    measurements = _measurements(capture, thresholds)
     facts = steady(measurements.facts) if base.steady else measurements.facts
     return replace(measurements, facts=facts), rank(facts, crossings_only=base.crossings_only)
+
+
+def _measurements(capture: Capture, thresholds: Thresholds | None) -> Measurements:
+    return measure(capture, calibrate(capture, thresholds) if thresholds else None)
 
 
 def _segments(inference: Inference) -> Iterable[Segment]:

@@ -1,8 +1,9 @@
 """Every body of a capture with its geometry and poses, by sensor and by object."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from capar.model.capture import Capture
+from capar.model.calibration import Calibration
+from capar.model.capture import Capture, TagType
 from extractors.bodies.body_geometry import BodyGeometry, geometry_of
 from extractors.bodies.poses import Poses
 from extractors.thresholds import Thresholds
@@ -20,14 +21,36 @@ class Bodies:
         """The poses of every body by name; of an object that is also a sensor, the object's."""
         return {name: each.poses for name, each in (self.sensors | self.objects).items()}
 
+    def without_caches(self) -> "Bodies":
+        """The same bodies without what was computed of them, which takes more memory than poses."""
+        return Bodies(
+            {name: replace(each) for name, each in self.sensors.items()},
+            {name: replace(each) for name, each in self.objects.items()},
+        )
+
     def named(self, name: str) -> BodyGeometry:
         """The object of that name, or else the sensor."""
         return self.objects[name] if name in self.objects else self.sensors[name]
 
 
-def bodies_of(capture: Capture, thresholds: Thresholds) -> Bodies:
-    """The bodies of a capture, gaps filled and noise taken out."""
-    return Bodies(
-        {each.name: geometry_of(each, thresholds) for each in capture.sensors},
-        {each.name: geometry_of(each, thresholds) for each in capture.objects},
-    )
+def bodies_of(
+    capture: Capture, thresholds: Thresholds, calibration: Calibration | None = None
+) -> Bodies:
+    """The bodies of a capture, gaps filled and noise taken out.
+
+    Raises:
+        UnknownNameError: The calibration lacks one of them.
+    """
+    sensors, objects = {}, {}
+    for sensor in capture.sensors:
+        known = calibration.sensor(sensor.name) if calibration else None
+        sensors[sensor.name] = geometry_of(sensor, thresholds, known)
+    for each in capture.objects:
+        known = calibration.tag_object(each.name) if calibration else None
+        rides = next((one for one in capture.sensors if one.stream is each.stream), None)
+        if rides and each.tag is not TagType.FIXED:
+            poses = sensors[rides.name].poses
+            objects[each.name] = BodyGeometry(each.name, each.shape, poses)
+        else:
+            objects[each.name] = geometry_of(each, thresholds, known)
+    return Bodies(sensors, objects)

@@ -9,6 +9,7 @@ import trimesh
 from jaxtyping import Float, Int
 from scipy.spatial import ConvexHull, QhullError
 
+from capar.model.calibration import BodyCalibration
 from capar.model.capture import Sensor, Shape, TagObject
 from extractors.bodies.poses import Poses, poses_of, rotation_matrices
 from extractors.thresholds import Thresholds
@@ -71,7 +72,7 @@ class BodyGeometry:
     def planes(self) -> Float[np.ndarray, "planes 4"] | None:
         """Its convex hull as outward normals and offsets from its middle; None without volume.
 
-        A hull of very many sides, as of a scan, is told by the planes that lean on it from
+        A hull of very many sides, as of a scan, is described by the planes that lean on it from
         directions all around, which stand off it by no more than a hundredth of its size.
         """
         if self.shape is None:
@@ -98,9 +99,11 @@ class BodyGeometry:
         return low, high
 
 
-def geometry_of(body: Sensor | TagObject, thresholds: Thresholds) -> BodyGeometry:
+def geometry_of(
+    body: Sensor | TagObject, thresholds: Thresholds, known: BodyCalibration | None = None
+) -> BodyGeometry:
     """The geometry of a sensor or an object, with the poses that its stream gives."""
-    return BodyGeometry(body.name, body.shape, poses_of(body, thresholds))
+    return BodyGeometry(body.name, body.shape, poses_of(body, thresholds, known))
 
 
 def blocks(count: int) -> Iterator[slice]:

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
+from capar.model.calibration import BodyCalibration, FixedPose
 from capar.model.capture import Sensor, Stream, TagObject, TagType
 from extractors.signals.filters import lowpass, lowpass_orientations
 from extractors.signals.gaps import fill_gaps
@@ -28,8 +29,16 @@ class Poses:
     """For contact and sight: smooth if the stream is noisy, else filled; fixed bodies stand."""
 
     noise: Noise
-    rests: bool
-    """Whether ``settled`` is one pose throughout."""
+    still: bool
+    """Whether the recorded pose is one and the same in every frame."""
+
+    fixed: FixedPose | None = None
+    """Of a fixed object, the pose at which it is taken to stand."""
+
+    @property
+    def rests(self) -> bool:
+        """Whether ``settled`` is one pose throughout."""
+        return self.still or self.fixed is not None
 
     @property
     def lost(self) -> Bool[np.ndarray, "frames"]:
@@ -37,21 +46,32 @@ class Poses:
         return self.settled.lost
 
 
-def poses_of(body: Sensor | TagObject, thresholds: Thresholds) -> Poses:
+def poses_of(
+    body: Sensor | TagObject, thresholds: Thresholds, known: BodyCalibration | None = None
+) -> Poses:
     """The poses of a sensor or an object.
 
     A fixed object stands at the median of its places throughout: what its tracker shows besides
     is noise, which at the rim of a large table would exceed any tolerance.
+
+    Args:
+        body: The sensor or object.
+        thresholds: What separates noise from motion and gaps from losses.
+        known: What was decided for it before; None decides it by this stream.
     """
     filled = fill_gaps(body.stream, gap_s=thresholds.gap_s)
-    noise = noise_at_rest(filled, thresholds)
-    smooth = _smooth(filled, thresholds)
-    fixed = isinstance(body, TagObject) and body.tag is TagType.FIXED
-    if fixed and not filled.lost.all():
-        settled = _held(filled)
+    if known is None:
+        noise, still = noise_at_rest(filled, thresholds), _still(filled)
+        fixed = _fixed_pose(body, filled)
+    else:
+        noise, still = Noise(known.noise_m, known.noise_rad), known.still
+        fixed = known.fixed
+    smooth = filled if still else _smooth(filled, thresholds)
+    if fixed is not None:
+        settled = _held(filled, fixed)
     else:
         settled = smooth if noise.position_m > thresholds.smoothing_noise_m else filled
-    return Poses(body.name, filled, smooth, settled, noise, fixed or _still(settled))
+    return Poses(body.name, filled, smooth, settled, noise, still, fixed)
 
 
 def median_pose(
@@ -72,7 +92,7 @@ def median_pose(
 
 
 def _smooth(stream: Stream, thresholds: Thresholds) -> Stream:
-    if stream.lost.all() or _still(stream):
+    if stream.lost.all():
         return stream
     return Stream(
         stream.times,
@@ -81,10 +101,21 @@ def _smooth(stream: Stream, thresholds: Thresholds) -> Stream:
     )
 
 
-def _held(stream: Stream) -> Stream:
-    place, turn = median_pose(stream, slice(None))
+def _fixed_pose(body: Sensor | TagObject, stream: Stream) -> FixedPose | None:
+    """The median pose of a fixed object; None for what is not fixed, or lost throughout."""
+    if not isinstance(body, TagObject) or body.tag is not TagType.FIXED or stream.lost.all():
+        return None
+    position, orientation = median_pose(stream, slice(None))
+    x, y, z = map(float, position)
+    w, i, j, k = map(float, orientation)
+    return FixedPose((x, y, z), (w, i, j, k))
+
+
+def _held(stream: Stream, pose: FixedPose) -> Stream:
     frames = len(stream.times)
-    return Stream(stream.times, np.tile(place, (frames, 1)), np.tile(turn, (frames, 1)))
+    positions = np.broadcast_to(pose.position_m, (frames, 3))
+    orientations = np.broadcast_to(pose.orientation, (frames, 4))
+    return Stream(stream.times, positions, orientations)
 
 
 def _still(stream: Stream) -> bool:

@@ -1,18 +1,20 @@
 """Which bodies touch, from which frame to which, at every frame of a capture (thesis 3.2)."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model import geometry
+from capar.model.calibration import Calibration, PairCalibration
 from capar.model.capture import Capture, PivotContact, TagType
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import Poses
 from extractors.contact.proximity import Body, body, distance, near
 from extractors.contact.surfaces import surface
+from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
@@ -29,27 +31,42 @@ class Contact:
     """How far they are apart at its first frame [m]; zero where they cut each other."""
 
 
-def contact_tolerance(
-    capture: Capture, noises_m: Mapping[str, float], thresholds: Thresholds
-) -> float:
+def contact_tolerance(capture: Capture, bodies: Bodies, thresholds: Thresholds) -> float:
     """Distance up to which bodies count as touching [m].
 
     The capture's own, else three deviations of the noisiest acting sensor, between 5 and 10 mm.
     """
     if capture.contact_tolerance_m is not None:
         return capture.contact_tolerance_m
-    noise = max((noises_m[each.name] for each in capture.acting), default=0.0)
+    noises_m = [bodies.sensors[each.name].poses.noise.position_m for each in capture.acting]
+    noise = max(noises_m, default=0.0)
     wide = thresholds.tolerance_sigmas * noise
     return min(max(wide, thresholds.tolerance_least_m), thresholds.tolerance_most_m)
 
 
-def contacts(
-    capture: Capture,
-    bodies: Bodies,
-    *,
-    tolerance_m: float,
-    thresholds: Thresholds,
-) -> tuple[Contact, ...]:
+def pair_distances(
+    capture: Capture, bodies: Bodies, tolerance_m: float, thresholds: Thresholds
+) -> Iterator[PairCalibration]:
+    """At which distances each pair that is watched begins and ceases to touch.
+
+    Args:
+        capture: The trial.
+        bodies: Its bodies.
+        tolerance_m: Distance up to which surfaces count as touching [m].
+        thresholds: How much noise between two frames of contact is allowed for.
+    """
+    for first, second in watched(capture, bodies):
+        pivot = _pivot(capture, first.name, second.name)
+        if pivot is not None:
+            distance_m = pivot.distance_m
+            yield PairCalibration(first.name, second.name, distance_m, distance_m, pivots=True)
+        elif first.shape is not None and second.shape is not None:
+            margin = _margin(first.poses, second.poses, frame_rate(capture.times), thresholds)
+            release = tolerance_m + min(margin, tolerance_m)
+            yield PairCalibration(first.name, second.name, tolerance_m, release)
+
+
+def contacts(capture: Capture, bodies: Bodies, calibration: Calibration) -> tuple[Contact, ...]:
     """Every contact that is watched for: acting sensors and mobile objects with tag objects.
 
     A contact that is there before and after a body was lost is taken to last in between, however
@@ -59,34 +76,32 @@ def contacts(
     Args:
         capture: The trial.
         bodies: Its bodies.
-        tolerance_m: Distance up to which bodies count as touching [m].
-        thresholds: Least durations of contacts and of their interruptions.
+        calibration: Distances of contact, and least durations of contacts and interruptions.
     """
     surfaces = {each: shaped(each) for pair in watched(capture, bodies) for each in pair}
     found: list[Contact] = []
     for first, second in watched(capture, bodies):
-        pivot = _pivot(capture, first.name, second.name)
         one, two = surfaces[first], surfaces[second]
-        if pivot is not None:
-            apart = _apart(first.poses, second.poses)
-            touching = np.nan_to_num(apart, nan=np.inf) <= pivot.distance_m
-        elif one is not None and two is not None:
-            touching = near(one, two, distance_m=tolerance_m)
-            margin = _margin(first.poses, second.poses, capture.rate_hz, thresholds)
-            if margin > 0.0 and touching.any():
-                release = tolerance_m + min(margin, tolerance_m)
-                touching = bridged(touching, near(one, two, distance_m=release))
-        else:
+        pivots = _pivot(capture, first.name, second.name) is not None
+        if not pivots and (one is None or two is None):
             continue
+        pair = calibration.pair(first.name, second.name)
+        if one is None or two is None or pair.pivots:
+            apart = _apart(first.poses, second.poses)
+            touching = np.nan_to_num(apart, nan=np.inf) <= pair.touch_m
+        else:
+            touching = near(one, two, distance_m=pair.touch_m)
+            if pair.release_m > pair.touch_m and touching.any():
+                touching = bridged(touching, near(one, two, distance_m=pair.release_m))
         # Where a body was lost nothing begins or ends: what touched before and after has touched.
         touching = bridged(touching, first.poses.lost | second.poses.lost)
         for interval in intervals(
             touching,
             capture.times,
-            dropout_s=thresholds.dropout_s,
-            minimum_s=thresholds.contact_minimum_s,
+            dropout_s=calibration.contact_dropout_s,
+            minimum_s=calibration.contact_minimum_s,
         ):
-            if pivot is not None or one is None or two is None:
+            if one is None or two is None or pair.pivots:
                 gap = float(_apart(first.poses, second.poses)[interval[0]])
             else:
                 gap = distance(one, two, interval[0])

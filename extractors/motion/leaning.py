@@ -58,12 +58,12 @@ def _run(holds: Bool[np.ndarray, "frames"]) -> int:
     return int(gaps[0]) if gaps.size else len(holds)
 
 
-def upright_axis(poses: Poses, rests: tuple[RestPose, ...]) -> Float[np.ndarray, "3"]:
+def upright_axis(poses: Poses, rest: RestPose | None) -> Float[np.ndarray, "3"]:
     """The axis that points up where a body first rests, or else in its first known frame."""
     known = np.flatnonzero(~poses.smooth.lost)
     up = np.array([0.0, 0.0, 1.0])
-    if rests:
-        turn = rests[0].orientation
+    if rest is not None:
+        turn = rest.orientation
     elif known.size:
         turn = poses.smooth.orientations[known[0]]
     else:

@@ -13,7 +13,7 @@ def motion_edges(
 ) -> Interval:
     """The interval of a motion, from when the object left one place to when it was at another.
 
-    A motion is told from none by a displacement that no handling without it makes; once told, it
+    A motion is recognised by a displacement that no handling without it makes; once recognised, it
     began when the object was last where it had rested, and ended when it first was where it
     rests afterwards: within what noise alone makes, and at least a hair's width.
 

@@ -90,7 +90,9 @@ def _rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Res
     return tuple(found)
 
 
-def moving(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Interval, ...]:
+def moving(
+    poses: Poses, rests: tuple[RestPose, ...], floor: Floor, thresholds: Thresholds
+) -> tuple[Interval, ...]:
     """Closed intervals of frames in which the object is at none of the places where it rests.
 
     An absence from a place counts if it lasts, or if the next place is beyond the floor from it:
@@ -98,7 +100,6 @@ def moving(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Interval
     lost count as motion only if it lies elsewhere afterwards.
     """
     stream = poses.smooth
-    rests = rest_poses(poses, floor, thresholds)
     away = ~mask([each.interval for each in rests], len(stream.times)) & ~stream.lost
     for first, last in geometry.runs(stream.lost):
         if first > 0 and last < len(stream.times) - 1 and _moved(stream, first, last, floor):

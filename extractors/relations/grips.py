@@ -7,7 +7,7 @@ import numpy as np
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.signals.filters import speed
 from extractors.signals.intervals import Interval
-from extractors.signals.zero_crossings import pauses, zero_crossings
+from extractors.signals.zero_crossings import horizon_frames, pauses, zero_crossings
 from extractors.thresholds import Thresholds
 
 SHORTEST = 5
@@ -38,8 +38,10 @@ def shifts(
     times = hand.poses.smooth.times[part]
     pace = speed(place, times)
     noise = max(hand.poses.noise.position_m, thing.poses.noise.position_m)
-    crossings = zero_crossings(pace, times, noise_m=noise, thresholds=thresholds)
-    seats = [int(each) for each in pauses(pace, crossings)]
+    crossings = zero_crossings(
+        pace, times, noise_m=noise, highest_mps=float(np.nanmax(pace)), thresholds=thresholds
+    )
+    seats = [int(each) for each in pauses(pace, crossings, horizon_frames(times, thresholds))]
     if not seats:
         return
     anchor = latest = seats[0]

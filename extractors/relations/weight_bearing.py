@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 from jaxtyping import Bool, Float
 
+from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Sensor
 from capar.model.facts import Bears, Touching
 from extractors.bodies.bodies import Bodies
@@ -27,6 +28,7 @@ def bearing(
     capture: Capture,
     bodies: Bodies,
     touches: Iterable[Touching],
+    calibration: Calibration,
     thresholds: Thresholds,
 ) -> Iterator[Bears]:
     """When each foot that is down bears the whole weight, part of it, or none.
@@ -45,6 +47,7 @@ def bearing(
         capture: The trial.
         bodies: Its bodies.
         touches: Contacts, as facts.
+        calibration: The level on which feet stand.
         thresholds: Shares and distances that the measurement decides by.
     """
     known = list(touches)
@@ -52,20 +55,23 @@ def bearing(
         own = [each for each in capture.sensors if capture.agent_of(each) == agent.name]
         feet = [each for each in own if each.end_effector == FOOT]
         if len(feet) == 2:
-            yield from _borne(capture, bodies, feet, _middle(own, bodies), known, thresholds)
+            level_m = calibration.foot_level(agent.name)
+            middle = _middle(own, bodies)
+            yield from _loads(capture, bodies, feet, middle, known, level_m, thresholds)
 
 
-def _borne(
+def _loads(
     capture: Capture,
     bodies: Bodies,
     feet: Sequence[Sensor],
     middle: Float[np.ndarray, "frames 3"] | None,
     touches: Sequence[Touching],
+    level_m: float,
     thresholds: Thresholds,
 ) -> Iterator[Bears]:
     """What the two feet of one agent bear."""
     figures = [bodies.sensors[each.name] for each in feet]
-    down = _down(capture, bodies, figures, touches, thresholds)
+    down = _down(bodies, figures, touches, level_m, thresholds)
     share = share_of_first(
         figures[0].middles, figures[1].middles, down[0], down[1], middle, thresholds
     )
@@ -138,14 +144,13 @@ def _middle(sensors: Iterable[Sensor], bodies: Bodies) -> Float[np.ndarray, "fra
 
 
 def _down(
-    capture: Capture,
     bodies: Bodies,
     feet: Sequence[BodyGeometry],
     touches: Sequence[Touching],
+    level_m: float,
     thresholds: Thresholds,
 ) -> list[Bool[np.ndarray, "frames"]]:
     """Frames in which each foot is down."""
-    frames = len(capture.times)
     out, resting_low = [], []
     for foot in feet:
         spans = [
@@ -155,16 +160,28 @@ def _down(
             and each.other in bodies.objects
             and _bears(foot, bodies.objects[each.other], each.first, thresholds)
         ]
-        still = mask(list(resting(foot.poses, thresholds)), frames)
-        out.append(mask(spans, frames))
-        resting_low.append(np.where(still, foot.boxes[0][:, 2], np.nan))
-    heights = np.concatenate(resting_low)
-    level = np.min(heights, where=~np.isnan(heights), initial=np.inf)
+        out.append(mask(spans, len(foot.middles)))
+        resting_low.append(_heights_at_rest(foot, thresholds))
     with np.errstate(invalid="ignore"):
         return [
-            borne | (low <= level + thresholds.level_m)
+            borne | (low <= level_m + thresholds.level_m)
             for borne, low in zip(out, resting_low, strict=True)
         ]
+
+
+def foot_level(feet: Sequence[BodyGeometry], thresholds: Thresholds) -> float | None:
+    """Height of the lowest point of some feet where one rests lowest [m]; None if none rests."""
+    if not feet:
+        return None
+    heights = np.concatenate([_heights_at_rest(foot, thresholds) for foot in feet])
+    known = heights[~np.isnan(heights)]
+    return float(known.min()) if known.size else None
+
+
+def _heights_at_rest(foot: BodyGeometry, thresholds: Thresholds) -> Float[np.ndarray, "frames"]:
+    """Height of a foot's lowest point while it rests [m]; NaN while it does not."""
+    low = foot.boxes[0][:, 2]
+    return np.where(mask(list(resting(foot.poses, thresholds)), len(low)), low, np.nan)
 
 
 def _bears(foot: BodyGeometry, thing: BodyGeometry, frame: int, thresholds: Thresholds) -> bool:

@@ -1,4 +1,4 @@
-"""Short losses of tracking, interpolated; long ones stay lost and are told."""
+"""Short losses of tracking are interpolated; long ones stay lost and are reported."""
 
 import numpy as np
 from jaxtyping import Float

@@ -22,6 +22,7 @@ def zero_crossings(
     times: Float[np.ndarray, "frames"],
     *,
     noise_m: float,
+    highest_mps: float,
     thresholds: Thresholds,
 ) -> Int[np.ndarray, "crossings"]:
     """Frames, ascending, at which the speed of a low-passed stream starts, stops or turns.
@@ -32,9 +33,11 @@ def zero_crossings(
         speed_mps: Speed of the low-passed stream [m/s]; NaN where it was lost.
         times: Clock [s].
         noise_m: Deviation of one unfiltered coordinate at rest [m].
+        highest_mps: Highest speed of the stream in the whole recording [m/s].
         thresholds: Prominence and rest.
     """
     rate_hz = frame_rate(times)
+    reach = horizon_frames(times, thresholds)
     noise_mps = gains(rate_hz, thresholds)[1] * noise_m * np.sqrt(3.0)
     found: set[int] = {0, len(times) - 1}
     known = ~np.isnan(speed_mps)
@@ -42,29 +45,47 @@ def zero_crossings(
         prominence = max(
             thresholds.crossing_speed_mps,
             thresholds.crossing_sigmas * noise_mps,
-            thresholds.crossing_speed_share * float(np.nanmax(speed_mps)),
+            thresholds.crossing_speed_share * highest_mps,
         )
         resting = rests(speed_mps, times, noise_mps=noise_mps, thresholds=thresholds)
         for first, last in geometry.runs(known):
             part = slice(first, last + 1)
-            turns = _extrema(speed_mps[part], prominence, resting[part])
+            turns = _extrema(speed_mps[part], prominence, resting[part], reach)
             found.update(first + each for each in turns)
     return np.array(sorted(found), dtype=np.int64)
 
 
+def horizon_frames(times: Float[np.ndarray, "frames"], thresholds: Thresholds) -> int:
+    """How many frames about an extremum of speed its prominence and neighbours are sought."""
+    return max(1, round(thresholds.extremum_horizon_s / time_step(times)))
+
+
 def pauses(
-    speed_mps: Float[np.ndarray, "frames"], crossings: Int[np.ndarray, "crossings"]
+    speed_mps: Float[np.ndarray, "frames"], crossings: Int[np.ndarray, "crossings"], reach: int
 ) -> Int[np.ndarray, "pauses"]:
     """Those crossings, the capture's first and last frame aside, that are no maximum of speed.
+
+    A maximum is faster than the crossing before and the one after. Where one of these is far away,
+    it is faster than the frames beside it.
 
     Args:
         speed_mps: Speed of the low-passed stream [m/s].
         crossings: Zero crossings, ascending.
+        reach: How many frames away a neighbour counts.
     """
     if len(crossings) < 3:
         return crossings[:0]
     here, before, after = (speed_mps[crossings[each]] for each in (_INNER, _EARLIER, _LATER))
-    return crossings[1:-1][~((here > before) & (here > after))]
+    near = np.diff(crossings) <= reach
+    top = _local_maxima(speed_mps)[crossings[1:-1]]
+    highest = np.where(near[:-1], here > before, top) & np.where(near[1:], here > after, top)
+    return crossings[1:-1][~highest]
+
+
+def _local_maxima(speed_mps: Float[np.ndarray, "frames"]) -> Bool[np.ndarray, "frames"]:
+    """Whether each frame is faster than the one before and no slower than the one after."""
+    rises = np.diff(speed_mps) > 0.0
+    return np.concatenate(([False], rises[:-1] & ~rises[1:], [False]))
 
 
 _INNER, _EARLIER, _LATER = slice(1, -1), slice(None, -2), slice(2, None)
@@ -90,7 +111,7 @@ def rests(
     out = np.zeros(len(speed_mps), dtype=bool)
     step = time_step(times)
     for first, last in intervals(slow, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
-        begin, end = _trimmed(speed_mps, first, last)
+        begin, end = _trimmed(speed_mps, first, last, horizon_frames(times, thresholds))
         if duration((begin, end), times, step) < thresholds.rest_minimum_s:
             begin, end = first, last
         out[begin : end + 1] = True
@@ -118,25 +139,30 @@ def _to_the_ends(
     return out
 
 
-def _trimmed(speed_mps: Float[np.ndarray, "frames"], first: int, last: int) -> tuple[int, int]:
-    """The stretch between the first and the last local minimum of speed in it."""
+def _trimmed(
+    speed_mps: Float[np.ndarray, "frames"], first: int, last: int, reach: int
+) -> tuple[int, int]:
+    """The stretch between the first and the last local minimum of speed near its ends."""
     begin, end = first, last
     if first > 0:
-        while begin < last and speed_mps[begin + 1] < speed_mps[begin]:
+        while begin < min(last, first + reach) and speed_mps[begin + 1] < speed_mps[begin]:
             begin += 1
     if last < len(speed_mps) - 1:
-        while end > first and speed_mps[end - 1] < speed_mps[end]:
+        while end > max(first, last - reach) and speed_mps[end - 1] < speed_mps[end]:
             end -= 1
     return (begin, end) if begin <= end else (first, last)
 
 
 def _extrema(
-    speed: Float[np.ndarray, "frames"], prominence: float, resting: Bool[np.ndarray, "frames"]
+    speed: Float[np.ndarray, "frames"],
+    prominence: float,
+    resting: Bool[np.ndarray, "frames"],
+    reach: int,
 ) -> set[int]:
     """Prominent maxima and minima outside rest, and the ends of rest."""
     found: set[int] = set()
     for signal in (speed, -speed):
-        peaks, _ = find_peaks(signal, prominence=prominence)
+        peaks, _ = find_peaks(signal, prominence=prominence, wlen=2 * reach + 1)
         found.update(int(each) for each in peaks if not resting[each])
     for first, last in geometry.runs(resting):
         found.update({first, last} - {0, len(speed) - 1})

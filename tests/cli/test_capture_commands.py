@@ -7,8 +7,12 @@ import motion_files as samples
 import pytest
 from typer.testing import CliRunner
 
+import capar
 from capar.cli import app
+from capar.model.calibration import Calibration
 from capar.model.errors import FileError
+from capar.model.json_form import value_from_json
+from extractors.calibration import calibrate
 from extractors.readers.bundle.capture_toml import read_capture
 
 RUNNER = CliRunner()
@@ -63,6 +67,18 @@ def test_inspect_of_a_bundle_names_its_sensors_and_near_pairs(tmp_path: Path) ->
     (pair,) = report["pairs"]
     assert (pair["first"], pair["second"]) == ("h", "mug")
     assert pair["least_m"] == pytest.approx(0.011, abs=0.002)
+
+
+def test_inspect_prints_the_calibration_as_tables_and_as_json() -> None:
+    place = str(Path(capar.__file__).parent / "demo" / "drink_from_mug")
+    known = calibrate(read_capture(place))
+    result = RUNNER.invoke(app, ["inspect", place, "--calibration", "--json"])
+    assert result.exit_code == 0, result.output
+    assert value_from_json(result.output, Calibration) == known
+    tables = RUNNER.invoke(app, ["inspect", place, "--calibration"]).output
+    assert f"{1e3 * known.contact_tolerance_m:.2f} mm" in tables
+    assert f"{1e3 * known.tag_object('mug').noise_m:.2f}" in tables
+    assert "median" in tables
 
 
 @pytest.mark.parametrize("output", ["mine/of/capture.toml", "mine/of"])

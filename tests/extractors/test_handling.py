@@ -228,8 +228,8 @@ def test_a_motion_begins_before_it_is_beyond_its_floor() -> None:
     places = (share**3 * (10.0 - 15.0 * share + 6.0 * share**2)) * np.array([0.5, 0.0, 0.0])
     where = body(places).poses
     floor = Floor(LIMITS.motion_floor_m, LIMITS.motion_floor_rad)
-    ((first, last),) = moving(where, floor, LIMITS)
     rests = rest_poses(where, floor, LIMITS)
+    ((first, last),) = moving(where, rests, floor, LIMITS)
     begin, end = motion_edges(where, (first, last), rests, LIMITS)
     assert 100 <= begin < first
     assert last < end <= 301

@@ -108,7 +108,10 @@ def test_the_gap_where_a_contact_begins_is_within_the_tolerance() -> None:
     measured = measure(pick_and_place())
     gaps = [each for each in measured.facts if isinstance(each, Gap)]
     assert gaps
-    assert all(0 <= each.micrometres <= 1e6 * measured.tolerance_m + 50 for each in gaps)
+    assert all(
+        0 <= each.micrometres <= 1e6 * measured.calibration.contact_tolerance_m + 50
+        for each in gaps
+    )
 
 
 def test_two_mobile_objects_touch_in_either_order_and_two_fixed_ones_never() -> None:

@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 from capar.model.capture import Stream, TagObject, TagType
 from extractors.bodies.poses import poses_of
 from extractors.measure import _track
-from extractors.motion.object_motion import motion_floor, moving
+from extractors.motion.object_motion import motion_floor, moving, rest_poses
+from extractors.signals.filters import speed
 from extractors.signals.gaps import fill_gaps, long_gaps
 from extractors.signals.noise import noise_at_rest
 from extractors.thresholds import Thresholds
@@ -21,14 +22,15 @@ RATES = st.sampled_from([30.0, 60.0, 100.0, 120.0, 240.0])
 
 def crossings(of: Stream) -> list[int]:
     pose = poses_of(TagObject("hand", TagType.MOBILE, of), LIMITS)
-    return [int(each) for each in _track(pose, LIMITS).crossings]
+    highest = float(np.nanmax(speed(pose.smooth.positions, of.times)))
+    return [int(each) for each in _track(pose, highest, LIMITS).crossings]
 
 
 def motions(of: Stream, floor_m: float | None = None) -> tuple[tuple[int, int], ...]:
     pose = poses_of(TagObject("thing", TagType.MOBILE, of), LIMITS)
     rate_hz = 1.0 / float(np.median(np.diff(of.times)))
     floor = motion_floor(pose.noise, rate_hz, own_m=floor_m, thresholds=LIMITS)
-    return moving(pose, floor, LIMITS)
+    return moving(pose, rest_poses(pose, floor, LIMITS), floor, LIMITS)
 
 
 def reach(rate_hz: float, *, shift_s: float = 0.0, scale: float = 1.0) -> Stream:
