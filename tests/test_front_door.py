@@ -1,4 +1,4 @@
-"""`import capar` is one door to everything, quick to open, and nothing behind it takes its names."""
+"""`import capar` opens quickly on everything, and no submodule takes the name of a function."""
 
 import ast
 import importlib

@@ -17,7 +17,7 @@ def new_capture(
     force: Annotated[bool, typer.Option("--force", help="Overwrite what is there.")] = False,
 ) -> None:
     """Write a commented capture.toml that a person then edits; it is read back at once."""
-    from capar.cli._places import written
+    from capar.cli._output import written
     from capar.model.errors import CaparError, FileError
     from extractors.readers.bundle.capture_toml import read_capture
     from extractors.readers.drafting.draft import TODO, draft

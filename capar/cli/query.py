@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._actionary import Place
+from capar.cli._options import Place
+from capar.cli._output import console
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
@@ -144,11 +145,6 @@ def _print(answer: "Answer", chosen: str) -> None:
     if chosen != "table" or not sys.stdout.isatty():
         typer.echo(FORMATS[chosen](answer), nl=False)
         return
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
+    from capar.views.tables import terminal_table
 
-    table = Table(*header(answer))
-    for row in cells(answer):
-        table.add_row(*map(Text, row))
-    Console().print(table)
+    console().print(terminal_table(header(answer), list(cells(answer))))

@@ -4,7 +4,6 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from pathlib import Path
 
-
 MOST_LISTED = 20
 """So many names that exist are all listed; of more, the nearest and their number."""
 

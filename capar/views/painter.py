@@ -191,9 +191,7 @@ class Painter:
             axes, self._rows[index].label, bar + tall / 2, fontsize=9.5, color=INK, weight="bold"
         )
         for each in self._placed[index]:
-            self._box(
-                axes, each.span, bar, tall, **self.look(each.span, Kind.SEGMENTS), zorder=2
-            )
+            self._box(axes, each.span, bar, tall, **self.look(each.span, Kind.SEGMENTS), zorder=2)
             self._letter(axes, each, bar, tall, Kind.SEGMENTS)
 
     def _letter(self, axes: "Axes", each: Placed, bar: float, tall: float, kind: Kind) -> None:

@@ -70,7 +70,7 @@ def test_notices_have_one_order(shuffled: list[Notice]) -> None:
 
 
 def test_an_unknown_code_is_refused_with_those_that_there_are() -> None:
-    with pytest.raises(UnknownNameError, match="no kind of notice 'long_gap'.*'long-gap'"):
+    with pytest.raises(UnknownNameError, match=r"no kind of notice 'long_gap'.*'long-gap'"):
         notice("long_gap", "mug")
 
 

@@ -98,5 +98,5 @@ def test_without_pandas_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_another_frame_is_refused_with_those_that_there_are() -> None:
-    with pytest.raises(capar.CaparError, match="no data frame 'segment'.*Did you mean 'segments'"):
+    with pytest.raises(capar.CaparError, match=r"no data frame 'segment'.*Did you mean 'segments'"):
         drink_from_mug().to_frame("segment")  # type: ignore[arg-type]
