@@ -1,4 +1,4 @@
-"""What the commands about rules have beside ``rules.py``: drafting a rule, explaining words, tables.
+"""The commands that draft a rule and explain words, and what all rule commands print."""
 
 ``new`` and ``list_words`` are commands; the rest prints what the others found.
 """
