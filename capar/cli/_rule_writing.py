@@ -1,4 +1,4 @@
-"""The commands that draft a rule and explain words, and what all rule commands print."""
+"""The commands that draft a rule and explain words, and what all rule commands print.
 
 ``new`` and ``list_words`` are commands; the rest prints what the others found.
 """
