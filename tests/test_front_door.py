@@ -1,4 +1,4 @@
-"""`import capar` opens everything, is quick, and no submodule takes the name of a function."""
+"""`import capar` opens quickly on everything, and no submodule takes the name of a function."""
 
 import ast
 import importlib

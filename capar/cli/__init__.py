@@ -10,7 +10,7 @@ import typer
 from typer.core import TyperGroup
 
 from capar import __version__
-from capar.cli._places import told
+from capar.cli._output import told
 from capar.model.errors import CaparError
 
 

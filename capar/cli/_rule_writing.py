@@ -1,12 +1,22 @@
-"""The commands that help to write a rule: a first draft, and the words that it may use."""
+"""The commands that draft a rule and explain words, and what all rule commands print.
 
+``new`` and ``list_words`` are commands; the rest prints what the others found.
+"""
+
+from collections.abc import Iterator
+from itertools import groupby
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._actionary import Place
-from capar.cli._rules import Rules, has_actionary, opened, rule_base
+from capar.cli._options import Place, Rules, has_actionary, opened, rule_base
+from capar.cli._output import print_json
+
+if TYPE_CHECKING:
+    from capar.rulebook.changes import Renamed
+    from capar_rules.authoring.glossary import Glossary, Word
+    from capar_rules.lint.audit import Audit
 
 Base = Annotated[str, typer.Option("--profile", help="The rules: extended or thesis.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
@@ -35,7 +45,7 @@ def new(
     actionary: Place = None,
 ) -> None:
     """Write a rule file for NAME from a segment or a feature set, ready to be edited."""
-    from capar.cli._places import written
+    from capar.cli._output import written
     from capar.model.errors import FileError, RuleError
     from capar.rulebook.drafts import rule_from_features, rule_from_segment
 
@@ -72,7 +82,6 @@ def list_words(
 
     With NAME also where it is defined, and by which rules.
     """
-    from capar.cli._words_of_rules import print_glossary, print_word, print_words_json
     from capar_rules.authoring.glossary import glossary
 
     found = glossary(rule_base(profile, rules, opened(actionary)))
@@ -82,3 +91,122 @@ def list_words(
         print_word(found, name)
     else:
         print_glossary(found)
+
+
+def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) -> None:
+    """The segments that have another name now, and how many; who was left alone."""
+    from capar.model.segment_address import SegmentAddress
+    from capar.rulebook.changes import NOTHING
+
+    for each in changes:
+        what = f"{each.before} -> {each.after}"
+        if NOTHING in (each.before, each.after):
+            what = f"{each.before} vanishes" if each.after == NOTHING else f"{each.after} appears"
+        address = SegmentAddress(each.ee, each.index, each.capture)
+        typer.echo(f"{address}  {each.start_s:.2f} to {each.end_s:.2f} s: {what}")
+    typer.echo("1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change")
+    print_others(others)
+
+
+def print_others(others: tuple[str, ...]) -> None:
+    """How many observations were left alone, as they were made with another profile."""
+    if others:
+        several = "s were" if len(others) > 1 else " was"
+        typer.echo(
+            f"{len(others)} observation{several} made with another profile: left alone", err=True
+        )
+
+
+def print_bearing(count: int, names: list[str]) -> None:
+    """How many stored segments bear a name that no rule gives any longer."""
+    if count:
+        told = "1 stored segment still bears" if count == 1 else f"{count} segments still bear"
+        typer.echo(
+            f"{told} the name {' or '.join(names)}; observing again renames them, as would "
+            "--reclassify have done",
+            err=True,
+        )
+
+
+def print_audit(found: "Audit") -> None:
+    """What an audit found, and whether the rules are clean."""
+    without = len(found.uncovered)
+    typer.echo(f"{found.possible} feature sets can be; {without} of them have no name:")
+    for line in _uncovered(found):
+        typer.echo(line)
+    for clash in found.ambiguous:
+        where = " ".join(part or "-" for part in clash.features[0])
+        typer.echo(f"ambiguous: {clash.first} and {clash.second}, first at {where}")
+    for name in found.shadowed:
+        typer.echo(f"shadowed: {name}")
+    for name in found.unreachable:
+        typer.echo(f"never fits in the audit's world: {name}")
+    typer.echo("the rules are clean" if found.clean else "the rules are not clean")
+
+
+def _uncovered(found: "Audit") -> Iterator[str]:
+    """Every feature set without a name, under its reason, a line for the relations at its ends.
+
+    What follows each is change of location and force.
+    """
+    reasons = dict(found.excused)
+    groups: dict[str, dict[str, list[str]]] = {}
+    for start, end, change, force in found.uncovered:
+        reason = reasons.get((start, end, change, force), "NO REASON IS GIVEN")
+        ends = f"{start or '-'} > {end or '-'}"
+        groups.setdefault(reason, {}).setdefault(ends, []).append(f"{change or '-'}/{force or '-'}")
+    for reason, cases in groups.items():
+        yield f"  {sum(map(len, cases.values()))}: {reason}"
+        for ends, rest in cases.items():
+            yield f"    {ends}  {' '.join(rest)}"
+
+
+def print_glossary(found: "Glossary") -> None:
+    """Every word, file by file, and what each file keeps to itself."""
+    within: dict[str, list[str]] = {}
+    for file, (name, arity) in found.internal:
+        within.setdefault(file, []).append(f"{name}/{arity}")
+    for file, words in groupby(found.words, key=lambda each: each.file):
+        typer.echo(file)
+        for each in words:
+            typer.echo(f"  {each}  {each.meaning}")
+        if file in within:
+            typer.echo(f"  within this file alone: {', '.join(within.pop(file))}")
+        typer.echo()
+    for file, names in within.items():
+        typer.echo(f"{file}\n  within this file alone: {', '.join(names)}\n")
+
+
+def print_word(found: "Glossary", name: str) -> None:
+    """One word: what it means, where it is explained, and the rules that define it."""
+    words = found.find(name)
+    for each in words:
+        typer.echo(f"{each}  {each.meaning}")
+        typer.echo(f"  explained in {each.file}:{each.line}" if each.line else f"  in {each.file}")
+    for signature in dict.fromkeys(each.signature for each in words):
+        for place in found.rules_of(signature):
+            typer.echo(f"  defined at {place}\n{_rule(Path(place.file), place.line)}")
+
+
+def _rule(file: Path, line: int) -> str:
+    """The text of the rule that begins on that line."""
+    lines = file.read_text(encoding="utf-8").splitlines()[line - 1 :]
+    end = next((at for at, each in enumerate(lines, 1) if each.rstrip().endswith(".")), len(lines))
+    return "\n".join(f"    {each}" for each in lines[:end])
+
+
+def print_words_json(found: "Glossary", name: str | None) -> None:
+    """The same as JSON: one word, or all of them."""
+    words = found.find(name) if name else found.words
+    print_json([_row(each, found) for each in words])
+
+
+def _row(word: "Word", found: "Glossary") -> dict[str, object]:
+    return {
+        "name": word.name,
+        "arguments": list(word.arguments),
+        "meaning": word.meaning,
+        "file": word.file,
+        "line": word.line,
+        "defined": [str(each) for each in found.rules_of(word.signature)],
+    }

@@ -1,12 +1,11 @@
 """Look whether the Actionary is whole and right."""
 
-import json as json_module
-from dataclasses import asdict
 from typing import Annotated
 
 import typer
 
-from capar.cli._actionary import Place
+from capar.cli._options import Place
+from capar.cli._output import print_json
 
 app = typer.Typer()
 
@@ -28,7 +27,7 @@ def check(
         problems = checked(opened.store, full=not fast)
         count = len(opened.observations())
     if json:
-        typer.echo(json_module.dumps([asdict(each) for each in problems], indent=2))
+        print_json(problems)
     else:
         for each in problems:
             typer.echo(f"{each.observation}: {each.thing}: {each.message}")

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._rules import Beside, Rules, rule_base
+from capar.cli._options import Beside, Rules, rule_base
 
 app = typer.Typer()
 
@@ -35,7 +35,8 @@ def describe(
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Say in plain English what was done in CAPTURE."""
-    from capar.cli._words import print_json, rule_words
+    from capar.cli._options import rule_words
+    from capar.cli._output import print_json
     from capar.pipelines.observation import observe
     from capar.views.notices import reservation_lines, reservations
     from kb.language.describe import describe as told
@@ -46,6 +47,6 @@ def describe(
     notices = reservations(observation.notices)
     if json:
         told_of = {"capture": observation.capture, "description": text}
-        print_json(told_of | {"notices": [each.document() for each in notices]})
+        print_json(told_of | {"notices": [each.document() for each in notices]}, sort_keys=True)
     else:
         typer.echo("\n".join((text, *reservation_lines(notices))))

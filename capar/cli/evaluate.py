@@ -1,12 +1,12 @@
 """``capar evaluate``: how well what is observed agrees with labels that people gave."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from capar.cli._rules import Beside, Rules, Steady, rule_base
+from capar.cli._options import Beside, Rules, Steady, rule_base
+from capar.cli._output import console, print_json
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
@@ -58,24 +58,22 @@ def evaluate(
     found = evaluate_pairs(cases, read_mapping(mapping), rules=base, frames_of=frames_of)
     result = report(found)
     if as_json:
-        typer.echo(json.dumps(result, indent=2, ensure_ascii=False))
+        print_json(result)
         return
-    from rich.console import Console
-
-    _print(Console(), result)
+    _print(console(), result)
 
 
-def _print(console: "Console", result: dict[str, Any]) -> None:
-    console.print(_scores(result))
-    console.print(_confusions(result["all"]))
+def _print(out: "Console", result: dict[str, Any]) -> None:
+    out.print(_scores(result))
+    out.print(_confusions(result["all"]))
     for kind in ("missed", "inserted"):
         counts = ", ".join(f"{name} {count}" for name, count in result["all"][kind].items())
-        console.print(f"segments {kind}: {counts or 'none'}", markup=False)
+        out.print(f"segments {kind}: {counts or 'none'}", markup=False)
     for notice in result["notices"]:
-        console.print(notice, markup=False, soft_wrap=True)
+        out.print(notice, markup=False, soft_wrap=True)
     if result["unlabelled_links"]:
         names = ", ".join(result["unlabelled_links"])
-        console.print(f"not counted, because they bear no labels: {names}", markup=False)
+        out.print(f"not counted, because they bear no labels: {names}", markup=False)
 
 
 def _scores(result: dict[str, Any]) -> "Table":
@@ -93,7 +91,9 @@ def _scores(result: dict[str, Any]) -> "Table":
         pad_edge=False,
     )
     for index, column in enumerate(COLUMNS):
-        table.add_column(column, justify="right" if index else "left", no_wrap=True)
+        table.add_column(
+            column, justify="right" if index else "left", no_wrap=bool(index), overflow="fold"
+        )
     for name, each in [*result["links"].items(), ("all", result["all"])]:
         keys = ("accuracy", "macro_f1", "f1@10", "f1@25", "f1@50", "edit")
         errors = (each["onset_ms"], each["offset_ms"])
@@ -112,7 +112,7 @@ def _confusions(scored: dict[str, Any]) -> "Table":
     wrong = [each for each in scored["confusion"] if each["true"] != each["predicted"]]
     table = Table(title="frames under another label", title_justify="left", box=SIMPLE_HEAD)
     for column in ("true", "predicted"):
-        table.add_column(column)
+        table.add_column(column, overflow="fold")
     table.add_column("frames", justify="right")
     table.add_column("share", justify="right")
     for each in wrong[:SHOWN]:

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from capar.cli._rules import Beside, Rules, Steady, rule_base
+from capar.cli._options import Beside, Rules, Steady, rule_base
+from capar.cli._output import print_json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -47,7 +48,7 @@ def explain(
     svg: Annotated[Path | None, typer.Option(help="Draw the tree to this file.")] = None,
 ) -> None:
     """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
-    from capar.cli._places import prove_place
+    from capar.cli._output import prove_place
     from capar.pipelines.explanation import explained, segment_named
     from capar_rules.explain.why_not import why_not as alternatives
     from extractors.readers.bundle.capture_toml import read_capture
@@ -66,7 +67,7 @@ def explain(
         limit = 100 if every else 1
         rows = [(each, alternatives(seen.explainer, each, why_not, limit=limit)) for each in asked]
         if json:
-            _echo_json(_rows(rows, seen))
+            print_json(_rows(rows, seen))
             return
         for each, found in rows:
             if not alone:
@@ -99,7 +100,7 @@ def _print_notices(segments: "Sequence[Segment]", seen: "Explained") -> None:
 
 def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bool) -> None:
     if json:
-        _echo_json([_plain(each, seen) for each in told])
+        print_json([_plain(each, seen) for each in told])
         return
     for each in told:
         typer.echo(_header(each))
@@ -144,12 +145,6 @@ def _rows(
     ]
 
 
-def _echo_json(value: object) -> None:
-    import json as codec
-
-    typer.echo(codec.dumps(value, indent=2))
-
-
 def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
     from dataclasses import asdict
 
@@ -177,7 +172,7 @@ def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
 
 
 def _draw(told: "list[Explanation]", path: Path) -> None:
-    from capar.cli._places import written
+    from capar.cli._output import written
     from capar.views.reasons import reasons_svg
 
     with written(path) as draft:

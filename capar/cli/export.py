@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._actionary import Place
+from capar.cli._options import Place
 
 app = typer.Typer()
 
@@ -26,7 +26,7 @@ def export(
     actionary: Place = None,
 ) -> None:
     """Write everything, or one observation, as Turtle, TriG, N-Quads or JSON-LD."""
-    from capar.cli._places import prove_place, written
+    from capar.cli._output import prove_place, written
     from kb import Actionary
     from kb.exchange import export as exported
     from kb.exchange import format_of, misplaced

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._rules import Beside, Rules, Steady, rule_base
+from capar.cli._options import Beside, Rules, Steady, rule_base
 
 app = typer.Typer()
 

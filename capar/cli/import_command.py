@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._actionary import Place, Wait
+from capar.cli._options import Place, Wait
 
 app = typer.Typer()
 

@@ -1,12 +1,19 @@
 """``capar inspect``: what a capture or a motion file holds."""
 
-import json
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from capar.cli._output import console, print_json
+
 app = typer.Typer()
+
+STREAM_COLUMNS = (
+    "stream", "kind", "s", "Hz", "jitter ms", "lost", "longest gap s", "rest mm", "rest deg",
+    "range m",
+)  # fmt: skip
+PAIR_COLUMNS = ("nearest pairs", "", "least m", "at s", "near for s")
 
 
 @app.command()
@@ -26,14 +33,12 @@ def inspect(
         return
     report = _report(place)
     if as_json:
-        typer.echo(json.dumps(report, indent=2, sort_keys=True))
+        print_json(report, sort_keys=True)
     else:
         _show(report)
 
 
 def _calibration(place: str, *, as_json: bool) -> None:
-    from rich.console import Console
-
     from capar.model.json_form import to_json
     from capar.views.calibration import calibration_tables
     from extractors.calibration import calibrate
@@ -44,7 +49,7 @@ def _calibration(place: str, *, as_json: bool) -> None:
         typer.echo(to_json(known), nl=False)
         return
     for table in calibration_tables(known):
-        Console().print(table)
+        console().print(table)
 
 
 def _report(place: str) -> dict[str, Any]:
@@ -109,33 +114,33 @@ def _of_file(path: Path) -> dict[str, Any]:
 
 
 def _show(report: dict[str, Any]) -> None:
-    from rich.console import Console
-    from rich.table import Table
+    from capar.views.tables import terminal_table
 
-    console = Console()
-    console.print(f"[bold]{report['name']}[/]: {report['frames']} frames")
-    table = Table("stream", "kind", "s", "Hz", "jitter ms", "lost", "longest gap s",
-                  "noise mm", "noise deg", "range m")  # fmt: skip
-    for each in report["streams"]:
-        table.add_row(
+    out = console()
+    out.print(f"[bold]{report['name']}[/]: {report['frames']} frames")
+    rows = [
+        (
             each["name"], each["kind"], f"{each['seconds']:.2f}", f"{each['rate_hz']:.1f}",
             f"{each['jitter_ms']:.1f}", str(each["lost"]), f"{each['longest_gap_s']:.2f}",
             _figure(each["noise_mm"]), _figure(each["noise_deg"]),
             " x ".join(f"{v:.2f}" for v in each["range_m"] or ()) or "-",
-        )  # fmt: skip
-    console.print(table)
+        )
+        for each in report["streams"]
+    ]  # fmt: skip
+    out.print(terminal_table(STREAM_COLUMNS, rows, names={0}))
     if report["pairs"]:
-        pairs = Table("nearest pairs", "", "least m", "at s", "near for s")
-        for each in report["pairs"]:
-            pairs.add_row(
+        pairs = [
+            (
                 each["first"], each["second"], f"{each['least_m']:.3f}",
                 f"{each['at_s']:.2f}", f"{each['near_s']:.2f}",
-            )  # fmt: skip
-        console.print(pairs)
+            )
+            for each in report["pairs"]
+        ]  # fmt: skip
+        out.print(terminal_table(PAIR_COLUMNS, pairs, names={0, 1}))
     for name, text in report.get("shapes", {}).items():
-        console.print(f"shape of {name}: {text}", highlight=False)
+        out.print(f"shape of {name}: {text}", highlight=False)
     for each in report["notices"]:
-        console.print(f"[yellow]{each['code']}[/]: {each['message']}", highlight=False)
+        out.print(f"[yellow]{each['code']}[/]: {each['message']}", highlight=False)
 
 
 def _figure(value: float | None) -> str:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._rules import Rules, opened
+from capar.cli._options import Rules, opened
 
 app = typer.Typer(no_args_is_help=True, help="Words in an Actionary: WordNet, Levin, VerbNet.")
 
@@ -17,7 +17,7 @@ Where = Annotated[
 @app.command()
 def load(actionary: Where = None, rules: Rules = None) -> None:
     """Put WordNet's verbs, Levin's classes and the primitives' links into the Actionary, once."""
-    from capar.cli._words import rule_words
+    from capar.cli._options import rule_words
     from kb.actionary import Actionary
     from kb.lexicon.loading import load_words
 
@@ -35,7 +35,7 @@ def import_words(
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Read VerbNet 3.x from your own copy into the Actionary, in place of an earlier one."""
-    from capar.cli._words import print_json
+    from capar.cli._output import print_json
     from capar.model.errors import UnknownNameError
     from kb.actionary import Actionary
     from kb.lexicon.loading import load_verbnet
@@ -58,7 +58,7 @@ def import_words(
         "loaded": loaded,
     }
     if json:
-        print_json(figures)
+        print_json(figures, sort_keys=True)
         return
     typer.echo(
         f"{len(classes)} files with {len(every)} classes and {figures['members']} members; "

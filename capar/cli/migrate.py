@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._actionary import Place, Wait
+from capar.cli._options import Place, Wait
 
 app = typer.Typer()
 
@@ -37,7 +37,7 @@ def migrate(
 
 
 def _migrate_file(path: Path) -> None:
-    from capar.cli._places import written
+    from capar.cli._output import written
     from capar.model.errors import FileError
     from capar.model.json_form import from_json, to_json
     from capar.model.json_migration import SCHEMA, migrated, version

@@ -36,7 +36,7 @@ def new_capture(
 
 
 def _write_draft(files: list[Path], output: Path, *, force: bool) -> None:
-    from capar.cli._places import written
+    from capar.cli._output import written
     from capar.model.errors import CaparError, FileError
     from extractors.readers.bundle.capture_toml import read_capture
     from extractors.readers.drafting.draft import TODO, draft

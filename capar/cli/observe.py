@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._actionary import Wait
-from capar.cli._rules import Rules, Steady, rule_base
+from capar.cli._options import Rules, Steady, Wait, rule_base
 
 if TYPE_CHECKING:
     from capar.model.capture import Capture
@@ -96,7 +95,7 @@ def observe(
 
 def _prove_output(*, json: bool, script: bool, pars: bool, plot: Path | None) -> None:
     """What is to come out can come out; told before anything is computed."""
-    from capar.cli._places import prove_place
+    from capar.cli._output import prove_place
     from capar.model.errors import CaparError
 
     forms = {"--json": json, "--script": script, "--pars": pars}
@@ -176,7 +175,7 @@ def _tables(observation: "Observation") -> None:
 def _draw(
     observation: "Observation", capture: "Capture", measurements: "Measurements", path: Path
 ) -> None:
-    from capar.cli._places import written
+    from capar.cli._output import written
     from capar.views.picture import draw
 
     speeds = {

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._rules import Rules, opened
+from capar.cli._options import Rules, opened
 
 app = typer.Typer()
 
@@ -26,7 +26,8 @@ def parse(
     With an Actionary, objects and performers are those that it knows, and a question is answered;
     without one any noun will do.
     """
-    from capar.cli._words import open_words, print_json, rule_words
+    from capar.cli._options import open_words, rule_words
+    from capar.cli._output import print_json
     from capar.pipelines.language import vocabulary
     from kb.language import Question
     from kb.language import parse as read
@@ -36,7 +37,7 @@ def parse(
         value = read(sentence, vocabulary(words, store))
         if not isinstance(value, Question):
             if json:
-                print_json(value)
+                print_json(value, sort_keys=True)
             else:
                 typer.echo(_instruction(value))
             return
@@ -48,7 +49,8 @@ def parse(
                     "about": value.about,
                     "sparql": value.sparql,
                     "answers": answers,
-                }
+                },
+                sort_keys=True,
             )
         elif answers is None:
             typer.echo(value.sparql)

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._actionary import Place
+from capar.cli._options import Place
+from capar.cli._output import console
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
@@ -144,16 +145,6 @@ def _print(answer: "Answer", chosen: str) -> None:
     if chosen != "table" or not sys.stdout.isatty():
         typer.echo(FORMATS[chosen](answer), nl=False)
         return
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
+    from capar.views.tables import terminal_table
 
-    table, rows = Table(), cells(answer)
-    for index, name in enumerate(header(answer)):
-        texts = [row[index] for row in rows]
-        whole = all(" " not in each for each in texts)  # a name or an IRI, to be pasted
-        width = max(map(len, [name, *texts])) if whole else None
-        table.add_column(name, no_wrap=whole, min_width=width, overflow="fold")
-    for row in rows:
-        table.add_row(*map(Text, row))
-    Console().print(table, crop=False)
+    console().print(terminal_table(header(answer), list(cells(answer))))

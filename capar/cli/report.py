@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._rules import Rules, opened, rule_base
+from capar.cli._options import Rules, opened, rule_base
 
 app = typer.Typer(no_args_is_help=True, help="Reports over the rule base and an Actionary.")
 
@@ -44,8 +44,8 @@ def linguistics(
     json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
 ) -> None:
     """Which verbs and classes of verbs the system addresses, with what proves it."""
-    from capar.cli._places import prove_place, written
-    from capar.cli._words import open_words
+    from capar.cli._options import open_words
+    from capar.cli._output import prove_place, written
     from capar.pipelines.linguistic_report import cases_of, primitive_files
     from capar.pipelines.linguistic_report import linguistics as report_of
     from kb.reports.writing import write

@@ -5,16 +5,18 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._actionary import Place
-from capar.cli._rule_tables import (
+from capar.cli._options import Place, Rules, has_actionary, opened, require_actionary, rule_base
+from capar.cli._output import print_json
+from capar.cli._rule_writing import (
+    Base,
+    Json,
+    list_words,
+    new,
     print_audit,
     print_bearing,
     print_changes,
-    print_json,
     print_others,
 )
-from capar.cli._rule_writing import Base, Json, list_words, new
-from capar.cli._rules import Rules, has_actionary, opened, require_actionary, rule_base
 
 app = typer.Typer(no_args_is_help=True)
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._actionary import Place
+from capar.cli._options import Place
 
 app = typer.Typer()
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._rules import Beside, Rules
+from capar.cli._options import Beside, Rules
+from capar.cli._output import print_json
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
@@ -118,8 +119,6 @@ def _print(suite: _Suite) -> None:
 
 
 def _print_json(suites: Iterable[_Suite]) -> None:
-    from json import dumps
-
     rows = [
         {
             "name": str(each.path),
@@ -134,7 +133,7 @@ def _print_json(suites: Iterable[_Suite]) -> None:
         }
         for each in suites
     ]  # fmt: skip
-    typer.echo(dumps(rows, indent=2))
+    print_json(rows)
 
 
 def _end(suites: Sequence[_Suite]) -> None:

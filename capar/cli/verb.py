@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._rules import Rules, opened, rule_base
+from capar.cli._options import Rules, opened, rule_base
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -40,7 +40,7 @@ def verb(
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Say what is known of a verb: senses, classes, roles, primitives, and where it was seen."""
-    from capar.cli._words import open_words, rule_words
+    from capar.cli._options import open_words, rule_words
     from capar.model.errors import CaparError
 
     if bool(lemma) == bool(segment):
@@ -69,11 +69,11 @@ def verb(
 
 
 def _print_verb(answer: "VerbAnswer", *, json: bool) -> None:
-    from capar.cli._words import print_json
+    from capar.cli._output import print_json
     from kb.lexicon.evidence import often, summed
 
     if json:
-        print_json(answer)
+        print_json(answer, sort_keys=True)
         return
     from rich.console import Console
 
@@ -119,12 +119,12 @@ def _print_classes(console: "Console", answer: "VerbAnswer") -> None:
 
 
 def _print_kinds(lemma: str, names: tuple[str, ...], store: "Store | None", *, json: bool) -> None:
-    from capar.cli._words import print_json
+    from capar.cli._output import print_json
     from kb.lexicon.evidence import often, seen_in, summed
 
     seen = [each for each in (seen_in(store) if store else ()) if each.primitive in names]
     if json:
-        print_json({"verb": lemma, "primitives": names, "seen": seen})
+        print_json({"verb": lemma, "primitives": names, "seen": seen}, sort_keys=True)
         return
     typer.echo(f"{lemma}, and every kind of it: {', '.join(names) or 'no primitive'}")
     for each in summed(seen):
@@ -132,10 +132,10 @@ def _print_kinds(lemma: str, names: tuple[str, ...], store: "Store | None", *, j
 
 
 def _print_fits(fits: "tuple[Fit, ...]", *, json: bool) -> None:
-    from capar.cli._words import print_json
+    from capar.cli._output import print_json
 
     if json:
-        print_json(fits)
+        print_json(fits, sort_keys=True)
         return
     for number, each in enumerate(fits, 1):
         typer.echo(f"{number:2d}. {each.verb}  ({each.source})")

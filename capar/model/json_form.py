@@ -131,11 +131,10 @@ def published_schema(name: str) -> str:
 def _plain(value: Any, place: str) -> Any:
     if isinstance(value, Fact):
         return str(value)
-    if isinstance(value, Notice):
-        value = value.document()
     if is_dataclass(value):
-        names = [each.name for each in fields(value)]
-        return {each: _plain(getattr(value, each), f"{place}.{each}") for each in names}
+        own = {each.name: getattr(value, each.name) for each in fields(value)}
+        parts = value.document() if isinstance(value, Notice) else own
+        return {name: _plain(each, f"{place}.{name}") for name, each in parts.items()}
     if isinstance(value, Mapping):
         return {key: _plain(value[key], f"{place}.{key}") for key in sorted(value)}
     if isinstance(value, tuple | list):

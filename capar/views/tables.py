@@ -41,7 +41,10 @@ def step_rows(par: ComplexPar) -> tuple[tuple[str, ...], ...]:
 
 def segments_table(observation: Observation) -> "Table":
     """Segments for a terminal, a section for each link."""
-    table = _table(SEGMENT_COLUMNS, right={1, 2}, title=observation.capture)
+    rows = segment_rows(observation)[1:]
+    table = terminal_table(
+        SEGMENT_COLUMNS, rows, right={1, 2}, names={0}, title=observation.capture, empty=True
+    )
     table.caption = FEATURE_NOTE
     for link in observation.links:
         for segment in link.segments:
@@ -57,7 +60,8 @@ def segments_table(observation: Observation) -> "Table":
 def steps_table(par: ComplexPar) -> "Table":
     """Steps of a complex PAR for a terminal, with their shares of its duration."""
     title = f"{par.name or 'unnamed'}({', '.join(par.objects)}), {par.duration_s:.2f} s"
-    table = _table(STEP_COLUMNS, right={4, 5, 6}, title=title)
+    rows = step_rows(par)[1:]
+    table = terminal_table(STEP_COLUMNS, rows, right={4, 5, 6}, names={0}, title=title, empty=True)
     for link in par.links:
         for step in link.steps:
             table.add_row(*map(_escaped, _step_row(step, par.duration_s)))
@@ -147,14 +151,39 @@ def _step_row(step: Step, duration_s: float) -> tuple[str, ...]:
     )
 
 
-def _table(columns: Sequence[str], *, right: Collection[int], title: str) -> "Table":
-    from rich.markup import escape
+def terminal_table(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    right: Collection[int] = frozenset(),
+    names: Collection[int] = frozenset(),
+    title: str = "",
+    empty: bool = False,
+) -> "Table":
+    """A table that cuts no cell: where the terminal is too narrow, a cell takes further lines.
+
+    Args:
+        columns: Its heading.
+        rows: Cells of equally many columns.
+        right: Columns whose cells stand at the right; numbers, which stay whole.
+        names: Columns that stay whole as well.
+        title: What stands above it.
+        empty: Whether the caller adds the rows, with their styles and sections.
+    """
     from rich.table import Table
 
-    table = Table(title=escape(title), title_justify="left", caption_justify="left")
+    table = Table(title=_escaped(title) or None, title_justify="left", caption_justify="left")
     for index, column in enumerate(columns):
-        number = index in right
-        table.add_column(escape(column), justify="right" if number else "left", no_wrap=number)
+        cells = [column.split(" ")[0], *(row[index] for row in rows)] if rows else [column]
+        whole = max(map(len, cells)) if index in {*right, *names} else None
+        table.add_column(
+            _escaped(column),
+            justify="right" if index in right else "left",
+            min_width=whole,
+            overflow="fold",
+        )
+    for row in () if empty else rows:
+        table.add_row(*map(_escaped, row))
     return table
 
 

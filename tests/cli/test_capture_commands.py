@@ -95,3 +95,14 @@ def test_no_folder_is_made_for_motion_that_cannot_be_read(tmp_path: Path) -> Non
     result = RUNNER.invoke(app, ["new-capture", str(tmp_path / "none.csv"), "-o", output])
     assert isinstance(result.exception, FileError)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_long_name_is_whole_in_a_pipe(tmp_path: Path) -> None:
+    name = "marker_on_the_second_knuckle_of_the_left_glove_of_the_first_performer"
+    path = samples.write_csv(tmp_path / "m.csv")
+    head, _, rest = path.read_text().partition("\n")
+    body = next(each[:-2] for each in head.split(",") if each.endswith("_x"))
+    path.write_text(head.replace(body, name) + "\n" + rest)
+    result = RUNNER.invoke(app, ["inspect", str(path)])
+    assert result.exit_code == 0, result.output
+    assert name in result.output

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from capar.cli._places import REMEDIES, told, written
+from capar.cli._output import REMEDIES, told, written
 
 DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
 CAPAR = Path(sys.executable).parent / "capar"

@@ -138,3 +138,12 @@ def test_columns_stand_under_each_other(rows: list[tuple[str, str, str]]) -> Non
         for start, cell in zip(starts, row, strict=True):
             assert start is None or line[start : start + len(cell)] == cell
         assert line == line.rstrip()
+
+
+@pytest.mark.parametrize("columns", [40, 80, 200])
+def test_a_table_cuts_no_name_however_narrow_the_terminal(columns: int) -> None:
+    seen = pick_up_with_both_hands()
+    out = shown(segments_table(seen), columns) + shown(steps_table(seen.complex_par), columns)
+    assert "…" not in out
+    for each in seen.segments:
+        assert f"{each.ee}/{each.index}" in out or columns < 80

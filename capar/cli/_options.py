@@ -1,5 +1,7 @@
-"""What every command that reads rules takes, and the rule base that follows from it."""
+"""The options that several commands take, and what follows from them: rules, words, a store."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -7,6 +9,23 @@ import typer
 
 if TYPE_CHECKING:
     from capar_rules.engine.profiles import Profile
+    from kb.lexicon.links import PrimitiveWords
+    from kb.store.stores import Store
+
+Place = Annotated[
+    str | None,
+    typer.Option(
+        "--actionary",
+        metavar="PATH|URL",
+        help="The Actionary: a folder, or a SPARQL server's address. "
+        "Else CAPAR_ACTIONARY, else ./actionary.",
+        show_default=False,
+    ),
+]
+
+Wait = Annotated[
+    float, typer.Option(metavar="SECONDS", help="How long to wait for another writer.")
+]
 
 Rules = Annotated[
     Path | None,
@@ -104,3 +123,30 @@ def require_actionary(actionary: str | None, *, observed: bool = False) -> None:
             f"`capar observe CAPTURE --actionary {place}` makes one; --rules FOLDER keeps rules "
             "without one.",
         )  # fmt: skip
+
+
+def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[PrimitiveWords, ...]":
+    """What the primitives that ship, and those that people wrote, are called."""
+    from capar.pipelines.linguistic_report import primitive_files, primitive_words
+
+    return primitive_words(primitive_files(rule_base("extended", rules, actionary).added))
+
+
+@contextmanager
+def open_words(where: str | None) -> "Iterator[Store | None]":
+    """The store of an Actionary to read; None where none is named and none stands here."""
+    from kb.store.embedded import DATA_FOLDER
+    from kb.store.schema import prove_current
+    from kb.store.stores import is_address, open_store, place
+
+    target = place(where)
+    # The folder of an Actionary may hold rules before it holds anything that was observed.
+    if where is None and not is_address(target) and not (Path(target) / DATA_FOLDER).is_dir():
+        yield None
+        return
+    store = open_store(target, read_only=not is_address(target))
+    try:
+        prove_current(store)
+        yield store
+    finally:
+        store.close()

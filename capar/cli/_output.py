@@ -1,4 +1,4 @@
-"""Files that a command writes, and what is said of those that the system does not give."""
+"""How commands print JSON and tables, write files whole or not at all, and tell of failures."""
 
 import errno
 import os
@@ -6,8 +6,14 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import copymode
+from typing import TYPE_CHECKING, Any
+
+import typer
 
 from capar.model.errors import FileError
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 REMEDIES = {
     errno.EACCES: "Take the rights to it, or name another place.",
@@ -25,6 +31,10 @@ REMEDIES = {
 """What would have been right, by what went wrong."""
 
 
+PIPE_COLUMNS = 10_000
+"""A table in a pipe is cut at no column that anybody meets."""
+
+
 def told(error: OSError) -> str:
     """What went wrong, where, and what would have been right."""
     names = [os.fsdecode(each) for each in (error.filename, error.filename2) if _named(each)]
@@ -36,6 +46,36 @@ def told(error: OSError) -> str:
 
 def _named(name: object) -> bool:
     return isinstance(name, str | bytes | os.PathLike)
+
+
+def print_json(value: Any, *, sort_keys: bool = False) -> None:
+    """A value as JSON on standard output: dataclasses by their fields, the unknown as text."""
+    import json
+
+    text = json.dumps(_plain(value), ensure_ascii=False, indent=2, sort_keys=sort_keys, default=str)
+    typer.echo(text)
+
+
+def _plain(value: Any) -> Any:
+    import dataclasses
+
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        names = [each.name for each in dataclasses.fields(value)]
+        return {name: _plain(getattr(value, name)) for name in names}
+    if isinstance(value, dict):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return value
+
+
+def console() -> "Console":
+    """Where tables go: as wide as the terminal, and in a pipe as wide as they have to be."""
+    import sys
+
+    from rich.console import Console
+
+    return Console(width=None if sys.stdout.isatty() else PIPE_COLUMNS)
 
 
 def prove_place(path: Path, *, suffixes: Collection[str] = ()) -> None:
