@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Bool, Float
-from scipy.interpolate import CubicSpline
 
 from capar.model import geometry
 from capar.model.capture import Notice, Stream, notice
@@ -85,6 +84,8 @@ def _positions(
     wanted: Float[np.ndarray, "frames"],
 ) -> Float[np.ndarray, "frames 3"]:
     """Cubic inside runs of steady sampling, linear in short ones."""
+    from scipy.interpolate import CubicSpline
+
     if len(source) == 1:
         return np.repeat(positions, len(wanted), axis=0)
     out = np.stack([np.interp(wanted, source, each) for each in positions.T], axis=1)
