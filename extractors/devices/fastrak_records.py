@@ -8,7 +8,7 @@ header, its length and its end agree and a quaternion's norm is one.
 import math
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 END = b"\r\n"
 STATIONS = 4
@@ -36,6 +36,10 @@ class StationRecord:
 
     values: tuple[float, ...]
     stamp_s: float = 0.0
+    """When its first byte arrived [s]."""
+
+    after_gap: bool = False
+    """Whether bytes were dropped since the record before."""
 
 
 def layout(form: str) -> str:
@@ -110,6 +114,7 @@ class RecordParser:
         self._byte_s = byte_s
         self._buffer = bytearray()
         self._stamp_s = 0.0
+        self._gap = False
 
     def feed(self, data: bytes, at_s: float = 0.0) -> list[StationRecord]:
         """The records that some bytes complete, the last of which arrived at a moment [s]."""
@@ -123,9 +128,11 @@ class RecordParser:
             if record is None:
                 at += 1
                 self.dropped_bytes += 1
+                self._gap = True
                 continue
             stamp_s = self._stamp_s if at < held else at_s - (total - 1 - at) * self._byte_s
-            out.append(StationRecord(record.station, record.error, record.values, stamp_s))
+            out.append(replace(record, stamp_s=stamp_s, after_gap=self._gap))
+            self._gap = False
             at += self._size
         if at >= held:
             self._stamp_s = at_s - (total - 1 - at) * self._byte_s
@@ -135,3 +142,4 @@ class RecordParser:
     def clear(self) -> None:
         """Forget what was begun."""
         self._buffer.clear()
+        self._gap = True

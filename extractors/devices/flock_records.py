@@ -15,6 +15,9 @@ PHASE = 0x80
 KEPT = 0xFFFC
 """Bits of a word that the wire carries."""
 
+SLACK_S = 0.004
+"""What a record may take longer than its bytes do, and count without a byte after it [s]."""
+
 
 @dataclass(frozen=True, slots=True)
 class Record:
@@ -83,12 +86,19 @@ class RecordParser:
         self._byte_s = byte_s
         self._buffer = bytearray()
         self._stamp_s = 0.0
+        self._fed_s = 0.0
         self._gap = False
+
+    @property
+    def pending(self) -> bool:
+        """Whether a whole record waits for the byte after it."""
+        return len(self._buffer) == self._size
 
     def feed(self, data: bytes, at_s: float = 0.0) -> list[Record]:
         """The records that some bytes complete, the last of which arrived at a moment [s]."""
         held = len(self._buffer)
         self._buffer += data
+        self._fed_s = at_s
         total, at, out = len(self._buffer), 0, []
         while at < total:
             if (self._buffer[at] & PHASE) == 0:
@@ -110,8 +120,9 @@ class RecordParser:
         return out
 
     def settle(self) -> list[Record]:
-        """The last record, if it is whole and nothing follows it on an idle line."""
-        if len(self._buffer) != self._size:
+        """The last record, if it is whole and came in one go, and the line is idle after it."""
+        longest_s = 2.0 * self._size * self._byte_s + SLACK_S
+        if not self.pending or (self._byte_s and self._fed_s - self._stamp_s > longest_s):
             return []
         out = self._accept(0)
         self._buffer.clear()

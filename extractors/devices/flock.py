@@ -1,0 +1,321 @@
+"""Ascension Flock of Birds, or a MotionStar, over RS-232.
+
+What no simulator can settle stays a switch: the sign of the quaternion on the wire
+(``quaternion=plain``). A flock sends no checksums and no time stamps: a byte whose data bits are
+garbled shows only where a quaternion's or matrix's norm gives it away.
+"""
+
+import time
+
+from capar.model.errors import DeviceError
+from extractors.devices import flock_commands as commands
+from extractors.devices.addresses import Address
+from extractors.devices.bird_formats import pose_of_words
+from extractors.devices.flock_records import Record, RecordParser
+from extractors.devices.flock_settings import FlockSettings, flock_settings
+from extractors.devices.frames import CycleCounter, FrameCollector, SensorReading
+from extractors.devices.serial_line import SerialLine
+from extractors.devices.tracker import (
+    Description,
+    DeviceLostError,
+    Frame,
+    LiveTracker,
+)
+
+REPLY_S = 0.3
+"""How long a reply to a question may take beyond its bytes [s]."""
+
+ATTEMPTS = 6
+"""How often a question is put, on a line that may lose bytes."""
+
+SILENCE_S = 1.5
+"""A flock that sends nothing for so long is lost [s]."""
+
+IDLE_S = 0.006
+"""A line without a byte for so long has sent its record [s]."""
+
+POLL_IDLE_S = 0.03
+"""A poll's answer that stops for so long has ended [s]."""
+
+AFTER_RESET_S = 2.0
+"""How long units take to start anew [s]."""
+
+AHEAD = 3
+"""How many cycles birds with lines of their own may be apart."""
+
+
+class FlockTracker(LiveTracker):
+    """A flock on one line, or on one line a bird.
+
+    Args:
+        address: Like ``flock:/dev/ttyUSB0?birds=12&format=pos_quat&rate=51.65``.
+
+    Raises:
+        CaparError: The address holds what no flock can be set to.
+    """
+
+    def __init__(self, address: Address) -> None:
+        super().__init__()
+        self._settings: FlockSettings = flock_settings(address)
+        self._details: dict[str, str] = {}
+        self._ports: list[_Port] = []
+        self._frames = FrameCollector(len(self._settings.names), self.counts)
+        self._start_s = 0.0
+        self._heard_s = 0.0
+        self._next_poll_s = 0.0
+        self._cycle = -1
+
+    def describe(self) -> Description:
+        """What the flock is, and its sensors."""
+        settings = self._settings
+        return Description(
+            kind="flock",
+            model=self._details.get("model", ""),
+            sensors=settings.names,
+            rate_hz=settings.rate_hz,
+            has_positions=settings.form.position,
+            has_orientations=bool(settings.form.orientation),
+            details=self._details,
+        )
+
+    def _connect(self) -> None:
+        settings = self._settings
+        self._ports = [_Port(each, index, settings) for index, each in enumerate(settings.ports)]
+        for port in self._ports:
+            port.open(reset=settings.reset)
+        self._details = self._ports[0].identity()
+        self._configure()
+        self._frames = FrameCollector(
+            len(settings.names), self.counts, ahead=AHEAD if len(self._ports) > 1 else 0
+        )
+        self._start_s = self._heard_s = self._next_poll_s = time.monotonic()
+        self._cycle = -1
+        if settings.stream:
+            for port in self._ports:
+                port.stream(settings.every)
+
+    def _configure(self) -> None:
+        settings, master = self._settings, self._ports[0]
+        for index, address in enumerate(settings.addresses):
+            port = self._ports[index % len(self._ports)]
+            chosen = bytes([settings.form.command]), commands.hemisphere(settings.hemisphere)
+            for command in chosen:
+                port.tell(commands.addressed(address, command) if settings.group else command)
+        if not settings.erc:
+            scale = int(settings.scaling.range_inch > 36.0)
+            for port in self._ports:
+                port.tell(commands.change(commands.SCALING, scale))
+        master.tell(commands.change(commands.RATE, commands.rate_word(settings.measured_hz)))
+        if settings.line_frequency_hz:
+            master.tell(commands.change(commands.LINE_FREQUENCY, settings.line_frequency_hz))
+        if settings.units > 1:
+            master.auto_configure(settings.units, settings.settle_s)
+        if settings.group:
+            master.tell(commands.change(commands.GROUP_MODE, 1))
+        master.check(settings)
+
+    def _disconnect(self) -> None:
+        for port in self._ports:
+            self.counts.dropped_bytes += port.parser.dropped_bytes
+            self.counts.refused_records += port.parser.wrong_addresses
+            port.parser.dropped_bytes = port.parser.wrong_addresses = 0
+            port.line.close()
+
+    def _stop(self) -> None:
+        for port in self._ports:
+            try:
+                port.quieten()
+                port.tell(bytes([commands.SLEEP]))
+            except DeviceLostError:
+                continue
+
+    def _read(self, timeout_s: float) -> list[Frame]:
+        out = self._streamed(timeout_s) if self._settings.stream else self._polled(timeout_s)
+        now = time.monotonic()
+        if now - self._heard_s > SILENCE_S + 3.0 / self._settings.rate_hz:
+            raise DeviceLostError(f"the flock sent nothing for {now - self._heard_s:.1f} s")
+        self._take_counts()
+        return out
+
+    def _take_counts(self) -> None:
+        for port in self._ports:
+            self.counts.dropped_bytes += port.parser.dropped_bytes
+            self.counts.refused_records += port.parser.wrong_addresses
+            port.parser.dropped_bytes = port.parser.wrong_addresses = 0
+
+    def _streamed(self, timeout_s: float) -> list[Frame]:
+        out: list[Frame] = []
+        share_s = timeout_s / len(self._ports)
+        for port in self._ports:
+            waiting = port.parser.pending
+            records = port.records(min(share_s, IDLE_S) if waiting else share_s)
+            for record in records:
+                out += self._add(port, record)
+        return out
+
+    def _polled(self, timeout_s: float) -> list[Frame]:
+        """One cycle of polls, if its time comes before the wait is over."""
+        now = time.monotonic()
+        time.sleep(max(0.0, min(timeout_s, self._next_poll_s - now)))
+        if time.monotonic() < self._next_poll_s:
+            return []
+        period_s = 1.0 / self._settings.rate_hz
+        self._next_poll_s = max(self._next_poll_s + period_s, time.monotonic() - period_s)
+        self._cycle += 1
+        for port in self._ports:
+            port.line.write(bytes([commands.POINT]))
+        out: list[Frame] = []
+        for port in self._ports:
+            for record in port.answer():
+                out += self._add(port, record)
+        return [*out, *self._frames.flush()]
+
+    def _add(self, port: "_Port", record: Record) -> list[Frame]:
+        """The frames that a record completes, once its words are a pose and its cycle is known."""
+        settings = self._settings
+        self._heard_s = time.monotonic()
+        index = settings.addresses.index(record.address) if settings.group else port.index
+        cycle = self._cycle if not settings.stream else self._streamed_cycle(port, record, index)
+        pose = pose_of_words(record.words, settings.form, settings.scaling)
+        if pose is None:
+            self.counts.refused_records += 1
+            return []
+        return self._frames.add(cycle, SensorReading(index, record.stamp_s, *pose))
+
+    def _streamed_cycle(self, port: "_Port", record: Record, index: int) -> int:
+        """The cycle of a record: a group's birds come in order, so a lower one begins the next."""
+        cycles, gap = port.cycles, port.gap or record.after_gap
+        port.gap = gap
+        if not cycles.started:
+            period_s = 1.0 / self._settings.rate_hz
+            late = 0 if len(self._ports) == 1 else (record.stamp_s - self._start_s) / period_s
+            port.last_index, port.gap = index, False
+            self._frames_begin(cycles.start(round(late), record.stamp_s))
+        elif not self._settings.group or index <= port.last_index:
+            cycles.advance(record.stamp_s, after_gap=gap)
+            port.gap = False
+        port.last_index = index
+        return cycles.cycle
+
+    def _frames_begin(self, cycle: int) -> None:
+        """What lies before the first record of all is not missing."""
+        if self._cycle < 0:
+            self._cycle = cycle
+            self._frames.start_after(cycle - 1)
+
+
+class _Port:
+    """One line, the parser of what comes from it, and questions to the unit at its end."""
+
+    def __init__(self, path: str, index: int, settings: FlockSettings) -> None:
+        self.index = index
+        self.path = path
+        self.line = SerialLine(path, settings.baud)
+        self.gap = False
+        self.last_index = -1
+        self.cycles = CycleCounter(1.0 / settings.rate_hz)
+        self._byte_s = commands.BITS / settings.baud
+        self._expected = len(settings.names) if settings.group else 1
+        self._quiet_s = settings.settle_s / 3.0
+        self.parser = RecordParser(
+            settings.form,
+            addresses=settings.addresses if settings.group else None,
+            byte_s=self._byte_s,
+        )
+
+    def tell(self, command: bytes) -> None:
+        """Give a command, which nothing acknowledges."""
+        self.line.write(command)
+
+    def open(self, *, reset: bool) -> None:
+        """Open the line, and have the unit quiet."""
+        self.line.open()
+        if reset and self.line.reset_device():
+            time.sleep(AFTER_RESET_S)
+        self.quieten()
+
+    def quieten(self) -> None:
+        """End whatever the unit is sending."""
+        self.tell(bytes([commands.POINT]))
+        time.sleep(self._quiet_s)
+        self.line.drop_input()
+
+    def ask(self, parameter: int) -> bytes:
+        """The value of a parameter.
+
+        Raises:
+            DeviceError: No answer comes.
+        """
+        size = commands.SIZES[parameter]
+        for _ in range(ATTEMPTS):
+            self.line.drop_input()
+            self.tell(commands.examine(parameter))
+            value = self.line.read_exactly(size, REPLY_S + size * self._byte_s)
+            if len(value) == size:
+                return value
+        raise DeviceError(
+            f"{self.path}: no answer to examine parameter {parameter}; check the power, the fly "
+            "switch, the cable and the baud rate (DIP switches)"
+        )
+
+    def identity(self) -> dict[str, str]:
+        """Model and firmware."""
+        firmware = self.ask(commands.FIRMWARE)
+        model = self.ask(commands.MODEL).decode("ascii", "replace").strip()
+        return {"model": model, "firmware": f"{firmware[0]}.{firmware[1]}"}
+
+    def auto_configure(self, units: int, settle_s: float) -> None:
+        """Have the master find the other units; the line stays idle before and after."""
+        time.sleep(settle_s)
+        self.tell(commands.change(commands.AUTO_CONFIG, units))
+        time.sleep(settle_s)
+        self.line.drop_input()
+
+    def check(self, settings: FlockSettings) -> None:
+        """Prove that all units run and none has an error.
+
+        Raises:
+            DeviceError: One is missing, or reports an error.
+        """
+        code = self.ask(commands.ERROR)[0]
+        if code:
+            unit = self.ask(commands.EXPANDED_ERROR)[0]
+            raise DeviceError(f"{self.path}: {commands.error_text(code, unit)}")
+        if settings.units == 1:
+            return
+        status = self.ask(commands.FLOCK_STATUS)
+        for address in settings.addresses:
+            bits = status[address - 1]
+            if not bits & commands.ACCESSIBLE or not bits & commands.RUNNING:
+                found = sum(bool(each & commands.ACCESSIBLE) for each in status)
+                raise DeviceError(
+                    f"{self.path}: unit {address} of {settings.units} does not run; {found} are "
+                    "there. Check its fly switch and address, and birds= and erc= of the address"
+                )
+
+    def stream(self, every: int) -> None:
+        """Have the unit send every nth cycle."""
+        self.tell(bytes([commands.EVERY[every], commands.STREAM]))
+
+    def records(self, timeout_s: float) -> list[Record]:
+        """The records that come within a wait, or that the idle line shows to be whole."""
+        data = self.line.read(timeout_s)
+        if data:
+            return self.parser.feed(data, time.monotonic())
+        return self.parser.settle()
+
+    def answer(self) -> list[Record]:
+        """The records that answer a poll."""
+        out: list[Record] = []
+        heard = False
+        deadline = time.monotonic() + REPLY_S
+        while len(out) < self._expected and time.monotonic() < deadline:
+            last = self.parser.pending and len(out) == self._expected - 1
+            data = self.line.read(POLL_IDLE_S if heard and not last else REPLY_S if not last else 0)
+            if not data:
+                out += self.parser.settle()
+                break
+            heard = True
+            out += self.parser.feed(data, time.monotonic())
+        self.parser.clear()
+        return out

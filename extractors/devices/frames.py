@@ -1,0 +1,123 @@
+"""Records of single sensors gathered into frames; what is missing is counted, never filled in."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from extractors.devices.tracker import Counts, Frame
+
+
+@dataclass(frozen=True, slots=True)
+class SensorReading:
+    """One sensor's pose in one cycle."""
+
+    index: int
+    """Row of the sensor in a frame."""
+
+    host_s: float
+    position: np.ndarray
+    orientation: np.ndarray
+    device_s: float | None = None
+
+
+class CycleCounter:
+    """Numbers the measuring cycles of a stream whose records carry no number.
+
+    Cycles follow one another while no byte is lost. After a gap the time that went by says how
+    many are missing, to the nearest.
+    """
+
+    def __init__(self, period_s: float) -> None:
+        self._period_s = period_s
+        self._cycle = -1
+        self._stamp_s = 0.0
+
+    def start(self, cycle: int, stamp_s: float) -> int:
+        """Begin with a number."""
+        self._cycle, self._stamp_s = cycle, stamp_s
+        return cycle
+
+    @property
+    def started(self) -> bool:
+        """Whether a cycle was numbered."""
+        return self._cycle >= 0
+
+    @property
+    def cycle(self) -> int:
+        """The present cycle."""
+        return self._cycle
+
+    def advance(self, stamp_s: float, *, after_gap: bool) -> int:
+        """The number of the next cycle, of which a record came at a moment [s]."""
+        steps = 1
+        if after_gap and self.started:
+            steps = max(1, round((stamp_s - self._stamp_s) / self._period_s))
+        return self.start(self._cycle + steps, stamp_s)
+
+
+@dataclass
+class _Partial:
+    readings: dict[int, SensorReading] = field(default_factory=dict)
+
+
+class FrameCollector:
+    """Makes frames of the readings of numbered cycles.
+
+    Args:
+        sensors: How many there are.
+        counts: Where lost records are counted.
+        ahead: How many newer cycles are begun before an incomplete one is given as it is.
+    """
+
+    def __init__(self, sensors: int, counts: Counts, *, ahead: int = 0) -> None:
+        self._sensors = sensors
+        self._counts = counts
+        self._ahead = ahead
+        self._partial: dict[int, _Partial] = {}
+        self._given = -1
+
+    def start_after(self, cycle: int) -> None:
+        """Count from a cycle on; nothing before it is missing."""
+        self._partial.clear()
+        self._given = cycle
+
+    def add(self, cycle: int, reading: SensorReading) -> list[Frame]:
+        """The frames that a reading completes, or shows to be incomplete."""
+        if cycle <= self._given:
+            self._counts.refused_records += 1
+            return []
+        self._counts.records += 1
+        self._partial.setdefault(cycle, _Partial()).readings[reading.index] = reading
+        newest = max(self._partial)
+        done = [
+            each
+            for each, partial in self._partial.items()
+            if len(partial.readings) == self._sensors or each < newest - self._ahead
+        ]
+        return self._give(max(done)) if done else []
+
+    def flush(self) -> list[Frame]:
+        """The frames that were begun."""
+        return self._give(max(self._partial)) if self._partial else []
+
+    def _give(self, last: int) -> list[Frame]:
+        """Every frame begun up to a cycle."""
+        out = []
+        for cycle in sorted(each for each in self._partial if each <= last):
+            readings = list(self._partial.pop(cycle).readings.values())
+            missing = self._sensors - len(readings)
+            self._counts.lost_records += missing + self._sensors * (cycle - self._given - 1)
+            self._given = cycle
+            out.append(frame_of(readings, self._sensors))
+        return out
+
+
+def frame_of(readings: Sequence[SensorReading], sensors: int) -> Frame:
+    """The frame of some sensors' readings; the others are NaN."""
+    positions, orientations = np.full((sensors, 3), np.nan), np.full((sensors, 4), np.nan)
+    for each in readings:
+        positions[each.index] = each.position
+        orientations[each.index] = each.orientation
+    first = min(readings, key=lambda each: each.host_s)
+    return Frame(first.host_s, first.device_s, positions, orientations)
