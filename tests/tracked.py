@@ -76,10 +76,15 @@ def compare(got: np.ndarray, sent: np.ndarray, intact: Sequence[bool]) -> Held:
 def held(
     frames: Sequence[Frame], log: Sequence[Sent], form: str, *, group: bool, range_inch: float
 ) -> list[Held]:
-    """The comparison, sensor by sensor."""
+    """The comparison, sensor by sensor.
+
+    A unit on its own answers the POINT by which the driver ends what may be streaming; that
+    first record is no frame.
+    """
     out = []
-    for index, address in enumerate(sorted({each.address for each in log})):
-        mine = [each for each in log if each.address == address]
+    addresses = sorted({each.address for each in log})
+    for index, address in enumerate(addresses):
+        mine = [each for each in log if each.address == address][len(addresses) == 1 :]
         truth = sent_poses(mine, form, group=group, range_inch=range_inch)
         out.append(compare(poses(frames, index), truth, [each.intact for each in mine]))
     return out

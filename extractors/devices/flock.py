@@ -34,7 +34,7 @@ SILENCE_S = 1.5
 IDLE_S = 0.006
 """A line without a byte for so long has sent its record [s]."""
 
-POLL_IDLE_S = 0.03
+POLL_IDLE_S = 0.1
 """A poll's answer that stops for so long has ended [s]."""
 
 AFTER_RESET_S = 2.0
@@ -310,10 +310,11 @@ class _Port:
         heard = False
         deadline = time.monotonic() + REPLY_S
         while len(out) < self._expected and time.monotonic() < deadline:
-            last = self.parser.pending and len(out) == self._expected - 1
-            data = self.line.read(POLL_IDLE_S if heard and not last else REPLY_S if not last else 0)
+            if self.parser.pending and len(out) == self._expected - 1:
+                out += self.parser.settle(answered=True)
+                break
+            data = self.line.read(POLL_IDLE_S if heard else REPLY_S)
             if not data:
-                out += self.parser.settle()
                 break
             heard = True
             out += self.parser.feed(data, time.monotonic())

@@ -119,10 +119,15 @@ class RecordParser:
         del self._buffer[:at]
         return out
 
-    def settle(self) -> list[Record]:
-        """The last record, if it is whole and came in one go, and the line is idle after it."""
+    def settle(self, *, answered: bool = False) -> list[Record]:
+        """The last record, if it is whole and came in one go, and the line is idle after it.
+
+        Args:
+            answered: Whether it ends the answer to a poll, so that nothing can follow it.
+        """
         longest_s = 2.0 * self._size * self._byte_s + SLACK_S
-        if not self.pending or (self._byte_s and self._fed_s - self._stamp_s > longest_s):
+        late = self._byte_s > 0.0 and self._fed_s - self._stamp_s > longest_s
+        if not self.pending or (late and not answered):
             return []
         out = self._accept(0)
         self._buffer.clear()

@@ -172,7 +172,7 @@ class FlockSimulator:
 
     def _wait_s(self) -> float:
         """Until something is to be sent."""
-        if any(each.line.backlog_s or each.poll_at_s >= 0.0 for each in self._desks):
+        if any(each.line.busy or each.poll_at_s >= 0.0 for each in self._desks):
             return TICK_S
         return min(0.02, max(0.0, self._next_s - time.monotonic()))
 
@@ -186,17 +186,17 @@ class FlockSimulator:
         for desk in self._desks:
             if 0.0 <= desk.poll_at_s <= now:
                 desk.poll_at_s = -1.0
-                self._report(desk, now - self._start_s)
+                self._report(desk, now)
             desk.line.pump(time.monotonic())
 
     def _measure(self) -> None:
         """One measuring cycle: every line that streams sends it, if its turn has come."""
-        at_s = self._next_s - self._start_s
+        at_s, period_s = self._next_s, 1.0 / self._rate_hz
         self._cycle += 1
-        self._next_s += 1.0 / self._rate_hz
+        self._next_s += period_s
         for desk in self._desks:
             if desk.streaming and self._cycle % desk.every == 0:
-                if desk.line.backlog_s > desk.every / self._rate_hz:
+                if desk.line.free_at_s - at_s > desk.every * period_s:
                     self.skipped += 1
                 else:
                     self._report(desk, at_s)
@@ -206,7 +206,7 @@ class FlockSimulator:
         if not self._configured or time.monotonic() - self._configured_s < self.rig.quiet_s:
             self._error, self._error_unit = 9, desk.unit
             return
-        positions, orientations = self._motion.poses(at_s)
+        positions, orientations = self._motion.poses(at_s - self._start_s)
         addresses = self._addresses if self._group else (desk.unit,)
         for address in addresses:
             if address not in self._addresses:
@@ -214,14 +214,14 @@ class FlockSimulator:
             index, bird = self._addresses.index(address), self._birds[address]
             scaling = Scaling(self._range_inch, self.rig.conjugated)
             words = words_of_pose(positions[index], orientations[index], bird.form, scaling)
-            self._send(desk, address, words)
+            self._send(desk, address, words, at_s)
 
-    def _send(self, desk: _Desk, address: int, words: tuple[int, ...]) -> None:
+    def _send(self, desk: _Desk, address: int, words: tuple[int, ...], at_s: float) -> None:
         shown = address if self._group else None
         data = encode_record(words, address=shown)
         wrong = self._group and self._is_wrong(desk)
         out = encode_record(words, address=WRONG_ADDRESS) if wrong else data
-        intact = desk.line.send(out) and not wrong
+        intact = desk.line.send(out, at_s) and not wrong
         if self._log is not None:
             self._log.append(Sent(address, data, intact))
 
@@ -329,7 +329,8 @@ class FlockSimulator:
         }
         if parameter == commands.ERROR:
             self._error = 0
-        desk.line.send(values.get(parameter, bytes(commands.SIZES.get(parameter, 2))))
+        value = values.get(parameter, bytes(commands.SIZES.get(parameter, 2)))
+        desk.line.send(value, time.monotonic())
 
     def _status(self, desk: _Desk) -> bytes:
         """Master, initialised, error, running, and whether it streams."""

@@ -4,7 +4,6 @@ import os
 import pty
 import random
 import tempfile
-import time
 import tty
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -68,9 +67,14 @@ class SimulatedLine:
         return BITS / self.baud
 
     @property
-    def backlog_s(self) -> float:
-        """How long what is queued will take [s]."""
-        return len(self._queue) * self.byte_s
+    def busy(self) -> bool:
+        """Whether something is queued."""
+        return bool(self._queue)
+
+    @property
+    def free_at_s(self) -> float:
+        """When what is queued will have gone out [s]."""
+        return self._sent_until_s + len(self._queue) * self.byte_s
 
     def plug(self) -> None:
         """Make the device file, raw from the start."""
@@ -100,10 +104,10 @@ class SimulatedLine:
             return os.read(self.master, 4096)
         return b""
 
-    def send(self, data: bytes) -> bool:
-        """Queue bytes for the line; whether all go out as they are."""
+    def send(self, data: bytes, at_s: float) -> bool:
+        """Queue bytes that the device has at a moment [s]; whether all go out as they are."""
         if not self._queue:
-            self._sent_until_s = max(self._sent_until_s, time.monotonic())
+            self._sent_until_s = max(self._sent_until_s, at_s)
         spoilt = bytes(_spoil(data, self.faults, self._random))
         self._queue += spoilt
         return spoilt == data
@@ -139,5 +143,3 @@ def _spoil(data: bytes, faults: Faults, source: random.Random) -> list[int]:
         garbled = source.random() < faults.garbled_share
         out.append(byte ^ 1 << source.randrange(8) if garbled else byte)
     return out
-
-

@@ -84,7 +84,8 @@ def test_with_bytes_lost_no_wrong_record_is_accepted_and_few_good_ones_are_misse
     ]
     lost = [random.random(len(each)) < 0.005 for each in records]
     wire = b"".join(
-        bytes(np.frombuffer(each, np.uint8)[~gone]) for each, gone in zip(records, lost, strict=True)
+        bytes(np.frombuffer(each, np.uint8)[~gone])
+        for each, gone in zip(records, lost, strict=True)
     )
     parser = RecordParser(FORMATS[form], addresses=BIRDS if group else None)
     found = [(each.words, each.address) for each in (*parser.feed(wire), *parser.settle())]

@@ -157,9 +157,7 @@ INT = st.integers(-(2**31), 2**31 - 1)
 
 
 @given(
-    st.lists(
-        st.builds(vrpn.Message, INT, INT, INT, INT, st.binary(max_size=120), INT), max_size=6
-    ),
+    st.lists(st.builds(vrpn.Message, INT, INT, INT, INT, st.binary(max_size=120), INT), max_size=6),
     st.data(),
 )
 def test_vrpn_messages_come_out_however_their_bytes_are_cut(
