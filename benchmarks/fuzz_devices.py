@@ -59,7 +59,7 @@ def vrpn_take(data: bytes) -> None:
 def targets() -> dict[str, tuple[bytes, Callable[[bytes], object]]]:
     pose = vrpn.SensorPose(3, (1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 1.0)).encode()
     name = vrpn.Message(0, 0, 0, -1, vrpn.encode_name("Tracker0")).encode()
-    data = birdnet.encode_data({each: (FORMATS["pos_quat"], WORDS[:7]) for each in BIRDS})
+    data = birdnet.encode_data(dict.fromkeys(BIRDS, (FORMATS["pos_quat"], WORDS[:7])))
     status = birdnet.SystemStatus(103.3, (0xF0, *[0xE0] * 12)).encode()
     bird = birdnet.BirdStatus(3, FORMATS["pos_quat"], 144.0).encode()
     out = {

@@ -41,10 +41,18 @@ def decode(data: bytes, form: str, *, group: bool, range_inch: float) -> Decoded
     pairs = rows[:, : 2 * len(kinds)].astype(np.uint16).reshape(len(rows), len(kinds), 2) & 0x7F
     low, high = pairs[..., 0] << 2, pairs[..., 1] << 9
     words = (low | high).view(np.int16).astype(float)
-    shares = words / 32768.0
     addresses = rows[:, -1].astype(int) if group else np.zeros(len(rows), int)
+    return Decoded(addresses, words, *poses_of(words, form, range_inch=range_inch))
+
+
+def poses_of(
+    words: np.ndarray, form: str, *, range_inch: float
+) -> tuple[np.ndarray | None, Rotation | None]:
+    """Positions [m] and rotations of rows of words."""
+    kinds = np.array(list(COLUMNS[form]))
+    shares = words / 32768.0
     places = shares[:, kinds == "p"] * range_inch * INCH_M if "p" in kinds else None
-    return Decoded(addresses, words, places, _rotations(shares, kinds))
+    return places, _rotations(shares, kinds)
 
 
 def whole_records(data: bytes, length: int) -> np.ndarray:

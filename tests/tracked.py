@@ -52,11 +52,16 @@ def poses(frames: Sequence[Frame], sensor: int) -> np.ndarray:
 def sent_poses(sent: Sequence[Sent], form: str, *, group: bool, range_inch: float) -> np.ndarray:
     """The same of what was sent."""
     data = decode(b"".join(each.data for each in sent), form, group=group, range_inch=range_inch)
-    rows = np.zeros((len(sent), 7))
-    if data.positions is not None:
-        rows[:, :3] = TO_WORLD.apply(data.positions)
-    if data.rotations is not None:
-        rows[:, 3:] = (TO_WORLD * data.rotations).as_quat(scalar_first=True)
+    return in_rows(len(sent), data.positions, data.rotations)
+
+
+def in_rows(count: int, positions: np.ndarray | None, rotations: Rotation | None) -> np.ndarray:
+    """Poses in the transmitter's frame as rows of seven in the world."""
+    rows = np.zeros((count, 7))
+    if positions is not None:
+        rows[:, :3] = TO_WORLD.apply(positions)
+    if rotations is not None:
+        rows[:, 3:] = (TO_WORLD * rotations).as_quat(scalar_first=True)
     return _signed(rows)
 
 

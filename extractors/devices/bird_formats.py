@@ -90,16 +90,27 @@ def pose_of_words(
     position, orientation = np.full(3, np.nan), np.full(4, np.nan)
     if form.position:
         metres = scaling.range_inch * INCH_M
-        x, y, z = shares[:3]
-        position = np.array([x * metres, -y * metres, -z * metres])
+        position = np.array(shares[:3]) * metres
         shares = shares[3:]
     if form.orientation:
         turned = _TURNS[form.orientation](shares, scaling)
         if turned is None:
             return None
-        w, x, y, z = turned
-        orientation = np.array([-x, w, -z, y])
-    return position, orientation
+        orientation = np.array(turned)
+    return to_world(position, orientation)
+
+
+def to_world(position: Vector, orientation: Quaternion) -> tuple[Vector, Quaternion]:
+    """A pose in the transmitter's frame, z down, as one with z up: half a turn about x."""
+    w, x, y, z = orientation
+    return position * [1.0, -1.0, -1.0], np.array([-x, w, -z, y])
+
+
+def from_world(position: Vector, orientation: Quaternion) -> tuple[Vector, Quaternion]:
+    """The pose in the transmitter's frame, of a quaternion whose scalar is not negative."""
+    w, x, y, z = orientation
+    turned = np.array([x, -w, z, -y])
+    return position * [1.0, -1.0, -1.0], turned if x >= 0.0 else -turned
 
 
 def words_of_pose(
@@ -107,11 +118,9 @@ def words_of_pose(
 ) -> tuple[int, ...]:
     """The words that a bird at a pose sends; positions beyond its range saturate."""
     shares: list[float] = []
+    place, turned = from_world(position, orientation)
     if form.position:
-        metres = scaling.range_inch * INCH_M
-        shares += [position[0] / metres, -position[1] / metres, -position[2] / metres]
-    w, x, y, z = orientation
-    turned = (x, -w, z, -y) if x >= 0.0 else (-x, w, -z, y)
+        shares += list(place / (scaling.range_inch * INCH_M))
     turn = Rotation.from_quat(turned, scalar_first=True)
     if form.orientation == "angles":
         shares += list(turn.as_euler("ZYX") / math.pi)

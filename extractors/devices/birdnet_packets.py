@@ -88,7 +88,7 @@ class Packet:
         return self.seconds + self.milliseconds / 1000.0
 
 
-def decode_packet(data: bytes) -> tuple[Packet, int] | None:
+def decode_packet(data: bytes | bytearray) -> tuple[Packet, int] | None:
     """The packet at the start of some bytes, and its length; None where more bytes are needed.
 
     Raises:

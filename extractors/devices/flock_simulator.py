@@ -1,19 +1,20 @@
 """A Flock of Birds for those who have none: its commands and records on pseudo-terminals."""
 
-import select
-import threading
 import time
 from dataclasses import dataclass, field
-from typing import Self
 
 from extractors.devices import flock_commands as commands
 from extractors.devices.bird_formats import FORMATS, BirdFormat, Scaling, words_of_pose
 from extractors.devices.flock_records import encode_record
 from extractors.devices.motion_source import MotionSource
 from extractors.devices.simulated_line import Faults, Sent, SimulatedLine
+from extractors.devices.simulator import Simulator
 
 TICK_S = 0.002
 """How often a line that has something to send is attended to [s]."""
+
+MEASURED_HZ = 103.3
+"""Measuring cycles a second until it is told otherwise."""
 
 WRONG_ADDRESS = 0x7F
 """Address of no bird."""
@@ -66,7 +67,7 @@ class _Desk:
     poll_at_s: float = -1.0
 
 
-class FlockSimulator:
+class FlockSimulator(Simulator):
     """A flock whose birds measure a motion, one sensor a bird.
 
     What it does where the protocol's description is silent: a cycle for which the line has no
@@ -86,30 +87,26 @@ class FlockSimulator:
         faults: Faults | None = None,
         log: list[Sent] | None = None,
     ) -> None:
+        super().__init__(motion, MEASURED_HZ)
         self.rig = rig or FlockRig()
         self.faults = faults or Faults()
         self.skipped = 0
-        self._motion, self._log = motion, log
+        self._log = log
         first = 2 if self.rig.erc else 1
         self._addresses = tuple(range(first, first + len(motion.sensors)))
         self._units = len(motion.sensors) + self.rig.erc
         ends = self._addresses if self.rig.line_a_bird else (1,)
         self._desks = [_Desk(SimulatedLine(self.rig.baud, self.faults), unit) for unit in ends]
-        self._lock = threading.Lock()
-        self._running = False
-        self._thread = threading.Thread(target=self._run, daemon=True)
         self._power_up()
 
     def _power_up(self) -> None:
         self._birds = {each: _Bird() for each in range(1, self._units + 1)}
-        self._rate_hz = 103.3
+        self._rate_hz = MEASURED_HZ
         self._range_inch = _range_inch(self.rig, 0)
         self._group = False
         self._configured = self._units == 1
         self._error, self._error_unit = self.rig.error, 0
         self._heard_s = self._configured_s = -1e9
-        self._cycle = 0
-        self._start_s = self._next_s = time.monotonic()
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -121,79 +118,44 @@ class FlockSimulator:
         """The place in an address: the device files, divided by commas."""
         return ",".join(self.paths)
 
-    def start(self) -> None:
-        """Plug the lines in, and measure."""
+    def _plug(self) -> None:
+        self._power_up()
         for desk in self._desks:
             desk.line.plug()
-        self._running = True
-        self._thread.start()
 
-    def stop(self) -> None:
-        """End, and remove the device files."""
-        self._running = False
-        self._thread.join()
+    def _unplug(self) -> None:
+        for desk in self._desks:
+            desk.line.unplug()
+            desk.streaming = False
+            desk.commands.clear()
+
+    def _remove(self) -> None:
         for desk in self._desks:
             desk.line.remove()
 
-    def unplug(self) -> None:
-        """Pull all plugs, and the power."""
-        with self._lock:
-            for desk in self._desks:
-                desk.line.unplug()
-                desk.streaming = False
-                desk.commands.clear()
-
-    def replug(self) -> None:
-        """Put the plugs back; the flock has forgotten what it was told."""
-        with self._lock:
-            self._power_up()
-            for desk in self._desks:
-                desk.line.plug()
-
-    def __enter__(self) -> Self:
-        """Start it."""
-        self.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Stop it."""
-        self.stop()
-
-    def _run(self) -> None:
-        while self._running:
-            with self._lock:
-                handles = [each.line.master for each in self._desks if each.line.master >= 0]
-                wait_s = self._wait_s()
-            ready = select.select(handles, [], [], wait_s)[0] if handles else []
-            if not handles:
-                time.sleep(TICK_S)
-            with self._lock:
-                self._attend(set(ready))
+    def _handles(self) -> list[int]:
+        return [each.line.master for each in self._desks if each.line.master >= 0]
 
     def _wait_s(self) -> float:
         """Until something is to be sent."""
         if any(each.line.busy or each.poll_at_s >= 0.0 for each in self._desks):
             return TICK_S
-        return min(0.02, max(0.0, self._next_s - time.monotonic()))
+        return super()._wait_s()
 
     def _attend(self, ready: set[int]) -> None:
         for desk in self._desks:
             if desk.line.master in ready:
                 self._listen(desk)
         now = time.monotonic()
-        while self._next_s <= now:
-            self._measure()
         for desk in self._desks:
             if 0.0 <= desk.poll_at_s <= now:
                 desk.poll_at_s = -1.0
                 self._report(desk, now)
             desk.line.pump(time.monotonic())
 
-    def _measure(self) -> None:
+    def _measure(self, at_s: float) -> None:
         """One measuring cycle: every line that streams sends it, if its turn has come."""
-        at_s, period_s = self._next_s, 1.0 / self._rate_hz
-        self._cycle += 1
-        self._next_s += period_s
+        period_s = 1.0 / self._rate_hz
         for desk in self._desks:
             if desk.streaming and self._cycle % desk.every == 0:
                 if desk.line.free_at_s - at_s > desk.every * period_s:
@@ -206,7 +168,7 @@ class FlockSimulator:
         if not self._configured or time.monotonic() - self._configured_s < self.rig.quiet_s:
             self._error, self._error_unit = 9, desk.unit
             return
-        positions, orientations = self._motion.poses(at_s - self._start_s)
+        positions, orientations = self._poses(at_s)
         addresses = self._addresses if self._group else (desk.unit,)
         for address in addresses:
             if address not in self._addresses:

@@ -1,23 +1,24 @@
 """A serial port as the drivers need it; the only module that knows pyserial."""
 
 import time
-from types import TracebackType
 
 import serial
 
 from capar.model.errors import DeviceError
 from extractors.devices.tracker import DeviceLostError
 
-FAILURES: tuple[type[Exception], ...] = (OSError, serial.SerialException)
-"""What a port raises when its device is gone."""
 
-try:
-    import termios
+def _failures() -> tuple[type[Exception], ...]:
+    """What a port raises when its device is gone, or cannot be set as it should."""
+    usual: tuple[type[Exception], ...] = (OSError, serial.SerialException, ValueError, TypeError)
+    try:
+        import termios
+    except ImportError:  # pragma: no cover
+        return usual
+    return (*usual, termios.error)  # which is neither of the others
 
-    FAILURES = (*FAILURES, termios.error)  # neither an OSError nor a SerialException
-except ImportError:  # pragma: no cover
-    pass
 
+FAILURES = _failures()
 RESET_S = 1.0
 """How long RTS is held to reset a Flock of Birds [s]."""
 
@@ -48,7 +49,7 @@ class SerialLine:
         """
         try:
             self._port.open()
-        except (*FAILURES, ValueError) as error:
+        except FAILURES as error:
             raise DeviceError(
                 f"cannot open {self._port_name}: {error}. Is the device plugged in, and may this "
                 "user open it (group dialout)?"
@@ -63,7 +64,7 @@ class SerialLine:
         try:
             self._port.timeout = max(0.0, timeout_s)
             return self._port.read(self._port.in_waiting or 1)
-        except (*FAILURES, TypeError) as error:
+        except FAILURES as error:
             raise DeviceLostError(f"{self._port_name} is gone ({error})") from None
 
     def read_exactly(self, count: int, timeout_s: float) -> bytes:
@@ -115,17 +116,3 @@ class SerialLine:
             self._port.close()
         except FAILURES:
             return
-
-    def __enter__(self) -> "SerialLine":
-        """Open it."""
-        self.open()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        """Close it."""
-        self.close()

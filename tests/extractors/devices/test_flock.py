@@ -156,7 +156,7 @@ def test_with_the_true_pauses_the_flock_is_configured_and_without_them_it_is_not
     with FlockSimulator(SmoothMotion(2)) as simulator:
         with FlockTracker(parse_address(f"flock:{simulator.place}?birds=2&rate=60")) as flock:
             assert tracked.collect(flock, 0.2)
-        with pytest.raises(DeviceError, match="error 13|error 9"):
+        with pytest.raises(DeviceError, match=r"error 13|error 9"):
             FlockTracker(parse_address(f"flock:{simulator.place}?birds=2&{SETTLE}")).open()
 
 
@@ -169,24 +169,24 @@ def test_a_missing_bird_is_told_with_its_number() -> None:
 
 def test_an_error_of_the_device_is_told_in_words() -> None:
     with FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S, error=29)) as simulator:
-        with pytest.raises(DeviceError, match="error 29: the transmitter is not active"):
+        with pytest.raises(DeviceError, match=r"error 29: the transmitter is not active"):
             tracker(simulator, "birds=1").open()
 
 
 def test_a_port_that_is_not_there_is_an_error_with_its_remedy() -> None:
-    with pytest.raises(DeviceError, match="cannot open /dev/no_such_port.*plugged in"):
+    with pytest.raises(DeviceError, match=r"cannot open /dev/no_such_port.*plugged in"):
         FlockTracker(parse_address("flock:/dev/no_such_port")).open()
 
 
 def test_a_unit_that_does_not_answer_is_an_error_with_its_remedy() -> None:
     rig = FlockRig(quiet_s=QUIET_S)
     with FlockSimulator(SmoothMotion(1), rig, Faults(lost_share=1.0)) as simulator:
-        with pytest.raises(DeviceError, match="no answer .* check the power"):
+        with pytest.raises(DeviceError, match=r"no answer .* check the power"):
             tracker(simulator, "birds=1").open()
 
 
 def test_a_rate_that_the_line_cannot_carry_is_refused_with_the_arithmetic() -> None:
-    with pytest.raises(DeviceError, match="12 x 15 bytes .* 18594 bytes a second, .* 64 Hz"):
+    with pytest.raises(DeviceError, match=r"12 x 15 bytes .* 18594 bytes a second, .* 64 Hz"):
         flock_settings(parse_address("flock:/dev/x?birds=12&rate=103.3"))
     assert flock_settings(parse_address("flock:/dev/x?birds=12&rate=51.65")).every == 2
 

@@ -62,7 +62,7 @@ def test_the_birds_of_a_data_packet_are_decoded(forms: dict[int, str], data: st.
 
 def test_twelve_birds_of_position_and_quaternion_are_208_bytes() -> None:
     form = FORMATS["pos_quat"]
-    body = birdnet.encode_data({each: (form, (0,) * 7) for each in range(2, 14)})
+    body = birdnet.encode_data(dict.fromkeys(range(2, 14), (form, (0,) * 7)))
     assert len(body) + birdnet.HEADER.size == 208
 
 
@@ -185,7 +185,7 @@ def test_a_vrpn_pose_is_decoded_as_it_was_encoded(sensor: int, values: tuple[flo
 def test_a_server_of_another_kind_is_told_by_its_first_bytes() -> None:
     vrpn.check_cookie(vrpn.cookie())
     assert len(vrpn.cookie()) == 24
-    with pytest.raises(DeviceLostError, match="no VRPN 7 server"):
+    with pytest.raises(DeviceLostError, match=r"no VRPN 7 server"):
         vrpn.check_cookie(b"HTTP/1.1 400 Bad Request")
 
 

@@ -1,0 +1,119 @@
+"""The Fastrak driver reads what its simulator sends, in ASCII and binary."""
+
+import struct
+
+import numpy as np
+import pytest
+import tracked
+from scipy.spatial.transform import Rotation
+
+from capar.model.errors import DeviceError
+from extractors.devices.addresses import parse_address
+from extractors.devices.fastrak import FastrakTracker, fastrak_settings
+from extractors.devices.fastrak_records import ITEMS
+from extractors.devices.fastrak_simulator import FastrakSimulator
+from extractors.devices.motion_source import SmoothMotion
+from extractors.devices.simulated_line import Faults, Sent
+from extractors.devices.tracker import Frame
+
+SECONDS = 0.8
+
+
+def tracker(simulator: FastrakSimulator, options: str) -> FastrakTracker:
+    return FastrakTracker(parse_address(f"fastrak:{simulator.place}?{options}"))
+
+
+def values(data: bytes, *, binary: bool) -> list[float]:
+    """A record's numbers, read by their columns."""
+    if binary:
+        return list(struct.unpack(f"<{(len(data) - 5) // 4}f", data[3:-2]))
+    return [float(data[at : at + 7]) for at in range(3, len(data) - 2, 7)]
+
+
+def held(frames: list[Frame], log: list[Sent], form: str, *, binary: bool) -> list[tracked.Held]:
+    out = []
+    for index in range(len(frames[0].positions)):
+        mine = [each for each in log if each.address == index + 1]
+        rows = np.array([values(each.data, binary=binary) for each in mine])
+        rotations = None
+        if form == "pos_quat":
+            rotations = Rotation.from_quat(rows[:, [4, 5, 6, 3]])
+        elif form == "pos_ang":
+            rotations = Rotation.from_euler("ZYX", rows[:, 3:], degrees=True)
+        truth = tracked.in_rows(len(mine), rows[:, :3] / 100.0, rotations)
+        intact = [each.intact for each in mine]
+        out.append(tracked.compare(tracked.poses(frames, index), truth, intact))
+    return out
+
+
+@pytest.mark.parametrize("mode", ["stream", "point"])
+@pytest.mark.parametrize("encoding", ["binary", "ascii"])
+@pytest.mark.parametrize("stations", [1, 4])
+@pytest.mark.parametrize("form", ITEMS)
+def test_every_format_and_mode_arrives_whole(
+    form: str, stations: int, encoding: str, mode: str
+) -> None:
+    log: list[Sent] = []
+    with FastrakSimulator(SmoothMotion(stations), log=log) as simulator:
+        options = f"format={form}&stations={stations}&encoding={encoding}&mode={mode}"
+        with tracker(simulator, options) as fastrak:
+            frames = tracked.collect(fastrak, SECONDS)
+    assert len(frames) > 0.5 * SECONDS * 120.0 / stations
+    assert simulator.skipped == 0
+    assert fastrak.counts.lost_records == 0
+    assert fastrak.counts.dropped_bytes == 0
+    for each in held(frames, log, form, binary=encoding == "binary"):
+        assert each.wrong == 0
+        assert each.accepted == each.sent
+
+
+@pytest.mark.parametrize("encoding", ["binary", "ascii"])
+def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_are_kept(
+    encoding: str,
+) -> None:
+    log: list[Sent] = []
+    faults = Faults(lost_share=0.005, seed=4)
+    with FastrakSimulator(SmoothMotion(4), 115200, faults, log) as simulator:
+        with tracker(simulator, f"stations=4&encoding={encoding}") as fastrak:
+            frames = tracked.collect(fastrak, 2.0 * SECONDS)
+    every = held(frames, log, "pos_quat", binary=encoding == "binary")
+    assert sum(each.wrong for each in every) == 0
+    assert sum(each.accepted for each in every) >= 0.9 * sum(each.intact for each in every)
+    damaged = sum(each.sent - each.intact for each in every)
+    assert damaged > 0
+    assert fastrak.counts.lost_records >= 0.5 * damaged
+
+
+def test_a_pulled_plug_is_survived_and_told() -> None:
+    log: list[Sent] = []
+    with FastrakSimulator(SmoothMotion(2), log=log) as simulator:
+        with tracker(simulator, "stations=2") as fastrak:
+            before = tracked.collect(fastrak, 0.3)
+            simulator.unplug()
+            assert tracked.collect(fastrak, 0.3) == []
+            simulator.replug()
+            after = tracked.collect(fastrak, 1.5)
+    assert len(before) > 5
+    assert len(after) > 10
+    assert fastrak.counts.reconnections == 1
+    for each in held([*before, *after], log, "pos_quat", binary=True):
+        assert each.wrong == 0
+
+
+def test_slow_answers_to_polls_lower_the_rate_and_lose_nothing() -> None:
+    log: list[Sent] = []
+    with FastrakSimulator(SmoothMotion(2), 115200, Faults(reply_delay_s=0.1), log) as simulator:
+        with tracker(simulator, "stations=2&mode=point") as fastrak:
+            frames = tracked.collect(fastrak, SECONDS)
+    assert 3 < len(frames) <= SECONDS / 0.1
+    assert fastrak.counts.lost_records == 0
+
+
+def test_a_line_that_is_too_slow_is_refused_with_the_arithmetic() -> None:
+    with pytest.raises(DeviceError, match=r"120 records of 54 bytes are 6480 .* carry 960"):
+        fastrak_settings(parse_address("fastrak:/dev/x?encoding=ascii&baud=9600"))
+
+
+def test_a_fastrak_has_four_stations_at_most() -> None:
+    with pytest.raises(DeviceError, match=r"between 1 and 4"):
+        fastrak_settings(parse_address("fastrak:/dev/x?stations=5"))
