@@ -46,7 +46,7 @@ def poses(frames: Sequence[Frame], sensor: int) -> np.ndarray:
     """The poses of a sensor where it has one, in rows of seven; what it lacks is zero."""
     rows = np.array([np.r_[each.positions[sensor], each.orientations[sensor]] for each in frames])
     rows = rows.reshape(-1, 7)
-    return _signed(np.nan_to_num(rows[~np.isnan(rows).all(axis=1)]))
+    return signed(np.nan_to_num(rows[~np.isnan(rows).all(axis=1)]))
 
 
 def sent_poses(sent: Sequence[Sent], form: str, *, group: bool, range_inch: float) -> np.ndarray:
@@ -62,7 +62,7 @@ def in_rows(count: int, positions: np.ndarray | None, rotations: Rotation | None
         rows[:, :3] = TO_WORLD.apply(positions)
     if rotations is not None:
         rows[:, 3:] = (TO_WORLD * rotations).as_quat(scalar_first=True)
-    return _signed(rows)
+    return signed(rows)
 
 
 def compare(got: np.ndarray, sent: np.ndarray, intact: Sequence[bool]) -> Held:
@@ -95,7 +95,7 @@ def held(
     return out
 
 
-def _signed(rows: np.ndarray) -> np.ndarray:
+def signed(rows: np.ndarray) -> np.ndarray:
     """Quaternions of the sign whose largest part is positive."""
     largest = np.abs(rows[:, 3:]).argmax(axis=1)
     signs = np.sign(rows[np.arange(len(rows)), 3 + largest])

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 INCH_M = 0.0254
 FULL_SCALE = 32768
@@ -102,15 +101,15 @@ def pose_of_words(
 
 def to_world(position: Vector, orientation: Quaternion) -> tuple[Vector, Quaternion]:
     """A pose in the transmitter's frame, z down, as one with z up: half a turn about x."""
-    w, x, y, z = orientation
-    return position * [1.0, -1.0, -1.0], np.array([-x, w, -z, y])
+    (x, y, z), (a, b, c, d) = position.tolist(), orientation.tolist()
+    return np.array([x, -y, -z]), np.array([-b, a, -d, c])
 
 
 def from_world(position: Vector, orientation: Quaternion) -> tuple[Vector, Quaternion]:
     """The pose in the transmitter's frame, of a quaternion whose scalar is not negative."""
-    w, x, y, z = orientation
-    turned = np.array([x, -w, z, -y])
-    return position * [1.0, -1.0, -1.0], turned if x >= 0.0 else -turned
+    (x, y, z), (a, b, c, d) = position.tolist(), orientation.tolist()
+    turned = (b, -a, d, -c) if b >= 0.0 else (-b, a, -d, c)
+    return np.array([x, -y, -z]), np.array(turned)
 
 
 def words_of_pose(
@@ -121,15 +120,31 @@ def words_of_pose(
     place, turned = from_world(position, orientation)
     if form.position:
         shares += list(place / (scaling.range_inch * INCH_M))
-    turn = Rotation.from_quat(turned, scalar_first=True)
-    if form.orientation == "angles":
-        shares += list(turn.as_euler("ZYX") / math.pi)
-    elif form.orientation == "matrix":
-        shares += list(turn.as_matrix().ravel())
-    elif form.orientation == "quaternion":
-        sent = turn.inv() if scaling.conjugated else turn
-        shares += list(sent.as_quat(scalar_first=True))
+    w, x, y, z = turned.tolist()
+    if form.orientation == "quaternion":
+        sign = -1.0 if scaling.conjugated else 1.0
+        shares += [w, sign * x, sign * y, sign * z]
+    elif form.orientation:
+        matrix = matrix_of(w, x, y, z)
+        shares += matrix if form.orientation == "matrix" else _angles(matrix)
     return tuple(_word(each * scaling.full_scale) for each in shares)
+
+
+def matrix_of(w: float, x: float, y: float, z: float) -> list[float]:
+    """The rotation matrix of a unit quaternion, row by row."""
+    return [
+        1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),
+        2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
+        2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y),
+    ]  # fmt: skip
+
+
+def _angles(matrix: list[float]) -> list[float]:
+    """Azimuth, elevation and roll of a matrix, in half turns."""
+    azimuth = math.atan2(matrix[3], matrix[0])
+    elevation = math.asin(max(-1.0, min(1.0, -matrix[6])))
+    roll = math.atan2(matrix[7], matrix[8])
+    return [each / math.pi for each in (azimuth, elevation, roll)]
 
 
 def _word(value: float) -> int:
@@ -150,12 +165,37 @@ def _of_angles(shares: list[float], _: Scaling) -> tuple[float, ...]:
 
 def _of_matrix(shares: list[float], _: Scaling) -> tuple[float, ...] | None:
     """The wire has the transpose column by column, so its rows are those of R."""
-    matrix = np.array(shares).reshape(3, 3)
-    if np.abs(matrix @ matrix.T - np.eye(3)).max() > NORM_TOLERANCE:
+    rows = [shares[0:3], shares[3:6], shares[6:9]]
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    products = [[sum(p * q for p, q in zip(r, s, strict=True)) for s in rows] for r in rows]
+    off = max(abs(products[j][k] - (j == k)) for j in range(3) for k in range(3))
+    if off > NORM_TOLERANCE or a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0:
         return None
-    if np.linalg.det(matrix) < 0.0:
-        return None
-    return tuple(Rotation.from_matrix(matrix).as_quat(scalar_first=True).tolist())
+    return _quaternion(_orthonormal(rows, products))
+
+
+def _orthonormal(rows: list[list[float]], products: list[list[float]]) -> list[list[float]]:
+    """The nearest rotation, by one step of Newton and Schulz from a matrix that is almost one."""
+    return [
+        [
+            1.5 * rows[j][k] - 0.5 * sum(products[j][m] * rows[m][k] for m in range(3))
+            for k in range(3)
+        ]
+        for j in range(3)
+    ]
+
+
+def _quaternion(rows: list[list[float]]) -> tuple[float, ...]:
+    """The quaternion w x y z of a rotation, from whichever of its parts is largest (Shepperd)."""
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    found = max(
+        ((1.0 + a + e + i), (1.0 + a + e + i, h - f, c - g, d - b)),
+        ((1.0 + a - e - i), (h - f, 1.0 + a - e - i, b + d, c + g)),
+        ((1.0 - a + e - i), (c - g, b + d, 1.0 - a + e - i, f + h)),
+        ((1.0 - a - e + i), (d - b, c + g, f + h, 1.0 - a - e + i)),
+    )[1]
+    norm = math.hypot(*found)
+    return tuple(each / norm for each in found)
 
 
 def _of_quaternion(shares: list[float], scaling: Scaling) -> tuple[float, ...] | None:

@@ -56,6 +56,7 @@ class MotionStarTracker(LiveTracker):
         self._address = address
         self._line = NetworkLine(self._host, self._port, stream=self._is_stream)
         self._buffer = bytearray()
+        self._early: list[Packet] = []
         self._birds: tuple[int, ...] = ()
         self._ranges: dict[int, Scaling] = {}
         self._details: dict[str, str] = {}
@@ -79,6 +80,7 @@ class MotionStarTracker(LiveTracker):
     def _connect(self) -> None:
         self._line.open()
         self._buffer.clear()
+        self._early.clear()
         self._last = None
         self._ask(Kind.STOP_DATA, needed=False)
         self._ask(Kind.WAKE_UP)
@@ -121,7 +123,7 @@ class MotionStarTracker(LiveTracker):
         self._ask(Kind.SEND_SETUP, bird, body=wanted.encode())
 
     def _ask(self, kind: Kind, bird: int = 0, *, body: bytes = b"", needed: bool = True) -> Packet:
-        """The response to a command; data that come before it are dropped.
+        """The response to a command; data before it are dropped, those after it kept.
 
         Raises:
             DeviceError: None comes, though it is needed, or the server refuses the command.
@@ -131,11 +133,13 @@ class MotionStarTracker(LiveTracker):
             self._line.write(Packet(kind, self._sequence, bird, body).encode())
             deadline = time.monotonic() + (REPLY_S if needed else REPLY_S / 4.0)
             while time.monotonic() < deadline:
-                for packet in self._packets(max(0.0, deadline - time.monotonic())):
+                packets = self._packets(max(0.0, deadline - time.monotonic()))
+                for index, packet in enumerate(packets):
                     if packet.sequence != self._sequence or packet.kind == Kind.DATA:
                         continue
                     if packet.kind != birdnet.RESPONSES[kind]:
                         raise self._address.error(f"the server refuses {kind.name}")
+                    self._early = packets[index + 1 :]
                     return packet
         if not needed:
             return Packet(birdnet.RESPONSES[kind])
@@ -173,7 +177,7 @@ class MotionStarTracker(LiveTracker):
             self._say(f"the server did not confirm the end: {error}")
 
     def _read(self, timeout_s: float) -> list[Frame]:
-        packets = self._packets(timeout_s)
+        packets, self._early = self._early or self._packets(timeout_s), []
         now = time.monotonic()
         if packets:
             self._heard_s = now
