@@ -1,18 +1,23 @@
 """What a driver received, held against what its simulator sent, as the second decoder reads it."""
 
+import struct
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from flock_bits import decode
+from flock_bits import decode, poses_of
 from scipy.spatial.transform import Rotation
 
+from extractors.devices.motionstar_simulator import SentPacket
 from extractors.devices.simulated_line import Sent
 from extractors.devices.tracker import Frame, Tracker
+from extractors.devices.vrpn_simulator import SentPose
 
 TO_WORLD = Rotation.from_euler("x", 180.0, degrees=True)
 SAME = 1e-6
+NEAR = 500
+"""How many records ahead a pose is looked for first."""
 
 
 def collect(tracker: Tracker, seconds: float) -> list[Frame]:
@@ -69,8 +74,11 @@ def compare(got: np.ndarray, sent: np.ndarray, intact: Sequence[bool]) -> Held:
     """Match poses in order, each with the next one sent that is the same."""
     at, last, wrong = 0, -1, 0
     for row in got:
-        ahead = np.flatnonzero(np.abs(sent[at:] - row).max(axis=1) < SAME)
-        if not len(ahead):
+        for window in (NEAR, len(sent)):
+            ahead = np.flatnonzero(np.abs(sent[at : at + window] - row).max(axis=1) < SAME)
+            if len(ahead):
+                break
+        else:
             wrong += 1
             continue
         last = at + int(ahead[0])
@@ -78,7 +86,7 @@ def compare(got: np.ndarray, sent: np.ndarray, intact: Sequence[bool]) -> Held:
     return Held(last + 1, sum(intact[: last + 1]), len(got), wrong, len(sent) - last - 1)
 
 
-def held(
+def held_by_flock(
     frames: Sequence[Frame], log: Sequence[Sent], form: str, *, group: bool, range_inch: float
 ) -> list[Held]:
     """The comparison, sensor by sensor.
@@ -93,6 +101,52 @@ def held(
         truth = sent_poses(mine, form, group=group, range_inch=range_inch)
         out.append(compare(poses(frames, index), truth, [each.intact for each in mine]))
     return out
+
+
+def held_by_motionstar(frames: Sequence[Frame], log: Sequence[SentPacket], form: str) -> list[Held]:
+    """The comparison for packets, whose words are whole."""
+    out = []
+    for index in range(len(frames[0].positions)):
+        words = np.array([each.words[index + 2] for each in log], float)
+        truth = in_rows(len(log), *poses_of(words, form, range_inch=144.0))
+        out.append(compare(poses(frames, index), truth, [each.intact for each in log]))
+    return out
+
+
+def held_by_fastrak(
+    frames: Sequence[Frame], log: Sequence[Sent], form: str, *, binary: bool
+) -> list[Held]:
+    """The comparison for a Fastrak's records."""
+    out = []
+    for index in range(len(frames[0].positions)):
+        mine = [each for each in log if each.address == index + 1]
+        rows = np.array([_fastrak_numbers(each.data, binary=binary) for each in mine])
+        rotations = None
+        if form == "pos_quat":
+            rotations = Rotation.from_quat(rows[:, [4, 5, 6, 3]])
+        elif form == "pos_ang":
+            rotations = Rotation.from_euler("ZYX", rows[:, 3:], degrees=True)
+        truth = in_rows(len(mine), rows[:, :3] / 100.0, rotations)
+        out.append(compare(poses(frames, index), truth, [each.intact for each in mine]))
+    return out
+
+
+def held_by_vrpn(frames: Sequence[Frame], log: Sequence[SentPose]) -> list[Held]:
+    """The comparison for a VRPN server's poses."""
+    out = []
+    for index in range(len(frames[0].positions)):
+        mine = [each.pose for each in log if each.pose.sensor == index]
+        turns = Rotation.from_quat([each.quaternion for each in mine])
+        rows = np.c_[[each.position for each in mine], turns.as_quat(scalar_first=True)]
+        out.append(compare(poses(frames, index), signed(rows), [True] * len(mine)))
+    return out
+
+
+def _fastrak_numbers(data: bytes, *, binary: bool) -> list[float]:
+    """A record's numbers, read by their columns."""
+    if binary:
+        return list(struct.unpack(f"<{(len(data) - 5) // 4}f", data[3:-2]))
+    return [float(data[at : at + 7]) for at in range(3, len(data) - 2, 7)]
 
 
 def signed(rows: np.ndarray) -> np.ndarray:

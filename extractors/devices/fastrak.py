@@ -95,9 +95,8 @@ class FastrakTracker(LiveTracker):
             settings.form, binary=settings.binary, byte_s=BITS / settings.baud
         )
         self._frames = FrameCollector(len(settings.names), self.counts)
-        self._cycles = CycleCounter(1.0 / settings.rate_hz)
-        self._last_index = -1
-        self._gap = False
+        self._cycles = CycleCounter(len(settings.names), 1.0 / settings.rate_hz)
+        self._cycle = -1
         self._heard_s = self._next_poll_s = time.monotonic()
 
     def describe(self) -> Description:
@@ -165,6 +164,7 @@ class FastrakTracker(LiveTracker):
         period_s = 1.0 / self._settings.rate_hz
         self._next_poll_s = max(self._next_poll_s + period_s, now - period_s)
         self._parser.clear()
+        self._cycle += 1
         self._line.write(b"P")
         out: list[Frame] = []
         count, deadline = 0, now + ANSWER_S
@@ -182,13 +182,10 @@ class FastrakTracker(LiveTracker):
             self.counts.refused_records += 1
             return []
         self._heard_s = time.monotonic()
-        self._gap |= record.after_gap
-        if not self._cycles.started or index <= self._last_index:
-            self._cycles.advance(record.stamp_s, after_gap=self._gap and self._settings.stream)
-            self._gap = False
-        self._last_index = index
+        if self._settings.stream:
+            self._cycle = self._cycles.cycle_of(index, record.stamp_s, missed=record.missed)
         pose = pose_of_record(record, self._settings.form)
-        return self._frames.add(self._cycles.cycle, SensorReading(index, record.stamp_s, *pose))
+        return self._frames.add(self._cycle, SensorReading(index, record.stamp_s, *pose))
 
 
 def pose_of_record(record: StationRecord, form: str) -> tuple[Vector, Quaternion]:

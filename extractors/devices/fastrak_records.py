@@ -38,8 +38,8 @@ class StationRecord:
     stamp_s: float = 0.0
     """When its first byte arrived [s]."""
 
-    after_gap: bool = False
-    """Whether bytes were dropped since the record before."""
+    missed: int = 0
+    """How many records the bytes were of that were dropped since the record before."""
 
 
 def layout(form: str) -> str:
@@ -114,7 +114,7 @@ class RecordParser:
         self._byte_s = byte_s
         self._buffer = bytearray()
         self._stamp_s = 0.0
-        self._gap = False
+        self._dropped = 0
 
     def feed(self, data: bytes, at_s: float = 0.0) -> list[StationRecord]:
         """The records that some bytes complete, the last of which arrived at a moment [s]."""
@@ -128,11 +128,12 @@ class RecordParser:
             if record is None:
                 at += 1
                 self.dropped_bytes += 1
-                self._gap = True
+                self._dropped += 1
                 continue
             stamp_s = self._stamp_s if at < held else at_s - (total - 1 - at) * self._byte_s
-            out.append(replace(record, stamp_s=stamp_s, after_gap=self._gap))
-            self._gap = False
+            missed = -(-self._dropped // self._size)
+            self._dropped = 0
+            out.append(replace(record, stamp_s=stamp_s, missed=missed))
             at += self._size
         if at >= held:
             self._stamp_s = at_s - (total - 1 - at) * self._byte_s
@@ -142,4 +143,4 @@ class RecordParser:
     def clear(self) -> None:
         """Forget what was begun."""
         self._buffer.clear()
-        self._gap = True
+        self._dropped = 0

@@ -183,19 +183,15 @@ class FlockTracker(LiveTracker):
         return self._frames.add(cycle, SensorReading(index, record.stamp_s, *pose))
 
     def _streamed_cycle(self, port: "_Port", record: Record, index: int) -> int:
-        """The cycle of a record: a group's birds come in order, so a lower one begins the next."""
-        cycles, gap = port.cycles, port.gap or record.after_gap
-        port.gap = gap
-        if not cycles.started:
-            period_s = 1.0 / self._settings.rate_hz
-            late = 0 if len(self._ports) == 1 else (record.stamp_s - self._start_s) / period_s
-            port.last_index, port.gap = index, False
-            self._frames_begin(cycles.start(round(late), record.stamp_s))
-        elif not self._settings.group or index <= port.last_index:
-            cycles.advance(record.stamp_s, after_gap=gap)
-            port.gap = False
-        port.last_index = index
-        return cycles.cycle
+        """The cycle of a record; birds with lines of their own begin with the one in which."""
+        place = index if self._settings.group else 0
+        if port.cycles.started:
+            return port.cycles.cycle_of(place, record.stamp_s, missed=record.missed)
+        cycle = 0
+        if len(self._ports) > 1:
+            cycle = round((record.stamp_s - self._start_s) * self._settings.rate_hz)
+        self._frames_begin(port.cycles.start(cycle, place, record.stamp_s))
+        return cycle
 
     def _frames_begin(self, cycle: int) -> None:
         """What lies before the first record of all is not missing."""
@@ -211,11 +207,9 @@ class _Port:
         self.index = index
         self.path = path
         self.line = SerialLine(path, settings.baud)
-        self.gap = False
-        self.last_index = -1
-        self.cycles = CycleCounter(1.0 / settings.rate_hz)
         self._byte_s = commands.BITS / settings.baud
         self._expected = len(settings.names) if settings.group else 1
+        self.cycles = CycleCounter(self._expected, 1.0 / settings.rate_hz)
         self._quiet_s = settings.settle_s / 3.0
         self.parser = RecordParser(
             settings.form,

@@ -30,8 +30,8 @@ class Record:
     stamp_s: float
     """When its first byte arrived [s]."""
 
-    after_gap: bool
-    """Whether bytes were dropped since the record before."""
+    missed: int
+    """How many records the bytes were of that were dropped since the record before."""
 
 
 def encode_word(word: int) -> tuple[int, int]:
@@ -87,7 +87,7 @@ class RecordParser:
         self._buffer = bytearray()
         self._stamp_s = 0.0
         self._fed_s = 0.0
-        self._gap = False
+        self._dropped = self._refused = 0
 
     @property
     def pending(self) -> bool:
@@ -136,7 +136,6 @@ class RecordParser:
     def clear(self) -> None:
         """Forget what was begun."""
         self._buffer.clear()
-        self._gap = True
 
     def _phase_within(self, at: int) -> int:
         """How far on the next phasing bit stands where none may; 0 where there is none."""
@@ -148,7 +147,7 @@ class RecordParser:
 
     def _skip(self, at: int, count: int) -> int:
         self.dropped_bytes += count
-        self._gap = True
+        self._dropped += count
         return at + count
 
     def _accept(self, at: int) -> list[Record]:
@@ -156,9 +155,10 @@ class RecordParser:
         address = data[-1] if self._addresses is not None else 0
         if self._addresses is not None and address not in self._addresses:
             self.wrong_addresses += 1
-            self._gap = True
+            self._refused += 1
             return []
         words = tuple(decode_word(data[2 * i], data[2 * i + 1]) for i in range(self._words))
-        record = Record(address, words, self._stamp_s, self._gap)
-        self._gap = False
+        missed = -(-self._dropped // self._size) + self._refused
+        self._dropped = self._refused = 0
+        record = Record(address, words, self._stamp_s, missed)
         return [record]

@@ -9,8 +9,8 @@ from extractors.devices.flock_records import record_size
 
 BAUDS = (2400, 4800, 9600, 19200, 38400, 57600, 115200)
 EXTENDED_RANGE_INCH = 144.0
-SETTLE_S = 0.6
-"""How long the line is left idle around auto-configuration [s]."""
+SETTLE_S = 0.75
+"""How long the line is left idle around auto-configuration: 0.6 s, and what delays it [s]."""
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,10 @@ import numpy as np
 
 from extractors.devices.tracker import Counts, Frame
 
+PAUSE_S = 0.5
+PAUSE_CYCLES = 5
+"""A pause longer than both is one in which nothing was sent, not one of this computer."""
+
 
 @dataclass(frozen=True, slots=True)
 class SensorReading:
@@ -22,38 +26,45 @@ class SensorReading:
 
 
 class CycleCounter:
-    """Numbers the measuring cycles of a stream whose records carry no number.
+    """Numbers the measuring cycles of records that carry no number, but come in order.
 
-    Cycles follow one another while no byte is lost. After a gap the time that went by says how
-    many are missing, to the nearest.
+    A record follows the one before; where bytes were dropped, as many are taken to be missing as
+    the bytes are of, to the nearest that the order of the sensors allows. The time decides only
+    after a pause that no delay on the way explains.
+
+    Args:
+        sensors: How many send in turn.
+        period_s: Time of a cycle [s].
     """
 
-    def __init__(self, period_s: float) -> None:
+    def __init__(self, sensors: int, period_s: float) -> None:
+        self._sensors = sensors
         self._period_s = period_s
-        self._cycle = -1
+        self._place = -1
         self._stamp_s = 0.0
 
-    def start(self, cycle: int, stamp_s: float) -> int:
-        """Begin with a number."""
-        self._cycle, self._stamp_s = cycle, stamp_s
+    def start(self, cycle: int, index: int, stamp_s: float) -> int:
+        """Begin with a record of a sensor in a cycle."""
+        self._place, self._stamp_s = cycle * self._sensors + index, stamp_s
         return cycle
 
     @property
     def started(self) -> bool:
-        """Whether a cycle was numbered."""
-        return self._cycle >= 0
+        """Whether a record was numbered."""
+        return self._place >= 0
 
-    @property
-    def cycle(self) -> int:
-        """The present cycle."""
-        return self._cycle
-
-    def advance(self, stamp_s: float, *, after_gap: bool) -> int:
-        """The number of the next cycle, of which a record came at a moment [s]."""
-        steps = 1
-        if after_gap and self.started:
-            steps = max(1, round((stamp_s - self._stamp_s) / self._period_s))
-        return self.start(self._cycle + steps, stamp_s)
+    def cycle_of(self, index: int, stamp_s: float, *, missed: int) -> int:
+        """The cycle of the next record, of a sensor, that came at a moment [s]."""
+        if not self.started:
+            return self.start(0, index, stamp_s)
+        likely = self._place + 1 + missed
+        pause_s = stamp_s - self._stamp_s
+        if pause_s > max(PAUSE_S, PAUSE_CYCLES * self._period_s):
+            likely = self._place + round(pause_s / self._period_s * self._sensors)
+        cycle = round((likely - index) / self._sensors)
+        while cycle * self._sensors + index <= self._place:
+            cycle += 1
+        return self.start(cycle, index, stamp_s)
 
 
 @dataclass

@@ -152,7 +152,7 @@ class VrpnTracker(LiveTracker):
         return self._gather(reading)
 
     def _gather(self, reading: SensorReading) -> list[Frame]:
-        """The frame that ends with a reading, or that a reading of another time shows to be over."""
+        """The frames that a reading ends: by being the last, or of another time."""
         out = []
         begun = next(iter(self._partial.values()), reading)
         if begun.device_s != reading.device_s or reading.index in self._partial:

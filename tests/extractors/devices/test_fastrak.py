@@ -1,11 +1,7 @@
 """The Fastrak driver reads what its simulator sends, in ASCII and binary."""
 
-import struct
-
-import numpy as np
 import pytest
 import tracked
-from scipy.spatial.transform import Rotation
 
 from capar.model.errors import DeviceError
 from extractors.devices.addresses import parse_address
@@ -14,36 +10,12 @@ from extractors.devices.fastrak_records import ITEMS
 from extractors.devices.fastrak_simulator import FastrakSimulator
 from extractors.devices.motion_source import SmoothMotion
 from extractors.devices.simulated_line import Faults, Sent
-from extractors.devices.tracker import Frame
 
 SECONDS = 0.8
 
 
 def tracker(simulator: FastrakSimulator, options: str) -> FastrakTracker:
     return FastrakTracker(parse_address(f"fastrak:{simulator.place}?{options}"))
-
-
-def values(data: bytes, *, binary: bool) -> list[float]:
-    """A record's numbers, read by their columns."""
-    if binary:
-        return list(struct.unpack(f"<{(len(data) - 5) // 4}f", data[3:-2]))
-    return [float(data[at : at + 7]) for at in range(3, len(data) - 2, 7)]
-
-
-def held(frames: list[Frame], log: list[Sent], form: str, *, binary: bool) -> list[tracked.Held]:
-    out = []
-    for index in range(len(frames[0].positions)):
-        mine = [each for each in log if each.address == index + 1]
-        rows = np.array([values(each.data, binary=binary) for each in mine])
-        rotations = None
-        if form == "pos_quat":
-            rotations = Rotation.from_quat(rows[:, [4, 5, 6, 3]])
-        elif form == "pos_ang":
-            rotations = Rotation.from_euler("ZYX", rows[:, 3:], degrees=True)
-        truth = tracked.in_rows(len(mine), rows[:, :3] / 100.0, rotations)
-        intact = [each.intact for each in mine]
-        out.append(tracked.compare(tracked.poses(frames, index), truth, intact))
-    return out
 
 
 @pytest.mark.parametrize("mode", ["stream", "point"])
@@ -62,7 +34,7 @@ def test_every_format_and_mode_arrives_whole(
     assert simulator.skipped == 0
     assert fastrak.counts.lost_records == 0
     assert fastrak.counts.dropped_bytes == 0
-    for each in held(frames, log, form, binary=encoding == "binary"):
+    for each in tracked.held_by_fastrak(frames, log, form, binary=encoding == "binary"):
         assert each.wrong == 0
         assert each.accepted == each.sent
 
@@ -76,7 +48,7 @@ def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_a
     with FastrakSimulator(SmoothMotion(4), 115200, faults, log) as simulator:
         with tracker(simulator, f"stations=4&encoding={encoding}") as fastrak:
             frames = tracked.collect(fastrak, 2.0 * SECONDS)
-    every = held(frames, log, "pos_quat", binary=encoding == "binary")
+    every = tracked.held_by_fastrak(frames, log, "pos_quat", binary=encoding == "binary")
     assert sum(each.wrong for each in every) == 0
     assert sum(each.accepted for each in every) >= 0.9 * sum(each.intact for each in every)
     damaged = sum(each.sent - each.intact for each in every)
@@ -96,7 +68,7 @@ def test_a_pulled_plug_is_survived_and_told() -> None:
     assert len(before) > 5
     assert len(after) > 10
     assert fastrak.counts.reconnections == 1
-    for each in held([*before, *after], log, "pos_quat", binary=True):
+    for each in tracked.held_by_fastrak([*before, *after], log, "pos_quat", binary=True):
         assert each.wrong == 0
 
 

@@ -51,7 +51,9 @@ def test_every_format_and_mode_arrives_whole_at_the_highest_rate_of_the_line(
     assert flock.counts.refused_records == 0
     assert simulator.skipped == 0
     assert len(frames) > (0.8 * SECONDS * rate_hz if mode == "stream" else 5)
-    for each in tracked.held(frames, log, form, group=group, range_inch=144.0 if group else 36.0):
+    for each in tracked.held_by_flock(
+        frames, log, form, group=group, range_inch=144.0 if group else 36.0
+    ):
         assert each.wrong == 0
         assert each.accepted == each.sent
 
@@ -67,7 +69,7 @@ def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_a
     with FlockSimulator(SmoothMotion(birds), rig, Faults(0.005, seed=3), log) as simulator:
         with tracker(simulator, f"birds={birds}&format={form}&rate={rate_hz}") as flock:
             frames = tracked.collect(flock, 2.0 * SECONDS)
-    every = tracked.held(frames, log, form, group=birds > 1, range_inch=36.0)
+    every = tracked.held_by_flock(frames, log, form, group=birds > 1, range_inch=36.0)
     assert sum(each.wrong for each in every) == 0
     assert sum(each.accepted for each in every) >= 0.9 * sum(each.intact for each in every)
     damaged = sum(each.sent - each.intact for each in every)
@@ -83,7 +85,7 @@ def test_a_bird_with_a_line_of_its_own_is_read_beside_the_others() -> None:
             frames = tracked.collect(flock, SECONDS)
     assert flock.describe().sensors == ("bird1", "bird2", "bird3", "bird4")
     assert len(frames) > 0.8 * SECONDS * 103.3
-    for each in tracked.held(frames, log, "pos_quat", group=False, range_inch=36.0):
+    for each in tracked.held_by_flock(frames, log, "pos_quat", group=False, range_inch=36.0):
         assert each.wrong == 0
     whole = [each for each in frames if not np.isnan(each.positions).any()]
     assert len(whole) > 0.95 * len(frames)
@@ -95,7 +97,7 @@ def test_wrong_addresses_are_refused_and_counted_as_lost() -> None:
     with FlockSimulator(SmoothMotion(5), FlockRig(quiet_s=QUIET_S), faults, log) as simulator:
         with tracker(simulator, "birds=5&rate=60") as flock:
             frames = tracked.collect(flock, SECONDS)
-    every = tracked.held(frames, log, "pos_quat", group=True, range_inch=36.0)
+    every = tracked.held_by_flock(frames, log, "pos_quat", group=True, range_inch=36.0)
     assert sum(each.wrong for each in every) == 0
     assert flock.counts.refused_records > 5
     assert flock.counts.lost_records > 5
@@ -127,7 +129,9 @@ def test_a_pulled_plug_is_survived_and_told(mode: str) -> None:
     assert [each.message.split(":")[0] for each in flock.events] == [
         "connection lost", "connected again"
     ]  # fmt: skip
-    for each in tracked.held([*before, *after], log, "pos_quat", group=True, range_inch=36.0):
+    for each in tracked.held_by_flock(
+        [*before, *after], log, "pos_quat", group=True, range_inch=36.0
+    ):
         assert each.wrong == 0
 
 
@@ -139,7 +143,7 @@ def test_slow_answers_to_polls_lower_the_rate_and_lose_nothing() -> None:
             frames = tracked.collect(flock, SECONDS)
     assert 3 < len(frames) <= SECONDS / 0.1
     assert flock.counts.lost_records == 0
-    for each in tracked.held(frames, log, "pos_quat", group=True, range_inch=36.0):
+    for each in tracked.held_by_flock(frames, log, "pos_quat", group=True, range_inch=36.0):
         assert each.wrong == 0
 
 

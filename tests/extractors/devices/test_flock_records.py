@@ -103,7 +103,7 @@ def test_a_record_of_a_bird_that_is_not_there_is_refused_and_counted() -> None:
     parser = RecordParser(FORMATS["pos"], addresses=[2, 3])
     wire = b"".join(encode_record((4, 8, 12), address=each) for each in (2, 9, 3))
     found = [*parser.feed(wire), *parser.settle()]
-    assert [(each.address, each.after_gap) for each in found] == [(2, False), (3, True)]
+    assert [(each.address, each.missed) for each in found] == [(2, 0), (3, 1)]
     assert parser.wrong_addresses == 1
 
 

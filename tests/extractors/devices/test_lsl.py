@@ -1,7 +1,6 @@
 """Lab Streaming Layer: what is sent is received, on loopback alone."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import tracked
-from flock_bits import poses_of
 
 from capar.model.errors import DeviceError
 from extractors.devices.addresses import parse_address
@@ -16,23 +15,12 @@ from extractors.devices.motionstar_simulator import (
     SentPacket,
     ServerFaults,
 )
-from extractors.devices.tracker import Frame
 
 SECONDS = 0.8
 
 
 def tracker(simulator: MotionStarSimulator, options: str) -> MotionStarTracker:
     return MotionStarTracker(parse_address(f"motionstar:{simulator.place}?{options}"))
-
-
-def held(frames: list[Frame], log: list[SentPacket], form: str) -> list[tracked.Held]:
-    out = []
-    for index in range(len(frames[0].positions)):
-        words = np.array([each.words[index + 2] for each in log], float)
-        truth = tracked.in_rows(len(log), *poses_of(words, form, range_inch=144.0))
-        intact = [each.intact for each in log]
-        out.append(tracked.compare(tracked.poses(frames, index), truth, intact))
-    return out
 
 
 @pytest.mark.parametrize("transport", ["tcp", "udp"])
@@ -46,7 +34,7 @@ def test_every_format_arrives_whole_at_the_highest_rate(form: str, transport: st
     assert len(frames) > 0.8 * SECONDS * MOST_HZ
     assert motionstar.counts.lost_records == 0
     assert motionstar.counts.refused_records == 0
-    for each in held(frames, log, form):
+    for each in tracked.held_by_motionstar(frames, log, form):
         assert each.wrong == 0
         assert each.accepted == each.sent
 
@@ -56,7 +44,7 @@ def test_lost_packets_are_counted_and_the_others_kept() -> None:
     with MotionStarSimulator(SmoothMotion(3), ServerFaults(0.1, seed=1), log) as simulator:
         with tracker(simulator, "birds=3&transport=udp") as motionstar:
             frames = tracked.collect(motionstar, SECONDS)
-    for each in held(frames, log, "pos_quat"):
+    for each in tracked.held_by_motionstar(frames, log, "pos_quat"):
         assert each.wrong == 0
         assert each.accepted == each.intact < each.sent
         assert motionstar.counts.lost_records == 3 * (each.sent - each.intact)
@@ -86,7 +74,7 @@ def test_a_pulled_plug_is_survived_and_told(transport: str) -> None:
     assert len(after) > 20
     assert motionstar.counts.reconnections == 1
     assert motionstar.events[0].message.startswith("connection lost")
-    for each in held([*before, *after], log, "pos_quat"):
+    for each in tracked.held_by_motionstar([*before, *after], log, "pos_quat"):
         assert each.wrong == 0
 
 

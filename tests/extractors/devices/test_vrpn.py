@@ -6,29 +6,16 @@ import threading
 import numpy as np
 import pytest
 import tracked
-from scipy.spatial.transform import Rotation
 
 from capar.model.errors import DeviceError
 from extractors.devices.addresses import parse_address
 from extractors.devices.motion_source import SmoothMotion
-from extractors.devices.tracker import Frame
 from extractors.devices.vrpn import VrpnTracker
 from extractors.devices.vrpn_simulator import SentPose, VrpnSimulator
 
 
 def tracker(simulator: VrpnSimulator, options: str) -> VrpnTracker:
     return VrpnTracker(parse_address(f"vrpn:{simulator.place}?{options}"))
-
-
-def held(frames: list[Frame], log: list[SentPose]) -> list[tracked.Held]:
-    out = []
-    for index in range(len(frames[0].positions)):
-        mine = [each.pose for each in log if each.pose.sensor == index]
-        turns = Rotation.from_quat([each.quaternion for each in mine])
-        rows = np.c_[[each.position for each in mine], turns.as_quat(scalar_first=True)]
-        got = tracked.poses(frames, index)
-        out.append(tracked.compare(got, tracked.signed(rows), [True] * len(mine)))
-    return out
 
 
 def test_every_pose_arrives() -> None:
@@ -40,7 +27,7 @@ def test_every_pose_arrives() -> None:
     assert len(frames) > 0.8 * 1.5 * 120.0
     assert vrpn.counts.refused_records == 0
     assert not any(np.isnan(each.positions).any() for each in frames)
-    for each in held(frames, log):
+    for each in tracked.held_by_vrpn(frames, log):
         assert each.wrong == 0
         assert each.accepted == each.sent
 
@@ -57,7 +44,7 @@ def test_a_lost_connection_is_survived_and_told() -> None:
     assert len(before) > 5
     assert len(after) > 20
     assert vrpn.counts.reconnections == 1
-    for each in held([*before, *after], log):
+    for each in tracked.held_by_vrpn([*before, *after], log):
         assert each.wrong == 0
 
 
