@@ -29,6 +29,16 @@ def collect(tracker: Tracker, seconds: float) -> list[Frame]:
     return frames
 
 
+def take(tracker: Tracker, count: int, *, within_s: float = 60.0) -> list[Frame]:
+    """So many frames, or a few more, of a tracker that is open; however busy the computer is."""
+    frames: list[Frame] = []
+    end = time.monotonic() + within_s
+    while len(frames) < count and time.monotonic() < end:
+        frames += tracker.poll(0.1)
+    assert len(frames) >= count, f"{len(frames)} of {count} frames in {within_s:g} s"
+    return frames
+
+
 @dataclass(frozen=True)
 class Held:
     """How the frames of one sensor compare with what was sent."""

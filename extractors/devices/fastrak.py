@@ -27,7 +27,8 @@ SETTLE_S = 0.2
 """How long the line is left to end what was being sent [s]."""
 
 SILENCE_S = 2.0
-ANSWER_S = 0.3
+ANSWER_S = 1.0
+"""How long the answer to a poll may pause [s]."""
 
 
 @dataclass(frozen=True)
@@ -94,10 +95,10 @@ class FastrakTracker(LiveTracker):
         self._parser = RecordParser(
             settings.form, binary=settings.binary, byte_s=BITS / settings.baud
         )
-        self._frames = FrameCollector(len(settings.names), self.counts)
-        self._cycles = CycleCounter(len(settings.names), 1.0 / settings.rate_hz)
+        self._frames = FrameCollector(len(settings.names), self.counts, counted=settings.stream)
+        self._cycles = CycleCounter(len(settings.names))
         self._cycle = -1
-        self._heard_s = self._next_poll_s = time.monotonic()
+        self._next_poll_s = time.monotonic()
 
     def describe(self) -> Description:
         """The stations, and how they were told to send."""
@@ -140,11 +141,10 @@ class FastrakTracker(LiveTracker):
         self._parser.dropped_bytes = 0
 
     def _read(self, timeout_s: float) -> list[Frame]:
+        since_s, before = time.monotonic(), self.counts.records
         out = self._streamed(timeout_s) if self._settings.stream else self._polled(timeout_s)
         self._take_counts()
-        silent_s = time.monotonic() - self._heard_s
-        if silent_s > SILENCE_S:
-            raise DeviceLostError(f"the Fastrak sent nothing for {silent_s:.1f} s")
+        self._listened(since_s, SILENCE_S, heard=self.counts.records > before)
         return out
 
     def _streamed(self, timeout_s: float) -> list[Frame]:
@@ -167,9 +167,8 @@ class FastrakTracker(LiveTracker):
         self._cycle += 1
         self._line.write(b"P")
         out: list[Frame] = []
-        count, deadline = 0, now + ANSWER_S
-        while count < len(self._settings.names) and time.monotonic() < deadline:
-            data = self._line.read(deadline - time.monotonic())
+        count = 0
+        while count < len(self._settings.names) and (data := self._line.read(ANSWER_S)):
             for record in self._parser.feed(data, time.monotonic()):
                 count += 1
                 out += self._add(record)
@@ -181,9 +180,8 @@ class FastrakTracker(LiveTracker):
         if index >= len(self._settings.names):
             self.counts.refused_records += 1
             return []
-        self._heard_s = time.monotonic()
         if self._settings.stream:
-            self._cycle = self._cycles.cycle_of(index, record.stamp_s, missed=record.missed)
+            self._cycle = self._cycles.cycle_of(index, missed=record.missed)
         pose = pose_of_record(record, self._settings.form)
         return self._frames.add(self._cycle, SensorReading(index, record.stamp_s, *pose))
 

@@ -34,6 +34,9 @@ SILENCE_S = 1.5
 IDLE_S = 0.006
 """A line without a byte for so long has sent its record [s]."""
 
+POLL_REPLY_S = 1.0
+"""How long the answer to a poll may take to begin [s]."""
+
 POLL_IDLE_S = 0.1
 """A poll's answer that stops for so long has ended [s]."""
 
@@ -61,7 +64,6 @@ class FlockTracker(LiveTracker):
         self._ports: list[_Port] = []
         self._frames = FrameCollector(len(self._settings.names), self.counts)
         self._start_s = 0.0
-        self._heard_s = 0.0
         self._next_poll_s = 0.0
         self._cycle = -1
 
@@ -86,9 +88,12 @@ class FlockTracker(LiveTracker):
         self._details = self._ports[0].identity()
         self._configure()
         self._frames = FrameCollector(
-            len(settings.names), self.counts, ahead=AHEAD if len(self._ports) > 1 else 0
+            len(settings.names),
+            self.counts,
+            ahead=AHEAD if len(self._ports) > 1 else 0,
+            counted=settings.stream,
         )
-        self._start_s = self._heard_s = self._next_poll_s = time.monotonic()
+        self._start_s = self._next_poll_s = time.monotonic()
         self._cycle = -1
         if settings.stream:
             for port in self._ports:
@@ -130,11 +135,11 @@ class FlockTracker(LiveTracker):
                 continue
 
     def _read(self, timeout_s: float) -> list[Frame]:
+        since_s, before = time.monotonic(), self.counts.records
         out = self._streamed(timeout_s) if self._settings.stream else self._polled(timeout_s)
-        now = time.monotonic()
-        if now - self._heard_s > SILENCE_S + 3.0 / self._settings.rate_hz:
-            raise DeviceLostError(f"the flock sent nothing for {now - self._heard_s:.1f} s")
         self._take_counts()
+        heard = self.counts.records > before
+        self._listened(since_s, SILENCE_S + 3.0 / self._settings.rate_hz, heard=heard)
         return out
 
     def _take_counts(self) -> None:
@@ -163,7 +168,7 @@ class FlockTracker(LiveTracker):
         self._next_poll_s = max(self._next_poll_s + period_s, time.monotonic() - period_s)
         self._cycle += 1
         for port in self._ports:
-            port.line.write(bytes([commands.POINT]))
+            port.poll()
         out: list[Frame] = []
         for port in self._ports:
             for record in port.answer():
@@ -173,7 +178,6 @@ class FlockTracker(LiveTracker):
     def _add(self, port: "_Port", record: Record) -> list[Frame]:
         """The frames that a record completes, once its words are a pose and its cycle is known."""
         settings = self._settings
-        self._heard_s = time.monotonic()
         index = settings.addresses.index(record.address) if settings.group else port.index
         cycle = self._cycle if not settings.stream else self._streamed_cycle(port, record, index)
         pose = pose_of_words(record.words, settings.form, settings.scaling)
@@ -186,11 +190,11 @@ class FlockTracker(LiveTracker):
         """The cycle of a record; birds with lines of their own begin with the one in which."""
         place = index if self._settings.group else 0
         if port.cycles.started:
-            return port.cycles.cycle_of(place, record.stamp_s, missed=record.missed)
+            return port.cycles.cycle_of(place, missed=record.missed)
         cycle = 0
         if len(self._ports) > 1:
             cycle = round((record.stamp_s - self._start_s) * self._settings.rate_hz)
-        self._frames_begin(port.cycles.start(cycle, place, record.stamp_s))
+        self._frames_begin(port.cycles.start(cycle, place))
         return cycle
 
     def _frames_begin(self, cycle: int) -> None:
@@ -209,7 +213,9 @@ class _Port:
         self.line = SerialLine(path, settings.baud)
         self._byte_s = commands.BITS / settings.baud
         self._expected = len(settings.names) if settings.group else 1
-        self.cycles = CycleCounter(self._expected, 1.0 / settings.rate_hz)
+        self._last = settings.addresses[-1] if settings.group else 0
+        self._late = False
+        self.cycles = CycleCounter(self._expected)
         self._quiet_s = settings.settle_s / 3.0
         self.parser = RecordParser(
             settings.form,
@@ -298,19 +304,27 @@ class _Port:
             return self.parser.feed(data, time.monotonic())
         return self.parser.settle()
 
-    def answer(self) -> list[Record]:
-        """The records that answer a poll."""
-        out: list[Record] = []
-        heard = False
-        deadline = time.monotonic() + REPLY_S
-        while len(out) < self._expected and time.monotonic() < deadline:
-            if self.parser.pending and len(out) == self._expected - 1:
-                out += self.parser.settle(answered=True)
-                break
-            data = self.line.read(POLL_IDLE_S if heard else REPLY_S)
-            if not data:
-                break
-            heard = True
-            out += self.parser.feed(data, time.monotonic())
+    def poll(self) -> None:
+        """Ask for one cycle; what came too late for the last one is forgotten."""
+        if self._late:
+            self.line.drop_input()
         self.parser.clear()
+        self.tell(bytes([commands.POINT]))
+
+    def answer(self) -> list[Record]:
+        """The records that answer a poll, until the last one is there or the line is silent."""
+        out: list[Record] = []
+        while not out or out[-1].address != self._last:
+            if self.parser.pending_address == self._last:
+                new = self.parser.settle(answered=True)
+            else:
+                data = self.line.read(POLL_IDLE_S if out else POLL_REPLY_S)
+                if not data:
+                    break
+                new = self.parser.feed(data, time.monotonic())
+            for record in new:
+                if out and record.address <= out[-1].address:
+                    out.clear()  # the end of an answer that came too late
+                out.append(record)
+        self._late = len(out) < self._expected
         return out

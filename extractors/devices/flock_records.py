@@ -94,6 +94,13 @@ class RecordParser:
         """Whether a whole record waits for the byte after it."""
         return len(self._buffer) == self._size
 
+    @property
+    def pending_address(self) -> int | None:
+        """Address of the record that waits for the byte after it; 0 where there are none."""
+        if not self.pending:
+            return None
+        return self._buffer[-1] if self._addresses is not None else 0
+
     def feed(self, data: bytes, at_s: float = 0.0) -> list[Record]:
         """The records that some bytes complete, the last of which arrived at a moment [s]."""
         held = len(self._buffer)

@@ -7,10 +7,6 @@ import numpy as np
 
 from extractors.devices.tracker import Counts, Frame
 
-PAUSE_S = 0.5
-PAUSE_CYCLES = 5
-"""A pause longer than both is one in which nothing was sent, not one of this computer."""
-
 
 @dataclass(frozen=True, slots=True)
 class SensorReading:
@@ -29,23 +25,20 @@ class CycleCounter:
     """Numbers the measuring cycles of records that carry no number, but come in order.
 
     A record follows the one before; where bytes were dropped, as many are taken to be missing as
-    the bytes are of, to the nearest that the order of the sensors allows. The time decides only
-    after a pause that no delay on the way explains.
+    the bytes are of, to the nearest that the order of the sensors allows. Time is not asked: a
+    busy computer reads late.
 
     Args:
         sensors: How many send in turn.
-        period_s: Time of a cycle [s].
     """
 
-    def __init__(self, sensors: int, period_s: float) -> None:
+    def __init__(self, sensors: int) -> None:
         self._sensors = sensors
-        self._period_s = period_s
         self._place = -1
-        self._stamp_s = 0.0
 
-    def start(self, cycle: int, index: int, stamp_s: float) -> int:
+    def start(self, cycle: int, index: int) -> int:
         """Begin with a record of a sensor in a cycle."""
-        self._place, self._stamp_s = cycle * self._sensors + index, stamp_s
+        self._place = cycle * self._sensors + index
         return cycle
 
     @property
@@ -53,18 +46,14 @@ class CycleCounter:
         """Whether a record was numbered."""
         return self._place >= 0
 
-    def cycle_of(self, index: int, stamp_s: float, *, missed: int) -> int:
-        """The cycle of the next record, of a sensor, that came at a moment [s]."""
+    def cycle_of(self, index: int, *, missed: int) -> int:
+        """The cycle of the next record, of a sensor."""
         if not self.started:
-            return self.start(0, index, stamp_s)
-        likely = self._place + 1 + missed
-        pause_s = stamp_s - self._stamp_s
-        if pause_s > max(PAUSE_S, PAUSE_CYCLES * self._period_s):
-            likely = self._place + round(pause_s / self._period_s * self._sensors)
-        cycle = round((likely - index) / self._sensors)
+            return self.start(0, index)
+        cycle = round((self._place + 1 + missed - index) / self._sensors)
         while cycle * self._sensors + index <= self._place:
             cycle += 1
-        return self.start(cycle, index, stamp_s)
+        return self.start(cycle, index)
 
 
 @dataclass
@@ -79,12 +68,16 @@ class FrameCollector:
         sensors: How many there are.
         counts: Where lost records are counted.
         ahead: How many newer cycles are begun before an incomplete one is given as it is.
+        counted: Whether cycles are equally long, so that frames bear their numbers.
     """
 
-    def __init__(self, sensors: int, counts: Counts, *, ahead: int = 0) -> None:
+    def __init__(
+        self, sensors: int, counts: Counts, *, ahead: int = 0, counted: bool = True
+    ) -> None:
         self._sensors = sensors
         self._counts = counts
         self._ahead = ahead
+        self._counted = counted
         self._partial: dict[int, _Partial] = {}
         self._given = -1
 
@@ -120,15 +113,15 @@ class FrameCollector:
             missing = self._sensors - len(readings)
             self._counts.lost_records += missing + self._sensors * (cycle - self._given - 1)
             self._given = cycle
-            out.append(frame_of(readings, self._sensors))
+            out.append(frame_of(readings, self._sensors, cycle=cycle if self._counted else None))
         return out
 
 
-def frame_of(readings: Sequence[SensorReading], sensors: int) -> Frame:
+def frame_of(readings: Sequence[SensorReading], sensors: int, *, cycle: int | None = None) -> Frame:
     """The frame of some sensors' readings; the others are NaN."""
     positions, orientations = np.full((sensors, 3), np.nan), np.full((sensors, 4), np.nan)
     for each in readings:
         positions[each.index] = each.position
         orientations[each.index] = each.orientation
     first = min(readings, key=lambda each: each.host_s)
-    return Frame(first.host_s, first.device_s, positions, orientations)
+    return Frame(first.host_s, first.device_s, positions, orientations, cycle)

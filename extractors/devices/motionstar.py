@@ -62,8 +62,8 @@ class MotionStarTracker(LiveTracker):
         self._details: dict[str, str] = {}
         self._sequence = 0
         self._last: int | None = None
+        self._cycle = -1
         self._numbered = True
-        self._heard_s = 0.0
 
     def describe(self) -> Description:
         """What the server said, and its birds."""
@@ -82,6 +82,7 @@ class MotionStarTracker(LiveTracker):
         self._buffer.clear()
         self._early.clear()
         self._last = None
+        self._cycle = -1
         self._ask(Kind.STOP_DATA, needed=False)
         self._ask(Kind.WAKE_UP)
         status = birdnet.decode_system_status(self._ask(Kind.GET_STATUS).body)
@@ -90,7 +91,6 @@ class MotionStarTracker(LiveTracker):
         for bird in self._birds:
             self._set_up(bird)
         self._ask(Kind.RUN_CONTINUOUS)
-        self._heard_s = time.monotonic()
 
     def _take_birds(self, status: birdnet.SystemStatus) -> None:
         """The birds that are there, as many as the address says.
@@ -177,12 +177,11 @@ class MotionStarTracker(LiveTracker):
             self._say(f"the server did not confirm the end: {error}")
 
     def _read(self, timeout_s: float) -> list[Frame]:
+        since_s = time.monotonic()
         packets, self._early = self._early or self._packets(timeout_s), []
+        longest_s = SILENCE_S + 3.0 * self._every / self._rate_hz
+        self._listened(since_s, longest_s, heard=bool(packets))
         now = time.monotonic()
-        if packets:
-            self._heard_s = now
-        elif now - self._heard_s > SILENCE_S + 3.0 * self._every / self._rate_hz:
-            raise DeviceLostError(f"the server sent nothing for {now - self._heard_s:.1f} s")
         return [
             frame
             for packet in packets
@@ -210,7 +209,7 @@ class MotionStarTracker(LiveTracker):
             readings.append(SensorReading(index, now, *pose, packet.stamp_s))
         self.counts.records += len(readings)
         self.counts.lost_records += self._count - len(readings)
-        return [frame_of(readings, self._count)] if readings else []
+        return [frame_of(readings, self._count, cycle=self._cycle)] if readings else []
 
     def _follows(self, sequence: int) -> bool:
         """Whether a packet is later than the one before; those between are counted as lost."""
@@ -222,5 +221,6 @@ class MotionStarTracker(LiveTracker):
             self._numbered = False
             self._say("the server does not number its packets, so losses cannot be counted")
         self._last = sequence
+        self._cycle += max(1, step)
         self.counts.lost_records += max(0, step - 1) * self._count
         return True

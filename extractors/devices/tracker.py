@@ -62,6 +62,10 @@ class Frame:
     orientations: Float[np.ndarray, "sensors 4"]
     """Unit quaternions w x y z, sensor to world; NaN for a sensor without one."""
 
+    cycle: int | None = None
+    """Number of the measuring cycle since the connection was made, where cycles are equally long
+    and counted; numbers that are left out are cycles that were lost."""
+
 
 @dataclass
 class Counts:
@@ -131,6 +135,7 @@ class LiveTracker:
         self._connected = False
         self._wanted = False
         self._retry_at = 0.0
+        self._silent_s = 0.0
 
     def open(self) -> None:
         """Connect, and have the device send.
@@ -180,6 +185,20 @@ class LiveTracker:
     def __exit__(self, *_: object) -> None:
         """Close it."""
         self.close()
+
+    def _listened(self, since_s: float, longest_s: float, *, heard: bool) -> None:
+        """Note that the device was listened to from a moment on.
+
+        Only time spent waiting in vain counts as silence: a busy computer may not have listened.
+
+        Raises:
+            DeviceLostError: It was silent for too long.
+        """
+        waited_s = min(time.monotonic() - since_s, POLL_S)
+        self._silent_s = 0.0 if heard else self._silent_s + waited_s
+        if self._silent_s > longest_s:
+            self._silent_s = 0.0
+            raise DeviceLostError(f"nothing came for {longest_s:g} s")
 
     def _say(self, message: str) -> None:
         self.events.append(Event(time.monotonic(), message))

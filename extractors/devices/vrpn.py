@@ -65,10 +65,11 @@ class VrpnTracker(LiveTracker):
 
     def _start(self) -> None:
         self._parser = vrpn.MessageParser()
+        self._early = b""
         self._senders: dict[int, str] = {}
         self._types: dict[int, str] = {}
         self._partial: dict[int, SensorReading] = {}
-        self._heard_s = self._asked_s = time.monotonic()
+        self._asked_s = time.monotonic()
 
     def describe(self) -> Description:
         """The tracker and its sensors."""
@@ -86,7 +87,6 @@ class VrpnTracker(LiveTracker):
         vrpn.check_cookie(data)
         self._describe_ours()
         self._early = data[vrpn.COOKIE_SIZE :]
-        self._heard_s = time.monotonic()
 
     def _describe_ours(self) -> None:
         """Name the sender and the types of what we send: the tracker's, as clients do."""
@@ -106,13 +106,11 @@ class VrpnTracker(LiveTracker):
         self._line.close()
 
     def _read(self, timeout_s: float) -> list[Frame]:
+        since_s = time.monotonic()
         data = self._early or self._line.read(timeout_s)
         self._early = b""
+        self._listened(since_s, SILENCE_S, heard=bool(data))
         now = time.monotonic()
-        if data:
-            self._heard_s = now
-        elif now - self._heard_s > SILENCE_S:
-            raise DeviceLostError(f"the server answers nothing for {now - self._heard_s:.1f} s")
         if now - self._asked_s > PING_S:
             self._asked_s = now
             self._send(PING)

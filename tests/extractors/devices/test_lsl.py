@@ -49,7 +49,7 @@ def sent(name: str, made: list[Frame]) -> tuple[LslTracker, list[Frame]]:
     with LslTracker(parse_address(f"lsl:{name}?timeout=10")) as tracker:
         for each in made:
             outlet.push(each)
-        got = tracked.collect(tracker, 1.0)
+        got = tracked.take(tracker, len(made))
         description = tracker.describe()
     outlet.close()
     assert description.sensors == SENSORS
