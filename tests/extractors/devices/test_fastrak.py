@@ -44,9 +44,11 @@ def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_a
 ) -> None:
     log: list[Sent] = []
     faults = Faults(lost_share=0.005, seed=4)
-    with FastrakSimulator(SmoothMotion(4), 115200, faults, log) as simulator:
-        with tracker(simulator, f"stations=4&encoding={encoding}") as fastrak:
-            frames = tracked.take(fastrak, 50)
+    with (
+        FastrakSimulator(SmoothMotion(4), 115200, faults, log) as simulator,
+        tracker(simulator, f"stations=4&encoding={encoding}") as fastrak,
+    ):
+        frames = tracked.take(fastrak, 50)
     every = tracked.held_by_fastrak(frames, log, "pos_quat", binary=encoding == "binary")
     assert sum(each.wrong for each in every) == 0
     assert sum(each.accepted for each in every) >= 0.9 * sum(each.intact for each in every)
@@ -57,13 +59,15 @@ def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_a
 
 def test_a_pulled_plug_is_survived_and_told() -> None:
     log: list[Sent] = []
-    with FastrakSimulator(SmoothMotion(2), log=log) as simulator:
-        with tracker(simulator, "stations=2") as fastrak:
-            before = tracked.take(fastrak, 10)
-            simulator.unplug()
-            assert tracked.collect(fastrak, 0.3) == []
-            simulator.replug()
-            after = tracked.take(fastrak, 20)
+    with (
+        FastrakSimulator(SmoothMotion(2), log=log) as simulator,
+        tracker(simulator, "stations=2") as fastrak,
+    ):
+        before = tracked.take(fastrak, 10)
+        simulator.unplug()
+        assert tracked.collect(fastrak, 0.3) == []
+        simulator.replug()
+        after = tracked.take(fastrak, 20)
     assert fastrak.counts.reconnections == 1
     for each in tracked.held_by_fastrak([*before, *after], log, "pos_quat", binary=True):
         assert each.wrong == 0
@@ -71,10 +75,12 @@ def test_a_pulled_plug_is_survived_and_told() -> None:
 
 def test_slow_answers_to_polls_lower_the_rate_and_lose_nothing() -> None:
     log: list[Sent] = []
-    with FastrakSimulator(SmoothMotion(2), 115200, Faults(reply_delay_s=0.1), log) as simulator:
-        with tracker(simulator, "stations=2&mode=point") as fastrak:
-            start = time.monotonic()
-            tracked.take(fastrak, 5)
+    with (
+        FastrakSimulator(SmoothMotion(2), 115200, Faults(reply_delay_s=0.1), log) as simulator,
+        tracker(simulator, "stations=2&mode=point") as fastrak,
+    ):
+        start = time.monotonic()
+        tracked.take(fastrak, 5)
     assert time.monotonic() - start >= 5 * 0.1
     assert fastrak.counts.lost_records == 0
 

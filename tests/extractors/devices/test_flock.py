@@ -65,9 +65,11 @@ def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_a
     log: list[Sent] = []
     rig = FlockRig(quiet_s=QUIET_S)
     rate_hz = highest(form, birds, group=birds > 1)
-    with FlockSimulator(SmoothMotion(birds), rig, Faults(0.005, seed=3), log) as simulator:
-        with tracker(simulator, f"birds={birds}&format={form}&rate={rate_hz}") as flock:
-            frames = tracked.take(flock, int(2.0 * SECONDS * rate_hz))
+    with (
+        FlockSimulator(SmoothMotion(birds), rig, Faults(0.005, seed=3), log) as simulator,
+        tracker(simulator, f"birds={birds}&format={form}&rate={rate_hz}") as flock,
+    ):
+        frames = tracked.take(flock, int(2.0 * SECONDS * rate_hz))
     every = tracked.held_by_flock(frames, log, form, group=birds > 1, range_inch=36.0)
     assert sum(each.wrong for each in every) == 0
     assert sum(each.accepted for each in every) >= 0.9 * sum(each.intact for each in every)
@@ -79,9 +81,11 @@ def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_a
 def test_a_bird_with_a_line_of_its_own_is_read_beside_the_others() -> None:
     log: list[Sent] = []
     rig = FlockRig(line_a_bird=True, quiet_s=QUIET_S)
-    with FlockSimulator(SmoothMotion(4), rig, log=log) as simulator:
-        with tracker(simulator, "rate=103.3&format=pos_quat") as flock:
-            frames = tracked.take(flock, int(SECONDS * 103.3))
+    with (
+        FlockSimulator(SmoothMotion(4), rig, log=log) as simulator,
+        tracker(simulator, "rate=103.3&format=pos_quat") as flock,
+    ):
+        frames = tracked.take(flock, int(SECONDS * 103.3))
     assert flock.describe().sensors == ("bird1", "bird2", "bird3", "bird4")
     for each in tracked.held_by_flock(frames, log, "pos_quat", group=False, range_inch=36.0):
         assert each.wrong == 0
@@ -92,9 +96,11 @@ def test_a_bird_with_a_line_of_its_own_is_read_beside_the_others() -> None:
 def test_wrong_addresses_are_refused_and_counted_as_lost() -> None:
     log: list[Sent] = []
     faults = Faults(wrong_address_share=0.1, seed=1)
-    with FlockSimulator(SmoothMotion(5), FlockRig(quiet_s=QUIET_S), faults, log) as simulator:
-        with tracker(simulator, "birds=5&rate=60") as flock:
-            frames = tracked.take(flock, 60)
+    with (
+        FlockSimulator(SmoothMotion(5), FlockRig(quiet_s=QUIET_S), faults, log) as simulator,
+        tracker(simulator, "birds=5&rate=60") as flock,
+    ):
+        frames = tracked.take(flock, 60)
     every = tracked.held_by_flock(frames, log, "pos_quat", group=True, range_inch=36.0)
     assert sum(each.wrong for each in every) == 0
     assert flock.counts.refused_records > 5
@@ -103,9 +109,11 @@ def test_wrong_addresses_are_refused_and_counted_as_lost() -> None:
 
 def test_garbled_bytes_end_no_session() -> None:
     faults = Faults(garbled_share=0.005, seed=2)
-    with FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), faults) as simulator:
-        with tracker(simulator, "birds=3&rate=60") as flock:
-            tracked.take(flock, 60)
+    with (
+        FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), faults) as simulator,
+        tracker(simulator, "birds=3&rate=60") as flock,
+    ):
+        tracked.take(flock, 60)
     assert flock.counts.lost_records + flock.counts.dropped_bytes > 0
     assert flock.counts.reconnections == 0
 
@@ -113,13 +121,15 @@ def test_garbled_bytes_end_no_session() -> None:
 @pytest.mark.parametrize("mode", ["stream", "point"])
 def test_a_pulled_plug_is_survived_and_told(mode: str) -> None:
     log: list[Sent] = []
-    with FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), log=log) as simulator:
-        with tracker(simulator, f"birds=3&rate=60&mode={mode}") as flock:
-            before = tracked.take(flock, 10)
-            simulator.unplug()
-            assert tracked.collect(flock, 0.5) == []
-            simulator.replug()
-            after = tracked.take(flock, 20)
+    with (
+        FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), log=log) as simulator,
+        tracker(simulator, f"birds=3&rate=60&mode={mode}") as flock,
+    ):
+        before = tracked.take(flock, 10)
+        simulator.unplug()
+        assert tracked.collect(flock, 0.5) == []
+        simulator.replug()
+        after = tracked.take(flock, 20)
     assert flock.counts.reconnections == 1
     assert [each.message.split(":")[0] for each in flock.events] == [
         "connection lost", "connected again"
@@ -133,10 +143,12 @@ def test_a_pulled_plug_is_survived_and_told(mode: str) -> None:
 def test_slow_answers_to_polls_lower_the_rate_and_lose_nothing() -> None:
     log: list[Sent] = []
     faults = Faults(reply_delay_s=0.1)
-    with FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), faults, log) as simulator:
-        with tracker(simulator, "birds=3&rate=60&mode=point") as flock:
-            start = time.monotonic()
-            frames = tracked.take(flock, 5)
+    with (
+        FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), faults, log) as simulator,
+        tracker(simulator, "birds=3&rate=60&mode=point") as flock,
+    ):
+        start = time.monotonic()
+        frames = tracked.take(flock, 5)
     assert time.monotonic() - start >= 5 * 0.1
     assert flock.counts.lost_records == 0
     for each in tracked.held_by_flock(frames, log, "pos_quat", group=True, range_inch=36.0):
@@ -144,9 +156,11 @@ def test_slow_answers_to_polls_lower_the_rate_and_lose_nothing() -> None:
 
 
 def test_time_stamps_are_as_far_apart_as_the_cycles() -> None:
-    with FlockSimulator(SmoothMotion(12), FlockRig(quiet_s=QUIET_S)) as simulator:
-        with tracker(simulator, "birds=12&rate=51.65") as flock:
-            frames = tracked.take(flock, 40)
+    with (
+        FlockSimulator(SmoothMotion(12), FlockRig(quiet_s=QUIET_S)) as simulator,
+        tracker(simulator, "birds=12&rate=51.65") as flock,
+    ):
+        frames = tracked.take(flock, 40)
     steps = np.diff([each.host_s for each in frames])
     assert np.median(steps) == pytest.approx(1.0 / 51.65, rel=0.2)
     assert (steps > 0.0).all()
@@ -162,15 +176,19 @@ def test_with_the_true_pauses_the_flock_is_configured_and_without_them_it_is_not
 
 def test_a_missing_bird_is_told_with_its_number() -> None:
     rig = FlockRig(quiet_s=QUIET_S, missing=(3,))
-    with FlockSimulator(SmoothMotion(3), rig) as simulator:
-        with pytest.raises(DeviceError, match=r"error 13: a bird on the bus .* \(unit 3\)"):
-            tracker(simulator, "birds=3").open()
+    with (
+        FlockSimulator(SmoothMotion(3), rig) as simulator,
+        pytest.raises(DeviceError, match=r"error 13: a bird on the bus .* \(unit 3\)"),
+    ):
+        tracker(simulator, "birds=3").open()
 
 
 def test_an_error_of_the_device_is_told_in_words() -> None:
-    with FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S, error=29)) as simulator:
-        with pytest.raises(DeviceError, match=r"error 29: the transmitter is not active"):
-            tracker(simulator, "birds=1").open()
+    with (
+        FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S, error=29)) as simulator,
+        pytest.raises(DeviceError, match=r"error 29: the transmitter is not active"),
+    ):
+        tracker(simulator, "birds=1").open()
 
 
 def test_a_port_that_is_not_there_is_an_error_with_its_remedy() -> None:
@@ -180,9 +198,11 @@ def test_a_port_that_is_not_there_is_an_error_with_its_remedy() -> None:
 
 def test_a_unit_that_does_not_answer_is_an_error_with_its_remedy() -> None:
     rig = FlockRig(quiet_s=QUIET_S)
-    with FlockSimulator(SmoothMotion(1), rig, Faults(lost_share=1.0)) as simulator:
-        with pytest.raises(DeviceError, match=r"no answer .* check the power"):
-            tracker(simulator, "birds=1").open()
+    with (
+        FlockSimulator(SmoothMotion(1), rig, Faults(lost_share=1.0)) as simulator,
+        pytest.raises(DeviceError, match=r"no answer .* check the power"),
+    ):
+        tracker(simulator, "birds=1").open()
 
 
 def test_a_rate_that_the_line_cannot_carry_is_refused_with_the_arithmetic() -> None:

@@ -33,13 +33,15 @@ def test_every_pose_arrives() -> None:
 
 def test_a_lost_connection_is_survived_and_told() -> None:
     log: list[SentPose] = []
-    with VrpnSimulator(SmoothMotion(2), 100.0, log) as simulator:
-        with tracker(simulator, "sensors=2") as vrpn:
-            before = tracked.take(vrpn, 10)
-            simulator.unplug()
-            before += tracked.collect(vrpn, 0.3)
-            simulator.replug()
-            after = tracked.take(vrpn, 20)
+    with (
+        VrpnSimulator(SmoothMotion(2), 100.0, log) as simulator,
+        tracker(simulator, "sensors=2") as vrpn,
+    ):
+        before = tracked.take(vrpn, 10)
+        simulator.unplug()
+        before += tracked.collect(vrpn, 0.3)
+        simulator.replug()
+        after = tracked.take(vrpn, 20)
     assert vrpn.counts.reconnections == 1
     for each in tracked.held_by_vrpn([*before, *after], log):
         assert each.wrong == 0
@@ -48,9 +50,11 @@ def test_a_lost_connection_is_survived_and_told() -> None:
 @pytest.mark.parametrize("up", ["x", "y", "-z"])
 def test_the_axis_that_is_up_becomes_z(up: str) -> None:
     log: list[SentPose] = []
-    with VrpnSimulator(SmoothMotion(1), 100.0, log) as simulator:
-        with tracker(simulator, f"up={up}") as vrpn:
-            frames = tracked.take(vrpn, 10)
+    with (
+        VrpnSimulator(SmoothMotion(1), 100.0, log) as simulator,
+        tracker(simulator, f"up={up}") as vrpn,
+    ):
+        frames = tracked.take(vrpn, 10)
     axis, sign = "xyz".index(up[-1]), -1.0 if up.startswith("-") else 1.0
     heights = [each.positions[0, 2] for each in frames]
     sent = [sign * each.pose.position[axis] for each in log[: len(heights)]]
@@ -58,9 +62,11 @@ def test_the_axis_that_is_up_becomes_z(up: str) -> None:
 
 
 def test_sensors_that_were_not_asked_for_are_refused_and_counted() -> None:
-    with VrpnSimulator(SmoothMotion(3), 100.0) as simulator:
-        with tracker(simulator, "sensors=2") as vrpn:
-            frames = tracked.take(vrpn, 20)
+    with (
+        VrpnSimulator(SmoothMotion(3), 100.0) as simulator,
+        tracker(simulator, "sensors=2") as vrpn,
+    ):
+        frames = tracked.take(vrpn, 20)
     assert vrpn.counts.refused_records == pytest.approx(len(frames), abs=1)
 
 
