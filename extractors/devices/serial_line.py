@@ -3,6 +3,7 @@
 import time
 
 import serial
+from serial.tools.list_ports import comports
 
 from capar.model.errors import DeviceError
 from extractors.devices.tracker import DeviceLostError
@@ -116,3 +117,8 @@ class SerialLine:
             self._port.close()
         except FAILURES:
             return
+
+
+def find_ports() -> dict[str, str]:
+    """The serial ports of this computer, and what is plugged into each."""
+    return {each.device: each.description for each in sorted(comports())}

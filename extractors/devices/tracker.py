@@ -151,6 +151,10 @@ class LiveTracker:
             raise
         self._connected = True
 
+    def describe(self) -> Description:
+        """What the device is, and its sensors."""
+        raise NotImplementedError
+
     def poll(self, timeout_s: float) -> list[Frame]:
         """The frames that have come since the last call, after at most a wait [s]."""
         deadline = time.monotonic() + timeout_s
