@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -270,9 +270,9 @@ def main() -> int:
     cases = long() if given.long else short()
     bad = 0
     with ThreadPoolExecutor(len(cases) if given.long else given.at_once) as pool:
-        futures = [pool.submit(apart, case, given.seconds) for case in cases]
-        for case, future in zip(cases, futures, strict=True):
-            found = future.result()
+        futures = {pool.submit(apart, case, given.seconds): case for case in cases}
+        for future in as_completed(futures):
+            case, found = futures[future], future.result()
             good = "failed" not in found and is_good(case, found)
             bad += not good
             print(told(case, found, good=good), flush=True)

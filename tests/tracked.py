@@ -82,17 +82,24 @@ def in_rows(count: int, positions: np.ndarray | None, rotations: Rotation | None
 
 def compare(got: np.ndarray, sent: np.ndarray, intact: Sequence[bool]) -> Held:
     """Match poses in order, each with the next one sent that is the same."""
-    at, last, wrong = 0, -1, 0
-    for row in got:
+    at, last, wrong, row = 0, -1, 0, 0
+    while row < len(got):
+        block = min(NEAR, len(got) - row, len(sent) - at)
+        differ = np.abs(sent[at : at + block] - got[row : row + block]).max(axis=1) >= SAME
+        same = int(differ.argmax()) if differ.any() else block
+        at, row = at + same, row + same
+        last = at - 1 if same else last
+        if row == len(got) or (same == block and same):
+            continue
         for window in (NEAR, len(sent)):
-            ahead = np.flatnonzero(np.abs(sent[at : at + window] - row).max(axis=1) < SAME)
+            ahead = np.flatnonzero(np.abs(sent[at : at + window] - got[row]).max(axis=1) < SAME)
             if len(ahead):
+                last = at + int(ahead[0])
+                at = last + 1
                 break
         else:
             wrong += 1
-            continue
-        last = at + int(ahead[0])
-        at = last + 1
+        row += 1
     return Held(last + 1, sum(intact[: last + 1]), len(got), wrong, len(sent) - last - 1)
 
 
