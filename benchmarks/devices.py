@@ -32,7 +32,8 @@ from extractors.devices.drivers import find_tracker
 from extractors.devices.fastrak_records import ITEMS
 from extractors.devices.fastrak_simulator import FastrakSimulator
 from extractors.devices.flock_commands import MOST_HZ, line_limit_hz
-from extractors.devices.flock_simulator import FlockRig, FlockSimulator
+from extractors.devices.flock_rig import FlockRig
+from extractors.devices.flock_simulator import FlockSimulator
 from extractors.devices.motion_source import SmoothMotion
 from extractors.devices.motionstar_simulator import MotionStarSimulator, ServerFaults
 from extractors.devices.simulated_line import Faults

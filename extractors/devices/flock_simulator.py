@@ -1,11 +1,11 @@
 """A Flock of Birds for those who have none: its commands and records on pseudo-terminals."""
 
 import time
-from dataclasses import dataclass, field
 
 from extractors.devices import flock_commands as commands
-from extractors.devices.bird_formats import FORMATS, BirdFormat, Scaling, words_of_pose
+from extractors.devices.bird_formats import FORMATS, Scaling, words_of_pose
 from extractors.devices.flock_records import encode_record
+from extractors.devices.flock_rig import Bird, Desk, FlockRig, command_size, range_inch
 from extractors.devices.motion_source import MotionSource
 from extractors.devices.simulated_line import Faults, Sent, SimulatedLine
 from extractors.devices.simulator import Simulator
@@ -21,50 +21,6 @@ WRONG_ADDRESS = 0x7F
 
 BY_COMMAND = {each.command: each for each in FORMATS.values()}
 EVERY_BY_COMMAND = {command: every for every, command in commands.EVERY.items()}
-DATA_SIZES = {commands.HEMISPHERE: 2, commands.NEXT_TRANSMITTER: 1, commands.EXAMINE: 1}
-
-
-@dataclass(frozen=True)
-class FlockRig:
-    """What the simulated flock consists of."""
-
-    erc: bool = False
-    """Whether unit 1 is an extended-range controller without a sensor."""
-
-    line_a_bird: bool = False
-    baud: int = 115200
-    quiet_s: float = 0.6
-    """How long lines must be idle before and after auto-configuration [s]."""
-
-    conjugated: bool = True
-    error: int = 0
-    """Error code that it reports."""
-
-    missing: tuple[int, ...] = ()
-    """Addresses of units that do not answer on the bus."""
-
-
-@dataclass
-class _Bird:
-    """What one unit was told."""
-
-    form: BirdFormat = FORMATS["pos_ang"]
-    hemisphere: bytes = b"\x00\x00"
-
-
-@dataclass
-class _Desk:
-    """One line, the commands that come by it, and whether it streams."""
-
-    line: SimulatedLine
-    unit: int
-    """The unit at its end."""
-
-    commands: bytearray = field(default_factory=bytearray)
-    streaming: bool = False
-    every: int = 1
-    target: int = 0
-    poll_at_s: float = -1.0
 
 
 class FlockSimulator(Simulator):
@@ -96,13 +52,13 @@ class FlockSimulator(Simulator):
         self._addresses = tuple(range(first, first + len(motion.sensors)))
         self._units = len(motion.sensors) + self.rig.erc
         ends = self._addresses if self.rig.line_a_bird else (1,)
-        self._desks = [_Desk(SimulatedLine(self.rig.baud, self.faults), unit) for unit in ends]
+        self._desks = [Desk(SimulatedLine(self.rig.baud, self.faults), unit) for unit in ends]
         self._power_up()
 
     def _power_up(self) -> None:
-        self._birds = {each: _Bird() for each in range(1, self._units + 1)}
+        self._birds = {each: Bird() for each in range(1, self._units + 1)}
         self._rate_hz = MEASURED_HZ
-        self._range_inch = _range_inch(self.rig, 0)
+        self._range_inch = range_inch(self.rig, 0)
         self._group = False
         self._configured = self._units == 1
         self._error, self._error_unit = self.rig.error, 0
@@ -163,7 +119,7 @@ class FlockSimulator(Simulator):
                 else:
                     self._report(desk, at_s)
 
-    def _report(self, desk: _Desk, at_s: float) -> None:
+    def _report(self, desk: Desk, at_s: float) -> None:
         """The records of the birds of a line, at a time."""
         if not self._configured or time.monotonic() - self._configured_s < self.rig.quiet_s:
             self._error, self._error_unit = 9, desk.unit
@@ -178,7 +134,7 @@ class FlockSimulator(Simulator):
             words = words_of_pose(positions[index], orientations[index], bird.form, scaling)
             self._send(desk, address, words, at_s)
 
-    def _send(self, desk: _Desk, address: int, words: tuple[int, ...], at_s: float) -> None:
+    def _send(self, desk: Desk, address: int, words: tuple[int, ...], at_s: float) -> None:
         shown = address if self._group else None
         data = encode_record(words, address=shown)
         wrong = self._group and self._is_wrong(desk)
@@ -187,11 +143,11 @@ class FlockSimulator(Simulator):
         if self._log is not None:
             self._log.append(Sent(address, data, intact))
 
-    def _is_wrong(self, desk: _Desk) -> bool:
+    def _is_wrong(self, desk: Desk) -> bool:
         share = self.faults.wrong_address_share
         return bool(share) and desk.line.chance() < share
 
-    def _listen(self, desk: _Desk) -> None:
+    def _listen(self, desk: Desk) -> None:
         try:
             data = desk.line.receive()
         except OSError:
@@ -200,22 +156,13 @@ class FlockSimulator(Simulator):
         if data and self._configured_s > 0.0 and now - self._configured_s < self.rig.quiet_s:
             self._configured, self._error, self._error_unit = False, 13, self._units
         desk.commands += data
-        while (size := self._command_size(desk.commands)) and len(desk.commands) >= size:
+        while (size := command_size(desk.commands)) and len(desk.commands) >= size:
             command = bytes(desk.commands[:size])
             del desk.commands[:size]
             self._obey(desk, command, now)
             self._heard_s = now
 
-    @staticmethod
-    def _command_size(data: bytearray) -> int:
-        """Bytes of the command that some bytes begin; more than there are where it is cut off."""
-        if not data:
-            return 0
-        if data[0] == commands.CHANGE:
-            return 2 + (commands.SIZES.get(data[1], 0) if len(data) > 1 else 1)
-        return 1 + DATA_SIZES.get(data[0], 0)
-
-    def _obey(self, desk: _Desk, command: bytes, now: float) -> None:
+    def _obey(self, desk: Desk, command: bytes, now: float) -> None:
         code, target = command[0], desk.target or desk.unit
         desk.target = 0
         if commands.PREFIX < code < commands.PREFIX + 15:
@@ -239,7 +186,7 @@ class FlockSimulator(Simulator):
         elif code not in (commands.RUN, commands.FBB_RESET, commands.NEXT_TRANSMITTER):
             self._error, self._error_unit = 6, target
 
-    def _poll(self, desk: _Desk, now: float) -> None:
+    def _poll(self, desk: Desk, now: float) -> None:
         """Answer, soon; a stream ends instead."""
         if desk.streaming:
             desk.streaming = False
@@ -253,7 +200,7 @@ class FlockSimulator(Simulator):
         elif parameter == commands.GROUP_MODE:
             self._group = bool(value)
         elif parameter == commands.SCALING:
-            self._range_inch = _range_inch(self.rig, value)
+            self._range_inch = range_inch(self.rig, value)
         elif parameter == commands.AUTO_CONFIG:
             self._auto_configure(value, now)
 
@@ -273,7 +220,7 @@ class FlockSimulator(Simulator):
     def _is_there(self, unit: int) -> bool:
         return unit <= self._units and unit not in self.rig.missing
 
-    def _examine(self, desk: _Desk, parameter: int) -> None:
+    def _examine(self, desk: Desk, parameter: int) -> None:
         model = b"6DERC     " if self.rig.erc else b"6DFOB     "
         values = {
             commands.STATUS: self._status(desk),
@@ -294,7 +241,7 @@ class FlockSimulator(Simulator):
         value = values.get(parameter, bytes(commands.SIZES.get(parameter, 2)))
         desk.line.send(value, time.monotonic())
 
-    def _status(self, desk: _Desk) -> bytes:
+    def _status(self, desk: Desk) -> bytes:
         """Master, initialised, error, running, and whether it streams."""
         bits = (desk.unit == 1) << 15 | self._configured << 14 | bool(self._error) << 13
         return (bits | self._configured << 12 | desk.streaming).to_bytes(2, "little")
@@ -304,8 +251,3 @@ class FlockSimulator(Simulator):
             return 0
         kind = commands.SENSOR if unit in self._addresses else commands.ERC | 0x01
         return commands.ACCESSIBLE | (commands.RUNNING if self._configured else 0) | kind
-
-
-def _range_inch(rig: FlockRig, scaling: int) -> float:
-    """Range of positions [inch] at a value of parameter 3."""
-    return 144.0 if rig.erc else 72.0 if scaling else 36.0

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from capar.model.errors import DeviceError, UnknownNameError
 from extractors.devices.fastrak_records import STATIONS
 from extractors.devices.fastrak_simulator import FastrakSimulator
-from extractors.devices.flock_simulator import FlockRig, FlockSimulator
+from extractors.devices.flock_rig import FlockRig
+from extractors.devices.flock_simulator import FlockSimulator
 from extractors.devices.motion_source import MotionSource
 from extractors.devices.motionstar_simulator import MotionStarSimulator, ServerFaults
 from extractors.devices.simulated_line import Faults

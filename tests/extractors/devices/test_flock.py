@@ -13,8 +13,9 @@ from extractors.devices.addresses import parse_address
 from extractors.devices.bird_formats import FORMATS
 from extractors.devices.flock import FlockTracker
 from extractors.devices.flock_commands import MOST_HZ, line_limit_hz
+from extractors.devices.flock_rig import FlockRig
 from extractors.devices.flock_settings import flock_settings
-from extractors.devices.flock_simulator import FlockRig, FlockSimulator
+from extractors.devices.flock_simulator import FlockSimulator
 from extractors.devices.motion_source import SmoothMotion
 from extractors.devices.simulated_line import Faults, Sent
 

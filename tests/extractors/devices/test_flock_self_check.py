@@ -7,8 +7,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from capar.model.errors import DeviceError
+from extractors.devices.flock_rig import FlockRig
 from extractors.devices.flock_self_check import find_quaternion_sign
-from extractors.devices.flock_simulator import FlockRig, FlockSimulator
+from extractors.devices.flock_simulator import FlockSimulator
 from extractors.devices.motion_source import Poses, SmoothMotion
 
 

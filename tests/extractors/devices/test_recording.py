@@ -13,7 +13,8 @@ from capar.model.capture import TagType
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from extractors.devices.addresses import parse_address
 from extractors.devices.flock import FlockTracker
-from extractors.devices.flock_simulator import FlockRig, FlockSimulator
+from extractors.devices.flock_rig import FlockRig
+from extractors.devices.flock_simulator import FlockSimulator
 from extractors.devices.motion_source import CapturedMotion, SmoothMotion
 from extractors.devices.recording import RecordingWriter, read_live_recording
 from extractors.devices.recording_bundle import Mount, frame_times, write_bundle
