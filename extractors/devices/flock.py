@@ -7,6 +7,7 @@ garbled shows only where a quaternion's or matrix's norm gives it away.
 
 import time
 
+from capar.model.errors import DeviceError
 from extractors.devices import flock_commands as commands
 from extractors.devices.addresses import Address
 from extractors.devices.bird_formats import pose_of_words
@@ -20,6 +21,9 @@ from extractors.devices.tracker import (
     Frame,
     LiveTracker,
 )
+
+CONFIGURATIONS = 3
+"""How often auto-configuration is tried."""
 
 SILENCE_S = 1.5
 """A flock that sends nothing for so long is lost [s]."""
@@ -36,7 +40,7 @@ POLL_IDLE_S = 0.1
 AFTER_RESET_S = 2.0
 """How long units take to start anew [s]."""
 
-AHEAD = 3
+AHEAD = 50
 """How many cycles birds with lines of their own may be apart."""
 
 IDLE_S = 0.006
@@ -51,10 +55,10 @@ POLL_IDLE_S = 0.1
 AFTER_RESET_S = 2.0
 """How long units take to start anew [s]."""
 
-AHEAD = 3
+AHEAD = 50
 """How many cycles birds with lines of their own may be apart."""
 
-AHEAD = 3
+AHEAD = 50
 """How many cycles birds with lines of their own may be apart."""
 
 
@@ -126,11 +130,30 @@ class FlockTracker(LiveTracker):
         master.tell(commands.change(commands.RATE, commands.rate_word(settings.measured_hz)))
         if settings.line_frequency_hz:
             master.tell(commands.change(commands.LINE_FREQUENCY, settings.line_frequency_hz))
-        if settings.units > 1:
-            master.auto_configure(settings.units, settings.settle_s)
-        if settings.group:
-            master.tell(commands.change(commands.GROUP_MODE, 1))
-        master.check(settings)
+        if settings.units == 1:
+            master.check(settings)
+        else:
+            self._auto_configure(master)
+
+    def _auto_configure(self, master: FlockPort) -> None:
+        """Have the master find the other units, again if some did not hear it.
+
+        Raises:
+            DeviceError: Units are missing, or report an error, each time.
+        """
+        for attempt in range(1, CONFIGURATIONS + 1):
+            master.auto_configure(self._settings.units, self._settings.settle_s)
+            if self._settings.group:
+                master.tell(commands.change(commands.GROUP_MODE, 1))
+            try:
+                master.check(self._settings)
+            except DeviceLostError:
+                raise
+            except DeviceError:
+                if attempt == CONFIGURATIONS:
+                    raise
+            else:
+                return
 
     def _disconnect(self) -> None:
         for port in self._ports:

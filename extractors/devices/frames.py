@@ -67,7 +67,8 @@ class FrameCollector:
     Args:
         sensors: How many there are.
         counts: Where lost records are counted.
-        ahead: How many newer cycles are begun before an incomplete one is given as it is.
+        ahead: How many newer cycles are begun before an incomplete one is given as it is, though
+            some sensor has not got past it.
         counted: Whether cycles are equally long, so that frames bear their numbers.
     """
 
@@ -80,10 +81,12 @@ class FrameCollector:
         self._counted = counted
         self._partial: dict[int, _Partial] = {}
         self._given = -1
+        self._newest = [-1] * sensors
 
     def start_after(self, cycle: int) -> None:
         """Count from a cycle on; nothing before it is missing."""
         self._partial.clear()
+        self._newest = [cycle] * self._sensors
         self._given = cycle
 
     def add(self, cycle: int, reading: SensorReading) -> list[Frame]:
@@ -93,11 +96,12 @@ class FrameCollector:
             return []
         self._counts.records += 1
         self._partial.setdefault(cycle, _Partial()).readings[reading.index] = reading
-        newest = max(self._partial)
+        self._newest[reading.index] = max(cycle, self._newest[reading.index])
+        passed = max(min(self._newest), max(self._newest) - self._ahead - 1)
         done = [
             each
             for each, partial in self._partial.items()
-            if len(partial.readings) == self._sensors or each < newest - self._ahead
+            if len(partial.readings) == self._sensors or each <= passed
         ]
         return self._give(max(done)) if done else []
 

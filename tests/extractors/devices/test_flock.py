@@ -21,7 +21,7 @@ from extractors.devices.simulated_line import Faults, Sent
 
 SECONDS = 0.8
 QUIET_S = 0.05
-SETTLE = "settle=0.1"
+SETTLE = "settle=0.2"
 
 
 def tracker(simulator: FlockSimulator, options: str) -> FlockTracker:

@@ -30,7 +30,7 @@ class Still:
 
 def found(motion: Still | SmoothMotion, *, conjugated: bool) -> str:
     with FlockSimulator(motion, FlockRig(quiet_s=0.05, conjugated=conjugated)) as simulator:
-        return find_quaternion_sign(f"flock:{simulator.place}?settle=0.1")
+        return find_quaternion_sign(f"flock:{simulator.place}?settle=0.2")
 
 
 @pytest.mark.parametrize(("conjugated", "sign"), [(True, "conjugated"), (False, "plain")])

@@ -170,7 +170,7 @@ def test_a_capture_played_to_a_driver_and_recorded_is_that_capture_again(tmp_pat
     motion = CapturedMotion(played, SENSORS)
     with FlockSimulator(motion, FlockRig(quiet_s=0.05)) as simulator:
         names = f"names={','.join(SENSORS)}"
-        place = f"flock:{simulator.place}?birds=3&rate=100&settle=0.1&range=72&{names}"
+        place = f"flock:{simulator.place}?birds=3&rate=100&settle=0.2&range=72&{names}"
         with FlockTracker(parse_address(place)) as flock:
             writer = RecordingWriter(tmp_path / "b.live", flock.describe(), place)
             for each in tracked.take(flock, 150):
