@@ -8,6 +8,8 @@ from extractors.devices.tracker import DeviceLostError
 
 CONNECT_S = 3.0
 LARGEST = 65536
+RECEIVED = 1 << 20
+"""Bytes of datagrams that may wait while this computer is busy, as far as its system allows."""
 
 
 class NetworkLine:
@@ -45,6 +47,7 @@ class NetworkLine:
     def _datagrams(self) -> socket.socket:
         family, kind, *_, to = socket.getaddrinfo(*self._to, type=socket.SOCK_DGRAM)[0]
         out = socket.socket(family, kind)
+        out.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVED)
         out.connect(to)
         return out
 
