@@ -190,9 +190,22 @@ class FlockTracker(LiveTracker):
         for port in self._ports:
             waiting = port.parser.pending
             records = port.records(min(share_s, IDLE_S) if waiting else share_s)
+            if records and not port.cycles.started:
+                self._begin(port, records)
             for record in records:
                 out += self._add(port, record)
         return out
+
+    def _begin(self, port: FlockPort, records: list[Record]) -> None:
+        """Number a line's first cycle; of several records the last one has just arrived."""
+        first = records[0]
+        place = self._settings.addresses.index(first.address) if self._settings.group else 0
+        cycle = 0
+        if len(self._ports) > 1:
+            since_s = records[-1].stamp_s - self._start_s
+            cycle = max(0, round(since_s * self._settings.rate_hz) - len(records) + 1)
+        port.cycles.start(cycle, place - 1)
+        self._frames_begin(cycle)
 
     def _polled(self, timeout_s: float) -> list[Frame]:
         """One cycle of polls, if its time comes before the wait is over."""
@@ -215,23 +228,14 @@ class FlockTracker(LiveTracker):
         """The frames that a record completes, once its words are a pose and its cycle is known."""
         settings = self._settings
         index = settings.addresses.index(record.address) if settings.group else port.index
-        cycle = self._cycle if not settings.stream else self._streamed_cycle(port, record, index)
+        place = index if settings.group else 0
+        streamed = settings.stream
+        cycle = port.cycles.cycle_of(place, missed=record.missed) if streamed else self._cycle
         pose = pose_of_words(record.words, settings.form, settings.scaling)
         if pose is None:
             self.counts.refused_records += 1
             return []
         return self._frames.add(cycle, SensorReading(index, record.stamp_s, *pose))
-
-    def _streamed_cycle(self, port: FlockPort, record: Record, index: int) -> int:
-        """The cycle of a record; birds with lines of their own begin with the one in which."""
-        place = index if self._settings.group else 0
-        if port.cycles.started:
-            return port.cycles.cycle_of(place, missed=record.missed)
-        cycle = 0
-        if len(self._ports) > 1:
-            cycle = round((record.stamp_s - self._start_s) * self._settings.rate_hz)
-        self._frames_begin(port.cycles.start(cycle, place))
-        return cycle
 
     def _frames_begin(self, cycle: int) -> None:
         """What lies before the first record of all is not missing."""

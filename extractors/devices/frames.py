@@ -35,16 +35,17 @@ class CycleCounter:
     def __init__(self, sensors: int) -> None:
         self._sensors = sensors
         self._place = -1
+        self._is_started = False
 
     def start(self, cycle: int, index: int) -> int:
         """Begin with a record of a sensor in a cycle."""
-        self._place = cycle * self._sensors + index
+        self._place, self._is_started = cycle * self._sensors + index, True
         return cycle
 
     @property
     def started(self) -> bool:
         """Whether a record was numbered."""
-        return self._place >= 0
+        return self._is_started
 
     def cycle_of(self, index: int, *, missed: int) -> int:
         """The cycle of the next record, of a sensor."""
