@@ -73,3 +73,7 @@ class FactError(CaparError):
 
 class ParError(CaparError):
     """An action representation that contradicts itself."""
+
+
+class DeviceError(CaparError):
+    """A tracker that cannot be reached or refuses, or an address that no tracker can have."""

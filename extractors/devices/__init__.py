@@ -1,0 +1,1 @@
+"""Live trackers: one driver a file, with its simulator beside it."""

@@ -1,0 +1,95 @@
+"""The Fastrak driver reads what its simulator sends, in ASCII and binary."""
+
+import time
+
+import pytest
+import tracked
+
+from capar.model.errors import DeviceError
+from extractors.devices.addresses import parse_address
+from extractors.devices.fastrak import FastrakTracker, fastrak_settings
+from extractors.devices.fastrak_records import ITEMS
+from extractors.devices.fastrak_simulator import FastrakSimulator
+from extractors.devices.motion_source import SmoothMotion
+from extractors.devices.simulated_line import Faults, Sent
+
+
+def tracker(simulator: FastrakSimulator, options: str) -> FastrakTracker:
+    return FastrakTracker(parse_address(f"fastrak:{simulator.place}?{options}"))
+
+
+@pytest.mark.parametrize("mode", ["stream", "point"])
+@pytest.mark.parametrize("encoding", ["binary", "ascii"])
+@pytest.mark.parametrize("stations", [1, 4])
+@pytest.mark.parametrize("form", ITEMS)
+def test_every_format_and_mode_arrives_whole(
+    form: str, stations: int, encoding: str, mode: str
+) -> None:
+    log: list[Sent] = []
+    with FastrakSimulator(SmoothMotion(stations), log=log) as simulator:
+        options = f"format={form}&stations={stations}&encoding={encoding}&mode={mode}"
+        with tracker(simulator, options) as fastrak:
+            frames = tracked.take(fastrak, 80 // stations)
+    assert simulator.skipped == 0
+    assert fastrak.counts.lost_records == 0
+    assert fastrak.counts.dropped_bytes == 0
+    for each in tracked.held_by_fastrak(frames, log, form, binary=encoding == "binary"):
+        assert each.wrong == 0
+        assert each.accepted == each.sent
+
+
+@pytest.mark.parametrize("encoding", ["binary", "ascii"])
+def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_are_kept(
+    encoding: str,
+) -> None:
+    log: list[Sent] = []
+    faults = Faults(lost_share=0.005, seed=4)
+    with (
+        FastrakSimulator(SmoothMotion(4), 115200, faults, log) as simulator,
+        tracker(simulator, f"stations=4&encoding={encoding}") as fastrak,
+    ):
+        frames = tracked.take(fastrak, 50)
+    every = tracked.held_by_fastrak(frames, log, "pos_quat", binary=encoding == "binary")
+    assert sum(each.wrong for each in every) == 0
+    assert sum(each.accepted for each in every) >= 0.9 * sum(each.intact for each in every)
+    damaged = sum(each.sent - each.intact for each in every)
+    assert damaged > 0
+    assert fastrak.counts.lost_records >= 0.5 * damaged
+
+
+def test_a_pulled_plug_is_survived_and_told() -> None:
+    log: list[Sent] = []
+    with (
+        FastrakSimulator(SmoothMotion(2), log=log) as simulator,
+        tracker(simulator, "stations=2") as fastrak,
+    ):
+        before = tracked.take(fastrak, 10)
+        simulator.unplug()
+        assert tracked.collect(fastrak, 0.3) == []
+        simulator.replug()
+        after = tracked.take(fastrak, 20)
+    assert fastrak.counts.reconnections == 1
+    for each in tracked.held_by_fastrak([*before, *after], log, "pos_quat", binary=True):
+        assert each.wrong == 0
+
+
+def test_slow_answers_to_polls_lower_the_rate_and_lose_nothing() -> None:
+    log: list[Sent] = []
+    with (
+        FastrakSimulator(SmoothMotion(2), 115200, Faults(reply_delay_s=0.1), log) as simulator,
+        tracker(simulator, "stations=2&mode=point") as fastrak,
+    ):
+        start = time.monotonic()
+        tracked.take(fastrak, 5)
+    assert time.monotonic() - start >= 5 * 0.1
+    assert fastrak.counts.lost_records == 0
+
+
+def test_a_line_that_is_too_slow_is_refused_with_the_arithmetic() -> None:
+    with pytest.raises(DeviceError, match=r"120 records of 54 bytes are 6480 .* carry 960"):
+        fastrak_settings(parse_address("fastrak:/dev/x?encoding=ascii&baud=9600"))
+
+
+def test_a_fastrak_has_four_stations_at_most() -> None:
+    with pytest.raises(DeviceError, match=r"between 1 and 4"):
+        fastrak_settings(parse_address("fastrak:/dev/x?stations=5"))

@@ -1,0 +1,256 @@
+"""The Flock of Birds driver reads what its simulator sends, on clean, bad and broken lines."""
+
+import time
+
+import numpy as np
+import pytest
+import tracked
+from hypothesis import given
+from hypothesis import strategies as st
+
+from capar.model.errors import DeviceError
+from extractors.devices.addresses import parse_address
+from extractors.devices.bird_formats import FORMATS
+from extractors.devices.flock import FlockTracker
+from extractors.devices.flock_commands import MOST_HZ, line_limit_hz
+from extractors.devices.flock_rig import FlockRig
+from extractors.devices.flock_settings import flock_settings
+from extractors.devices.flock_simulator import FlockSimulator
+from extractors.devices.motion_source import SmoothMotion
+from extractors.devices.simulated_line import Faults, Sent
+
+SECONDS = 0.8
+QUIET_S = 0.05
+SETTLE = "settle=0.2"
+
+
+def tracker(simulator: FlockSimulator, options: str) -> FlockTracker:
+    return FlockTracker(parse_address(f"flock:{simulator.place}?{SETTLE}&{options}"))
+
+
+def highest(form: str, birds: int, *, group: bool) -> float:
+    """The highest rate that the line carries, in tenths [Hz]."""
+    limit_hz = line_limit_hz(FORMATS[form], birds, 115200, group=group)
+    return int(10.0 * min(MOST_HZ, limit_hz)) / 10.0
+
+
+@pytest.mark.parametrize("mode", ["stream", "point"])
+@pytest.mark.parametrize("birds", [1, 12])
+@pytest.mark.parametrize("form", FORMATS)
+def test_every_format_and_mode_arrives_whole_at_the_highest_rate_of_the_line(
+    form: str, birds: int, mode: str
+) -> None:
+    log: list[Sent] = []
+    group = birds > 1
+    rig = FlockRig(erc=group, quiet_s=QUIET_S)
+    rate_hz = highest(form, birds, group=group)
+    with FlockSimulator(SmoothMotion(birds), rig, log=log) as simulator:
+        options = f"birds={birds}&erc={'yes' if group else 'no'}&format={form}&mode={mode}"
+        with tracker(simulator, f"{options}&rate={rate_hz}") as flock:
+            frames = tracked.take(flock, int(SECONDS * rate_hz) if mode == "stream" else 10)
+    assert flock.counts.lost_records == 0
+    assert flock.counts.refused_records == 0
+    assert simulator.skipped == 0
+    for each in tracked.held_by_flock(
+        frames, log, form, group=group, range_inch=144.0 if group else 36.0
+    ):
+        assert each.wrong == 0
+        assert each.accepted == each.sent
+
+
+@pytest.mark.parametrize("birds", [1, 12])
+@pytest.mark.parametrize("form", ["pos", "pos_quat", "pos_mat"])
+def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_are_kept(
+    form: str, birds: int
+) -> None:
+    log: list[Sent] = []
+    rig = FlockRig(quiet_s=QUIET_S)
+    rate_hz = highest(form, birds, group=birds > 1)
+    with (
+        FlockSimulator(SmoothMotion(birds), rig, Faults(0.005, seed=3), log) as simulator,
+        tracker(simulator, f"birds={birds}&format={form}&rate={rate_hz}") as flock,
+    ):
+        frames = tracked.take(flock, int(2.0 * SECONDS * rate_hz))
+    every = tracked.held_by_flock(frames, log, form, group=birds > 1, range_inch=36.0)
+    assert sum(each.wrong for each in every) == 0
+    assert sum(each.accepted for each in every) >= 0.9 * sum(each.intact for each in every)
+    damaged = sum(each.sent - each.intact for each in every)
+    assert damaged > 0
+    assert flock.counts.lost_records >= 0.5 * damaged
+
+
+def test_a_bird_with_a_line_of_its_own_is_read_beside_the_others() -> None:
+    log: list[Sent] = []
+    rig = FlockRig(line_a_bird=True, quiet_s=QUIET_S)
+    with (
+        FlockSimulator(SmoothMotion(4), rig, log=log) as simulator,
+        tracker(simulator, "rate=103.3&format=pos_quat") as flock,
+    ):
+        frames = tracked.take(flock, int(SECONDS * 103.3))
+    assert flock.describe().sensors == ("bird1", "bird2", "bird3", "bird4")
+    for each in tracked.held_by_flock(frames, log, "pos_quat", group=False, range_inch=36.0):
+        assert each.wrong == 0
+    whole = [each for each in frames if not np.isnan(each.positions).any()]
+    assert len(whole) > 0.95 * len(frames)
+
+
+def test_wrong_addresses_are_refused_and_counted_as_lost() -> None:
+    log: list[Sent] = []
+    faults = Faults(wrong_address_share=0.1, seed=1)
+    with (
+        FlockSimulator(SmoothMotion(5), FlockRig(quiet_s=QUIET_S), faults, log) as simulator,
+        tracker(simulator, "birds=5&rate=60") as flock,
+    ):
+        frames = tracked.take(flock, 60)
+    every = tracked.held_by_flock(frames, log, "pos_quat", group=True, range_inch=36.0)
+    assert sum(each.wrong for each in every) == 0
+    assert flock.counts.refused_records > 5
+    assert flock.counts.lost_records > 5
+
+
+def test_garbled_bytes_end_no_session() -> None:
+    faults = Faults(garbled_share=0.005, seed=2)
+    with (
+        FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), faults) as simulator,
+        tracker(simulator, "birds=3&rate=60") as flock,
+    ):
+        tracked.take(flock, 60)
+    assert flock.counts.lost_records + flock.counts.dropped_bytes > 0
+    assert flock.counts.reconnections == 0
+
+
+@pytest.mark.parametrize("mode", ["stream", "point"])
+def test_a_pulled_plug_is_survived_and_told(mode: str) -> None:
+    log: list[Sent] = []
+    with (
+        FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), log=log) as simulator,
+        tracker(simulator, f"birds=3&rate=60&mode={mode}") as flock,
+    ):
+        before = tracked.take(flock, 10)
+        simulator.unplug()
+        assert tracked.collect(flock, 0.5) == []
+        simulator.replug()
+        after = tracked.take(flock, 20)
+    assert flock.counts.reconnections == 1
+    assert [each.message.split(":")[0] for each in flock.events] == [
+        "connection lost", "connected again"
+    ]  # fmt: skip
+    for each in tracked.held_by_flock(
+        [*before, *after], log, "pos_quat", group=True, range_inch=36.0
+    ):
+        assert each.wrong == 0
+
+
+def test_slow_answers_to_polls_lower_the_rate_and_lose_nothing() -> None:
+    log: list[Sent] = []
+    faults = Faults(reply_delay_s=0.1)
+    with (
+        FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), faults, log) as simulator,
+        tracker(simulator, "birds=3&rate=60&mode=point") as flock,
+    ):
+        start = time.monotonic()
+        frames = tracked.take(flock, 5)
+    assert time.monotonic() - start >= 5 * 0.1
+    assert flock.counts.lost_records == 0
+    for each in tracked.held_by_flock(frames, log, "pos_quat", group=True, range_inch=36.0):
+        assert each.wrong == 0
+
+
+def test_time_stamps_are_as_far_apart_as_the_cycles() -> None:
+    with (
+        FlockSimulator(SmoothMotion(12), FlockRig(quiet_s=QUIET_S)) as simulator,
+        tracker(simulator, "birds=12&rate=51.65") as flock,
+    ):
+        frames = tracked.take(flock, 40)
+    steps = np.diff([each.host_s for each in frames])
+    assert np.median(steps) == pytest.approx(1.0 / 51.65, rel=0.2)
+    assert (steps > 0.0).all()
+
+
+def test_with_the_true_pauses_the_flock_is_configured_and_without_them_it_is_not() -> None:
+    with FlockSimulator(SmoothMotion(2)) as simulator:
+        with FlockTracker(parse_address(f"flock:{simulator.place}?birds=2&rate=60")) as flock:
+            assert tracked.take(flock, 5)
+        with pytest.raises(DeviceError, match=r"error 13|error 9"):
+            FlockTracker(parse_address(f"flock:{simulator.place}?birds=2&{SETTLE}")).open()
+
+
+def test_a_missing_bird_is_told_with_its_number() -> None:
+    rig = FlockRig(quiet_s=QUIET_S, missing=(3,))
+    with (
+        FlockSimulator(SmoothMotion(3), rig) as simulator,
+        pytest.raises(DeviceError, match=r"error 13: a bird on the bus .* \(unit 3\)"),
+    ):
+        tracker(simulator, "birds=3").open()
+
+
+def test_an_error_of_the_device_is_told_in_words() -> None:
+    with (
+        FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S, error=29)) as simulator,
+        pytest.raises(DeviceError, match=r"error 29: the transmitter is not active"),
+    ):
+        tracker(simulator, "birds=1").open()
+
+
+def test_a_port_that_is_not_there_is_an_error_with_its_remedy() -> None:
+    with pytest.raises(DeviceError, match=r"cannot open /dev/no_such_port.*plugged in"):
+        FlockTracker(parse_address("flock:/dev/no_such_port")).open()
+
+
+def test_a_unit_that_does_not_answer_is_an_error_with_its_remedy() -> None:
+    rig = FlockRig(quiet_s=QUIET_S)
+    with (
+        FlockSimulator(SmoothMotion(1), rig, Faults(lost_share=1.0)) as simulator,
+        pytest.raises(DeviceError, match=r"no answer .* check the power"),
+    ):
+        tracker(simulator, "birds=1").open()
+
+
+def test_a_rate_that_the_line_cannot_carry_is_refused_with_the_arithmetic() -> None:
+    with pytest.raises(DeviceError, match=r"12 x 15 bytes .* 18594 bytes a second, .* 64 Hz"):
+        flock_settings(parse_address("flock:/dev/x?birds=12&rate=103.3"))
+    assert flock_settings(parse_address("flock:/dev/x?birds=12&rate=51.65")).every == 2
+
+
+@given(form=st.sampled_from(sorted(FORMATS)), birds=st.integers(1, 13), erc=st.booleans())
+def test_exactly_the_rates_that_fit_are_taken(form: str, birds: int, erc: bool) -> None:
+    group = birds + erc > 1
+    limit_hz = min(MOST_HZ, line_limit_hz(FORMATS[form], birds, 115200, group=group))
+    text = f"flock:/dev/x?birds={birds}&erc={'yes' if erc else 'no'}&format={form}&rate="
+    assert flock_settings(parse_address(f"{text}{limit_hz * 0.999}")).rate_hz < limit_hz
+    with pytest.raises(DeviceError):
+        flock_settings(parse_address(f"{text}{limit_hz * 1.001}"))
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ("bird=3", "no option 'bird'"),
+        ("birds=0", "between 1 and 13"),
+        ("birds=14", "between 1 and 13"),
+        ("birds=2.5", "no whole number"),
+        ("format=quaternion", "no format 'quaternion'"),
+        ("rate=fast", "no number"),
+        ("birds=2&names=a", "lists 1 names; there are 2 sensors"),
+        ("birds=2&names=a,a", "twice"),
+        ("names=Hand", "sensor name 'Hand'"),
+        ("baud=9600&rate=100", "does not pass the line"),
+        ("rate=100&every=2", "the birds do 144"),
+        ("erc=maybe", "no erc 'maybe'"),
+        ("birds", "not of the form NAME=VALUE"),
+    ],
+)
+def test_a_wrong_option_is_told(options: str, said: str) -> None:
+    with pytest.raises(Exception, match=said):
+        flock_settings(parse_address(f"flock:/dev/x?{options}"))
+
+
+def test_frames_end_when_the_tracker_is_closed() -> None:
+    with FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S)) as simulator:
+        flock = tracker(simulator, "birds=1&rate=60")
+        flock.open()
+        start = time.monotonic()
+        for index, _ in enumerate(flock.frames()):
+            if index == 10:
+                flock.close()
+    assert time.monotonic() - start < 2.0

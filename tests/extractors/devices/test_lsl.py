@@ -1,0 +1,86 @@
+"""Lab Streaming Layer: what is sent is received, on loopback alone."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+import tracked
+
+from capar.model.errors import DeviceError
+from extractors.devices.addresses import parse_address
+from extractors.devices.lsl import LslOutlet, LslTracker
+from extractors.devices.motion_source import SmoothMotion
+from extractors.devices.tracker import Description, Frame
+
+LOOPBACK = """
+[ports]
+IPv6=disable
+[multicast]
+ResolveScope=machine
+ListenAddress=127.0.0.1
+AddressesOverride={127.0.0.1}
+[lab]
+KnownPeers={127.0.0.1}
+"""
+SENSORS = ("right_hand", "head", "mug")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _loopback(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """The library reads its settings once, when it is loaded."""
+    path = tmp_path_factory.mktemp("lsl") / "lsl_api.cfg"
+    path.write_text(LOOPBACK)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("LSLAPICFG", str(path))
+        pytest.importorskip("pylsl")
+        yield
+
+
+def frames(count: int, start_s: float) -> list[Frame]:
+    motion = SmoothMotion(len(SENSORS))
+    return [
+        Frame(start_s + 0.01 * index, None, *motion.poses(0.01 * index)) for index in range(count)
+    ]
+
+
+def sent(name: str, made: list[Frame]) -> tuple[LslTracker, list[Frame]]:
+    """What arrives of some frames that are sent once the tracker listens."""
+    outlet = LslOutlet(name, Description("flock", "", SENSORS, 100.0))
+    with LslTracker(parse_address(f"lsl:{name}?timeout=10")) as tracker:
+        for each in made:
+            outlet.push(each)
+        got = tracked.take(tracker, len(made))
+        description = tracker.describe()
+    outlet.close()
+    assert description.sensors == SENSORS
+    assert description.rate_hz == 100.0
+    return tracker, got
+
+
+def test_every_frame_arrives_with_its_time() -> None:
+    made = frames(100, 50.0)
+    tracker, got = sent("capar_test_poses", made)
+    assert len(got) == len(made)
+    assert tracker.counts.records == 300
+    for one, other in zip(made, got, strict=True):
+        np.testing.assert_allclose(other.positions, one.positions)
+        np.testing.assert_allclose(other.orientations, one.orientations)
+    steps = np.diff([each.host_s for each in got])
+    np.testing.assert_allclose(steps, 0.01, atol=1e-3)
+
+
+def test_a_lost_sensor_stays_lost_and_is_counted() -> None:
+    made = frames(10, 50.0)
+    for each in made:
+        each.positions[1] = np.nan
+        each.orientations[1] = np.nan
+    tracker, got = sent("capar_test_lost", made)
+    assert len(got) == 10
+    assert all(np.isnan(each.positions[1]).all() for each in got)
+    assert not any(np.isnan(each.positions[[0, 2]]).any() for each in got)
+    assert tracker.counts.lost_records == 10
+
+
+def test_a_stream_that_nobody_sends_is_an_error_with_its_remedy() -> None:
+    with pytest.raises(DeviceError, match=r"no stream of that name within 0.5 s"):
+        LslTracker(parse_address("lsl:capar_test_nobody?timeout=0.5")).open()

@@ -1,0 +1,199 @@
+"""BirdNet, Fastrak and VRPN: what is encoded is decoded, and nothing but our errors comes out."""
+
+import contextlib
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from extractors.devices import birdnet_packets as birdnet
+from extractors.devices import fastrak_records as fastrak
+from extractors.devices import vrpn_messages as vrpn
+from extractors.devices.bird_formats import FORMATS
+from extractors.devices.tracker import DeviceLostError
+
+FORMS = st.sampled_from(sorted(FORMATS))
+BYTE = st.integers(0, 255)
+WORD = st.integers(-0x8000, 0x7FFF)
+
+
+@given(
+    st.builds(
+        birdnet.Packet,
+        kind=BYTE,
+        sequence=st.integers(0, 0xFFFF),
+        xtype=BYTE,
+        body=st.binary(max_size=300),
+        seconds=st.integers(0, 2**32 - 1),
+        milliseconds=st.integers(0, 999),
+        error=BYTE,
+        error_extension=st.integers(0, 0xFFFF),
+    ),
+    st.binary(max_size=20),
+)
+def test_a_packet_is_decoded_as_it_was_encoded(packet: birdnet.Packet, rest: bytes) -> None:
+    data = packet.encode()
+    assert birdnet.decode_packet(data + rest) == (packet, len(data))
+    for end in range(len(data)):
+        assert birdnet.decode_packet(data[:end]) is None
+
+
+def test_a_header_is_laid_out_as_the_protocol_says() -> None:
+    packet = birdnet.Packet(210, 0x0102, 7, b"ab", 0x01020304, 0x0203, 5, 0x0607)
+    assert packet.encode().hex(" ") == "01 02 02 03 01 02 03 04 d2 07 03 05 06 07 00 02 61 62"
+
+
+@pytest.mark.parametrize("word", range(-0x8000, 0x8000, 0x1000))
+def test_data_words_keep_all_their_bits(word: int) -> None:
+    for value in range(word, word + 0x1000):
+        body = birdnet.encode_data({3: (FORMATS["pos"], (value, 0, -1))})
+        assert birdnet.decode_data(body) == {3: (FORMATS["pos"], (value, 0, -1))}
+
+
+@given(st.dictionaries(st.integers(1, 126), FORMS, max_size=12), st.data())
+def test_the_birds_of_a_data_packet_are_decoded(forms: dict[int, str], data: st.DataObject) -> None:
+    birds = {
+        address: (FORMATS[form], data.draw(st.tuples(*[WORD] * FORMATS[form].words)))
+        for address, form in forms.items()
+    }
+    assert birdnet.decode_data(birdnet.encode_data(birds)) == birds
+
+
+def test_twelve_birds_of_position_and_quaternion_are_208_bytes() -> None:
+    form = FORMATS["pos_quat"]
+    body = birdnet.encode_data(dict.fromkeys(range(2, 14), (form, (0,) * 7)))
+    assert len(body) + birdnet.HEADER.size == 208
+
+
+@given(rate=st.integers(1, 999_999), units=st.binary(max_size=14))
+def test_a_system_status_is_decoded_as_it_was_encoded(rate: int, units: bytes) -> None:
+    status = birdnet.SystemStatus(rate / 1000.0, tuple(units))
+    assert birdnet.decode_system_status(status.encode()) == status
+
+
+def test_the_rate_is_six_digits() -> None:
+    assert b"103300" in birdnet.SystemStatus(103.3, (0xE0,)).encode()
+
+
+@given(FORMS, st.integers(1, 0x0FFF), BYTE, st.binary(min_size=70, max_size=70))
+def test_a_bird_status_keeps_what_it_does_not_know(
+    form: str, inches: int, hemisphere: int, raw: bytes
+) -> None:
+    status = birdnet.BirdStatus(4, FORMATS[form], float(inches), hemisphere, 1, 0, raw)
+    body = status.encode()
+    assert [body[i] for i in range(70) if i not in (4, 6, 7, 8, 9, 10, 11)] == [
+        raw[i] for i in range(70) if i not in (4, 6, 7, 8, 9, 10, 11)
+    ]
+    again = birdnet.decode_bird_status(body)
+    assert (again.form, again.range_inch, again.address) == (FORMATS[form], inches, 4)
+
+
+@given(st.binary(max_size=400))
+def test_whatever_bytes_come_birdnet_raises_nothing_but_its_own_error(data: bytes) -> None:
+    for decode in (
+        birdnet.decode_packet,
+        birdnet.decode_system_status,
+        birdnet.decode_bird_status,
+        birdnet.decode_data,
+    ):
+        with contextlib.suppress(birdnet.PacketError):
+            decode(data)
+
+
+CENTIMETRES = st.floats(-300.0, 300.0, width=32)
+UNIT = st.floats(-1.0, 1.0, width=32)
+
+
+@st.composite
+def station_records(draw: st.DrawFn, form: str) -> fastrak.StationRecord:
+    values = [draw(CENTIMETRES) for _ in range(3)]
+    if form == "pos_ang":
+        values += [draw(st.floats(-180.0, 180.0, width=32)) for _ in range(3)]
+    if form == "pos_quat":
+        quaternion = [draw(UNIT) for _ in range(4)]
+        norm = math.hypot(*quaternion)
+        values += [each / norm for each in quaternion] if norm > 0.01 else [1.0, 0.0, 0.0, 0.0]
+    error = draw(st.sampled_from(" aA"))
+    return fastrak.StationRecord(draw(st.integers(1, 4)), error, tuple(values))
+
+
+@pytest.mark.parametrize("binary", [False, True])
+@pytest.mark.parametrize("form", fastrak.ITEMS)
+@given(data=st.data())
+def test_fastrak_records_come_out_however_their_bytes_are_cut(
+    form: str, binary: bool, data: st.DataObject
+) -> None:
+    sent = data.draw(st.lists(station_records(form), max_size=5))
+    wire = b"".join(fastrak.encode_record(each, form, binary=binary) for each in sent)
+    assert len(wire) == len(sent) * fastrak.record_size(form, binary=binary)
+    parser = fastrak.RecordParser(form, binary=binary)
+    cut = data.draw(st.integers(0, len(wire)))
+    found = [*parser.feed(wire[:cut]), *parser.feed(wire[cut:])]
+    assert [(each.station, each.error) for each in found] == [(e.station, e.error) for e in sent]
+    for one, other in zip(sent, found, strict=True):
+        assert other.values == pytest.approx(one.values, abs=0.0051 if not binary else 1e-4)
+    assert parser.dropped_bytes == 0
+
+
+def test_a_line_of_ascii_is_as_the_manual_prints_it() -> None:
+    record = fastrak.StationRecord(1, " ", (13.42, 0.18, -2.55, -41.2, 5.0, 170.01))
+    line = fastrak.encode_record(record, "pos_ang", binary=False)
+    assert line == b"01   13.42   0.18  -2.55 -41.20   5.00 170.01\r\n"
+
+
+@pytest.mark.parametrize("binary", [False, True])
+@given(st.lists(st.binary(max_size=200), max_size=10))
+def test_whatever_bytes_come_fastrak_raises_nothing_and_keeps_little(
+    binary: bool, data: list[bytes]
+) -> None:
+    parser = fastrak.RecordParser("pos_quat", binary=binary)
+    for each in data:
+        parser.feed(each)
+        assert len(parser._buffer) < fastrak.record_size("pos_quat", binary=binary)
+
+
+INT = st.integers(-(2**31), 2**31 - 1)
+
+
+@given(
+    st.lists(st.builds(vrpn.Message, INT, INT, INT, INT, st.binary(max_size=120), INT), max_size=6),
+    st.data(),
+)
+def test_vrpn_messages_come_out_however_their_bytes_are_cut(
+    sent: list[vrpn.Message], data: st.DataObject
+) -> None:
+    wire = b"".join(each.encode() for each in sent)
+    assert len(wire) % 8 == 0
+    cut = data.draw(st.integers(0, len(wire)))
+    parser = vrpn.MessageParser()
+    assert [*parser.feed(wire[:cut]), *parser.feed(wire[cut:])] == sent
+
+
+@given(st.text(max_size=40).filter(lambda text: "\0" not in text))
+def test_a_vrpn_name_is_decoded_as_it_was_encoded(name: str) -> None:
+    assert vrpn.decode_name(vrpn.encode_name(name)) == name
+
+
+@given(INT, st.tuples(*[st.floats(allow_nan=False)] * 7))
+def test_a_vrpn_pose_is_decoded_as_it_was_encoded(sensor: int, values: tuple[float, ...]) -> None:
+    pose = vrpn.SensorPose(sensor, values[:3], values[3:])
+    assert len(pose.encode()) == 64
+    assert vrpn.decode_pose(pose.encode()) == pose
+
+
+def test_a_server_of_another_kind_is_told_by_its_first_bytes() -> None:
+    vrpn.check_cookie(vrpn.cookie())
+    assert len(vrpn.cookie()) == 24
+    with pytest.raises(DeviceLostError, match=r"no VRPN 7 server"):
+        vrpn.check_cookie(b"HTTP/1.1 400 Bad Request")
+
+
+@given(st.lists(st.binary(max_size=100), max_size=10))
+def test_whatever_bytes_come_vrpn_raises_nothing_but_its_own_error(data: list[bytes]) -> None:
+    parser = vrpn.MessageParser()
+    with contextlib.suppress(DeviceLostError):
+        for each in data:
+            for message in parser.feed(each):
+                vrpn.decode_name(message.payload)
+                vrpn.decode_pose(message.payload)
