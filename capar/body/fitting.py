@@ -202,7 +202,7 @@ def _bridge(
         follower.configuration.update(motion[ends[0]])
         for frame in range(first, last + 1):
             share = (frame - first + 1) / (last - first + 2)
-            follower.posture.set_target(_between(*motion[ends], share))
+            follower.posture.set_target(_between(motion[ends[0]], motion[ends[1]], share))
             follower.posture.set_cost(follower.posture_cost + follower.blind(frame) * BRIDGE_COST)
             follower.aim(frame)
             for _ in range(iterations + 1):

@@ -18,7 +18,7 @@ REFERENCE_S = 0.4
 """How long the reference posture is held at the start [s]."""
 
 PLACEMENT_M = 0.010
-"""Deviation of where a sensor is strapped from its nominal place, about each axis [m] (estimate)."""
+"""Deviation of where a sensor is strapped from its nominal place, an axis [m] (estimate)."""
 
 CHAINS = {
     "thorax_upper": ("cervicale_height",),

@@ -18,7 +18,7 @@ GAP_S = 0.1
 """Losses shorter than this are interpolated (spec 3) [s]."""
 
 FADE_S = 0.1
-"""How long a sensor takes to gain its full weight after a longer loss, and to lose it before [s]."""
+"""How long a sensor takes to regain its full weight after a longer loss [s]."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Motions of a body in closed form: hinges swing smoothly, from and back to the standing posture."""
+"""Motions of a body in closed form: hinges swing smoothly out of the standing posture."""
 
 from collections.abc import Mapping
 

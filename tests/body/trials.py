@@ -6,19 +6,20 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from body.moving import swinging
 from capar.body.fitting import Fit
 from capar.body.human import ROOT_SIZE, Human
 from capar.body.measures import Measures, estimate_measures, ready_made
 from capar.body.mounting import places
 from capar.body.sensing import Tracker, sense, strap_on
 from capar.model.capture import Stream
-from body.moving import swinging
 
 RATE_HZ = 103.3
 MEASURED = (
     "stature", "mass", "acromial_height", "cervicale_height", "thigh", "shank",
     "upper_arm", "forearm",
 )  # fmt: skip
+ARM = ("upper_arm", "forearm")
 UNSEEN = ("eye", "knuckle", "finger", "thumb", "toe")
 
 
@@ -53,9 +54,18 @@ def virtual_trial(
 
 def measured(measures: Measures, *, arms: float = 1.0) -> Measures:
     """What someone with a tape measure would have taken down, arms off by a factor."""
-    wrong = {"upper_arm": arms, "forearm": arms}
+    wrong = dict.fromkeys(ARM, arms)
     given = {name: measures[name] * wrong.get(name, 1.0) for name in MEASURED}
     return estimate_measures(sex=measures.sex, age=measures.age, given=given)
+
+
+def guessed(measures: Measures, *, arms: float) -> Measures:
+    """The same with arms that nobody measured: estimated, and off by a factor."""
+    known = measured(measures)
+    usual = estimate_measures(sex=measures.sex, age=measures.age)
+    values = {**known.values, **{name: arms * measures[name] for name in ARM}}
+    deviations = {**known.deviations, **{name: usual.deviations[name] for name in ARM}}
+    return Measures(known.sex, known.age, values, known.given - set(ARM), deviations)
 
 
 def palm_errors_m(trial: Trial, fit: Fit) -> Float[np.ndarray, "samples"]:
