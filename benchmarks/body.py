@@ -6,7 +6,7 @@ Run as ``PYTHONPATH=.:tests python benchmarks/body.py``.
 import time
 
 import numpy as np
-from body.trials import (
+from virtual_bodies.trials import (
     RATE_HZ,
     guessed,
     joint_errors_rad,

@@ -4,8 +4,7 @@ import time
 
 import numpy as np
 import pytest
-
-from body.trials import (
+from virtual_bodies.trials import (
     Trial,
     joint_errors_rad,
     measured,
@@ -13,6 +12,7 @@ from body.trials import (
     rms,
     virtual_trial,
 )
+
 from capar.body.fitting import Fit, FitError, fit
 from capar.body.human import Human
 from capar.body.mounting import CalibrationError, calibrate, places

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-
-from body.trials import (
+from virtual_bodies.trials import (
     ARM,
     Trial,
     guessed,
@@ -13,6 +12,7 @@ from body.trials import (
     rms,
     virtual_trial,
 )
+
 from capar.body.fitting import Fit, fit
 from capar.body.human import Human
 from capar.body.mounting import Calibration, calibrate
