@@ -14,6 +14,9 @@ from capar.body.tables import is_right, mirrored, table
 CHIN_BELOW_EYES = 0.063
 """[share of stature]; Drillis & Contini 1966 have the chin at 0.870."""
 
+PALM = (0.22, 0.075)
+"""Half the breadth and half the thickness of the palm [share of the hand's length]."""
+
 USUAL_MASS = 27.0
 """Mass over squared stature of the body whose girths the data file gives [kg/m2]."""
 
@@ -90,8 +93,8 @@ def _head(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
 
 def _hand(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
     long, none = m["hand_length"], np.zeros(3)
-    thick = {"right_hand": 0.075, "right_fingers": 0.052, "right_fingertips": 0.045}
-    wide = {"right_hand": 0.22, "right_fingers": 0.205, "right_fingertips": 0.175}
+    thick = {"right_hand": PALM[1], "right_fingers": 0.052, "right_fingertips": 0.045}
+    wide = {"right_hand": PALM[0], "right_fingers": 0.205, "right_fingertips": 0.175}
     for name, thickness in thick.items():
         along = segments[name].tip - segments[name].origin
         sizes = np.array([wide[name] * long, thickness * long, 0.5 * abs(along[2]) + 0.02 * long])
@@ -100,6 +103,11 @@ def _hand(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
     along = segments["right_thumb"].tip - segments["right_thumb"].origin
     half = np.array([0.055 * long, 0.5 * float(np.linalg.norm(along)), 0.0])
     yield Form("right_thumb", "capsule", 0.5 * along, half, "skin", along)
+
+
+def palm_centre(m: Measures) -> Float[np.ndarray, "3"]:
+    """The middle of the right palm's surface in the hand's frame [m]."""
+    return np.array([0.0, PALM[1], -0.42]) * m["hand_length"]
 
 
 def _foot(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.body.inertia import Inertia, inertias
-from capar.body.mannequin import Form, forms
+from capar.body.mannequin import Form, forms, palm_centre
 from capar.body.measures import Measures
 from capar.body.skeleton import Segment, eyes_between, skeleton
 from capar.body.tables import is_right, mirrored, table
@@ -133,6 +133,8 @@ def _add_site(
 def _site_base(row: Mapping[str, Any], m: Measures, segment: Segment) -> Float[np.ndarray, "3"]:
     if row.get("of") == "eyes":
         return eyes_between(m) - segment.origin
+    if row.get("of") == "palm":
+        return np.array(palm_centre(m) * [1.0, 1.0 if is_right(segment.name) else -1.0, 1.0])
     if row.get("of") == "sole":
         return np.array([0.1 * m["foot_length"], 0.0, -m["ankle_height"]])
     return np.asarray(row["along"] * (segment.tip - segment.origin))

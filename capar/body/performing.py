@@ -1,0 +1,354 @@
+"""A virtual performer: a body that does what a script says, with the exact truth of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mink
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.gaze import look_tasks, share_costs
+from capar.body.grips import YAWS, side_grip, top_grip
+from capar.body.human import Human
+from capar.body.scripts import SIDES, Hand, Move, Phase, Script, between, minimum_jerk
+from capar.body.things import Scene, SceneError
+from capar.model.capture import TagType
+
+RATE_HZ = 103.3
+"""Of the thesis's tracker (thesis 3.1) [Hz]."""
+
+PALM_COST = (20.0, 4.0)
+"""Weights of a metre and of a radian at the palms."""
+
+FOOT_COST = 60.0
+BALANCE_COST = 2.0
+"""Weight of a metre of the centre of mass from above the feet."""
+
+RELAXED = {"elbow_flexion": 12.0, "shoulder_abduction": 6.0, "knee_flexion": 2.0}
+"""How somebody stands at ease [degrees]."""
+
+LEAD_S = 0.2
+"""How long the gaze goes ahead of the hand [s] (Land & Hayhoe 2001: about half a second at most)."""
+
+SHIFT_S = 0.3
+"""How long a shift of gaze takes, the head's share included [s]."""
+
+STANDOFF_M = 0.07
+"""How far beside the straight way a hand comes to a thing from outside [m]."""
+
+RISE_M = 0.10
+"""How far above the straight way a hand goes to a thing [m]."""
+
+ITERATIONS = 3
+REACH_TOLERANCE_M = 0.003
+"""A palm further than this from where it is to be cannot reach it [m]."""
+
+TOUCH_M = 0.003
+"""Where a palm is nearer than this to its grip, it touches the thing [m]."""
+
+
+class PerformanceError(SceneError):
+    """Something that this body cannot do in this scene."""
+
+
+@dataclass(frozen=True, eq=False)
+class Performance:
+    """What was done, to the last joint."""
+
+    human: Human
+    scene: Scene
+    script: Script
+    times: Float[np.ndarray, "frames"]
+    """[s]."""
+
+    motion: Float[np.ndarray, "frames posture"]
+    things: Mapping[str, RigidTransform]
+    """``T_world_thing`` of every thing at every frame."""
+
+    phases: tuple[tuple[str, float, float], ...]
+    """Name, start and end of each [s]."""
+
+    gazes: Float[np.ndarray, "frames 3"]
+    """Point looked at [m]."""
+
+    looks: tuple[str, ...]
+    """What is looked at in each phase."""
+
+    slip_m: Mapping[str, Float[np.ndarray, "frames"]]
+    """By side, distance of a palm from where it is to be [m]."""
+
+
+def perform(
+    human: Human,
+    scene: Scene,
+    script: Script,
+    *,
+    place: tuple[float, float] = (0.0, 0.0),
+    heading: float = 0.0,
+    rate_hz: float = RATE_HZ,
+) -> Performance:
+    """Let a body do a script in a scene.
+
+    Args:
+        human: Of any size.
+        scene: Any that its hands can reach.
+        script: What it does.
+        place: Where it stands [m].
+        heading: Which way it faces [rad].
+        rate_hz: Frames a second.
+
+    Raises:
+        PerformanceError: A hand cannot come where it is to be; the message says by how much.
+        UnknownNameError: The script names a thing that is not there.
+    """
+    actor = _Actor(human, scene, place, heading)
+    actor.choose_grips(script)
+    frames, phases, start = [], [], 0.0
+    for number, phase in enumerate(script):
+        actor.begin(phase)
+        count = max(round(phase.seconds * rate_hz), 2)
+        following = script[number + 1] if number + 1 < len(script) else phase
+        for frame in range(count):
+            share = (frame + 1) / count
+            left = (1.0 - share) * phase.seconds
+            look = following.look if left < LEAD_S and following.look else phase.look
+            frames.append(actor.frame(phase, share, look, 1.0 / rate_hz))
+        phases.append((phase.name, start, start + count / rate_hz))
+        start += count / rate_hz
+    made = _gathered(human, scene, script, frames, phases, rate_hz)
+    _prove(made)
+    return made
+
+
+@dataclass
+class _Frame:
+    posture: np.ndarray
+    things: dict[str, RigidTransform]
+    gaze: np.ndarray
+    slip: dict[str, float]
+
+
+class _Actor:
+    """The inverse kinematics of a performance, and where everything is."""
+
+    def __init__(
+        self, human: Human, scene: Scene, place: tuple[float, float], heading: float
+    ) -> None:
+        self.human, self.scene, self.heading = human, scene, heading
+        relaxed = {f"{s}_{n}": float(np.radians(a)) for n, a in RELAXED.items() for s in SIDES}
+        self.rest = human.posture(relaxed, place=(*place, 0.0), heading=heading)
+        self.configuration = mink.Configuration(human.model)
+        self.configuration.update(self.rest)
+        self.things = {name: each.pose for name, each in scene.things.items()}
+        self.grips: dict[tuple[str, str, str], RigidTransform] = {}
+        self.palms = {s: mink.FrameTask(f"{s}_palm", "site", *PALM_COST) for s in SIDES}
+        self.looks = look_tasks()
+        self.tasks = [*self.palms.values(), *self.looks.values(), *self._stance()]
+        self.limits = [
+            mink.ConfigurationLimit(human.model),
+            mink.VelocityLimit(human.model, dict.fromkeys(human.joints, 0.15)),
+        ]
+        self.home = {side: self.palm(side) for side in SIDES}
+        self.look, self.since = "ahead", np.inf
+        self.point = self.look_from = self._looked_at("ahead")
+        self.starts: dict[str, RigidTransform] = dict(self.home)
+        self.thing_starts = dict(self.things)
+
+    def _stance(self) -> list[mink.Task]:
+        """Feet stay, the weight stays above them, the posture stays easy."""
+        feet = [mink.FrameTask(f"{s}_foot", "body", FOOT_COST, FOOT_COST) for s in SIDES]
+        for foot in feet:
+            foot.set_target_from_configuration(self.configuration)
+        balance = mink.ComTask(cost=[BALANCE_COST, BALANCE_COST, 0.0])
+        balance.set_target_from_configuration(self.configuration)
+        posture = mink.PostureTask(self.human.model, cost=share_costs(self.human, 0.15))
+        posture.set_target(self.rest)
+        return [*feet, balance, posture, mink.DampingTask(self.human.model, cost=0.1)]
+
+    def palm(self, side: str) -> RigidTransform:
+        """Where a palm is."""
+        return self._site(f"{side}_palm")
+
+    def _site(self, name: str) -> RigidTransform:
+        pose = self.configuration.get_transform_frame_to_world(name, "site")
+        turn = Rotation.from_quat(pose.rotation().wxyz, scalar_first=True)
+        return RigidTransform.from_components(pose.translation(), turn)
+
+    def choose_grips(self, script: Script) -> None:
+        """For every hand and thing the first grip with which all the script asks is reached."""
+        wanted = {
+            (side, hand.thing, hand.grip)
+            for phase in script
+            for side, hand in phase.hands.items()
+            if hand.thing
+        }
+        for side, name, kind in sorted(wanted):
+            thing = self.scene.thing(name)
+            make = side_grip if kind == "side" else top_grip
+            yaws = YAWS if thing.round or kind == "top" else YAWS[:1]
+            grips = [make(thing, side, self.human.measures, yaw=yaw) for yaw in yaws]
+            grips = [_facing(each, thing.round, self.heading - thing.heading) for each in grips]
+            ends = self._ends(script, name)
+            missed = [self._missed(side, each, ends) for each in grips]
+            fits = [n for n, miss in enumerate(missed) if miss < REACH_TOLERANCE_M]
+            best = fits[0] if fits else int(np.argmin(missed))
+            self.grips[side, name, kind] = grips[best]
+
+    def _ends(self, script: Script, name: str) -> list[RigidTransform]:
+        """Where a thing stands and goes."""
+        moves = [phase.moves[name] for phase in script if name in phase.moves]
+        return [self.things[name], *(self._goal(name, each, self.things[name]) for each in moves)]
+
+    def _missed(self, side: str, grip: RigidTransform, ends: list[RigidTransform]) -> float:
+        """How far at worst the palm is from the grip at some places of the thing [m]."""
+        worst = 0.0
+        for end in ends:
+            self.configuration.update(self.rest)
+            self.point = end.translation
+            for each in SIDES:
+                self._aim(each, end * grip if each == side else self.home[each])
+            for _ in range(25):
+                self._step()
+            miss = float(np.linalg.norm(self.palm(side).translation - (end * grip).translation))
+            turn = (self.palm(side).rotation.inv() * (end * grip).rotation).magnitude()
+            worst = max(worst, miss + 0.02 * max(turn - 0.1, 0.0))
+        self.configuration.update(self.rest)
+        self.point = self._looked_at("ahead")
+        return worst
+
+    def begin(self, phase: Phase) -> None:
+        """Remember where everything is when a phase begins."""
+        self.starts = {side: self.palm(side) for side in SIDES}
+        self.thing_starts = dict(self.things)
+
+    def frame(self, phase: Phase, share: float, look: str, step_s: float) -> _Frame:
+        """Go on to one frame of a phase."""
+        way = minimum_jerk(share)
+        for name, move in phase.moves.items():
+            start = self.thing_starts[name]
+            pose = between(start, self._goal(name, move, start), way)
+            arc = [0.0, 0.0, move.lift * 4.0 * way * (1.0 - way)]
+            self.things[name] = RigidTransform.from_translation(arc) * pose
+        goals = {side: self._hand_goal(side, phase.hand(side), way) for side in SIDES}
+        self._gaze(look, step_s)
+        for side, goal in goals.items():
+            self._aim(side, goal)
+        for _ in range(ITERATIONS):
+            self._step()
+        slip = {
+            s: float(np.linalg.norm(self.palm(s).translation - goal.translation))
+            for s, goal in goals.items()
+        }
+        return _Frame(np.array(self.configuration.q), dict(self.things), self.point, slip)
+
+    def _goal(self, name: str, move: Move, start: RigidTransform) -> RigidTransform:
+        """Where a thing goes, as things are now."""
+        if move.home:
+            return self.scene.thing(name).pose
+        if not move.to_mouth:
+            return RigidTransform.from_translation(np.array(move.by)) * start
+        thing = self.scene.thing(name)
+        ahead = Rotation.from_euler("z", self.heading)
+        turn = ahead * Rotation.from_euler("y", -move.tilt) * ahead.inv() * thing.pose.rotation
+        rim = np.array([-0.5 * thing.size[0], 0.0, thing.shape.bounds[1, 2]])
+        local = thing.pose.rotation.inv() * ahead
+        spot = self._site("mouth").translation - turn.apply(local.apply(rim))
+        return RigidTransform.from_components(spot, turn)
+
+    def _hand_goal(self, side: str, hand: Hand, way: float) -> RigidTransform:
+        """Where a palm is to be."""
+        if hand.does == "rests":
+            start, goal = self.starts[side], self.home[side]
+            outside = -start.rotation.apply([0.0, 0.0, 1.0])
+            back = 1.0 - way
+        else:
+            start = self.starts[side]
+            goal = self.things[hand.thing] * self.grips[side, hand.thing, hand.grip]
+            if hand.does == "holds":
+                return goal
+            outside = -goal.rotation.apply([0.0, 0.0, 1.0])
+            back = way
+        far = min(float(np.linalg.norm(goal.translation - start.translation)) / 0.3, 1.0)
+        bump = 6.75 * back * back * (1.0 - back) * STANDOFF_M * outside
+        bump = bump + np.array([0.0, 0.0, 4.0 * way * (1.0 - way) * RISE_M])
+        return RigidTransform.from_translation(far * bump) * between(start, goal, way)
+
+    def _looked_at(self, look: str) -> np.ndarray:
+        if look in self.things:
+            thing = self.scene.thing(look)
+            return self.things[look].apply([0.0, 0.0, 0.5 * thing.size[2]])
+        ahead = Rotation.from_euler("z", self.heading).apply([3.0, 0.0, 0.0])
+        height = self.human.measures["eye_height"] - 0.25
+        return np.array([*self.rest[:2], 0.0]) + ahead + [0.0, 0.0, height]
+
+    def _gaze(self, look: str, step_s: float) -> None:
+        """Shift the point looked at: quickly, then keep it on what is looked at."""
+        if look and look != self.look:
+            self.look, self.since, self.look_from = look, 0.0, self.point
+        self.since += step_s
+        way = minimum_jerk(self.since / SHIFT_S)
+        self.point = self.look_from + way * (self._looked_at(self.look) - self.look_from)
+
+    def _aim(self, side: str, goal: RigidTransform) -> None:
+        turn = goal.rotation.as_quat(scalar_first=True)
+        self.palms[side].set_target(mink.SE3(np.concatenate([turn, goal.translation])))
+
+    def _step(self) -> None:
+        for task in self.looks.values():
+            task.set_target(self.point)
+        velocity = mink.solve_ik(self.configuration, self.tasks, 1.0, "daqp", limits=self.limits)
+        self.configuration.integrate_inplace(velocity, 1.0)
+
+
+def _facing(grip: RigidTransform, free: bool, turn: float) -> RigidTransform:
+    """A grip on a round thing as seen from where the performer faces."""
+    if not free:
+        return grip
+    return RigidTransform.from_rotation(Rotation.from_euler("z", turn)) * grip
+
+
+def _gathered(
+    human: Human,
+    scene: Scene,
+    script: Script,
+    frames: list[_Frame],
+    phases: list[tuple[str, float, float]],
+    rate_hz: float,
+) -> Performance:
+    things = {
+        name: RigidTransform.concatenate([each.things[name] for each in frames])
+        for name in scene.things
+    }
+    return Performance(
+        human=human,
+        scene=scene,
+        script=script,
+        times=np.arange(len(frames)) / rate_hz,
+        motion=np.array([each.posture for each in frames]),
+        things=things,
+        phases=tuple(phases),
+        gazes=np.array([each.gaze for each in frames]),
+        looks=tuple(phase.look for phase in script),
+        slip_m={side: np.array([each.slip[side] for each in frames]) for side in SIDES},
+    )
+
+
+def _prove(made: Performance) -> None:
+    """Hands are where the script has them whenever they hold something."""
+    for phase, (name, start, end) in zip(made.script, made.phases, strict=True):
+        now = (made.times >= start) & (made.times < end)
+        for side, hand in phase.hands.items():
+            worst = float(made.slip_m[side][now].max())
+            if hand.does == "holds" and worst > REACH_TOLERANCE_M:
+                raise PerformanceError(
+                    f"the {side} hand misses {hand.thing!r} by {worst * 1000:.0f} mm in {name!r}; "
+                    "put the thing or the performer nearer, or use another grip"
+                )
+
+
+def moved(made: Performance, name: str) -> bool:
+    """Whether a thing is one that may move and did."""
+    path = made.things[name].translation
+    mobile = made.scene.thing(name).tag is TagType.MOBILE
+    return mobile and float(np.ptp(path, axis=0).max()) > 0.0
