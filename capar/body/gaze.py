@@ -14,7 +14,10 @@ LOOK_COST = 4.0
 """Weight of a radian that a line of sight misses its point by."""
 
 SHARES = {"eye": 0.045, "head": 0.05, "neck": 0.05, "thorax": 0.4, "lumbar": 0.6}
-"""Weight of a radian of each part that takes part: what costs more turns less."""
+"""Weight of a radian of each part that takes part in a shift of gaze: what costs more turns less."""
+
+STANCE = {"hip": 0.6, "knee": 0.6, "ankle": 0.6}
+"""Likewise of the legs, which do not take part and keep standing."""
 
 ROUNDS = 40
 """Iterations for a single posture."""
@@ -45,15 +48,13 @@ def share_costs(human: Human, usual: float) -> Float[np.ndarray, "dofs"]:
     out = np.full(human.model.nv, usual)
     out[:6] = 0.0
     for number, joint in enumerate(human.joints):
-        for part, cost in SHARES.items():
+        for part, cost in (SHARES | STANCE).items():
             if part in joint:
                 out[6 + number] = cost
     return out
 
 
-def look_at(
-    human: Human, posture: Float[np.ndarray, "posture"], point: Iterable[float]
-) -> Gaze:
+def look_at(human: Human, posture: Float[np.ndarray, "posture"], point: Iterable[float]) -> Gaze:
     """Turn eyes, head and trunk to a point [m], the pelvis and the limbs kept as they are."""
     configuration = mink.Configuration(human.model)
     configuration.update(posture)
@@ -108,5 +109,3 @@ def _forward(quaternions: Float[np.ndarray, "*frames 4"]) -> Float[np.ndarray, "
 def _angle(first: Float[np.ndarray, "3"], second: Float[np.ndarray, "3"]) -> float:
     cross = np.linalg.norm(np.cross(first, second))
     return float(np.arctan2(cross, first @ second))
-
-

@@ -11,11 +11,16 @@ from capar.body.things import Thing
 AIR_M = 0.0005
 """What is left between palm and thing, so that surfaces touch and do not cut [m]."""
 
-YAWS = (0.0, -0.35, 0.35, -0.7, 0.7, 1.05, -1.05)
-"""Directions of the fingers tried on a round thing, the usual one first [rad]."""
+YAWS = (0.0, -0.35, -0.7, -1.05, 0.35)
+"""Directions of the fingers tried on a round thing, outwards positive [rad]."""
+
+PITCHES = (0.0, 0.35, 0.7)
+"""Likewise their rise above the level [rad]."""
 
 
-def side_grip(thing: Thing, side: str, measures: Measures, *, yaw: float = 0.0) -> RigidTransform:
+def side_grip(
+    thing: Thing, side: str, measures: Measures, *, yaw: float = 0.0, pitch: float = 0.0
+) -> RigidTransform:
     """``T_thing_palm`` of a hand at its own side of a thing, thumb up, fingers forward.
 
     Args:
@@ -23,11 +28,12 @@ def side_grip(thing: Thing, side: str, measures: Measures, *, yaw: float = 0.0) 
         side: ``right`` or ``left``.
         measures: Whose hand; it stays clear of what the thing stands on.
         yaw: Turn of the grip about the thing's axis, outwards positive [rad].
+        pitch: Rise of the fingers above the level [rad].
     """
     sign = 1.0 if side == "right" else -1.0
     turn = Rotation.from_euler("z", -sign * yaw)
     inwards = turn.apply([0.0, sign, 0.0])
-    fingers = turn.apply([1.0, 0.0, 0.0])
+    fingers = turn.apply([np.cos(pitch), 0.0, np.sin(pitch)])
     low, high = thing.shape.bounds
     half = PALM[0] * measures["hand_length"] + 0.008
     height = max(0.5 * (low[2] + high[2]), half)

@@ -9,10 +9,11 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.gaze import look_tasks, share_costs
-from capar.body.grips import YAWS, side_grip, top_grip
+from capar.body.grips import PITCHES, YAWS, side_grip, top_grip
 from capar.body.human import Human
 from capar.body.scripts import SIDES, Hand, Move, Phase, Script, between, minimum_jerk
-from capar.body.things import Scene, SceneError
+from capar.body.measures import Measures
+from capar.body.things import Scene, SceneError, Thing
 from capar.model.capture import TagType
 
 RATE_HZ = 103.3
@@ -39,6 +40,9 @@ STANDOFF_M = 0.07
 
 RISE_M = 0.10
 """How far above the straight way a hand goes to a thing [m]."""
+
+RELEASE_SHARE = 0.4
+"""Share of the phase after a drink in which the head is free again [1]."""
 
 ITERATIONS = 3
 REACH_TOLERANCE_M = 0.003
@@ -112,8 +116,8 @@ def perform(
         for frame in range(count):
             share = (frame + 1) / count
             left = (1.0 - share) * phase.seconds
-            look = following.look if left < LEAD_S and following.look else phase.look
-            frames.append(actor.frame(phase, share, look, 1.0 / rate_hz))
+            ahead = following if left < LEAD_S and following.look else phase
+            frames.append(actor.frame(phase, share, ahead, 1.0 / rate_hz))
         phases.append((phase.name, start, start + count / rate_hz))
         start += count / rate_hz
     made = _gathered(human, scene, script, frames, phases, rate_hz)
@@ -150,7 +154,12 @@ class _Actor:
             mink.VelocityLimit(human.model, dict.fromkeys(human.joints, 0.15)),
         ]
         self.home = {side: self.palm(side) for side in SIDES}
-        self.look, self.since = "ahead", np.inf
+        self.mouth = mink.FrameTask("mouth", "site", PALM_COST[0], 0.0)
+        self.mouth.set_target_from_configuration(self.configuration)
+        self.mouth_at = self._site("mouth").translation
+        self.drinks = self.drank = 0.0
+        """How firmly the mouth is kept where it is when standing, now and when the phase began."""
+        self.look, self.look_at, self.since = "ahead", ("ahead", ""), np.inf
         self.point = self.look_from = self._looked_at("ahead")
         self.starts: dict[str, RigidTransform] = dict(self.home)
         self.thing_starts = dict(self.things)
@@ -162,9 +171,9 @@ class _Actor:
             foot.set_target_from_configuration(self.configuration)
         balance = mink.ComTask(cost=[BALANCE_COST, BALANCE_COST, 0.0])
         balance.set_target_from_configuration(self.configuration)
-        posture = mink.PostureTask(self.human.model, cost=share_costs(self.human, 0.15))
-        posture.set_target(self.rest)
-        return [*feet, balance, posture, mink.DampingTask(self.human.model, cost=0.1)]
+        self.ease = mink.PostureTask(self.human.model, cost=share_costs(self.human, 0.15))
+        self.ease.set_target(self.rest)
+        return [*feet, balance, self.ease, mink.DampingTask(self.human.model, cost=0.1)]
 
     def palm(self, side: str) -> RigidTransform:
         """Where a palm is."""
@@ -176,7 +185,7 @@ class _Actor:
         return RigidTransform.from_components(pose.translation(), turn)
 
     def choose_grips(self, script: Script) -> None:
-        """For every hand and thing the first grip with which all the script asks is reached."""
+        """For every hand and thing the grip with which all that the script asks is easiest."""
         wanted = {
             (side, hand.thing, hand.grip)
             for phase in script
@@ -185,53 +194,59 @@ class _Actor:
         }
         for side, name, kind in sorted(wanted):
             thing = self.scene.thing(name)
-            make = side_grip if kind == "side" else top_grip
-            yaws = YAWS if thing.round or kind == "top" else YAWS[:1]
-            grips = [make(thing, side, self.human.measures, yaw=yaw) for yaw in yaws]
+            grips = _grips(thing, side, kind, self.human.measures)
             grips = [_facing(each, thing.round, self.heading - thing.heading) for each in grips]
             ends = self._ends(script, name)
-            missed = [self._missed(side, each, ends) for each in grips]
-            fits = [n for n, miss in enumerate(missed) if miss < REACH_TOLERANCE_M]
-            best = fits[0] if fits else int(np.argmin(missed))
-            self.grips[side, name, kind] = grips[best]
+            efforts = [self._effort(side, each, ends) for each in grips]
+            self.grips[side, name, kind] = grips[int(np.argmin(efforts))]
 
-    def _ends(self, script: Script, name: str) -> list[RigidTransform]:
-        """Where a thing stands and goes."""
+    def _ends(self, script: Script, name: str) -> list[tuple[RigidTransform, bool]]:
+        """Where a thing stands and goes, and whether that is the mouth."""
         moves = [phase.moves[name] for phase in script if name in phase.moves]
-        return [self.things[name], *(self._goal(name, each, self.things[name]) for each in moves)]
+        goals = [(self._goal(name, each, self.things[name]), each.to_mouth) for each in moves]
+        return [(self.things[name], False), *goals]
 
-    def _missed(self, side: str, grip: RigidTransform, ends: list[RigidTransform]) -> float:
-        """How far at worst the palm is from the grip at some places of the thing [m]."""
+    def _effort(
+        self, side: str, grip: RigidTransform, ends: list[tuple[RigidTransform, bool]]
+    ) -> float:
+        """How far the body is from ease with a grip, at worst; what it misses weighs most."""
         worst = 0.0
-        for end in ends:
+        for end, drinks in ends:
             self.configuration.update(self.rest)
-            self.point = end.translation
+            self.drinks = float(drinks)
+            self.point = self._looked_at("ahead") if drinks else end.translation
             for each in SIDES:
                 self._aim(each, end * grip if each == side else self.home[each])
-            for _ in range(25):
+            for _ in range(20):
                 self._step()
-            miss = float(np.linalg.norm(self.palm(side).translation - (end * grip).translation))
-            turn = (self.palm(side).rotation.inv() * (end * grip).rotation).magnitude()
-            worst = max(worst, miss + 0.02 * max(turn - 0.1, 0.0))
+            palm, goal = self.palm(side), end * grip
+            missed = np.linalg.norm(palm.translation - goal.translation) / 0.01
+            turned = (palm.rotation.inv() * goal.rotation).magnitude() / 0.1
+            bent = self.ease.compute_error(self.configuration)[6:] * self.ease.cost[6:]
+            worst = max(worst, float(missed**2 + turned**2 + bent @ bent))
         self.configuration.update(self.rest)
-        self.point = self._looked_at("ahead")
+        self.point, self.drinks = self._looked_at("ahead"), 0.0
         return worst
 
     def begin(self, phase: Phase) -> None:
         """Remember where everything is when a phase begins."""
         self.starts = {side: self.palm(side) for side in SIDES}
         self.thing_starts = dict(self.things)
+        self.drank = self.drinks
 
-    def frame(self, phase: Phase, share: float, look: str, step_s: float) -> _Frame:
-        """Go on to one frame of a phase."""
+    def frame(self, phase: Phase, share: float, looks: Phase, step_s: float) -> _Frame:
+        """Go on to one frame of a phase, the gaze being in that one or already in the next."""
         way = minimum_jerk(share)
         for name, move in phase.moves.items():
             start = self.thing_starts[name]
             pose = between(start, self._goal(name, move, start), way)
             arc = [0.0, 0.0, move.lift * 4.0 * way * (1.0 - way)]
             self.things[name] = RigidTransform.from_translation(arc) * pose
+        drinks = any(move.to_mouth for move in phase.moves.values())
+        held = way if drinks else minimum_jerk(share / RELEASE_SHARE)
+        self.drinks = self.drank + held * (float(drinks) - self.drank)
         goals = {side: self._hand_goal(side, phase.hand(side), way) for side in SIDES}
-        self._gaze(look, step_s)
+        self._gaze(looks, step_s)
         for side, goal in goals.items():
             self._aim(side, goal)
         for _ in range(ITERATIONS):
@@ -243,7 +258,7 @@ class _Actor:
         return _Frame(np.array(self.configuration.q), dict(self.things), self.point, slip)
 
     def _goal(self, name: str, move: Move, start: RigidTransform) -> RigidTransform:
-        """Where a thing goes, as things are now."""
+        """Where a thing goes; to the mouth as it is when standing, where the head is then kept."""
         if move.home:
             return self.scene.thing(name).pose
         if not move.to_mouth:
@@ -253,7 +268,7 @@ class _Actor:
         turn = ahead * Rotation.from_euler("y", -move.tilt) * ahead.inv() * thing.pose.rotation
         rim = np.array([-0.5 * thing.size[0], 0.0, thing.shape.bounds[1, 2]])
         local = thing.pose.rotation.inv() * ahead
-        spot = self._site("mouth").translation - turn.apply(local.apply(rim))
+        spot = self.mouth_at - turn.apply(local.apply(rim))
         return RigidTransform.from_components(spot, turn)
 
     def _hand_goal(self, side: str, hand: Hand, way: float) -> RigidTransform:
@@ -282,13 +297,21 @@ class _Actor:
         height = self.human.measures["eye_height"] - 0.25
         return np.array([*self.rest[:2], 0.0]) + ahead + [0.0, 0.0, height]
 
-    def _gaze(self, look: str, step_s: float) -> None:
-        """Shift the point looked at: quickly, then keep it on what is looked at."""
-        if look and look != self.look:
-            self.look, self.since, self.look_from = look, 0.0, self.point
+    def _gaze(self, phase: Phase, step_s: float) -> None:
+        """Shift the point looked at quickly, then keep it; of a moved thing, where it goes to."""
+        if self.drinks > 0.02:  # with a cup at the mouth the head does not bend to what is below
+            return
+        goal = self._looked_at(phase.look or self.look)
+        move = phase.moves.get(phase.look)
+        if move is not None:
+            start = self.thing_starts[phase.look]
+            goal = goal - self.things[phase.look].translation
+            goal = goal + self._goal(phase.look, move, start).translation
+        if (phase.look or self.look, phase.name) != self.look_at:
+            self.look, self.look_at = phase.look or self.look, (phase.look or self.look, phase.name)
+            self.since, self.look_from = 0.0, self.point
         self.since += step_s
-        way = minimum_jerk(self.since / SHIFT_S)
-        self.point = self.look_from + way * (self._looked_at(self.look) - self.look_from)
+        self.point = self.look_from + minimum_jerk(self.since / SHIFT_S) * (goal - self.look_from)
 
     def _aim(self, side: str, goal: RigidTransform) -> None:
         turn = goal.rotation.as_quat(scalar_first=True)
@@ -297,8 +320,20 @@ class _Actor:
     def _step(self) -> None:
         for task in self.looks.values():
             task.set_target(self.point)
-        velocity = mink.solve_ik(self.configuration, self.tasks, 1.0, "daqp", limits=self.limits)
+        self.mouth.set_position_cost(PALM_COST[0] * self.drinks)
+        tasks = [*self.tasks, self.mouth] if self.drinks > 0.0 else self.tasks
+        velocity = mink.solve_ik(self.configuration, tasks, 1.0, "daqp", limits=self.limits)
         self.configuration.integrate_inplace(velocity, 1.0)
+
+
+def _grips(thing: Thing, side: str, kind: str, measures: Measures) -> list[RigidTransform]:
+    """The grips that are tried."""
+    if kind == "top":
+        return [top_grip(thing, side, measures, yaw=yaw) for yaw in YAWS]
+    turns = YAWS if thing.round else YAWS[:1]
+    return [
+        side_grip(thing, side, measures, yaw=yaw, pitch=pitch) for yaw in turns for pitch in PITCHES
+    ]
 
 
 def _facing(grip: RigidTransform, free: bool, turn: float) -> RigidTransform:

@@ -70,9 +70,7 @@ def reach_and_return(thing: str, *, side: str = "right", grip: str = "top") -> S
     return touch(thing, side=side, grip=grip, seconds=0.25)
 
 
-def touch(
-    thing: str, *, side: str = "right", grip: str = "top", seconds: float = 0.8
-) -> Script:
+def touch(thing: str, *, side: str = "right", grip: str = "top", seconds: float = 0.8) -> Script:
     """Lay a hand on a thing, keep it there, and go back."""
     return (
         STAND,
@@ -83,9 +81,7 @@ def touch(
     )
 
 
-def slide(
-    thing: str, by: tuple[float, float, float], *, side: str = "right"
-) -> Script:
+def slide(thing: str, by: tuple[float, float, float], *, side: str = "right") -> Script:
     """Take a thing at its side and slide it along what it stands on."""
     held = {side: Hand("holds", thing)}
     return (
