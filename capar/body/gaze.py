@@ -13,10 +13,10 @@ EYES = ("right_pupil", "left_pupil")
 LOOK_COST = 4.0
 """Weight of a radian that a line of sight misses its point by."""
 
-SHARES = {"eye": 0.045, "head": 0.05, "neck": 0.05, "thorax": 0.4, "lumbar": 0.6}
-"""Weight of a radian of each part that takes part in a shift of gaze: what costs more turns less."""
+SHARES = {"eye": 0.045, "head": 0.05, "neck": 0.05, "thorax": 0.7, "lumbar": 1.0}
+"""Weight of a radian of each part that turns with the gaze: what costs more turns less."""
 
-STANCE = {"hip": 0.6, "knee": 0.6, "ankle": 0.6}
+STANCE = {"hip": 1.0, "knee": 1.0, "ankle": 1.0}
 """Likewise of the legs, which do not take part and keep standing."""
 
 ROUNDS = 40

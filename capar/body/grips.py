@@ -14,7 +14,7 @@ AIR_M = 0.0005
 YAWS = (0.0, -0.35, -0.7, -1.05, 0.35)
 """Directions of the fingers tried on a round thing, outwards positive [rad]."""
 
-PITCHES = (0.0, 0.35, 0.7)
+PITCHES = (0.0, 0.25, 0.5)
 """Likewise their rise above the level [rad]."""
 
 

@@ -11,8 +11,8 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.gaze import look_tasks, share_costs
 from capar.body.grips import PITCHES, YAWS, side_grip, top_grip
 from capar.body.human import Human
-from capar.body.scripts import SIDES, Hand, Move, Phase, Script, between, minimum_jerk
 from capar.body.measures import Measures
+from capar.body.scripts import SIDES, Hand, Move, Phase, Script, between, minimum_jerk
 from capar.body.things import Scene, SceneError, Thing
 from capar.model.capture import TagType
 
@@ -30,7 +30,7 @@ RELAXED = {"elbow_flexion": 12.0, "shoulder_abduction": 6.0, "knee_flexion": 2.0
 """How somebody stands at ease [degrees]."""
 
 LEAD_S = 0.2
-"""How long the gaze goes ahead of the hand [s] (Land & Hayhoe 2001: about half a second at most)."""
+"""How long the gaze goes ahead of the hand [s] (Land & Hayhoe 2001: up to half a second)."""
 
 SHIFT_S = 0.3
 """How long a shift of gaze takes, the head's share included [s]."""

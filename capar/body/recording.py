@@ -11,7 +11,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.gaze import lines_of_sight
 from capar.body.mannequin import Form, forms
-from capar.body.mounting import Mount, places
+from capar.body.mounting import Mount
 from capar.body.performing import TOUCH_M, Performance
 from capar.body.scripts import SIDES
 from capar.body.sensing import Tracker, recorded, sense, strap_on
@@ -119,10 +119,11 @@ def write_bundle(capture: Capture, truth: Truth, folder: Path) -> None:
     header = ["t_s", *(f"{name}_{part}" for name in tracked for part in parts)]
     rows = [_row(capture, list(tracked.values()), frame) for frame in range(len(capture.times))]
     _write(folder / "motion.csv", [",".join(header), *rows])
-    shaped = {b.name: b for b in (*capture.objects, *capture.sensors) if b.shape is not None}
-    for name, body in sorted(shaped.items()):
-        assert body.shape is not None
-        _write(folder / f"{name}.obj", _obj(body.shape))
+    bodies: list[Sensor | TagObject] = [*capture.objects, *capture.sensors]
+    shapes = {body.name: body.shape for body in bodies}
+    for name, shape in sorted(shapes.items()):
+        if shape is not None:
+            _write(folder / f"{name}.obj", _obj(shape))
     _write(folder / "capture.toml", _toml(capture))
     _write(folder / "truth.toml", _truth_toml(truth))
 
@@ -166,7 +167,7 @@ def _sensor(made: Performance, mount: Mount, stream: Stream) -> Sensor:
     side, _, part = mount.place.rpartition("_")
     seat = mount.pose.inv()
     if mount.place == "head":
-        spots, ways = lines_of_sight(made.human, made.human.posture()[None])
+        spots, _ = lines_of_sight(made.human, made.human.posture()[None])
         head = _standing_frame(made, "head")
         eye = seat.apply(head.inv().apply(spots[0]))
         ahead = seat.rotation.apply(head.rotation.inv().apply([1.0, 0.0, 0.0]))
@@ -228,16 +229,16 @@ def _surface(made: Performance, segments: tuple[str, ...], frame: RigidTransform
             mesh = _mesh(form)
             mesh.apply_translation(bones[form.body].origin - frame.translation)
             parts.append(mesh)
-    mesh = trimesh.util.concatenate(parts)
+    mesh = sum(parts[1:], parts[0])
     return Shape(np.array(mesh.vertices), np.array(mesh.faces), description=" and ".join(segments))
 
 
 def _mesh(form: Form) -> trimesh.Trimesh:
     if form.kind == "box":
-        mesh = trimesh.creation.box(extents=2.0 * form.half)
+        mesh: trimesh.Trimesh = trimesh.creation.box(extents=2.0 * form.half)
     else:
         mesh = trimesh.creation.icosphere(subdivisions=2, radius=1.0)
-        mesh.apply_scale(form.half)
+        mesh.vertices = np.array(mesh.vertices) * form.half
     mesh.apply_translation(form.centre)
     return mesh
 

@@ -92,8 +92,7 @@ def cup(radius_m: float, height_m: float, *, wall_m: float = 0.004) -> Shape:
     wall.apply_translation((0.0, 0.0, 0.5 * height_m))
     floor = trimesh.creation.cylinder(radius_m - 0.5 * wall_m, wall_m, sections=48)
     floor.apply_translation((0.0, 0.0, 0.5 * wall_m))
-    made = trimesh.util.concatenate([wall, floor])
-    return _shape(made, f"cup {2 * radius_m:g} m wide, {height_m:g} m high")
+    return _shape(wall + floor, f"cup {2 * radius_m:g} m wide, {height_m:g} m high")
 
 
 def table(

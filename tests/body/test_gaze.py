@@ -1,0 +1,53 @@
+"""Eyes meet what they look at, and share the turn with head and trunk."""
+
+import numpy as np
+import pytest
+
+from capar.body.gaze import look_at
+from capar.body.human import Human
+from capar.body.measures import ready_made
+
+
+def _point(human: Human, azimuth: float, elevation: float, far_m: float) -> np.ndarray:
+    """A point seen from between the standing body's eyes [degrees, m]."""
+    eyes = human.sites(human.posture()[None], ["between_eyes"])["between_eyes"][0][0]
+    a, e = np.radians([azimuth, elevation])
+    return eyes + far_m * np.array([np.cos(a) * np.cos(e), np.sin(a) * np.cos(e), np.sin(e)])
+
+
+@pytest.mark.parametrize("who", ["man", "woman", "child"])
+@pytest.mark.parametrize("azimuth", [-80.0, -45.0, 0.0, 20.0, 60.0, 90.0])
+@pytest.mark.parametrize("elevation", [-50.0, 0.0, 30.0])
+def test_both_lines_of_sight_meet_the_point_to_half_a_degree(
+    who: str, azimuth: float, elevation: float
+) -> None:
+    human = Human.of(ready_made(who))
+    gaze = look_at(human, human.posture(), _point(human, azimuth, elevation, 0.8))
+    assert gaze.missed_rad.max() < np.radians(0.5)
+    assert not human.outside(gaze.posture[None], margin=1e-4).any()
+
+
+def test_eyes_and_head_share_the_turn_as_people_do() -> None:
+    human = Human.of(ready_made("man"))
+    gazes = [
+        look_at(human, human.posture(), _point(human, turn, 0.0, 2.0))
+        for turn in (15.0, 30.0, 60.0, 90.0)
+    ]
+    eyes = np.degrees([each.eyes_rad for each in gazes])
+    heads = np.degrees([each.head_rad for each in gazes])
+    assert (np.diff(eyes) > 0.0).all()
+    assert (np.diff(heads) > 0.0).all()
+    assert eyes.max() < 35.0, "eyes stay well within their range, as people keep them"
+    assert (heads / (heads + eyes) > 0.5).all(), "the head does most of a turn"
+    trunk = [
+        np.degrees(sum(each.posture[human.index(f"{part}_turn")] for part in ("lumbar_lower",)))
+        for each in gazes
+    ]
+    assert max(np.abs(trunk)) < 5.0, "the trunk hardly takes part"
+
+
+def test_a_point_behind_is_told_as_missed() -> None:
+    human = Human.of(ready_made("man"))
+    gaze = look_at(human, human.posture(), _point(human, 175.0, 0.0, 1.0))
+    assert gaze.missed_rad.max() > np.radians(0.5)
+    assert not human.outside(gaze.posture[None], margin=1e-4).any()
