@@ -48,6 +48,6 @@ def test_eyes_and_head_share_the_turn_as_people_do() -> None:
 
 def test_a_point_behind_is_told_as_missed() -> None:
     human = Human.of(ready_made("man"))
-    gaze = look_at(human, human.posture(), _point(human, 175.0, 0.0, 1.0))
+    gaze = look_at(human, human.posture(), _point(human, 180.0, -70.0, 1.2))
     assert gaze.missed_rad.max() > np.radians(0.5)
     assert not human.outside(gaze.posture[None], margin=1e-4).any()
