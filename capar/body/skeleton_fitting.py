@@ -30,9 +30,15 @@ BREADTHS = {
 }
 """The paired joint, and the share of the measure that lies between its two sides."""
 
+SIDES = ("right", "left")
+BENT = {"elbow_flexion": 0.4, "knee_flexion": 0.1, "hip_flexion": 0.05}
+"""Where the search begins [rad]: a straight limb does not tell which way it bends."""
+
 POINT_COST = 10.0
 EASE_COST = 0.05
-DAMPING_COST = 0.02
+DAMPING_COST = 0.3
+"""Points slightly out of reach would throw a straight limb about: large damping keeps it calm."""
+
 SETTLING = 80
 ITERATIONS = 3
 
@@ -51,8 +57,8 @@ class SkeletonFit:
     """By foreign name, distance of the body's place from the point [m]; NaN if lost."""
 
     derived: bool
-    """Whether orientations of segments are derived from points only, so that turns about the long
-    axes of hands, head and feet are assumed and not seen."""
+    """Whether orientations of segments come of points only, so that turns about the long axes of
+    hands, head and feet are assumed and not seen; always so today: given ones are not used yet."""
 
     @property
     def median_m(self) -> float:
@@ -75,27 +81,24 @@ def measures_from_points(
     places = {place: points[name] for name, place in convention.named(points).items()}
     found = {}
     for measure, (first, second) in LENGTHS.items():
-        spans = [
-            float(
-                np.nanmedian(
-                    np.linalg.norm(places[f"{s}_{first}"] - places[f"{s}_{second}"], axis=1)
-                )
-            )
-            for s in ("right", "left")
-            if f"{s}_{first}" in places and f"{s}_{second}" in places
-        ]
+        ends = [(f"{side}_{first}", f"{side}_{second}") for side in SIDES]
+        spans = [_apart(places[a], places[b]) for a, b in ends if a in places and b in places]
         if spans:
             found[measure] = float(np.mean(spans))
     for measure, (joint, share) in BREADTHS.items():
         if f"right_{joint}" in places and f"left_{joint}" in places:
-            apart = np.linalg.norm(places[f"right_{joint}"] - places[f"left_{joint}"], axis=1)
-            found[measure] = float(np.nanmedian(apart)) / share
+            found[measure] = _apart(places[f"right_{joint}"], places[f"left_{joint}"]) / share
     limbs = [name for name in LENGTHS if name in found]
     if not limbs:
         raise SkeletonError(f"no limb has both its joints among {sorted(points)}")
     usual = estimate_measures(sex=sex, age=age)
     scale = sum(found[name] for name in limbs) / sum(usual[name] for name in limbs)
     return estimate_measures(sex=sex, age=age, given={"stature": scale * usual["stature"], **found})
+
+
+def _apart(first: np.ndarray, second: np.ndarray) -> float:
+    """Median distance of two points [m]."""
+    return float(np.nanmedian(np.linalg.norm(first - second, axis=1)))
 
 
 def fit_skeleton(
@@ -147,10 +150,10 @@ def _followed(
     out = np.empty((frames, len(start)))
     for frame in range(frames):
         seen = [n for n in tasks if np.isfinite(spots[n][frame]).all() and costs[n] > 0.0]
-        for name in seen:
-            tasks[name].set_target(mink.SE3(np.r_[1.0, 0.0, 0.0, 0.0, spots[name][frame]]))
         active = [*(tasks[name] for name in seen), ease, damping]
         for _ in range(ITERATIONS if frame else SETTLING):
+            for name in seen:
+                _aim(configuration, tasks[name], spots[name][frame])
             step = mink.solve_ik(configuration, active, 1.0, SOLVER, limits=limits)
             configuration.integrate_inplace(step, 1.0)
         out[frame] = configuration.q
@@ -162,11 +165,18 @@ def _task(human: Human, place: str, cost: float) -> mink.FrameTask:
     return mink.FrameTask(place, "site" if site else "body", cost, 0.0)
 
 
+def _aim(configuration: mink.Configuration, task: mink.FrameTask, spot: np.ndarray) -> None:
+    """Draw a place to a point; it may turn as it likes, so the target turns with it."""
+    now = configuration.get_transform_frame_to_world(task.frame_name, task.frame_type)
+    task.set_target(mink.SE3.from_rotation_and_translation(now.rotation(), spot))
+
+
 def _start(
     human: Human, spots: Mapping[str, np.ndarray], named: Mapping[str, str]
 ) -> Float[np.ndarray, "posture"]:
     """The standing posture, moved and turned as a whole to the first frame's points."""
-    standing = human.posture()
+    bent = {f"{side}_{joint}": angle for joint, angle in BENT.items() for side in SIDES}
+    standing = human.posture(bent)
     where = human.sites(standing[None], set(named.values()))
     known = [name for name in named if np.isfinite(spots[name][0]).all()]
     trunk = [n for n in known if named[n].split("_")[-1] in {"thigh", "arm", "neck", "c7"}]
