@@ -11,6 +11,9 @@ from capar.body.things import Thing
 AIR_M = 0.0005
 """What is left between palm and thing, so that surfaces touch and do not cut [m]."""
 
+CLEAR_M = 0.014
+"""How far a hand at a thing's side stays above what the thing stands on [m]."""
+
 YAWS = (0.0, -0.35, -0.7, -1.05, 0.35)
 """Directions of the fingers tried on a round thing, outwards positive [rad]."""
 
@@ -35,8 +38,8 @@ def side_grip(
     inwards = turn.apply([0.0, sign, 0.0])
     fingers = turn.apply([np.cos(pitch), 0.0, np.sin(pitch)])
     low, high = thing.shape.bounds
-    half = PALM[0] * measures["hand_length"] + 0.008
-    height = max(0.5 * (low[2] + high[2]), half)
+    heel = PALM[0] * np.cos(pitch) + 0.44 * np.sin(pitch)
+    height = max(0.5 * (low[2] + high[2]), low[2] + heel * measures["hand_length"] + CLEAR_M)
     reach = 0.5 * thing.size[1] + AIR_M
     place = np.array([0.0, 0.0, height]) - inwards * reach
     return RigidTransform.from_components(place, palm_turn(inwards, fingers))

@@ -38,7 +38,10 @@ SHIFT_S = 0.3
 STANDOFF_M = 0.07
 """How far beside the straight way a hand comes to a thing from outside [m]."""
 
-RISE_M = 0.10
+UP, OVER = 0.6, 0.75
+"""Shares of a reach in which the hand rises, and in which it goes forward [1]."""
+
+RISE_M = 0.13
 """How far above the straight way a hand goes to a thing [m]."""
 
 RELEASE_SHARE = 0.4
@@ -245,7 +248,7 @@ class _Actor:
         drinks = any(move.to_mouth for move in phase.moves.values())
         held = way if drinks else minimum_jerk(share / RELEASE_SHARE)
         self.drinks = self.drank + held * (float(drinks) - self.drank)
-        goals = {side: self._hand_goal(side, phase.hand(side), way) for side in SIDES}
+        goals = {side: self._hand_goal(side, phase.hand(side), share) for side in SIDES}
         self._gaze(looks, step_s)
         for side, goal in goals.items():
             self._aim(side, goal)
@@ -271,23 +274,27 @@ class _Actor:
         spot = self.mouth_at - turn.apply(local.apply(rim))
         return RigidTransform.from_components(spot, turn)
 
-    def _hand_goal(self, side: str, hand: Hand, way: float) -> RigidTransform:
-        """Where a palm is to be."""
+    def _hand_goal(self, side: str, hand: Hand, share: float) -> RigidTransform:
+        """Where a palm is to be: first up, then forward; on the way back the other way round."""
         if hand.does == "rests":
             start, goal = self.starts[side], self.home[side]
             outside = -start.rotation.apply([0.0, 0.0, 1.0])
-            back = 1.0 - way
+            over, way = minimum_jerk(share / OVER), minimum_jerk((share - 1.0 + UP) / UP)
+            back = 1.0 - over
         else:
             start = self.starts[side]
             goal = self.things[hand.thing] * self.grips[side, hand.thing, hand.grip]
             if hand.does == "holds":
                 return goal
             outside = -goal.rotation.apply([0.0, 0.0, 1.0])
-            back = way
+            over, way = minimum_jerk((share - 1.0 + OVER) / OVER), minimum_jerk(share / UP)
+            back = over
         far = min(float(np.linalg.norm(goal.translation - start.translation)) / 0.3, 1.0)
         bump = 6.75 * back * back * (1.0 - back) * STANDOFF_M * outside
-        bump = bump + np.array([0.0, 0.0, 4.0 * way * (1.0 - way) * RISE_M])
-        return RigidTransform.from_translation(far * bump) * between(start, goal, way)
+        bump = bump + np.array([0.0, 0.0, 4.0 * over * (1.0 - over) * RISE_M])
+        spot = between(start, goal, over)
+        lag = [0.0, 0.0, (way - over) * float((goal.translation - start.translation)[2])]
+        return RigidTransform.from_translation(far * bump + lag) * spot
 
     def _looked_at(self, look: str) -> np.ndarray:
         if look in self.things:
@@ -331,9 +338,14 @@ def _grips(thing: Thing, side: str, kind: str, measures: Measures) -> list[Rigid
     if kind == "top":
         return [top_grip(thing, side, measures, yaw=yaw) for yaw in YAWS]
     turns = YAWS if thing.round else YAWS[:1]
-    return [
-        side_grip(thing, side, measures, yaw=yaw, pitch=pitch) for yaw in turns for pitch in PITCHES
+    level = [side_grip(thing, side, measures, yaw=yaw) for yaw in turns]
+    raised = [
+        side_grip(thing, side, measures, yaw=yaw, pitch=pitch)
+        for yaw in turns
+        for pitch in PITCHES[1:]
     ]
+    top = thing.shape.bounds[1, 2]
+    return [*level, *(each for each in raised if each.translation[2] < top)]
 
 
 def _facing(grip: RigidTransform, free: bool, turn: float) -> RigidTransform:

@@ -87,6 +87,19 @@ def test_what_is_not_held_stays_where_it_was(acted: Performance) -> None:
         assert path.translation[:, 2].min() >= acted.scene.thing(name).place[2] - 1e-9
 
 
+def test_hands_keep_clear_of_the_table(acted: Performance) -> None:
+    top = acted.scene.table
+    assert top is not None
+    low, high = top.shape.bounds + np.array(top.place)
+    seen = record(acted, name="clear", seed=1, tracker=PERFECT)
+    for hand in seen.acting:
+        assert hand.shape is not None
+        for frame in range(0, len(acted.times), 2):
+            corners = hand.stream.pose(frame).apply(hand.shape.vertices)
+            apart = np.maximum(np.maximum(low - corners, corners - high), 0.0)
+            assert np.linalg.norm(apart, axis=1).min() > 0.006, f"{hand.name} at {frame}"
+
+
 def test_the_gaze_is_at_the_thing_before_the_hand_is(acted: Performance) -> None:
     name, start, end = next(each for each in acted.phases if each[0] == "reach")
     assert name == "reach"
