@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from capar.body.gaze import look_at
+from capar.body.gaze import look_at, measured_gaze
 from capar.body.human import Human
 from capar.body.measures import ready_made
 
@@ -45,8 +45,8 @@ def test_eyes_and_head_share_the_turn_as_people_do() -> None:
     assert max(np.abs(trunk)) < 10.0, "the trunk hardly takes part"
 
 
-def test_a_point_that_no_eye_can_see_is_told_as_missed() -> None:
+def test_what_a_posture_misses_is_measured() -> None:
     human = Human.of(ready_made("man"))
-    gaze = look_at(human, human.posture(), _point(human, 180.0, 0.0, 0.1))
-    assert gaze.missed_rad.max() > np.radians(0.5)
-    assert not human.outside(gaze.posture[None], margin=1e-4).any()
+    seen = measured_gaze(human, human.posture(), _point(human, 30.0, 0.0, 100.0))
+    np.testing.assert_allclose(seen.missed_rad, np.radians(30.0), atol=1e-3)
+    assert seen.eyes_rad == pytest.approx(0.0, abs=1e-6)
