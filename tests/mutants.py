@@ -106,6 +106,7 @@ def _rules(folder: str) -> list[Mutant]:
 def _included() -> set[Path]:
     """The rule files that a profile loads; the others are no part of what is observed."""
     waiting = [ROOT / "capar_rules" / f"{name}.lp" for name in ("extended", "thesis")]
+    waiting += (ROOT / "capar_rules" / "primitives").glob("*.lp")
     for path in waiting:
         names = re.findall(r'^#include "([^"]+)"', path.read_text(encoding="utf-8"), re.MULTILINE)
         found = ((path.parent / name).resolve() for name in names)

@@ -23,8 +23,13 @@ class Profile:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """Every file to load; the main one includes the other shipped ones."""
-        return (rule_file(f"{self.name}.lp"), *self.added)
+        """Every file to load; the main one includes the other shipped ones.
+
+        All primitives count in ``extended``, so that a new one needs no line elsewhere; ``thesis``
+        includes the published seven.
+        """
+        every = () if self.name == "thesis" else sorted(rule_file("primitives").glob("*.lp"))
+        return (rule_file(f"{self.name}.lp"), *every, *self.added)
 
     @property
     def fingerprint(self) -> str:

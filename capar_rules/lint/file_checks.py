@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from capar_rules.engine.solver import rule_file
+from capar_rules.engine.profiles import profile as shipped
 from capar_rules.engine.syntax import Statement, parse
 from capar_rules.lint.cycles import cycle_findings
 from capar_rules.lint.findings import Finding, errors
@@ -54,7 +54,7 @@ class Request:
 @cache
 def base_of(profile: str) -> Known:
     """The vocabulary of the rule base of a profile."""
-    return known(parse([rule_file(f"{profile}.lp")]))
+    return known(parse(shipped(profile).files))
 
 
 def findings_of(request: Request) -> Iterator[Message]:

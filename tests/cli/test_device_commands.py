@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from capar.cli import app
 from capar.model.errors import CaparError, FileError
-from extractors.readers.bundle import read_capture
+from extractors.readers.bundle.capture_toml import read_capture
 
 RUNNER = CliRunner()
 DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"

@@ -19,7 +19,7 @@ from extractors.devices.motion_source import CapturedMotion, SmoothMotion
 from extractors.devices.recording import RecordingWriter, read_live_recording
 from extractors.devices.recording_bundle import Mount, frame_times, write_bundle
 from extractors.devices.tracker import Counts, Description, Event, Frame
-from extractors.readers.bundle import read_capture
+from extractors.readers.bundle.capture_toml import read_capture
 
 SENSORS = ("right_hand", "head", "mug")
 DESCRIPTION = Description("flock", "6DFOB", SENSORS, 100.0, details={"firmware": "3.47"})

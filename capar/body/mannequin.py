@@ -1,0 +1,131 @@
+"""What the body looks like: capsules, ellipsoids and boxes about its segments."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.body.measures import Measures
+from capar.body.skeleton import BALL, HEEL, Segment, eyes_between
+from capar.body.tables import is_right, mirrored, table
+
+CHIN_BELOW_EYES = 0.063
+"""[share of stature]; Drillis & Contini 1966 have the chin at 0.870."""
+
+PALM = (0.22, 0.075)
+"""Half the breadth and half the thickness of the palm [share of the hand's length]."""
+
+USUAL_MASS = 27.0
+"""Mass over squared stature of the body whose girths the data file gives [kg/m2]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Form:
+    """One primitive in a segment's frame."""
+
+    body: str
+    kind: str
+    """``capsule``, ``ellipsoid`` or ``box``."""
+
+    centre: Float[np.ndarray, "3"]
+    """[m]."""
+
+    half: Float[np.ndarray, "3"]
+    """Half sizes [m]; of a capsule its radius, then half the length of its axis, then 0."""
+
+    colour: str
+    axis: Float[np.ndarray, "3"]
+    """Direction of a capsule's axis [1]; other forms lie along the world's axes, standing."""
+
+
+def forms(measures: Measures, segments: Mapping[str, Segment]) -> list[Form]:
+    """Every primitive of the mannequin."""
+    middle = [_row_form(row, measures, segments) for row in table("shapes")["shape"]]
+    middle += [*_head(measures, segments), *_hand(measures, segments), *_foot(measures, segments)]
+    return middle + [_mirror(each) for each in middle if is_right(each.body)]
+
+
+def _row_form(row: dict[str, Any], m: Measures, segments: Mapping[str, Segment]) -> Form:
+    tall, segment = m["stature"], segments[row["body"]]
+    wide = (m["mass"] / tall**2 / USUAL_MASS) ** 0.5 if row.get("girth") else 1.0
+    along, offset = segment.tip - segment.origin, np.array(row.get("offset", [0, 0, 0])) * tall
+    if row["type"] == "capsule":
+        ends = [row[key] * along + offset for key in ("from", "to")]
+        half = np.array([row["size"] * tall * wide, 0.5 * np.linalg.norm(ends[1] - ends[0]), 0.0])
+        return Form(row["body"], "capsule", sum(ends) / 2, half, row["colour"], ends[1] - ends[0])
+    half = np.array(row["half"]) * tall * np.array([wide, wide, 1.0])
+    return Form(
+        row["body"], row["type"], row["at"] * along + offset, half, row["colour"], np.zeros(3)
+    )
+
+
+def _head(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
+    tall, none = m["stature"], np.zeros(3)
+    origin, eyes = segments["head"].origin, eyes_between(m)
+    chin = m["eye_height"] - CHIN_BELOW_EYES * tall
+    skull = 0.82 * (tall - chin)
+    half = np.array([0.5 * m["head_length"], 0.5 * m["head_breadth"], 0.5 * skull])
+    centre = np.array([origin[0], 0.0, tall - half[2]])
+    yield Form("head", "ellipsoid", centre - origin, half, "skin", none)
+    jaw = np.array([0.34, 0.40, 0.30]) * [m["head_length"], m["head_breadth"], tall - chin]
+    place = np.array([origin[0] + 0.12 * m["head_length"], 0.0, chin + jaw[2]])
+    yield Form("head", "ellipsoid", place - origin, jaw, "skin", none)
+    hair = half * [1.02, 1.05, 0.72]
+    crown = np.array([origin[0] - 0.06 * m["head_length"], 0.0, tall - hair[2]])
+    yield Form("head", "ellipsoid", crown - origin, hair, "hair", none)
+    nose = eyes + np.array([0.04 * m["head_length"], 0.0, -0.022 * tall])
+    yield Form(
+        "head", "ellipsoid", nose - origin, np.array([0.010, 0.007, 0.013]) * tall, "skin", none
+    )
+    ball = 0.062 * m["head_length"]
+    yield Form("right_eye", "ellipsoid", none, np.full(3, ball), "white", none)
+    yield Form(
+        "right_eye",
+        "ellipsoid",
+        np.array([0.75 * ball, 0, 0]),
+        np.full(3, 0.5 * ball),
+        "pupil",
+        none,
+    )
+
+
+def _hand(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
+    long, none = m["hand_length"], np.zeros(3)
+    thick = {"right_hand": PALM[1], "right_fingers": 0.052, "right_fingertips": 0.045}
+    wide = {"right_hand": PALM[0], "right_fingers": 0.205, "right_fingertips": 0.175}
+    for name, thickness in thick.items():
+        along = segments[name].tip - segments[name].origin
+        sizes = np.array([wide[name] * long, thickness * long, 0.5 * abs(along[2]) + 0.02 * long])
+        kind = "box" if name != "right_fingertips" else "ellipsoid"
+        yield Form(name, kind, 0.5 * along, sizes, "skin", none)
+    along = segments["right_thumb"].tip - segments["right_thumb"].origin
+    half = np.array([0.055 * long, 0.5 * float(np.linalg.norm(along)), 0.0])
+    yield Form("right_thumb", "capsule", 0.5 * along, half, "skin", along)
+
+
+def palm_centre(m: Measures) -> Float[np.ndarray, "3"]:
+    """The middle of the right palm's surface in the hand's frame [m]."""
+    return np.array([0.0, PALM[1], -0.42]) * m["hand_length"]
+
+
+def _foot(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
+    long, wide, high = m["foot_length"], m["foot_breadth"], m["ankle_height"]
+    none = np.zeros(3)
+    half = np.array([0.5 * (HEEL + BALL) * long, 0.42 * wide, 0.33 * high])
+    centre = np.array([0.5 * (BALL - HEEL) * long, 0.0, half[2] - high])
+    yield Form("right_foot", "box", centre, half, "shoe", none)
+    instep = np.array([0.22 * long, 0.36 * wide, 0.55 * high])
+    yield Form(
+        "right_foot", "ellipsoid", np.array([0.06 * long, 0.0, -0.45 * high]), instep, "shoe", none
+    )
+    toes = segments["right_toes"]
+    half = np.array([1.05 * (toes.tip - toes.origin)[0], 0.42 * wide, 0.30 * high])
+    low = half[2] - toes.origin[2]
+    yield Form("right_toes", "ellipsoid", np.array([0.0, 0.0, low]), half, "shoe", none)
+
+
+def _mirror(form: Form) -> Form:
+    flip = np.array([1.0, -1.0, 1.0])
+    return replace(form, body=mirrored(form.body), centre=form.centre * flip, axis=form.axis * flip)

@@ -1,0 +1,219 @@
+"""Body measures: those given, and the rest estimated from stature, sex and age."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from statistics import NormalDist
+from types import MappingProxyType
+from typing import Any
+
+from capar.body.tables import table
+from capar.model.capture import Agent
+from capar.model.errors import CaparError, UnknownNameError
+
+GIVEN_DEVIATION_M = 0.003
+"""Deviation of a length that somebody measured [m]: what trained observers differ by."""
+
+STATURES_M = (0.9, 2.3)
+"""Statures for which estimates are made [m]."""
+
+GROWN = 18.0
+"""Age from which on the adults' tables hold [years]."""
+
+CHILD = 9.0
+"""Age of the children's table [years]."""
+
+LEAST_TRUNK = 0.25
+"""Least height of cervicale above the hips [share of stature]; 0.33 to 0.36 is usual."""
+
+ORDER = ("acromial_height", "cervicale_height", "eye_height", "stature")
+"""Heights that rise in this order in every body."""
+
+
+class MeasuresError(CaparError):
+    """Measures that no body has."""
+
+
+@dataclass(frozen=True)
+class Measures:
+    """The measures of one body."""
+
+    sex: str
+    """``male`` or ``female``."""
+
+    age: float
+    """Years."""
+
+    values: Mapping[str, float]
+    """Lengths [m] and ``mass`` [kg] by name."""
+
+    given: frozenset[str]
+    """Which of them were stated; the others are estimates."""
+
+    deviations: Mapping[str, float]
+    """Standard deviation of each [m, kg]: of measuring, or of estimating from stature."""
+
+    def __post_init__(self) -> None:
+        """Prove that they are of one body, and make them read-only."""
+        object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
+        object.__setattr__(self, "deviations", MappingProxyType(dict(self.deviations)))
+        for name, value in self.values.items():
+            if not 0.0 < value < 400.0:
+                raise MeasuresError(f"{name} = {value}; measures are positive, in metres and kg")
+        rising = [self.hip_height, *(self.values[each] for each in ORDER)]
+        trunk = self.values["cervicale_height"] - self.hip_height
+        if trunk < LEAST_TRUNK * self.values["stature"]:
+            raise MeasuresError(
+                f"hip height {self.hip_height:.3f} m (ankle_height + shank + thigh) leaves "
+                f"{trunk:.3f} m up to cervicale_height; a trunk has a quarter of the stature"
+            )
+        if sorted(rising) != rising:
+            heights = ", ".join(f"{each:.3f}" for each in rising)
+            names = ", ".join(("hip height (ankle_height + shank + thigh)", *ORDER))
+            raise MeasuresError(f"{names} must rise; they are {heights} m")
+
+    def __getitem__(self, name: str) -> float:
+        """A measure [m, kg] by name."""
+        return self.values[name]
+
+    @property
+    def estimated(self) -> frozenset[str]:
+        """The measures that were estimated."""
+        return frozenset(self.values) - self.given
+
+    @property
+    def hip_height(self) -> float:
+        """Height of the hip joints when standing [m]."""
+        return self.values["ankle_height"] + self.values["shank"] + self.values["thigh"]
+
+    @property
+    def adult_share(self) -> float:
+        """How far between the nine-year-old's proportions (0) and an adult's (1) [1]."""
+        return min(max((self.age - CHILD) / (GROWN - CHILD), 0.0), 1.0)
+
+    @property
+    def adult(self) -> str:
+        """Name of the adults' table: ``man`` or ``woman``."""
+        return "man" if self.sex == "male" else "woman"
+
+
+def estimate_measures(
+    *,
+    sex: str = "male",
+    age: float = 30.0,
+    percentile: float | None = None,
+    given: Mapping[str, float] | None = None,
+) -> Measures:
+    """The measures of a person, those that are not given estimated by regression on stature.
+
+    Args:
+        sex: ``male`` or ``female``.
+        age: Years, from 6 up; between 9 and 18 the child's and the adult's tables are blended,
+            below 9 the child's proportions are kept.
+        percentile: Of stature among persons of that sex and age, where no stature is given.
+        given: Any measures that are known [m, kg].
+
+    Raises:
+        MeasuresError: They are of no body, or both stature and percentile are given.
+        UnknownNameError: A measure has no such name.
+    """
+    known = dict(given or {})
+    _prove(sex, age, percentile, known)
+    blank = Measures.__new__(Measures)
+    object.__setattr__(blank, "age", age)
+    object.__setattr__(blank, "sex", sex)
+    share, adult = blank.adult_share, blank.adult
+    stature = known.get("stature") or _stature(adult, sex, age, share, percentile)
+    if not STATURES_M[0] <= stature <= STATURES_M[1]:
+        raise MeasuresError(f"stature {stature:.3f} m; estimates are made from 0.9 to 2.3 m")
+    values, deviations = {}, {}
+    for name in measure_names():
+        young, grown = (_estimated(name, each, stature) for each in ("child", adult))
+        values[name] = (1.0 - share) * young[0] + share * grown[0]
+        deviations[name] = (1.0 - share) * young[1] + share * grown[1]
+    values |= {"stature": stature} | known
+    deviations |= dict.fromkeys(known, GIVEN_DEVIATION_M)
+    return Measures(sex, age, values, frozenset(known), deviations)
+
+
+def measure_names() -> tuple[str, ...]:
+    """The names of all measures."""
+    return tuple(name for name in table("anthropometry")["man"] if name != "age")
+
+
+def ready_made(name: str) -> Measures:
+    """The adult ``man``, the adult ``woman`` or the nine-year-old ``child``, of median stature.
+
+    Raises:
+        UnknownNameError: There is no such agent.
+    """
+    kinds = {"man": ("male", 30.0), "woman": ("female", 30.0), "child": ("male", CHILD)}
+    if name not in kinds:
+        raise UnknownNameError("ready-made agent", name, kinds)
+    sex, age = kinds[name]
+    if name == "child":
+        stature = table("anthropometry")["child"]["stature"]["percentiles"][1]
+        made = estimate_measures(sex=sex, age=age, given={"stature": stature})
+    else:
+        made = estimate_measures(sex=sex, age=age, percentile=50.0)
+    return Measures(sex, age, made.values, frozenset(), made.deviations)
+
+
+def measures_of(agent: Agent) -> Measures:
+    """The measures of a capture's performer: the kind of person, and what is stated of it.
+
+    Raises:
+        MeasuresError: The stated measures are of no body.
+    """
+    kind = agent.kind if agent.kind in {"man", "woman", "child"} else "man"
+    sex = "female" if kind == "woman" else "male"
+    age = CHILD if kind == "child" else 30.0
+    stated = {k: v for k, v in agent.measures.items() if k in measure_names()}
+    return estimate_measures(sex=sex, age=agent.measures.get("age", age), given=stated)
+
+
+def _prove(sex: str, age: float, percentile: float | None, known: Mapping[str, float]) -> None:
+    if sex not in {"male", "female"}:
+        raise UnknownNameError("sex", sex, ("male", "female"))
+    for name in known:
+        if name not in measure_names():
+            raise UnknownNameError("measure", name, measure_names())
+    if age < table("anthropometry")["growth"]["first_age"]:
+        raise MeasuresError(f"age {age}; the tables begin at 6 years")
+    if percentile is not None and not 0.0 < percentile < 100.0:
+        raise MeasuresError(f"percentile {percentile}; it lies between 0 and 100")
+    if percentile is not None and "stature" in known:
+        raise MeasuresError("stature and its percentile are both given; give one")
+
+
+def _stature(adult: str, sex: str, age: float, share: float, percentile: float | None) -> float:
+    """Stature from a percentile, by normal distribution about the median of that age [m]."""
+    tables = table("anthropometry")
+    growth = tables["growth"][sex]
+    median = tables[adult]["stature"]["percentiles"][1]
+    if age < GROWN:
+        place = age - tables["growth"]["first_age"]
+        index = min(int(place), len(growth) - 2)
+        median = growth[index] + (place - index) * (growth[index + 1] - growth[index])
+    young, grown = (_deviation(tables[each]["stature"]) for each in ("child", adult))
+    deviation = (1.0 - share) * young + share * grown
+    return median + deviation * NormalDist().inv_cdf((percentile or 50.0) / 100.0)
+
+
+def _estimated(name: str, population: str, stature: float) -> tuple[float, float]:
+    """A measure's estimate and its deviation among persons of that stature [m, kg]."""
+    rows = table("anthropometry")[population]
+    row, tall = rows[name], rows["stature"]
+    if "of_stature" in row:
+        return row["of_stature"] * stature, row["sd_of_stature"] * stature
+    deviation, middle = _deviation(row), row["percentiles"][1]
+    left = deviation * (1.0 - row["r"] ** 2) ** 0.5
+    if name == "mass":
+        return middle * (stature / tall["percentiles"][1]) ** 2, left
+    slope = row["r"] * deviation / _deviation(tall)
+    return middle + slope * (stature - tall["percentiles"][1]), left
+
+
+def _deviation(row: Mapping[str, Any]) -> float:
+    """Standard deviation from the 5th and 95th percentile of a normal distribution."""
+    low, _, high = row["percentiles"]
+    return (high - low) / (2.0 * NormalDist().inv_cdf(0.95))

@@ -1,0 +1,189 @@
+"""Where sensors sit on the body, from a reference posture held for a moment (thesis 3.1)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.human import Human
+from capar.body.measures import Measures
+from capar.body.model import site_rows
+from capar.model import geometry
+from capar.model.capture import Stream
+from capar.model.errors import CaparError, UnknownNameError
+
+REFERENCE_S = 0.4
+"""How long the reference posture is held at the start [s]."""
+
+PLACEMENT_M = 0.010
+"""Deviation of where a sensor is strapped from its nominal place, an axis [m] (estimate)."""
+
+CHAINS = {
+    "thorax_upper": ("cervicale_height",),
+    "head": ("stature",),
+    "right_upper_arm": ("acromial_height", "upper_arm"),
+    "right_hand": ("acromial_height", "upper_arm", "forearm"),
+    "right_thigh": ("thigh",),
+    "right_foot": ("thigh", "shank"),
+}
+"""The measures that decide where a segment is relative to the pelvis, for the right side."""
+
+
+class CalibrationError(CaparError):
+    """A recording from which sensors cannot be placed on the body."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mount:
+    """A sensor on a segment."""
+
+    place: str
+    """``l5``, ``right_hand`` ...: the site ``sensor_<place>`` of the model."""
+
+    segment: str
+    pose: RigidTransform
+    """``T_segment_sensor``."""
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """The sensors on the body, and how it stood."""
+
+    mounts: Mapping[str, Mount]
+    """By place."""
+
+    posture: Float[np.ndarray, "posture"]
+    """The reference posture, where the recording has it."""
+
+    misplaced: Mapping[str, float]
+    """Distance of each sensor from its nominal place on the body [m]."""
+
+
+def places() -> dict[str, str]:
+    """The segment of every place of a sensor."""
+    rows = (row for row in site_rows() if row.get("sensor"))
+    return {row["name"].removeprefix("sensor_"): row["body"] for row in rows}
+
+
+def calibrate(
+    human: Human,
+    streams: Mapping[str, Stream],
+    *,
+    angles: Mapping[str, float] | None = None,
+    placed: tuple[Float[np.ndarray, "3"], float] | None = None,
+    span_s: float = REFERENCE_S,
+) -> Calibration:
+    """Find where each sensor sits, from its pose while the body holds a known posture.
+
+    Args:
+        human: The body.
+        streams: Of any of the sensors, by place.
+        angles: The reference posture [rad]; arms down, palms inwards where None.
+        placed: Where the feet are [m] and the heading [rad]; None fits the body into the sensors.
+        span_s: How long the posture is held, from the first frame on [s].
+
+    Raises:
+        CalibrationError: A sensor is lost throughout, or too few are there to place the body.
+        UnknownNameError: A place is none of the model's.
+    """
+    for place in streams:
+        if place not in places():
+            raise UnknownNameError("place of a sensor", place, places())
+    seen = {place: _still(place, stream, span_s) for place, stream in streams.items()}
+    posture = _placed(human, seen, angles, placed)
+    nominal = human.sites(posture[None], [f"sensor_{each}" for each in seen])
+    segments = human.sites(posture[None], {places()[each] for each in seen})
+    mounts, misplaced = {}, {}
+    for place, pose in seen.items():
+        segment = places()[place]
+        frame = geometry.transforms(segments[segment][0][0], segments[segment][1][0])
+        usual = frame.inv().apply(nominal[f"sensor_{place}"][0][0])
+        mounts[place], misplaced[place] = _mount(
+            place, segment, frame.inv() * pose, usual, human.measures
+        )
+    return Calibration(mounts, posture, misplaced)
+
+
+def mounted(human: Human, calibration: Calibration) -> Human:
+    """The same body with its sensors' sites where the calibration found them."""
+    spec_model = human.model.__copy__()
+    for place, mount in calibration.mounts.items():
+        number = spec_model.site(f"sensor_{place}").id
+        spec_model.site_pos[number] = mount.pose.translation
+        spec_model.site_quat[number] = mount.pose.rotation.as_quat(scalar_first=True)
+        spec_model.site_sameframe[number] = 0
+    return Human(human.measures, spec_model)
+
+
+def _still(place: str, stream: Stream, span_s: float) -> RigidTransform:
+    """The mean pose during the reference posture."""
+    known = (stream.times - stream.times[0] <= span_s) & ~stream.lost
+    if not known.any():
+        raise CalibrationError(
+            f"sensor {place!r} is lost throughout the first {span_s:g} s; "
+            "the reference posture is to be held there"
+        )
+    turn = Rotation.from_quat(stream.orientations[known], scalar_first=True).mean()
+    return RigidTransform.from_components(stream.positions[known].mean(axis=0), turn)
+
+
+def _placed(
+    human: Human,
+    seen: Mapping[str, RigidTransform],
+    angles: Mapping[str, float] | None,
+    placed: tuple[Float[np.ndarray, "3"], float] | None,
+) -> Float[np.ndarray, "posture"]:
+    """The reference posture where the sensors see it: turned and moved, not tilted."""
+    if placed is not None:
+        return human.posture(angles, place=placed[0], heading=placed[1])
+    if len(seen) < 2:
+        raise CalibrationError(
+            f"{len(seen)} sensor; two or more place the body, or give where it stands"
+        )
+    standing = human.posture(angles)
+    sites = human.sites(standing[None], [f"sensor_{each}" for each in seen])
+    body = np.array([sites[f"sensor_{each}"][0][0] for each in seen])
+    world = np.array([each.translation for each in seen.values()])
+    spread = [PLACEMENT_M**2 + _chain(places()[each], human.measures) for each in seen]
+    heading, moved = _upright_fit(body, world, 1.0 / np.array(spread))
+    return human.posture(angles, place=moved, heading=heading)
+
+
+def _upright_fit(
+    body: Float[np.ndarray, "points 3"],
+    world: Float[np.ndarray, "points 3"],
+    weights: Float[np.ndarray, "points"],
+) -> tuple[float, Float[np.ndarray, "3"]]:
+    """Turn about z [rad] and shift [m] that take points to points, by weighted least squares."""
+    share = weights / weights.sum()
+    middle, goal = share @ body, share @ world
+    (a, b), (c, d) = (body - middle)[:, :2].T, (world - goal)[:, :2].T
+    heading = float(np.arctan2(share @ (a * d - b * c), share @ (a * c + b * d)))
+    turned = Rotation.from_euler("z", heading).apply(middle)
+    return heading, goal - turned
+
+
+def _chain(segment: str, measures: Measures) -> float:
+    """Variance of where a segment is relative to the pelvis, from that of the measures [m2]."""
+    names = CHAINS.get(segment.replace("left_", "right_"), ())
+    return sum(measures.deviations[each] ** 2 for each in names)
+
+
+def _mount(
+    place: str,
+    segment: str,
+    pose: RigidTransform,
+    usual: Float[np.ndarray, "3"],
+    measures: Measures,
+) -> tuple[Mount, float]:
+    """A mount: its turn as seen, its place between the nominal and the seen one.
+
+    How far it lies from the nominal place comes of where it was strapped and of measures that
+    are not the person's; each takes its share by its variance.
+    """
+    moved = pose.translation - usual
+    share = PLACEMENT_M**2 / (PLACEMENT_M**2 + _chain(segment, measures))
+    seat = RigidTransform.from_components(usual + share * moved, pose.rotation)
+    return Mount(place, segment, seat), float(np.linalg.norm(moved))

@@ -1,0 +1,148 @@
+"""What a performer is told to do: phases of stated length, one after the other."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+SIDES = ("right", "left")
+
+
+@dataclass(frozen=True)
+class Hand:
+    """What one hand does in a phase."""
+
+    does: str
+    """``rests`` at the side, ``reaches`` for a thing, or ``holds`` on to it."""
+
+    thing: str = ""
+    grip: str = "side"
+    """``side`` or ``top``."""
+
+
+RESTS = Hand("rests")
+
+
+@dataclass(frozen=True)
+class Move:
+    """Where a held thing goes in a phase."""
+
+    by: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Displacement from where it is [m]."""
+
+    lift: float = 0.0
+    """Height of the arc above the straight way [m]."""
+
+    to_mouth: bool = False
+    tilt: float = 0.0
+    """Turn of its top towards the face at the mouth [rad]."""
+
+    home: bool = False
+    """Whether it goes back to where it stood at the beginning."""
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A stretch of time in which hands and things go from one place to another."""
+
+    name: str
+    seconds: float
+    hands: Mapping[str, Hand] = field(default_factory=dict)
+    """By side; a hand that is not named rests."""
+
+    moves: Mapping[str, Move] = field(default_factory=dict)
+    look: str = ""
+    """A thing's name, ``ahead``, or empty for where one looked before."""
+
+    def hand(self, side: str) -> Hand:
+        """What a hand does."""
+        return self.hands.get(side, RESTS)
+
+
+Script = tuple[Phase, ...]
+
+STAND = Phase("stand", 0.6, look="ahead")
+
+
+def reach_and_return(thing: str, *, side: str = "right", grip: str = "top") -> Script:
+    """Reach for a thing, touch it for a moment, and let the hand sink."""
+    return touch(thing, side=side, grip=grip, seconds=0.25)
+
+
+def touch(thing: str, *, side: str = "right", grip: str = "top", seconds: float = 0.8) -> Script:
+    """Lay a hand on a thing, keep it there, and go back."""
+    return (
+        STAND,
+        Phase("reach", 1.0, {side: Hand("reaches", thing, grip)}, look=thing),
+        Phase("touch", seconds, {side: Hand("holds", thing, grip)}, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def slide(thing: str, by: tuple[float, float, float], *, side: str = "right") -> Script:
+    """Take a thing at its side and slide it along what it stands on."""
+    held = {side: Hand("holds", thing)}
+    return (
+        STAND,
+        Phase("reach", 1.0, {side: Hand("reaches", thing)}, look=thing),
+        Phase("grasp", 0.3, held, look=thing),
+        Phase("slide", 0.9, held, {thing: Move(by)}, look=thing),
+        Phase("hold", 0.3, held, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def drink(thing: str, *, side: str = "right", tilt: float = float(np.radians(35.0))) -> Script:
+    """Take a cup, drink, put it back, and go back."""
+    held = {side: Hand("holds", thing)}
+    mouth = Move(to_mouth=True, tilt=tilt)
+    return (
+        STAND,
+        Phase("reach", 1.0, {side: Hand("reaches", thing)}, look=thing),
+        Phase("grasp", 0.3, held, look=thing),
+        Phase("raise", 1.1, held, {thing: mouth}, look="ahead"),
+        Phase("drink", 0.8, held, {thing: mouth}, look="ahead"),
+        Phase("lower", 1.2, held, {thing: Move(home=True)}, look=thing),
+        Phase("release", 0.3, held, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def lift_with_both_hands(thing: str, *, height: float = 0.25) -> Script:
+    """Take a thing between both palms, lift it, hold it, and put it back."""
+    both = {side: Hand("holds", thing) for side in SIDES}
+    return (
+        STAND,
+        Phase("reach", 1.1, {side: Hand("reaches", thing) for side in SIDES}, look=thing),
+        Phase("grasp", 0.3, both, look=thing),
+        Phase("lift", 1.0, both, {thing: Move((0.0, 0.0, height))}, look=thing),
+        Phase("hold", 0.5, both, look=thing),
+        Phase("lower", 1.0, both, {thing: Move(home=True)}, look=thing),
+        Phase("release", 0.3, both, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def at_pace(script: Script, pace: float) -> Script:
+    """The same, every phase that many times as fast."""
+    return tuple(replace(each, seconds=each.seconds / pace) for each in script)
+
+
+def minimum_jerk(share: float) -> float:
+    """How far along the way after a share of the time [1] (Flash & Hogan 1985)."""
+    s = min(max(share, 0.0), 1.0)
+    return s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
+
+
+def between(first: RigidTransform, last: RigidTransform, way: float) -> RigidTransform:
+    """The pose part of the way from one to the other: straight, turning about one axis."""
+    turn = (last.rotation * first.rotation.inv()).as_rotvec()
+    spot = first.translation + way * (last.translation - first.translation)
+    return RigidTransform.from_components(
+        spot, type(first.rotation).from_rotvec(way * turn) * first.rotation
+    )

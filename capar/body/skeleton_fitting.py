@@ -1,0 +1,192 @@
+"""From another skeleton's joints or key points to the body's motion."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mink
+import mujoco
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+from capar.body.conventions import Convention
+from capar.body.fitting import LARGEST_STEP, SOLVER
+from capar.body.human import Human
+from capar.body.measures import Measures, estimate_measures
+from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
+from capar.model.errors import CaparError
+
+LENGTHS = {
+    "upper_arm": ("upper_arm", "forearm"),
+    "forearm": ("forearm", "hand"),
+    "thigh": ("thigh", "shank"),
+    "shank": ("shank", "foot"),
+}
+"""The two joints, of either side, that a limb's length lies between."""
+
+BREADTHS = {
+    "shoulder_breadth": ("upper_arm", SHOULDER_BREADTH),
+    "spine_breadth": ("thigh", 2 * HIP_OF_SPINES),
+}
+"""The paired joint, and the share of the measure that lies between its two sides."""
+
+SIDES = ("right", "left")
+BENT = {"elbow_flexion": 0.4, "knee_flexion": 0.1, "hip_flexion": 0.05}
+"""Where the search begins [rad]: a straight limb does not tell which way it bends."""
+
+POINT_COST = 10.0
+EASE_COST = 0.05
+DAMPING_COST = 0.3
+"""Points slightly out of reach would throw a straight limb about: large damping keeps it calm."""
+
+SETTLING = 80
+ITERATIONS = 3
+
+
+class SkeletonError(CaparError):
+    """Points that no body can be fitted to."""
+
+
+@dataclass(frozen=True, eq=False)
+class SkeletonFit:
+    """A body's motion that follows another skeleton's points."""
+
+    human: Human
+    motion: Float[np.ndarray, "frames posture"]
+    residuals_m: Mapping[str, Float[np.ndarray, "frames"]]
+    """By foreign name, distance of the body's place from the point [m]; NaN if lost."""
+
+    derived: bool
+    """Whether orientations of segments come of points only, so that turns about the long axes of
+    hands, head and feet are assumed and not seen; always so today: given ones are not used yet."""
+
+    @property
+    def median_m(self) -> float:
+        """Median of all residuals [m]."""
+        return float(np.nanmedian(np.concatenate(list(self.residuals_m.values()))))
+
+
+def measures_from_points(
+    points: Mapping[str, Float[np.ndarray, "frames 3"]],
+    convention: Convention,
+    *,
+    sex: str = "male",
+    age: float = 30.0,
+) -> Measures:
+    """Measures that a skeleton's own bones have, the stature from the sum of its limbs.
+
+    Raises:
+        SkeletonError: None of the limbs has both its joints.
+    """
+    places = {place: points[name] for name, place in convention.named(points).items()}
+    found = {}
+    for measure, (first, second) in LENGTHS.items():
+        ends = [(f"{side}_{first}", f"{side}_{second}") for side in SIDES]
+        spans = [_apart(places[a], places[b]) for a, b in ends if a in places and b in places]
+        if spans:
+            found[measure] = float(np.mean(spans))
+    for measure, (joint, share) in BREADTHS.items():
+        if f"right_{joint}" in places and f"left_{joint}" in places:
+            found[measure] = _apart(places[f"right_{joint}"], places[f"left_{joint}"]) / share
+    limbs = [name for name in LENGTHS if name in found]
+    if not limbs:
+        raise SkeletonError(f"no limb has both its joints among {sorted(points)}")
+    usual = estimate_measures(sex=sex, age=age)
+    scale = sum(found[name] for name in limbs) / sum(usual[name] for name in limbs)
+    return estimate_measures(sex=sex, age=age, given={"stature": scale * usual["stature"], **found})
+
+
+def _apart(first: np.ndarray, second: np.ndarray) -> float:
+    """Median distance of two points [m]."""
+    return float(np.nanmedian(np.linalg.norm(first - second, axis=1)))
+
+
+def fit_skeleton(
+    points: Mapping[str, Float[np.ndarray, "frames 3"]],
+    convention: Convention,
+    *,
+    human: Human | None = None,
+) -> SkeletonFit:
+    """Fit the body to joints or key points in a world whose z axis points up.
+
+    Args:
+        points: By foreign name [m]; NaN where lost. Names that the convention lacks are ignored.
+        convention: What the names mean.
+        human: The body; made from the skeleton's own bones where None.
+
+    Raises:
+        SkeletonError: Fewer than four places are known, or the points are of no body.
+    """
+    named = convention.named(points)
+    if len(named) < 4:
+        raise SkeletonError(f"{len(named)} places of {convention.title}; four or more are needed")
+    body = human or Human.of(measures_from_points(points, convention))
+    spots = {name: np.asarray(points[name]) for name in named}
+    motion = _followed(body, spots, named, convention)
+    where = body.sites(motion, set(named.values()))
+    residuals = {
+        name: np.linalg.norm(where[place][0] - spots[name], axis=1) for name, place in named.items()
+    }
+    return SkeletonFit(body, motion, residuals, derived=True)
+
+
+def _followed(
+    human: Human,
+    spots: Mapping[str, np.ndarray],
+    named: Mapping[str, str],
+    convention: Convention,
+) -> Float[np.ndarray, "frames posture"]:
+    costs = {name: POINT_COST * convention.weight(place) for name, place in named.items()}
+    tasks = {name: _task(human, place, costs[name]) for name, place in named.items()}
+    start = _start(human, spots, named)
+    ease = mink.PostureTask(human.model, cost=np.r_[np.zeros(6), np.full(60, EASE_COST)])
+    ease.set_target(start)
+    damping = mink.DampingTask(human.model, cost=DAMPING_COST)
+    speeds = dict.fromkeys(human.joints, LARGEST_STEP)
+    limits = [mink.ConfigurationLimit(human.model), mink.VelocityLimit(human.model, speeds)]
+    configuration = mink.Configuration(human.model)
+    configuration.update(start)
+    frames = len(next(iter(spots.values())))
+    out = np.empty((frames, len(start)))
+    for frame in range(frames):
+        seen = [n for n in tasks if np.isfinite(spots[n][frame]).all() and costs[n] > 0.0]
+        active = [*(tasks[name] for name in seen), ease, damping]
+        for _ in range(ITERATIONS if frame else SETTLING):
+            for name in seen:
+                _aim(configuration, tasks[name], spots[name][frame])
+            step = mink.solve_ik(configuration, active, 1.0, SOLVER, limits=limits)
+            configuration.integrate_inplace(step, 1.0)
+        out[frame] = configuration.q
+    return out
+
+
+def _task(human: Human, place: str, cost: float) -> mink.FrameTask:
+    site = mujoco.mj_name2id(human.model, mujoco.mjtObj.mjOBJ_SITE, place) >= 0
+    return mink.FrameTask(place, "site" if site else "body", cost, 0.0)
+
+
+def _aim(configuration: mink.Configuration, task: mink.FrameTask, spot: np.ndarray) -> None:
+    """Draw a place to a point; it may turn as it likes, so the target turns with it."""
+    now = configuration.get_transform_frame_to_world(task.frame_name, task.frame_type)
+    task.set_target(mink.SE3.from_rotation_and_translation(now.rotation(), spot))
+
+
+def _start(
+    human: Human, spots: Mapping[str, np.ndarray], named: Mapping[str, str]
+) -> Float[np.ndarray, "posture"]:
+    """The standing posture, moved and turned as a whole to the first frame's points."""
+    bent = {f"{side}_{joint}": angle for joint, angle in BENT.items() for side in SIDES}
+    standing = human.posture(bent)
+    where = human.sites(standing[None], set(named.values()))
+    known = [name for name in named if np.isfinite(spots[name][0]).all()]
+    trunk = [n for n in known if named[n].split("_")[-1] in {"thigh", "arm", "neck", "c7"}]
+    used = trunk if len(trunk) >= 3 else known
+    if len(used) < 3:
+        raise SkeletonError(f"{len(used)} points in the first frame; three or more place the body")
+    body = np.array([where[named[name]][0][0] for name in used])
+    world = np.array([spots[name][0] for name in used])
+    turn, _ = Rotation.align_vectors(world - world.mean(axis=0), body - body.mean(axis=0))
+    out = standing.copy()
+    out[:3] = world.mean(axis=0) + turn.apply(standing[:3] - body.mean(axis=0))
+    out[3:7] = turn.as_quat(scalar_first=True)
+    return out

@@ -1,0 +1,81 @@
+"""The command that fits a body to a capture's sensors."""
+
+import json
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from capar.body.fitting import Fit
+
+app = typer.Typer()
+
+
+@app.command()
+def fit(
+    capture: Annotated[
+        str,
+        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
+    ],
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+) -> None:
+    """Fit a human body to the sensors of CAPTURE and say what is left."""
+    from capar.body.capture_fitting import fit_capture
+    from extractors.readers.bundle.capture_toml import read_capture
+
+    made = fit_capture(read_capture(capture))
+    if as_json:
+        typer.echo(json.dumps(_answer(made), indent=2))
+    else:
+        _tell(made)
+
+
+def _answer(made: "Fit") -> dict[str, Any]:
+    """Residuals by sensor, shares of time at joint limits, and how long it took."""
+    import numpy as np
+
+    return {
+        "sensors": {
+            place: {
+                "median_mm": round(1e3 * float(np.nanmedian(metres)), 3),
+                "p95_mm": round(1e3 * float(np.nanpercentile(metres, 95)), 3),
+                "median_deg": round(float(np.degrees(np.nanmedian(made.residuals_rad[place]))), 4),
+                "lost_frames": int(made.bridged[place].sum()),
+            }
+            for place, metres in made.residuals_m.items()
+        },
+        "at_limit": _at_limit(made),
+        "measures_given": sorted(made.human.measures.given),
+        "frames": len(made.times),
+        "motion_s": round(float(made.times[-1] - made.times[0]), 4),
+        "seconds": round(made.seconds, 3),
+    }
+
+
+def _tell(made: "Fit") -> None:
+    """Print the same for people."""
+    answer = _answer(made)
+    typer.echo("sensor          median [mm]  95 % [mm]  median [deg]  lost [frames]")
+    for place, row in answer["sensors"].items():
+        typer.echo(
+            f"{place:14}  {row['median_mm']:11.1f}  {row['p95_mm']:9.1f}"
+            f"  {row['median_deg']:12.2f}  {row['lost_frames']:13}"
+        )
+    for joint, share in answer["at_limit"].items():
+        typer.echo(f"{joint} is at its limit for {share:.0%} of the time")
+    given = ", ".join(answer["measures_given"]) or "none"
+    typer.echo(f"measures given: {given}; the others are estimated")
+    span, took = answer["motion_s"], answer["seconds"]
+    typer.echo(f"{answer['frames']} frames, {span:.1f} s of motion, fitted in {took:.1f} s")
+
+
+def _at_limit(made: "Fit") -> dict[str, float]:
+    """Hinges that are at an end of their range for 1 % of the time or more, most first."""
+    shares = dict(zip(made.human.joints, made.at_limit.mean(axis=0), strict=True))
+    kept = {n: round(float(s), 4) for n, s in shares.items() if s >= 0.01 and not _idle(n)}
+    return dict(sorted(kept.items(), key=lambda each: (-each[1], each[0])))
+
+
+def _idle(joint: str) -> bool:
+    """Whether a hinge stands at an end of its range when nothing moves it: open hands."""
+    return any(part in joint for part in ("knuckle", "finger", "thumb"))

@@ -1,0 +1,184 @@
+"""Virtual performers do what their scripts say, and their captures say what was done."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from capar.body.bundles import write_bundle
+from capar.body.gaze import lines_of_sight
+from capar.body.human import Human
+from capar.body.measures import ready_made
+from capar.body.performing import Performance, PerformanceError, perform
+from capar.body.recording import record, truth_of
+from capar.body.scripts import (
+    Script,
+    drink,
+    lift_with_both_hands,
+    reach_and_return,
+    slide,
+    touch,
+)
+from capar.body.sensing import PERFECT, Tracker
+from capar.body.things import Scene, Thing, box, cup, scene, table
+from capar.model.errors import UnknownNameError
+from extractors.readers.bundle.capture_toml import read_capture
+
+RATE_HZ = 40.0
+
+
+def _scene(human: Human) -> Scene:
+    """A table at hip height with a cup on the right and a box ahead."""
+    tall = human.measures["stature"]
+    top = 0.52 * tall
+    mug = Thing("mug", cup(0.035, 0.09), (0.22 * tall, -0.10 * tall, top), round=True)
+    crate = Thing("crate", box(0.15, 0.20, 0.15), (0.24 * tall, 0.08 * tall, top))
+    return scene(table(top, near_m=0.13 * tall), mug, crate)
+
+
+SCRIPTS: dict[str, Script] = {
+    "drink": drink("mug"),
+    "touch": touch("crate"),
+    "reach": reach_and_return("crate", side="left"),
+    "slide": slide("mug", (0.0, 0.12, 0.0)),
+    "lift": lift_with_both_hands("crate", height=0.2),
+}
+
+
+@cache
+def _act(who: str, what: str) -> Performance:
+    human = Human.of(ready_made(who))
+    return perform(human, _scene(human), SCRIPTS[what], rate_hz=RATE_HZ)
+
+
+ACTED = [*(("man", what) for what in SCRIPTS), ("child", "drink"), ("woman", "lift")]
+
+
+@pytest.fixture(scope="module", params=ACTED, ids=" ".join)
+def acted(request: pytest.FixtureRequest) -> Performance:
+    return _act(*request.param)
+
+
+def test_every_agent_does_every_action_like_a_body(acted: Performance) -> None:
+    human, motion = acted.human, acted.motion
+    assert not human.outside(motion, margin=1e-4).any()
+    speeds = np.abs(np.diff(motion[:, 7:], axis=0)) * RATE_HZ
+    assert speeds.max() < 20.0, "no joint jumps [rad/s]"
+    feet = human.sites(motion, ["right_foot", "left_foot"])
+    for spots, _ in feet.values():
+        assert np.ptp(spots, axis=0).max() < 0.004
+    heights = [human.centre_of_mass(posture)[:2] for posture in motion[::25]]
+    assert np.ptp(heights, axis=0).max() < 0.08, "the weight stays over the feet"
+
+
+def test_held_things_stay_in_the_hand(acted: Performance) -> None:
+    for phase, (_, start, end) in zip(acted.script, acted.phases, strict=True):
+        now = (acted.times >= start) & (acted.times < end)
+        for side, hand in phase.hands.items():
+            if hand.does == "holds":
+                assert acted.slip_m[side][now].max() < 0.003
+
+
+def test_what_is_not_held_stays_where_it_was(acted: Performance) -> None:
+    moved = {name for phase in acted.script for name in phase.moves}
+    for name, path in acted.things.items():
+        travelled = float(np.ptp(path.translation, axis=0).max())
+        assert (travelled > 0.05) == (name in moved)
+        assert path.translation[:, 2].min() >= acted.scene.thing(name).place[2] - 1e-9
+
+
+def test_hands_keep_clear_of_the_table(acted: Performance) -> None:
+    top = acted.scene.table
+    assert top is not None
+    low, high = top.shape.bounds + np.array(top.place)
+    seen = record(acted, name="clear", seed=1, tracker=PERFECT)
+    for hand in seen.acting:
+        assert hand.shape is not None
+        for frame in range(0, len(acted.times), 2):
+            corners = hand.stream.pose(frame).apply(hand.shape.vertices)
+            apart = np.maximum(np.maximum(low - corners, corners - high), 0.0)
+            assert np.linalg.norm(apart, axis=1).min() > 0.006, f"{hand.name} at {frame}"
+
+
+def test_the_gaze_is_at_the_thing_before_the_hand_is(acted: Performance) -> None:
+    name, start, end = next(each for each in acted.phases if each[0] == "reach")
+    assert name == "reach"
+    looked = next(p.look for p in acted.script if p.name == "reach")
+    frame = int(np.flatnonzero(acted.times < start + 0.5 * (end - start))[-1])
+    spots, ways = lines_of_sight(acted.human, acted.motion[frame][None])
+    thing = acted.scene.thing(looked)
+    middle = np.array(thing.place) + np.array([0.0, 0.0, 0.5 * thing.size[2]])
+    wanted = (middle - spots[0]) / np.linalg.norm(middle - spots[0])
+    assert np.degrees(np.arccos(np.clip(wanted @ ways[0], -1.0, 1.0))) < 3.0
+
+
+def test_a_drink_meets_the_mouth_and_ends_where_it_began() -> None:
+    acted = _act("man", "drink")
+    contacts = truth_of(acted).contacts
+    assert [pair[:2] for pair in contacts] == [
+        ("crate", "table"),
+        ("mug", "head"),
+        ("mug", "table"),
+        ("mug", "table"),
+        ("right_hand", "mug"),
+    ]
+    start, end = next(each[1:] for each in acted.phases if each[0] == "drink")
+    sip = contacts[1]
+    assert sip[2] <= start + 0.05
+    assert sip[3] >= end - 0.05
+    last = acted.things["mug"].translation[-1]
+    np.testing.assert_allclose(last, acted.scene.thing("mug").place, atol=1e-9)
+
+
+def test_hands_move_with_one_bell_of_speed_to_what_they_reach_for() -> None:
+    acted = _act("man", "touch")
+    start, end = next(each[1:] for each in acted.phases if each[0] == "reach")
+    now = (acted.times >= start) & (acted.times < end)
+    palm, _ = acted.human.sites(acted.motion[now], ["right_palm"])["right_palm"]
+    speed = np.linalg.norm(np.diff(palm, axis=0), axis=1) * RATE_HZ
+    peak = int(speed.argmax())
+    assert 0.25 < peak / len(speed) < 0.75
+    assert speed[0] < 0.2 * speed.max() > speed[-1]
+
+
+def test_a_bundle_reads_back_as_the_capture_and_is_the_same_each_time(tmp_path: Path) -> None:
+    acted = _act("man", "slide")
+    seen = record(acted, name="slides", seed=3, tracker=Tracker(dropouts_per_s=0.5))
+    for folder in ("one", "two"):
+        again = record(acted, name="slides", seed=3, tracker=Tracker(dropouts_per_s=0.5))
+        write_bundle(again, truth_of(acted), tmp_path / folder)
+    files = sorted(path.name for path in (tmp_path / "one").iterdir())
+    assert {"capture.toml", "motion.csv", "truth.toml", "mug.obj"} <= set(files)
+    for name in files:
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+    read = read_capture(tmp_path / "one")
+    assert [each.name for each in read.sensors] == [each.name for each in seen.sensors]
+    assert [each.name for each in read.objects] == [each.name for each in seen.objects]
+    for name, body in seen.bodies.items():
+        np.testing.assert_allclose(
+            read.bodies[name].stream.positions, body.stream.positions, atol=1e-6
+        )
+    assert read.agent.measures["upper_arm"] == acted.human.measures["upper_arm"].__round__(4)
+
+
+def test_without_a_trackers_faults_a_capture_is_the_truth() -> None:
+    acted = _act("child", "reach")
+    seen = record(acted, name="reaches", seed=1, tracker=PERFECT, sensors=("left_hand", "head"))
+    true, _ = acted.human.sites(acted.motion, ["sensor_left_hand"])["sensor_left_hand"]
+    np.testing.assert_allclose(seen.sensor("left_hand").stream.positions, true, atol=1e-9)
+    tracked = record(
+        acted, name="reaches", seed=1, tracker=PERFECT, sensors=("head",), eye_tracker=True
+    )
+    _, ways = lines_of_sight(acted.human, acted.motion)
+    pose = tracked.sensor("eyes").stream.pose(10)
+    np.testing.assert_allclose(pose.rotation.apply([1.0, 0.0, 0.0]), ways[10], atol=1e-9)
+
+
+def test_what_cannot_be_reached_is_refused_with_the_distance() -> None:
+    human = Human.of(ready_made("child"))
+    far = scene(table(0.7), Thing("mug", cup(0.035, 0.09), (1.6, 0.0, 0.7), round=True))
+    with pytest.raises(PerformanceError, match=r"misses 'mug' by \d+ mm in 'grasp'"):
+        perform(human, far, slide("mug", (0.1, 0.0, 0.0)), rate_hz=20.0)
+    with pytest.raises(UnknownNameError, match="no thing 'cup'"):
+        perform(human, far, touch("cup"), rate_hz=20.0)

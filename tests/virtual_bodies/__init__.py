@@ -1,0 +1,1 @@
+"""Bodies that move in closed form, and virtual captures of them."""
