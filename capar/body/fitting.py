@@ -195,7 +195,7 @@ def _bridge(
     """The motion with unseen hinges led from the one end of every loss to the other."""
     faint = np.min([each.weights for each in targets.values()], axis=0) < 1.0
     out = motion.copy()
-    for first, last in geometry.gaps(faint):
+    for first, last in geometry.runs(faint):
         ends = [max(first - 1, 0), min(last + 1, len(motion) - 1)]
         if faint[ends[0]] or faint[ends[1]]:  # a loss at an end of the recording: hold the other
             ends = ends[1:] * 2 if faint[ends[0]] else ends[:1] * 2

@@ -139,7 +139,7 @@ def _moves(path: RigidTransform) -> Bool[np.ndarray, "frames"]:
 
 def _intervals(made: Performance, holds: np.ndarray) -> list[tuple[float, float]]:
     return [
-        (float(made.times[a]), float(made.times[b])) for a, b in geometry.gaps(np.asarray(holds))
+        (float(made.times[a]), float(made.times[b])) for a, b in geometry.runs(np.asarray(holds))
     ]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.capture import Stream
-from capar.model.geometry import gaps
+from capar.model.geometry import runs
 from extractors.signals.filters import lowpass, lowpass_orientations
 from extractors.signals.gaps import fill_gaps
 from extractors.thresholds import Thresholds
@@ -57,7 +57,7 @@ def target(stream: Stream, *, cutoff_hz: float | None = CUTOFF_HZ) -> Target:
 def _weights(stream: Stream) -> Float[np.ndarray, "frames"]:
     """Weights that rise and fall smoothly beside a loss; the ends of a recording do not fade."""
     out = np.where(stream.lost, 0.0, 1.0)
-    for first, last in gaps(stream.lost):
+    for first, last in runs(stream.lost):
         before = (stream.times[max(first - 1, 0)] - stream.times) / FADE_S
         after = (stream.times - stream.times[min(last + 1, len(out) - 1)]) / FADE_S
         near = np.where(np.arange(len(out)) < first, before, after)
