@@ -7,7 +7,8 @@ import numpy as np
 from capar.model.capture import Capture, Stream
 from capar.model.facts import (
     Between,
-    Closing,
+    ClosingSpeed,
+    ContactNormal,
     Fact,
     Flies,
     Gap,
@@ -18,7 +19,6 @@ from capar.model.facts import (
     Pause,
     Rolls,
     Touching,
-    Upward,
     ZeroCrossing,
 )
 from extractors.handling import SHIFTS
@@ -30,8 +30,8 @@ WINDOWED = (
     Touching,
     Gap,
     LookingAt,
-    Upward,
-    Closing,
+    ContactNormal,
+    ClosingSpeed,
     Leans,
     Flies,
     Rolls,

@@ -1,6 +1,7 @@
 """The version of the JSON form of an observation, and bringing older documents to it.
 
-Version 1 stated no version, and could hold facts that are no longer measured.
+Version 1 stated no version, could hold facts that are no longer measured, had notices of a code
+and a sentence alone, and no calibration.
 """
 
 import json
@@ -56,7 +57,16 @@ def _from_1(content: dict[str, Any]) -> dict[str, Any]:
     known = {each.predicate for each in STATED}
     facts = content.get("facts", [])
     kept = [each for each in facts if str(each).partition("(")[0] in known]
-    return {"schema": 2, **content, "facts": kept}
+    notices = [_sentence_only(each) for each in content.get("notices", [])]
+    return {"schema": 2, **content, "facts": kept, "notices": notices}
+
+
+def _sentence_only(notice: Any) -> Any:
+    """A notice of version 1, which had a code and a sentence, kept in its own words."""
+    if not isinstance(notice, dict) or "bodies" in notice:
+        return notice
+    values = {"was": notice.get("code"), "text": notice.get("message")}
+    return {"code": "earlier", "bodies": [], "values": values}
 
 
 def _document(text: str, where: str) -> dict[str, Any]:

@@ -219,6 +219,7 @@ KINDS: Mapping[str, NoticeKind] = {
         "{0}: end_effector {stated!r} is none of {known}, which rules know; did you mean {near!r}?"
     ),
     "mesh-not-closed": NoticeKind("{0}: the mesh {mesh} is not closed, it has {edges} open edges"),
+    "earlier": NoticeKind("{text}"),
     "rule-violation": NoticeKind("{violation}"),
 }
 """Each code with its text: every sentence of a notice is here."""

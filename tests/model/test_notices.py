@@ -46,6 +46,17 @@ ONE_OF_EACH = {
     notice("offset-and-position", "hip", "knee"):
         "hip, knee: OFFSET and position channels both given; a root adds them, any other joint "
         "takes the channels alone",
+    notice("rate-mistyped", stated_hz=1000.0, recorded_hz="100"):
+        "rate_hz = 1000, but the files have 100 frames a second; is it mistyped?",
+    notice("rate-contradicted", stated_hz=250.0, rate_hz=50.0):
+        "the header states 250 frames a second, the time stamps 50; the time stamps are taken",
+    notice("frames-missing", stated="900", frames=12):
+        "the header states 900 frames, the file holds 12; was it cut short?",
+    notice("end-effector-unknown", "hand", stated="hnd", known="hand, foot", near="hand"):
+        "hand: end_effector 'hnd' is none of hand, foot, which rules know; did you mean 'hand'?",
+    notice("mesh-not-closed", "cup", mesh="cup.obj", edges=6):
+        "cup: the mesh cup.obj is not closed, it has 6 open edges",
+    notice("earlier", was="no-unit", text="the file states no unit"): "the file states no unit",
     notice("rule-violation", violation="violation(x)"): "violation(x)",
 }  # fmt: skip
 
