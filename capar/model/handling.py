@@ -8,7 +8,7 @@ from capar.model.scene_facts import Touching
 
 @dataclass(frozen=True, slots=True, order=True)
 class Displaced(Observed):
-    """An object that moves is elsewhere than where it rested, to a hair's width."""
+    """An object that moves is elsewhere than where it rested, within 1 mm or half a degree."""
 
     predicate = "displaced"
     declaration = Declaration(about="object", span=Span.INTERVAL, border=False, told=False)

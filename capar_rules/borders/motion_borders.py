@@ -1,4 +1,4 @@
-"""Where a held object truly sets off and settles: at the pause of the hand that is near.
+"""Refined start and end of a held object's motion: at the pause of the hand that is near.
 
 An object counts as moving once it is away from its place by a floor that noise cannot reach; by
 then it has been on its way for a moment. The zero crossing at which the hand starts, or stops,

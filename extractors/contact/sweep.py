@@ -1,9 +1,9 @@
 """Contact of two surfaces at many poses in turn, from questions at few of them.
 
-A question at one pose tells of its neighbours as well. A point of one surface that is well within
+A query at one pose also decides neighbouring poses. A point of one surface that is well within
 the distance of the other stays so while it hardly moves: those poses touch. Surfaces that are
 further apart than the distance by some room stay apart while no point moves by that room: those
-do not touch. Only poses that neither tells of are asked about, so the answer is as exact as if
+do not touch. Only poses that neither decides are queried, so the answer is as exact as if
 each had been.
 """
 
@@ -17,17 +17,17 @@ from extractors.contact.offset_surfaces import EXACTNESS_M
 from extractors.contact.surfaces import Surface
 from extractors.contact.triangle_intersection import meeting_point
 
-ROOMS_M = (0.002, 0.006, 0.018, 0.054, 0.162)
-"""Rooms beyond the distance that are asked for [m], each by a shell of its own."""
+CLEARANCES_M = (0.002, 0.006, 0.018, 0.054, 0.162)
+"""Clearances beyond the distance that are tested [m], each by an offset surface of its own."""
 
-ROOM_EXACTNESS = 0.05
-"""How coarse the shell of a room may be, as a share of its distance [1]."""
+CLEARANCE_EXACTNESS = 0.05
+"""How coarse the offset surface of a clearance may be, as a share of its distance [1]."""
 
-LONGEST, SHORTEST = 8192, 32
+MOST_POSES, FEWEST_POSES = 8192, 32
 """Most and fewest poses that one answer is carried to [1]."""
 
-PATIENCE = 4
-"""Answers in turn that tell of no other pose before a distance is asked for, ten times dearer."""
+FRUITLESS_QUERIES = 4
+"""Queries in a row that decide no other pose before a distance is computed, ten times slower."""
 
 FEW = 1000
 """Poses up to which distances cost less than the making of shells [1]."""
@@ -35,7 +35,7 @@ FEW = 1000
 DEPTHS = (0.0, 0.4, 0.75, 1.0)
 """Shares of the distance at whose shells a point of contact is sought, deepest first [1]."""
 
-DEEPER = 4
+RESTART_EVERY = 4
 """One in so many such searches begins at the deepest, the others where the last one ended [1]."""
 
 _Meeting = tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3 3"]]
@@ -98,8 +98,8 @@ class _Sweep:
         self.arm = min(self.first.radius, self.second.radius) / np.sqrt(2.0)
 
     def run(self) -> Bool[np.ndarray, "poses"]:
-        """Ask about each pose that no answer tells of."""
-        index, touched, idle, patience = 0, False, 0, PATIENCE
+        """Query each pose that is not decided yet."""
+        index, touched, idle, patience = 0, False, 0, FRUITLESS_QUERIES
         few = len(self.known) <= FEW
         while index < len(self.known):
             self.index = index
@@ -107,20 +107,20 @@ class _Sweep:
             if few:
                 point, slack = self._distance()
             else:
-                point, slack = self._touch() if touched else self._room()
+                point, slack = self._touch() if touched else self._clearance()
             touched = point is not None
             self.known[index] = _TOUCHES if touched else _APART
-            told, index = self._carry(index, point, slack)
+            told, index = self._propagate(index, point, slack)
             idle = 0 if told else idle + 1
             if idle >= patience and not few:
-                told, index = self._carry(index - 1, *self._distance())
-                idle, patience = 0, PATIENCE if told else 2 * patience
+                told, index = self._propagate(index - 1, *self._distance())
+                idle, patience = 0, FRUITLESS_QUERIES if told else 2 * patience
         return self.known == _TOUCHES
 
     def _touch(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
         """A point of the second within the distance, and how far it may move [m]; deepest first."""
         self.asked += 1
-        for depth in range(0 if self.asked % DEEPER == 0 else self.depth, len(DEPTHS)):
+        for depth in range(0 if self.asked % RESTART_EVERY == 0 else self.depth, len(DEPTHS)):
             meeting = self._meet(DEPTHS[depth] * self.distance_m, EXACTNESS_M)
             if meeting is not None:
                 self.depth = depth
@@ -129,16 +129,16 @@ class _Sweep:
                 ) * self.distance_m - 2.0 * EXACTNESS_M
         return None, 0.0
 
-    def _room(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
+    def _clearance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
         """How far all may move without touching [m], or else a point as ``_touch`` gives."""
         for level in range(self.level, -1, -1):
-            distance = self.distance_m + ROOMS_M[level]
-            exact = max(ROOM_EXACTNESS * distance, EXACTNESS_M)
+            distance = self.distance_m + CLEARANCES_M[level]
+            exact = max(CLEARANCE_EXACTNESS * distance, EXACTNESS_M)
             if self._meet(distance, exact) is None:
                 if not self._sticks_out(distance):
                     return self._distance()
-                self.level = min(level + 1, len(ROOMS_M) - 1)
-                return None, ROOMS_M[level] - 2.0 * exact
+                self.level = min(level + 1, len(CLEARANCES_M) - 1)
+                return None, CLEARANCES_M[level] - 2.0 * exact
         # What has just come near is shallow.
         self.level, self.depth, self.asked = 0, len(DEPTHS) - 1, 0
         return self._touch()
@@ -175,7 +175,7 @@ class _Sweep:
         return np.full(3, np.nan) if point is None else np.array(point)
 
     def _distance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
-        """What ``_touch`` or ``_room`` would say with shells at every distance."""
+        """What ``_touch`` or ``_clearance`` would say with shells at every distance."""
         result = fcl.DistanceResult()
         request = fcl.DistanceRequest(enable_nearest_points=True)
         apart = fcl.distance(self.bare, self.moved, request, result)
@@ -185,15 +185,15 @@ class _Sweep:
         slack = self.distance_m - apart - EXACTNESS_M if apart > 0.0 else 0.0
         return np.asarray(result.nearest_points[1]), slack
 
-    def _carry(
+    def _propagate(
         self, index: int, point: Float[np.ndarray, "3"] | None, slack_m: float
     ) -> tuple[int, int]:
-        """Tell later poses what the answer at one of them means for them, as far as it reaches.
+        """Decide later poses from the answer at one pose, as far as it reaches.
 
         Returns:
             How many it told of, and the first pose that is still unknown.
         """
-        begin, length, told = index + 1, SHORTEST, 0
+        begin, length, told = index + 1, FEWEST_POSES, 0
         own = None if point is None else self.turns[index].T @ (point - self.places[index])
         while begin < len(self.known):
             part = slice(begin, begin + length)
@@ -206,7 +206,7 @@ class _Sweep:
             first = int(unknown.argmax())
             if unknown[first]:
                 return told, begin + first
-            begin, length = begin + length, min(2 * length, LONGEST)
+            begin, length = begin + length, min(2 * length, MOST_POSES)
         return told, len(self.known)
 
     def _moved(

@@ -61,17 +61,17 @@ def motion_floor(
 def rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[RestPose, ...]:
     """Places where the object rests, in time, with all frames at which it is not beyond the floor.
 
-    A stay grows from a stretch in which the object is slow for the least duration of rest; its
-    place is the middle of the poses there; it holds all contiguous frames within the floor of
+    A rest pose is extended from a stretch in which the object is slow for the least duration of
+    rest; its place is the middle of the poses there; it holds all contiguous frames within the floor of
     that place, so the last millimetres of a landing belong to it.
     """
-    known = _KNOWN.setdefault(poses, {})
+    known = _CACHE.setdefault(poses, {})
     if (floor, thresholds) not in known:
         known[floor, thresholds] = _rest_poses(poses, floor, thresholds)
     return known[floor, thresholds]
 
 
-_KNOWN: WeakKeyDictionary[Poses, dict[tuple[Floor, Thresholds], tuple[RestPose, ...]]] = (
+_CACHE: WeakKeyDictionary[Poses, dict[tuple[Floor, Thresholds], tuple[RestPose, ...]]] = (
     WeakKeyDictionary()
 )
 """Where bodies rest, by their poses: three measurements ask for it."""

@@ -10,8 +10,8 @@ from extractors.signals.intervals import Interval
 from extractors.signals.zero_crossings import horizon_frames, pauses, zero_crossings
 from extractors.thresholds import Thresholds
 
-SHORTEST = 5
-"""Fewest frames of a contact in which a change of place can be told [1]."""
+FEWEST_FRAMES = 5
+"""Fewest frames of a contact in which a change of place can be detected [1]."""
 
 
 def shifts(
@@ -30,7 +30,7 @@ def shifts(
         thresholds: Width of a hand, and what makes a pause.
     """
     first, last = touching
-    if last - first + 1 < SHORTEST:
+    if last - first + 1 < FEWEST_FRAMES:
         return
     part = slice(first, last + 1)
     offset = hand.middles[part] - thing.middles[part]
@@ -41,11 +41,11 @@ def shifts(
     crossings = zero_crossings(
         pace, times, noise_m=noise, highest_mps=float(np.nanmax(pace)), thresholds=thresholds
     )
-    seats = [int(each) for each in pauses(pace, crossings, horizon_frames(times, thresholds))]
-    if not seats:
+    stops = [int(each) for each in pauses(pace, crossings, horizon_frames(times, thresholds))]
+    if not stops:
         return
-    anchor = latest = seats[0]
-    for seat in seats[1:]:
+    anchor = latest = stops[0]
+    for seat in stops[1:]:
         if float(np.linalg.norm(place[seat] - place[anchor])) > thresholds.hand_width_m:
             yield first + latest, first + seat
             anchor = seat

@@ -8,8 +8,9 @@ from jaxtyping import Bool, Float
 from capar.model import geometry
 from capar.model.capture import Notice, Stream, notice
 from capar.model.errors import CaptureError
+from extractors.thresholds import Thresholds
 
-GAP_S = 0.1
+GAP_S = Thresholds().gap_s
 """Nothing is interpolated between samples further apart than this [s]."""
 
 GAP_STEPS = 1.5
