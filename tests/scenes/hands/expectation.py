@@ -27,8 +27,8 @@ class Unit:
 
     ee: str
     steps: tuple[Step, ...]
-    alternative: tuple[Action, ...] = ()
-    """Another sequence that the texts allow as well; of as many steps, or empty."""
+    alternative: tuple[Step, ...] = ()
+    """Another sequence that the texts allow as well, or empty."""
 
     @property
     def actions(self) -> tuple[Action, ...]:

@@ -16,7 +16,7 @@ Vector = Sequence[float]
 def min_jerk(share: Times) -> Times:
     """Way done of a minimum-jerk motion, from 0 to 1, after a share of its time."""
     tau = np.clip(share, 0.0, 1.0)
-    return np.asarray(tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2))
+    return np.clip(tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2), 0.0, 1.0)
 
 
 def quintic(share: Times, first: float, last: float) -> Times:

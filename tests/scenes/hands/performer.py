@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation, Slerp
 
-from scenes.hands.expectation import Action, Step
+from scenes.hands.expectation import Step
 from scenes.hands.paths import (
     Body,
     Piece,
@@ -51,7 +51,7 @@ class Hand:
     """Where the step under way began [s]."""
 
     steps: list[Step] = field(default_factory=list)
-    alternative: tuple[Action, ...] = ()
+    alternative: tuple[Step, ...] = ()
     contacts: list[tuple[Thing, float, float]] = field(default_factory=list)
     """What it touched, from when to when [s]."""
 
@@ -75,6 +75,12 @@ class Hand:
     def now(self) -> np.ndarray:
         """Its pose at its clock."""
         return self.body.at(self.clock)
+
+    @property
+    def touches(self) -> list[tuple[Thing, float, float]]:
+        """What it touched, from when to when [s], what it still touches included."""
+        still = [(self.touched, self.since, self.clock)] if self.touched else []
+        return [*self.contacts, *still]
 
     def step(self, name: str, *objects: Thing) -> None:
         """Write down that the step under way ends now."""
@@ -414,12 +420,6 @@ class Hand:
         self.release()
         self.steps.extend(other.steps[since:])
         self.border = self.clock
-
-    def finished(self, end: float) -> tuple[Step, ...]:
-        """Its steps, the last one drawn out to the end of the capture [s]."""
-        last = self.steps[-1]
-        drawn = Step(last.name, last.objects, last.start_s, end)
-        return (*self.steps[:-1], drawn)
 
 
 def min_jerk_flat(share: Times) -> Times:

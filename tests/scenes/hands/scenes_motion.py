@@ -1,5 +1,7 @@
 """Scenes in which a held thing is turned, tilted, poured from, shaken, stirred with or drunk from."""
 
+from dataclasses import replace
+
 from scenes.hands import shapes
 from scenes.hands.performer import PRESS
 from scenes.hands.scene import performer, scene
@@ -133,6 +135,6 @@ def drink(s: Stage, *, hold: float, tilt_deg: float) -> None:
     right.move(start - goal, 1.1)
     right.step("MoveObjTo", mug, table)
     finish(right, mug, table, 0.5, 0.9)
-    names = [each.action for each in right.steps]
-    names[-3] = ("PutDown", names[-3][1])
-    right.alternative = tuple(names)
+    steps = list(right.steps)
+    steps[-3] = replace(steps[-3], name="PutDown")
+    right.alternative = tuple(steps)

@@ -1,7 +1,8 @@
 """Scenes in which nothing is moved: reaches, touches, rests, passing by, touching oneself."""
 
+from dataclasses import replace
+
 from scenes.hands import shapes
-from scenes.hands.expectation import Action
 from scenes.hands.scene import performer, scene
 from scenes.hands.stage import Stage, other_names
 
@@ -143,14 +144,7 @@ def from_one_thing_to_the_next(s: Stage) -> None:
     right.hold(0.5, second)
     right.leave(1.0)
     right.idle(0.2)
-    right.alternative = tuple(
-        (name, ("second_box",)) if len(objects) > 1 else (name, objects)
-        for name, objects in _actions(right.steps)
-    )
-
-
-def _actions(steps: list) -> tuple[Action, ...]:
-    return tuple(each.action for each in steps)
+    right.alternative = tuple(replace(each, objects=each.objects[:1]) for each in right.steps)
 
 
 @scene
@@ -226,7 +220,8 @@ def wait_before_the_reach(s: Stage) -> None:
     right.rest(1.5)
     right.reach(box, "-y", 0.9)
     right.hold(0.8, box)
-    right.alternative = _actions(right.steps)[1:]
+    _, first, *others = right.steps
+    right.alternative = (replace(first, start_s=0.0), *others)
 
 
 @scene

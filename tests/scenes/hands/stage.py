@@ -1,14 +1,15 @@
 """A scene while it is written: things, hands, and from them the capture and the expectation."""
 
 import zlib
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Agent, Capture, Sensor, Shape, Stream, TagObject, TagType
 from scenes.hands import shapes
-from scenes.hands.expectation import Action, Expectation, Unit
+from scenes.hands.expectation import Expectation, Step, Unit
 from scenes.hands.paths import Body, Poses, Times, Vector, pose
 from scenes.hands.performer import Hand
 from scenes.hands.things import Thing
@@ -150,7 +151,10 @@ class Stage:
         end = float(self.times(rate_hz)[-1])
         return Expectation(
             self.name,
-            tuple(Unit(each.name, each.finished(end), each.alternative) for each in self.hands),
+            tuple(
+                Unit(each.name, drawn_out(each.steps, end), drawn_out(each.alternative, end))
+                for each in self.hands
+            ),
         )
 
 
@@ -159,6 +163,11 @@ def _surface(form: shapes.Form) -> Shape:
     return Shape(np.asarray(mesh.vertices), np.asarray(mesh.faces), description=form.kind)
 
 
-def other_names(hand: Hand, **names: str) -> tuple[Action, ...]:
+def other_names(hand: Hand, **names: str) -> tuple[Step, ...]:
     """A hand's steps with some names exchanged."""
-    return tuple((names.get(each.name, each.name), each.objects) for each in hand.steps)
+    return tuple(replace(each, name=names.get(each.name, each.name)) for each in hand.steps)
+
+
+def drawn_out(steps: Sequence[Step], end: float) -> tuple[Step, ...]:
+    """The steps, the last one drawn out to the end of the capture [s]."""
+    return (*steps[:-1], *(replace(each, end_s=end) for each in steps[-1:]))
