@@ -13,9 +13,7 @@ from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 
 NAMES = frozenset(
-    "Reach Touch TouchWith MoveObj MoveObjTo Hit ResumePosture Rest PostureChange Withdraw Lift "
-    "Carry Lower Raise PutDown Push Pull Slide Turn Tilt Pour Shake Stir Wipe Roll Throw Catch "
-    "Give Receive Accept HandOver Drink Clap Salute TouchOneself Kick LetGo HitAway".split()
+    ["Reach", "Touch", "TouchWith", "MoveObj", "MoveObjTo", "Hit", "ResumePosture", "Rest", "PostureChange", "Withdraw", "Lift", "Carry", "Lower", "Raise", "PutDown", "Push", "Pull", "Slide", "Turn", "Tilt", "Pour", "Shake", "Stir", "Wipe", "Roll", "Throw", "Catch", "Give", "Receive", "Accept", "HandOver", "Drink", "Clap", "Salute", "TouchOneself", "Kick", "LetGo", "HitAway"]
 )
 """The vocabulary of hands."""
 
@@ -61,9 +59,7 @@ def pairs(stage: Stage) -> Iterator[tuple[Hand | Thing, Hand | Thing]]:
 
 def test_there_are_enough_scenes_and_few_alternatives() -> None:
     """At least sixty scenes, and an alternative for at most one unit in ten."""
-    units = [
-        unit for scene in SCENES.values() for unit in scene.stage().expectation(100.0).units
-    ]
+    units = [unit for scene in SCENES.values() for unit in scene.stage().expectation(100.0).units]
     assert len(SCENES) >= 60
     assert sum(bool(unit.alternative) for unit in units) <= len(units) / 10
 

@@ -18,18 +18,19 @@ def gap(
     first: Form, at: Float[np.ndarray, "4 4"], second: Form, there: Float[np.ndarray, "4 4"]
 ) -> float:
     """Distance of two forms at two poses [m]; below zero at most how deep they overlap."""
-    return min(
-        _apart(one, at, other, there) for one in first.parts for other in second.parts
-    )
+    return min(_apart(one, at, other, there) for one in first.parts for other in second.parts)
 
 
-def _apart(one, at, other, there) -> float:  # type: ignore[no-untyped-def]  # noqa: ANN001
+def _apart(one, at, other, there) -> float:  # type: ignore[no-untyped-def]
     mine, theirs = _moved(one.vertices, at), _moved(other.vertices, there)
     boxes = np.maximum(mine.min(0) - theirs.max(0), theirs.min(0) - mine.max(0))
     if (coarse := float(boxes.max())) > FAR_M:
         return coarse
     normals = np.concatenate(
-        [_distinct(one.face_normals) @ at[:3, :3].T, _distinct(other.face_normals) @ there[:3, :3].T]
+        [
+            _distinct(one.face_normals) @ at[:3, :3].T,
+            _distinct(other.face_normals) @ there[:3, :3].T,
+        ]
     )
     along, across = mine @ normals.T, theirs @ normals.T
     between = np.maximum(along.min(0) - across.max(0), across.min(0) - along.max(0))
@@ -48,13 +49,13 @@ def _distinct(normals: np.ndarray) -> np.ndarray:
     return np.unique(np.round(normals, 6), axis=0)
 
 
-def _distance(one, at, other, there) -> float:  # type: ignore[no-untyped-def]  # noqa: ANN001
+def _distance(one, at, other, there) -> float:  # type: ignore[no-untyped-def]
     bodies = [_solid(one, at), _solid(other, there)]
     result = fcl.DistanceResult()
     return float(fcl.distance(*bodies, fcl.DistanceRequest(), result))
 
 
-def _solid(part, matrix):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _solid(part, matrix):  # type: ignore[no-untyped-def]
     model = fcl.BVHModel()
     model.beginModel(len(part.faces), len(part.vertices))
     model.addSubModel(np.asarray(part.vertices), np.asarray(part.faces))

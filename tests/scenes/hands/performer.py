@@ -34,7 +34,7 @@ EASE = 0.12
 GRAVITY = 9.81
 """Acceleration of what flies freely [m/s2]."""
 
-SLOWING_S = 0.2
+SLOWING_S = 0.12
 """How long a hand needs to stop after a throw [s]."""
 
 
@@ -106,7 +106,7 @@ class Hand:
         self.clock += duration
         self.step("Rest")
 
-    def place(  # noqa: PLR0913
+    def place(
         self,
         thing: Thing,
         side: str,
@@ -135,7 +135,7 @@ class Hand:
         self.body.first[:3, 3] += aside
         self.meet(thing)
 
-    def reach(  # noqa: PLR0913
+    def reach(
         self,
         thing: Thing,
         side: str,
@@ -258,11 +258,18 @@ class Hand:
         self.body.play(self.clock, self.clock + duration, law)
         self.clock += duration
 
-    def move(self, by: Vector, duration: float) -> None:
-        """Move straight by a displacement [m] from rest to rest."""
+    def move(
+        self, by: Vector, duration: float, *, depart: float = 0.0, arrive: float = 0.0
+    ) -> None:
+        """Move straight by a displacement [m], from and to rest or with a speed [m/s]."""
         way = np.asarray(by, dtype=float)
+        slope = duration / float(np.linalg.norm(way))
         end = self.clock + duration
-        self.body.shift(self.clock, end, lambda since: np.outer(min_jerk(since / duration), way))
+        self.body.shift(
+            self.clock,
+            end,
+            lambda since: np.outer(quintic(since / duration, depart * slope, arrive * slope), way),
+        )
         self.clock = end
 
     def spin(self, point: Vector, axis: Vector, angle_deg: float, duration: float) -> None:
@@ -367,7 +374,7 @@ class Hand:
         self.clock += duration
         return start + first, start + last
 
-    def lift_carry_lower(  # noqa: PLR0913
+    def lift_carry_lower(
         self,
         thing: Thing,
         goal: Thing,

@@ -44,7 +44,7 @@ def scene(write: Callable[[Stage], None]) -> Scene:
     return made
 
 
-def performer(  # noqa: PLR0913
+def performer(
     stage: Stage,
     *,
     height: float = 0.74,

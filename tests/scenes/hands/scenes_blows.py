@@ -34,7 +34,7 @@ def hit_a_board(s: Stage) -> None:
     s.table()
     board = s.put("board", shapes.box(0.03, 0.5, 0.5, "board"), (0.7, 0.1), tag="fixed")
     left = s.left()
-    left.idle(0.25)
+    left.idle(0.2)
     left.reach(board, "-x", 0.7, fingers=UP, speed=1.3, name="Hit")
     left.hold(0.5, board)
     left.leave(0.9)

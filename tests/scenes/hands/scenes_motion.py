@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from scenes.hands import shapes
-from scenes.hands.performer import PRESS
+from scenes.hands.performer import PRESS, Hand
 from scenes.hands.scene import performer, scene
 from scenes.hands.scenes_place import cup, fetch, finish
 from scenes.hands.stage import Stage
@@ -108,7 +108,10 @@ def stir_in_a_bowl(s: Stage) -> None:
 def drink_from_a_mug(s: Stage) -> None:
     """A mug is taken to the mouth, drunk from, and put back on the table."""
     performer(s, height=0.74, yaw_deg=-15)
-    drink(s, hold=0.3, tilt_deg=40.0)
+    right = drink(s, hold=0.3, tilt_deg=40.0)
+    steps = list(right.steps)
+    steps[-3] = replace(steps[-3], name="PutDown")
+    right.alternative = tuple(steps)
 
 
 @scene
@@ -118,23 +121,24 @@ def drink_quickly(s: Stage) -> None:
     drink(s, hold=0.0, tilt_deg=50.0)
 
 
-def drink(s: Stage, *, hold: float, tilt_deg: float) -> None:
+def drink(s: Stage, *, hold: float, tilt_deg: float) -> Hand:
     """Reach a mug, take it to the mouth, drink and put it back."""
     table, head = s.table(), s.head()
     start = (0.5, -0.1, s.height)
     mug = cup(s, start)
     right = s.right()
     right.idle(0.2)
-    fetch(right, mug, "-y", 0.9, 0.6, hold)
+    right.reach(mug, "-y", 0.9, up=0.6, along=-0.025)
+    if hold:
+        right.hold(hold, mug)
+    right.take(mug)
     face = head.body.first[:3, 3] + (0.095 * s.size, 0.0, -0.0)
     goal = face + (0.042 - PRESS, 0.0, -0.1)
-    right.move(goal - start, 1.1)
+    right.move(goal - start, 1.1, arrive=0.12)
     right.step("MoveObjTo", mug, head)
     right.dip(face, (0.0, 1.0, 0.0), -tilt_deg, 1.2)
     right.step("Drink", mug, head)
-    right.move(start - goal, 1.1)
+    right.move(start - goal, 1.1, depart=0.12)
     right.step("MoveObjTo", mug, table)
     finish(right, mug, table, 0.5, 0.9)
-    steps = list(right.steps)
-    steps[-3] = replace(steps[-3], name="PutDown")
-    right.alternative = tuple(steps)
+    return right

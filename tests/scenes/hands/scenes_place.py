@@ -55,7 +55,7 @@ def place_with_holds(s: Stage) -> None:
     performer(s, height=0.9, yaw_deg=130, size=1.06, agent="tall_man")
     table, mug = s.table(), cup(s, (0.55, -0.35))
     right = s.right()
-    right.idle(0.25)
+    right.idle(0.2)
     fetch(right, mug, "-y", 0.9, 0.6, 0.5)
     right.lift_carry_lower(mug, table, up=0.15, by=(0.0, 0.5), down=0.15)
     finish(right, mug, table, 0.5, 1.0)
@@ -86,7 +86,7 @@ def place_slowly_with_long_pauses(s: Stage) -> None:
     performer(s, height=0.7, yaw_deg=215, size=0.93, agent="old_woman")
     table, mug = s.table(), cup(s, (0.48, -0.2))
     right = s.right()
-    right.idle(0.3)
+    right.idle(0.2)
     fetch(right, mug, "-y", 1.6, 0.6, 1.5)
     right.move((0.0, 0.0, 0.16), 1.1)
     right.step("Lift", mug)
@@ -107,9 +107,7 @@ def child_places_quickly(s: Stage) -> None:
     left = s.left()
     left.idle(0.1)
     fetch(left, toy, "+y", 0.6, 0.7, 0.0)
-    left.lift_carry_lower(
-        toy, table, up=0.14, by=(0.0, -0.32), down=0.14, times=(0.45, 0.6, 0.45)
-    )
+    left.lift_carry_lower(toy, table, up=0.14, by=(0.0, -0.32), down=0.14, times=(0.45, 0.6, 0.45))
     finish(left, toy, table, 0.0, 0.6)
 
 
@@ -133,9 +131,7 @@ def take_from_above(s: Stage) -> None:
     right = s.right(claw())
     right.idle(0.2)
     fetch(right, toy, "+z", 0.9, 1.0, 0.35)
-    right.lift_carry_lower(
-        toy, table, up=0.3, by=(0.35, 0.1), down=0.3, times=(0.9, 0.9, 0.9)
-    )
+    right.lift_carry_lower(toy, table, up=0.3, by=(0.35, 0.1), down=0.3, times=(0.9, 0.9, 0.9))
     finish(right, toy, table, 0.3, 1.0)
 
 
@@ -201,7 +197,7 @@ def flat_arc(s: Stage) -> None:
 
 @scene
 def rounder_arc(s: Stage) -> None:
-    """A block is moved forty-five centimetres away in an arc of nine, at less than forty degrees."""
+    """A block is moved forty-five centimetres away in an arc of eight, rising at less than thirty degrees."""
     performer(s, height=0.85, yaw_deg=-160)
     table, toy = s.table(), brick(s, (0.42, -0.15))
     right = s.right()
@@ -225,9 +221,7 @@ def put_on_a_shelf(s: Stage) -> None:
     right = s.right()
     right.idle(0.2)
     fetch(right, mug, "-y", 0.9, 0.6, 0.4)
-    right.lift_carry_lower(
-        mug, shelf, up=0.42, by=(0.2, 0.6), down=0.12, times=(1.0, 1.1, 0.6)
-    )
+    right.lift_carry_lower(mug, shelf, up=0.42, by=(0.2, 0.6), down=0.12, times=(1.0, 1.1, 0.6))
     finish(right, mug, shelf, 0.4, 1.3)
 
 
@@ -271,12 +265,12 @@ def take_off_a_box(s: Stage) -> None:
     """A block is taken off a box with the left hand and put on the table."""
     performer(s, height=0.95, yaw_deg=-15, size=1.05)
     table = s.table()
-    s.put("box", shapes.box(0.2, 0.2, 0.1), (0.55, 0.25))
-    toy = brick(s, (0.55, 0.25, s.height + 0.1))
+    s.put("box", shapes.box(0.2, 0.2, 0.1), (0.7, 0.3))
+    toy = brick(s, (0.7, 0.3, s.height + 0.1))
     left = s.left()
     left.idle(0.2)
     fetch(left, toy, "+y", 0.9, 0.7, 0.3)
-    left.lift_carry_lower(toy, table, up=0.12, by=(0.05, -0.45), down=0.22)
+    left.lift_carry_lower(toy, table, up=0.12, by=(-0.2, -0.45), down=0.22)
     finish(left, toy, table, 0.3, 1.0)
 
 

@@ -10,6 +10,7 @@ from scenes.hands.stage import Stage
 
 UP = (0.0, 0.0, 1.0)
 LEFTWARD = (0.0, 1.0, 0.0)
+RIGHTWARD = (0.0, -1.0, 0.0)
 
 
 @scene
@@ -35,7 +36,7 @@ def push_with_a_fingertip(s: Stage) -> None:
     table, box = s.table(), s.put("box", shapes.box(0.09, 0.12, 0.12), (0.5, -0.2))
     right = s.right(shapes.pointing_hand())
     right.idle(0.2)
-    right.reach(box, "-x", 0.8, fingers=LEFTWARD)
+    right.reach(box, "-x", 0.8, fingers=RIGHTWARD)
     right.take(box)
     right.move((0.25, 0.0, 0.0), 0.9)
     right.step("Push", box, table)
@@ -50,7 +51,7 @@ def push_twice_with_a_pause(s: Stage) -> None:
     performer(s, yaw_deg=-135, size=1.06)
     table, box = s.table(), s.put("box", shapes.box(0.16, 0.2, 0.16), (0.45, 0.1), yaw_deg=0)
     left = s.left()
-    left.idle(0.25)
+    left.idle(0.2)
     left.reach(box, "-x", 0.8, fingers=UP)
     left.hold(0.3, box)
     left.take(box)
@@ -85,7 +86,7 @@ def pull_by_a_handle(s: Stage) -> None:
     table, box = s.table(), s.put("box", shapes.drawer_box(0.16, 0.2, 0.16), (0.8, -0.1))
     right = s.right(shapes.gripping_hand(0.04, 0.04))
     right.idle(0.2)
-    right.reach(box, "-x", 0.9, up=0.6, fingers=LEFTWARD)
+    right.reach(box, "-x", 0.9, up=0.6, fingers=RIGHTWARD)
     right.hold(0.4, box)
     right.take(box)
     right.move((-0.25, 0.0, 0.0), 1.0)

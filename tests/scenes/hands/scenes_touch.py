@@ -8,6 +8,7 @@ from scenes.hands.stage import Stage, other_names
 
 UP = (0.0, 0.0, 1.0)
 LEFTWARD = (0.0, 1.0, 0.0)
+RIGHTWARD = (0.0, -1.0, 0.0)
 
 
 @scene
@@ -28,7 +29,7 @@ def touch_and_return(s: Stage) -> None:
     s.table()
     mug = s.put("mug", shapes.vessel(0.042, 0.1), (0.58, 0.05))
     right = s.right()
-    right.idle(0.25)
+    right.idle(0.2)
     right.reach(mug, "-y", 0.9, up=0.6)
     right.hold(0.7, mug)
     right.leave(0.9)
@@ -70,7 +71,7 @@ def touch_the_table(s: Stage) -> None:
     table = s.table(depth=0.6, width=0.5)
     s.put("mug", shapes.vessel(0.04, 0.09), (0.8, 0.2))
     right = s.right()
-    right.idle(0.3)
+    right.idle(0.2)
     right.reach(table, "+z", 1.0, up=1.0)
     right.hold(0.9, table)
     right.leave(1.0)
@@ -85,10 +86,10 @@ def press_with_a_fingertip(s: Stage) -> None:
     box = s.put("box", shapes.box(0.2, 0.2, 0.2), (0.65, -0.05))
     right = s.right(shapes.pointing_hand())
     right.idle(0.2)
-    right.reach(box, "-x", 0.9, fingers=LEFTWARD)
+    right.reach(box, "-x", 0.9, fingers=RIGHTWARD)
     right.hold(0.5, box)
     right.leave(0.8)
-    right.idle(0.25)
+    right.idle(0.2)
 
 
 @scene
@@ -102,8 +103,8 @@ def touch_with_both_hands(s: Stage) -> None:
     right.reach(box, "-y", 0.8)
     right.hold(1.0, box)
     right.leave(0.9)
-    right.idle(0.3)
-    left.idle(0.3)
+    right.idle(0.2)
+    left.idle(0.2)
     left.reach(box, "+y", 1.0)
     left.hold(0.8, box)
     left.leave(0.9)
@@ -203,11 +204,11 @@ def withdraw_to_another_place(s: Stage) -> None:
     s.table()
     box = s.put("box", shapes.box(0.14, 0.14, 0.14), (0.55, -0.05))
     right = s.right()
-    right.idle(0.25)
+    right.idle(0.2)
     right.reach(box, "-y", 0.9)
     right.hold(0.6, box)
     right.leave(1.0, to=(0.5, -0.6, s.height + 0.35), name="Withdraw")
-    right.idle(0.3)
+    right.idle(0.2)
 
 
 @scene
@@ -295,7 +296,7 @@ def hand_on_the_chest(s: Stage) -> None:
     s.put("box", shapes.box(0.1, 0.1, 0.1), (0.6, 0.0))
     chest = s.chest()
     right = s.right()
-    right.idle(0.25)
+    right.idle(0.2)
     right.reach(chest, "+x", 1.0, fingers=LEFTWARD)
     right.hold_oneself(1.2, chest)
 
