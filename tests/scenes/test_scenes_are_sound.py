@@ -13,7 +13,46 @@ from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 
 NAMES = frozenset(
-    ["Reach", "Touch", "TouchWith", "MoveObj", "MoveObjTo", "Hit", "ResumePosture", "Rest", "PostureChange", "Withdraw", "Lift", "Carry", "Lower", "Raise", "PutDown", "Push", "Pull", "Slide", "Turn", "Tilt", "Pour", "Shake", "Stir", "Wipe", "Roll", "Throw", "Catch", "Give", "Receive", "Accept", "HandOver", "Drink", "Clap", "Salute", "TouchOneself", "Kick", "LetGo", "HitAway"]
+    {
+        "Reach",
+        "Touch",
+        "TouchWith",
+        "MoveObj",
+        "MoveObjTo",
+        "Hit",
+        "ResumePosture",
+        "Rest",
+        "PostureChange",
+        "Withdraw",
+        "Lift",
+        "Carry",
+        "Lower",
+        "Raise",
+        "PutDown",
+        "Push",
+        "Pull",
+        "Slide",
+        "Turn",
+        "Tilt",
+        "Pour",
+        "Shake",
+        "Stir",
+        "Wipe",
+        "Roll",
+        "Throw",
+        "Catch",
+        "Give",
+        "Receive",
+        "Accept",
+        "HandOver",
+        "Drink",
+        "Clap",
+        "Salute",
+        "TouchOneself",
+        "Kick",
+        "LetGo",
+        "HitAway",
+    }
 )
 """The vocabulary of hands."""
 

@@ -1,10 +1,12 @@
 """How far bodies of a stage are apart, or how deep in each other."""
 
 from itertools import pairwise
+from typing import Any
 
 import fcl
 import numpy as np
 from jaxtyping import Float
+from trimesh import Trimesh
 
 from scenes.hands.performer import Hand
 from scenes.hands.shapes import Form
@@ -21,7 +23,7 @@ def gap(
     return min(_apart(one, at, other, there) for one in first.parts for other in second.parts)
 
 
-def _apart(one, at, other, there) -> float:  # type: ignore[no-untyped-def]
+def _apart(one: Trimesh, at: np.ndarray, other: Trimesh, there: np.ndarray) -> float:
     mine, theirs = _moved(one.vertices, at), _moved(other.vertices, there)
     boxes = np.maximum(mine.min(0) - theirs.max(0), theirs.min(0) - mine.max(0))
     if (coarse := float(boxes.max())) > FAR_M:
@@ -49,13 +51,13 @@ def _distinct(normals: np.ndarray) -> np.ndarray:
     return np.unique(np.round(normals, 6), axis=0)
 
 
-def _distance(one, at, other, there) -> float:  # type: ignore[no-untyped-def]
+def _distance(one: Trimesh, at: np.ndarray, other: Trimesh, there: np.ndarray) -> float:
     bodies = [_solid(one, at), _solid(other, there)]
     result = fcl.DistanceResult()
     return float(fcl.distance(*bodies, fcl.DistanceRequest(), result))
 
 
-def _solid(part, matrix):  # type: ignore[no-untyped-def]
+def _solid(part: Trimesh, matrix: np.ndarray) -> Any:
     model = fcl.BVHModel()
     model.beginModel(len(part.faces), len(part.vertices))
     model.addSubModel(np.asarray(part.vertices), np.asarray(part.faces))

@@ -1,6 +1,8 @@
-"""Scenes in which a held thing is turned, tilted, poured from, shaken, stirred with or drunk from."""
+"""Scenes in which a held thing is turned, tilted, poured, shaken, stirred or drunk from."""
 
 from dataclasses import replace
+
+import numpy as np
 
 from scenes.hands import shapes
 from scenes.hands.performer import PRESS, Hand
@@ -132,8 +134,8 @@ def drink(s: Stage, *, hold: float, tilt_deg: float) -> Hand:
     if hold:
         right.hold(hold, mug)
     right.take(mug)
-    face = head.body.first[:3, 3] + (0.095 * s.size, 0.0, -0.0)
-    goal = face + (0.042 - PRESS, 0.0, -0.1)
+    face = head.body.first[:3, 3] + (0.095 * s.size, 0.0, 0.0)
+    goal = np.add(face, (0.042 - PRESS, 0.0, -0.1))
     right.move(goal - start, 1.1, arrive=0.12)
     right.step("MoveObjTo", mug, head)
     right.dip(face, (0.0, 1.0, 0.0), -tilt_deg, 1.2)

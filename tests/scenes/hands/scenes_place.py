@@ -197,7 +197,7 @@ def flat_arc(s: Stage) -> None:
 
 @scene
 def rounder_arc(s: Stage) -> None:
-    """A block is moved forty-five centimetres away in an arc of eight, rising at less than thirty degrees."""
+    """A block is moved forty-five centimetres away in an arc that rises eight."""
     performer(s, height=0.85, yaw_deg=-160)
     table, toy = s.table(), brick(s, (0.42, -0.15))
     right = s.right()

@@ -132,15 +132,15 @@ def push_with_both_hands(s: Stage) -> None:
 def two_things_at_once(s: Stage) -> None:
     """The right hand moves a mug, and the left a block, at the same time."""
     performer(s, yaw_deg=-65)
-    table, mug, toy = s.table(), cup(s, (0.5, -0.55)), brick(s, (0.5, 0.5))
+    table, mug, toy = s.table(), cup(s, (0.5, -0.45)), brick(s, (0.5, 0.45))
     right, left = s.right(), s.left()
     right.idle(0.2)
     fetch(right, mug, "-y", 0.9, 0.6, 0.3)
-    right.lift_carry_lower(mug, table, up=0.16, by=(0.2, 0.33), down=0.16)
+    right.lift_carry_lower(mug, table, up=0.16, by=(0.25, 0.25), down=0.16)
     finish(right, mug, table, 0.3, 0.9)
     left.idle(0.2)
     fetch(left, toy, "+y", 0.8, 0.7, 0.5)
-    left.lift_carry_lower(toy, table, up=0.2, by=(0.2, -0.33), down=0.2)
+    left.lift_carry_lower(toy, table, up=0.2, by=(0.25, -0.25), down=0.2)
     finish(left, toy, table, 0.3, 0.9)
 
 
@@ -249,7 +249,7 @@ def pass_over(s: Stage, giver: Hand, taker: Hand) -> None:
     """One hand gives the other a ball that it holds from the first frame."""
     sign = -1.0 if giver.side == "right" else 1.0
     table = s.table()
-    ball = s.put("ball", shapes.ball(0.045), (0.45, sign * 0.3, s.height + 0.265))
+    ball = s.put("ball", shapes.ball(0.06), (0.45, sign * 0.3, s.height + 0.28))
     sides = ("-y", "+y") if giver.side == "right" else ("+y", "-y")
     giver.begin_at(ball, sides[0], up=0.5, fingers=(1.0, 0.0, 0.0))
     giver.take(ball)

@@ -1,6 +1,7 @@
 """Surfaces of hands and things, each as convex parts in metres."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import trimesh
@@ -79,7 +80,7 @@ def ring(inner: float, outer: float, low: float, high: float, sections: int = 20
     """A round wall as convex wedges."""
     angles = np.linspace(0.0, 2.0 * np.pi, sections + 1)
     wedges = []
-    for first, last in zip(angles[:-1], angles[1:], strict=True):
+    for first, last in pairwise(angles):
         corners = [
             (radius * np.cos(angle), radius * np.sin(angle), z)
             for radius in (inner, outer)
