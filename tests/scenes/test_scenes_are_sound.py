@@ -7,7 +7,7 @@ import pytest
 
 from capar.model.capture import TagType
 from scenes.hands import SCENES, Scene
-from scenes.hands.clearance import between, moving
+from scenes.hands.clearance import Placed, gap, moving
 from scenes.hands.performer import Hand
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
@@ -141,11 +141,14 @@ def test_hands_are_on_what_they_touch_and_off_what_they_do_not(scene: Scene) -> 
     stage = scene.stage()
     for time in moments(stage):
         for hand in stage.hands:
+            palm = Placed.at(hand, time)
             for thing in stage.things:
                 if touching(hand, thing, time):
-                    assert between(hand, thing, time) <= HELD_M, (hand.name, thing.name, time)
+                    far = gap(palm, Placed.at(thing, time))
+                    assert far <= HELD_M, (hand.name, thing.name, time)
                 elif not touching(hand, thing, time, BESIDE_S):
-                    assert between(hand, thing, time) >= FREE_M, (hand.name, thing.name, time)
+                    far = gap(palm, Placed.at(thing, time))
+                    assert far >= FREE_M, (hand.name, thing.name, time)
 
 
 @each_scene
@@ -153,8 +156,10 @@ def test_nothing_goes_through_anything(scene: Scene) -> None:
     """No two bodies overlap by more than a pressed hand does."""
     stage = scene.stage()
     for time in moments(stage, 0.13):
+        placed = {each.name: Placed.at(each, time) for each in (*stage.hands, *stage.things)}
         for first, second in pairs(stage):
-            assert between(first, second, time) >= -DEEP_M, (first.name, second.name, time)
+            deep = -gap(placed[first.name], placed[second.name])
+            assert deep <= DEEP_M, (first.name, second.name, time)
 
 
 @each_scene
@@ -191,7 +196,9 @@ def test_things_rest_on_something(scene: Scene) -> None:
         for thing in (each for each in stage.things if each.tag is TagType.MOBILE):
             others = [each for each in stage.things if each is not thing]
             held = any(touching(hand, thing, time) for hand in stage.hands)
-            assert held or min(between(thing, each, time) for each in others) < 0.001, thing.name
+            if not held:
+                own = Placed.at(thing, time)
+                assert min(gap(own, Placed.at(each, time)) for each in others) < 0.001, thing.name
 
 
 @each_scene

@@ -1,6 +1,7 @@
 """Surfaces of hands and things, each as convex parts in metres."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -23,7 +24,7 @@ class Form:
         """All parts as one."""
         return trimesh.util.concatenate(list(self.parts))
 
-    @property
+    @cached_property
     def vertices(self) -> np.ndarray:
         """Corners of all parts."""
         return np.concatenate([each.vertices for each in self.parts])
