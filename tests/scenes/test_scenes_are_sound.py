@@ -1,6 +1,7 @@
 """The scenes themselves: what they claim is what they perform. Nothing is observed here."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from scenes.hands.clearance import Placed, gap, moving
 from scenes.hands.performer import Hand
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
+from scenes.score import judged
 
 NAMES = frozenset(
     {
@@ -74,7 +76,7 @@ FASTEST_M_S = 2.6
 each_scene = pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 
 
-def moments(stage: Stage, step_s: float = 0.1) -> list[float]:
+def moments(stage: Stage, step_s: float = 0.2) -> list[float]:
     """Times at which a scene is looked at [s]."""
     return [float(each) for each in np.arange(0.0, stage.duration_s, step_s)]
 
@@ -127,6 +129,21 @@ def test_steps_cover_the_capture(scene: Scene, rate_hz: float) -> None:
 
 
 @each_scene
+def test_the_truth_itself_is_counted_as_right(scene: Scene) -> None:
+    """Steps as written score, and steps with a border too late score by their names only."""
+    for unit in scene.stage().expectation(100.0).units:
+        for steps in filter(None, (unit.steps, unit.alternative)):
+            outcome = judged(scene.name, unit, steps)
+            assert outcome.named
+            assert outcome.placed
+            late = tuple(replace(each, end_s=each.end_s + 0.2) for each in steps)
+            outcome = judged(scene.name, unit, late)
+            assert outcome.named
+            assert not outcome.placed
+        assert not judged(scene.name, unit, unit.steps[:-1]).named
+
+
+@each_scene
 def test_same_seed_same_capture(scene: Scene) -> None:
     """The noise is drawn from the seed alone."""
     first, again, other = (scene(100.0, 0.0005, 0.002, seed)[0] for seed in (0, 0, 1))
@@ -155,7 +172,7 @@ def test_hands_are_on_what_they_touch_and_off_what_they_do_not(scene: Scene) -> 
 def test_nothing_goes_through_anything(scene: Scene) -> None:
     """No two bodies overlap by more than a pressed hand does."""
     stage = scene.stage()
-    for time in moments(stage, 0.13):
+    for time in moments(stage, 0.33):
         placed = {each.name: Placed.at(each, time) for each in (*stage.hands, *stage.things)}
         for first, second in pairs(stage):
             deep = -gap(placed[first.name], placed[second.name])

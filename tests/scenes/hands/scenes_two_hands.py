@@ -208,7 +208,7 @@ def push_and_lift_at_once(s: Stage) -> None:
     left.take(box)
     left.move((0.3, 0.0, 0.0), 1.1)
     left.step("Push", box, table)
-    left.hold(0.5, box, table)
+    left.hold(0.6, box, table)
     left.leave(1.0)
     left.idle(0.2)
 
