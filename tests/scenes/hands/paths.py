@@ -10,13 +10,13 @@ from scipy.spatial.transform import Rotation
 
 Poses = Float[np.ndarray, "frames 4 4"]
 Times = Float[np.ndarray, "frames"]
-Vector = Sequence[float]
+Vector = Sequence[float] | Float[np.ndarray, "3"]
 
 
 def min_jerk(share: Times) -> Times:
     """Way done of a minimum-jerk motion, from 0 to 1, after a share of its time."""
     tau = np.clip(share, 0.0, 1.0)
-    return np.clip(tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2), 0.0, 1.0)
+    return np.asarray(np.clip(tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2), 0.0, 1.0))
 
 
 def quintic(share: Times, first: float, last: float) -> Times:
@@ -62,8 +62,8 @@ def facing(ahead: Vector, fingers: Vector) -> Rotation:
 
 def about(point: Vector, axis: Vector, angles: Times) -> Poses:
     """Turns of the world about an axis through a point, one for each angle [rad]."""
-    axis = np.asarray(axis, dtype=float)
-    turns = Rotation.from_rotvec(np.outer(angles, axis / np.linalg.norm(axis)))
+    along = np.asarray(axis, dtype=float)
+    turns = Rotation.from_rotvec(np.outer(angles, along / np.linalg.norm(along)))
     out = np.tile(np.eye(4), (len(angles), 1, 1))
     out[:, :3, :3] = turns.as_matrix()
     out[:, :3, 3] = np.asarray(point) - turns.apply(np.asarray(point))

@@ -31,6 +31,9 @@ LEAD = 0.1
 EASE = 0.12
 """Speed at which a hand meets or leaves what it touches gently [m/s]."""
 
+USUAL_M_S = 1.45
+"""A hand that reaches or goes home is no faster [m/s]."""
+
 GRAVITY = 9.81
 """Acceleration of what flies freely [m/s2]."""
 
@@ -230,18 +233,22 @@ class Hand:
     def fly(
         self, goal: np.ndarray, duration: float, *, arrive: float = 0.0, depart: float = 0.0
     ) -> None:
-        """Move to a pose along a curve; with a speed [m/s] it leaves or meets a surface."""
+        """Move to a pose along a curve; with a speed [m/s] it leaves or meets a surface.
+
+        It takes longer than told if the hand would be hurried otherwise.
+        """
         start = self.now
         first, last = start[:3, 3], goal[:3, 3]
         back, ahead = -start[:3, 0], goal[:3, 0]
         leads_out = [first + LEAD * back, first + 2 * LEAD * back] if depart else []
         leads_in = [last - 2 * LEAD * ahead, last - LEAD * ahead] if arrive else []
         free = 4 - len(leads_out) - len(leads_in)
-        ways = np.linspace(0.0, 1.0, free + 1)[1:-1] if free > 1 else []
+        ways = np.linspace(0.0, 1.0, max(free, 1) + 1)[1:-1]
         before = (leads_out or [first])[-1]
         after = (leads_in or [last])[0]
         between = [before + way * (after - before) for way in ways]
         controls = np.array([first, *leads_out, *between, *leads_in, last])
+        duration = max(duration, 0.0 if arrive > EASE else _unhurried(controls))
         slope = duration / ((len(controls) - 1) * LEAD)
         turns = Slerp([0.0, 1.0], Rotation.from_matrix([start[:3, :3], goal[:3, :3]]))
 
@@ -262,7 +269,7 @@ class Hand:
         self, by: Vector, duration: float, *, depart: float = 0.0, arrive: float = 0.0
     ) -> None:
         """Move straight by a displacement [m], from and to rest or with a speed [m/s]."""
-        way = np.asarray(by, dtype=float)
+        way = np.array(by, dtype=float)
         slope = duration / float(np.linalg.norm(way))
         end = self.clock + duration
         self.body.shift(
@@ -296,7 +303,7 @@ class Hand:
 
     def swing(self, by: Vector, rate_hz: float, cycles: int) -> None:
         """Swing to one side and back several times, starting and ending in place."""
-        way = np.asarray(by, dtype=float)
+        way = np.array(by, dtype=float)
         duration = cycles / rate_hz
 
         def law(since: Times) -> np.ndarray:
@@ -320,7 +327,7 @@ class Hand:
 
     def hop(self, height: float, by: Vector, duration: float) -> float:
         """Move aside by an arc, up and down again; tells when it is highest [s]."""
-        way = np.asarray(by, dtype=float)
+        way = np.array(by, dtype=float)
 
         def law(since: Times) -> np.ndarray:
             done = min_jerk(since / duration)
@@ -438,6 +445,13 @@ def min_jerk_flat(share: Times) -> Times:
     end = 1.0 - even * (1.0 - tau) ** 2 / (2.0 * ramp)
     middle = even * (tau - ramp / 2.0)
     return np.asarray(np.where(tau < ramp, start, np.where(tau > 1.0 - ramp, end, middle)))
+
+
+def _unhurried(controls: np.ndarray) -> float:
+    """How long a curve takes at least if the hand keeps below the usual speed [s]."""
+    share = np.linspace(0.0, 1.0, 201)
+    places = bezier(min_jerk(share), controls)
+    return float(np.linalg.norm(np.diff(places, axis=0), axis=1).max() * 200.0 / USUAL_M_S)
 
 
 def _speed(share: float) -> float:

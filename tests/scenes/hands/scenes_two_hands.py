@@ -72,7 +72,7 @@ def carry_a_tray_with_cups(s: Stage) -> None:
         s.put(name, shapes.vessel(0.035, 0.08, "cup"), (0.55, y, s.height + 0.008))
         for name, y in (("first_cup", -0.28), ("second_cup", -0.12))
     ]
-    hands = both_reach(s, tray, 0.9, 0.75, 0.4)
+    hands = both_reach(s, tray, 1.05, 0.75, 0.4)
     right, left = hands
     since = len(right.steps)
     left.join(tray)
@@ -137,7 +137,7 @@ def two_things_at_once(s: Stage) -> None:
     right.idle(0.2)
     fetch(right, mug, "-y", 0.9, 0.6, 0.3)
     right.lift_carry_lower(mug, table, up=0.16, by=(0.25, 0.25), down=0.16)
-    finish(right, mug, table, 0.3, 0.9)
+    finish(right, mug, table, 0.5, 0.9)
     left.idle(0.2)
     fetch(left, toy, "+y", 0.8, 0.7, 0.5)
     left.lift_carry_lower(toy, table, up=0.2, by=(0.25, -0.25), down=0.2)
@@ -158,7 +158,7 @@ def steady_a_carton_and_fill_it(s: Stage) -> None:
     finish(right, ball, carton, 0.4, 1.2)
     left.idle(0.2)
     left.reach(carton, "+y", 0.8)
-    left.hold(right.clock - 0.9 - left.clock, carton)
+    left.hold(right.clock - 1.15 - left.clock, carton)
     left.leave(0.7)
     left.idle(0.2)
 
@@ -208,7 +208,7 @@ def push_and_lift_at_once(s: Stage) -> None:
     left.take(box)
     left.move((0.3, 0.0, 0.0), 1.1)
     left.step("Push", box, table)
-    left.hold(0.6, box, table)
+    left.hold(1.1, box, table)
     left.leave(1.0)
     left.idle(0.2)
 
