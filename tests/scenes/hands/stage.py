@@ -1,0 +1,173 @@
+"""A scene while it is written: things, hands, and from them the capture and the expectation."""
+
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from capar.model.capture import Agent, Capture, Sensor, Shape, Stream, TagObject, TagType
+from scenes.hands import shapes
+from scenes.hands.expectation import Expectation, Step, Unit
+from scenes.hands.paths import Body, Poses, Times, Vector, pose
+from scenes.hands.performer import Hand
+from scenes.hands.things import Thing
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What a tracker adds to a pose: standard deviations in metres and radians."""
+
+    position_m: float
+    rotation_rad: float
+
+    def added(self, poses: Poses, random: np.random.Generator) -> Poses:
+        """Noisy poses."""
+        out = poses.copy()
+        out[:, :3, 3] += self.position_m * random.standard_normal((len(out), 3))
+        turns = Rotation.from_rotvec(self.rotation_rad * random.standard_normal((len(out), 3)))
+        out[:, :3, :3] = turns.as_matrix() @ out[:, :3, :3]
+        return out
+
+
+@dataclass
+class Stage:
+    """The scene in its own frame: the performer at the origin, looking along x, z up."""
+
+    name: str
+    height: float = 0.74
+    """Height of the table's top [m]."""
+
+    yaw_deg: float = 0.0
+    """How the scene's x axis stands in the capture's world."""
+
+    offset: tuple[float, float] = (0.0, 0.0)
+    """Where the performer stands in the capture's world [m]."""
+
+    size: float = 1.0
+    """Of the performer, relative to an adult of middle size."""
+
+    agent: str = "agent"
+    contact_minimum_s: float | None = None
+    things: list[Thing] = field(default_factory=list)
+    hands: list[Hand] = field(default_factory=list)
+
+    def put(
+        self, name: str, form: shapes.Form, at: Vector, *, yaw_deg: float = 0.0, tag: str = "mobile"
+    ) -> Thing:
+        """Set a thing with its origin at a place; two coordinates mean on the table."""
+        place = (*at, self.height) if len(at) == 2 else tuple(at)
+        first = pose(place, Rotation.from_euler("z", yaw_deg, degrees=True))
+        thing = Thing(Body(name, first), form, TagType(tag))
+        self.things.append(thing)
+        return thing
+
+    def table(self, depth: float = 0.7, width: float = 1.4) -> Thing:
+        """The table in front of the performer."""
+        form = shapes.Form("table", (shapes.block((0, -width / 2, -0.04), (depth, width / 2, 0)),))
+        return self.put("table", form, (0.3, 0.0, self.height), tag="fixed")
+
+    def head(self) -> Thing:
+        """The performer's head, standing or sitting as the table's height suggests."""
+        place = (0.02, 0.0, self.height + 0.45 * self.size)
+        return self.put("head", shapes.ball(0.095 * self.size, "head"), place, tag="self")
+
+    def chest(self) -> Thing:
+        """The performer's chest."""
+        low, high = (-0.1, -0.16, -0.14), (0.1, 0.16, 0.14)
+        form = shapes.Form("chest", (shapes.block(low, high),))
+        return self.put("chest", form, (-0.06, 0.0, self.height + 0.18), tag="self")
+
+    def hand(self, side: str, form: shapes.Form | None = None, home: Vector | None = None) -> Hand:
+        """A hand of the performer at its home posture."""
+        sign = -1.0 if side == "right" else 1.0
+        shape = (form or shapes.flat_hand(side)).scaled(self.size)
+        place = home or (0.12, sign * 0.28 * self.size, self.height + 0.12)
+        hand = Hand.at_home(f"{side}_hand", side, shape, place)
+        self.hands.append(hand)
+        return hand
+
+    def right(self, form: shapes.Form | None = None, home: Vector | None = None) -> Hand:
+        """The right hand."""
+        return self.hand("right", form, home)
+
+    def left(self, form: shapes.Form | None = None, home: Vector | None = None) -> Hand:
+        """The left hand."""
+        return self.hand("left", form, home)
+
+    @property
+    def duration_s(self) -> float:
+        """When the last hand has finished [s]."""
+        return max(each.clock for each in self.hands)
+
+    def times(self, rate_hz: float) -> Times:
+        """The capture's time stamps [s]."""
+        return np.arange(round(self.duration_s * rate_hz) + 1) / rate_hz
+
+    def capture(self, rate_hz: float, noise: Noise, seed: int) -> Capture:
+        """What a tracker records of the scene."""
+        times = self.times(rate_hz)
+        random = np.random.default_rng([seed, zlib.crc32(self.name.encode())])
+        world = pose((*self.offset, 0.0), Rotation.from_euler("z", self.yaw_deg, degrees=True))
+
+        def stream(body: Body, *, tracked: bool) -> Stream:
+            poses = world @ body.poses(times)
+            poses = noise.added(poses, random) if tracked else poses
+            turned = Rotation.from_matrix(poses[:, :3, :3]).as_quat(scalar_first=True)
+            return Stream(times, poses[:, :3, 3], turned)
+
+        sensors = [
+            Sensor(
+                each.name,
+                "hand",
+                each.side,
+                f"{each.side}_arm",
+                stream(each.body, tracked=True),
+                _surface(each.form),
+            )
+            for each in self.hands
+        ]
+        objects = [
+            TagObject(
+                each.name,
+                each.tag,
+                stream(each.body, tracked=each.tag is not TagType.FIXED),
+                _surface(each.form),
+                kind=each.form.kind,
+            )
+            for each in self.things
+        ]
+        return Capture(
+            self.name,
+            tuple(sensors),
+            tuple(objects),
+            agent=Agent(self.agent),
+            contact_minimum_s=self.contact_minimum_s,
+        )
+
+    def expectation(self, rate_hz: float) -> Expectation:
+        """What each hand does in it, up to the last frame."""
+        end = float(self.times(rate_hz)[-1])
+        return Expectation(
+            self.name,
+            tuple(
+                Unit(each.name, drawn_out(each.steps, end), drawn_out(each.alternative, end))
+                for each in self.hands
+            ),
+        )
+
+
+def _surface(form: shapes.Form) -> Shape:
+    mesh = form.mesh
+    return Shape(np.asarray(mesh.vertices), np.asarray(mesh.faces), description=form.kind)
+
+
+def other_names(hand: Hand, **names: str) -> tuple[Step, ...]:
+    """A hand's steps with some names exchanged."""
+    return tuple(replace(each, name=names.get(each.name, each.name)) for each in hand.steps)
+
+
+def drawn_out(steps: Sequence[Step], end: float) -> tuple[Step, ...]:
+    """The steps, the last one drawn out to the end of the capture [s]."""
+    return (*steps[:-1], *(replace(each, end_s=end) for each in steps[-1:]))
