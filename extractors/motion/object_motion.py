@@ -62,8 +62,8 @@ def rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Rest
     """Places where the object rests, in time, with all frames at which it is not beyond the floor.
 
     A rest pose is extended from a stretch in which the object is slow for the least duration of
-    rest; its place is the middle of the poses there; it holds all contiguous frames within the floor of
-    that place, so the last millimetres of a landing belong to it.
+    rest; its place is the middle of the poses there; it holds all contiguous frames within the
+    floor of that place, so the last millimetres of a landing belong to it.
     """
     known = _CACHE.setdefault(poses, {})
     if (floor, thresholds) not in known:
