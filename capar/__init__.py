@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from capar.pipelines.explanation import explain as explain
     from capar.pipelines.explanation import why_not as why_not
     from capar.pipelines.language import describe as describe
+    from capar.pipelines.observation import calibrate as calibrate
     from capar.pipelines.observation import observe as observe
-    from extractors.calibration import calibrate as calibrate
     from extractors.readers.bundle.capture_toml import read_capture as read_capture
     from kb.actionary import Actionary as Actionary
 
@@ -43,7 +43,7 @@ _LAZY = {
     "CaparError": "capar.model.errors",
     "Capture": "capar.model.capture",
     "Observation": "capar.model.observation",
-    "calibrate": "extractors.calibration",
+    "calibrate": "capar.pipelines.observation",
     "describe": "capar.pipelines.language",
     "explain": "capar.pipelines.explanation",
     "from_json": "capar.model.json_form",

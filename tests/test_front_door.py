@@ -7,6 +7,7 @@ import pickle
 import pkgutil
 import subprocess
 import sys
+from collections.abc import Callable
 from copy import deepcopy
 from importlib import resources
 from pathlib import Path
@@ -102,3 +103,22 @@ def test_an_observation_can_be_sent_to_another_process(make: object) -> None:
     seen = make()  # type: ignore[operator]
     assert pickle.loads(pickle.dumps(seen)) == seen
     assert deepcopy(seen) == seen
+
+
+def test_a_calibration_is_made_of_a_place_as_of_a_capture() -> None:
+    assert capar.calibrate(DEMO) == capar.calibrate(capar.read_capture(DEMO))
+
+
+@pytest.mark.parametrize("function", [capar.observe, capar.explain, capar.calibrate])
+def test_what_is_neither_a_capture_nor_a_place_is_refused_by_its_type(
+    function: Callable[[object], object],
+) -> None:
+    with pytest.raises(
+        capar.CaparError, match=r"expected a Capture, or the folder .* found int: 3"
+    ):
+        function(3)
+
+
+def test_a_document_that_is_no_observation_is_not_called_an_old_one() -> None:
+    with pytest.raises(capar.CaparError, match="expected an observation, found none"):
+        capar.from_json("{}")

@@ -86,11 +86,15 @@ def observe(
         observation = observe_measured(trial, measurements, rules=base, name=name)
     if choice is OnUnknown.FAIL:
         _refuse(observation)
-    _print(observation, json=json, script=script, pars=pars)
+    # Files first: a reader of the output who stops early, as `head` does, ends the command.
+    done = []
     if plot:
-        _draw(observation, trial, measurements, plot)
+        done.append(_draw(observation, trial, measurements, plot))
     if actionary:
-        _keep(observation, actionary, name=name, wait_s=wait)
+        done.append(_keep(observation, actionary, name=name, wait_s=wait))
+    _print(observation, json=json, script=script, pars=pars)
+    for line in done:
+        typer.echo(line, err=True)
 
 
 def _prove_output(*, json: bool, script: bool, pars: bool, plot: Path | None) -> None:
@@ -108,7 +112,7 @@ def _prove_output(*, json: bool, script: bool, pars: bool, plot: Path | None) ->
         prove_place(plot, suffixes=SUFFIXES)
 
 
-def _keep(observation: "Observation", place: str, *, name: str, wait_s: float) -> None:
+def _keep(observation: "Observation", place: str, *, name: str, wait_s: float) -> str:
     from kb import Actionary
 
     with Actionary.open(place, wait_s=wait_s) as store:
@@ -116,7 +120,7 @@ def _keep(observation: "Observation", place: str, *, name: str, wait_s: float) -
         added = store.add(observation, name=name or known or None)
     what = "seen before" if known else "seen for the first time"
     again = ", in place of the earlier observation of this capture" if added.replaced else ""
-    typer.echo(f"kept {added.name} in {place}: {added.action}, {what}{again}", err=True)
+    return f"kept {added.name} in {place}: {added.action}, {what}{again}"
 
 
 def _print(observation: "Observation", *, json: bool, script: bool, pars: bool) -> None:
@@ -174,7 +178,7 @@ def _tables(observation: "Observation") -> None:
 
 def _draw(
     observation: "Observation", capture: "Capture", measurements: "Measurements", path: Path
-) -> None:
+) -> str:
     from capar.cli._output import written
     from capar.views.picture import draw
 
@@ -185,7 +189,7 @@ def _draw(
     lost = {name: each.lost for name, each in measurements.bodies.poses.items()}
     with written(path) as draft:
         draw(observation, speeds, path=draft, lost=lost)
-    typer.echo(f"drew {path}", err=True)
+    return f"drew {path}"
 
 
 def _refuse(observation: "Observation") -> None:

@@ -5,7 +5,7 @@ measured as the whole would be, as far as the horizons that it states reach.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from types import MappingProxyType
 
 from capar.model.errors import UnknownNameError
@@ -139,6 +139,11 @@ class Calibration:
     def __post_init__(self) -> None:
         """Make the thresholds read-only."""
         object.__setattr__(self, "thresholds", MappingProxyType(dict(self.thresholds)))
+
+    def __reduce__(self) -> "tuple[type[Calibration], tuple[object, ...]]":
+        """Pickle it by its fields: a read-only mapping cannot be pickled itself."""
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        return Calibration, tuple({**values, "thresholds": dict(self.thresholds)}.values())
 
     def sensor(self, name: str) -> BodyCalibration:
         """That of the sensor of a name.

@@ -29,6 +29,8 @@ def take_schema(content: dict[str, Any], where: str) -> None:
     Raises:
         ParError: It is another one than this program's; the message says what to do.
     """
+    if "schema" not in content and "links" not in content:
+        raise ParError(f"{_place(where)}expected an observation, found none of its fields")
     found = _version(content, where)
     if found < SCHEMA:
         raise ParError(

@@ -11,12 +11,12 @@ from capar.model.capture import Capture
 from capar.model.observation import Observation, Segment
 from capar.model.segment_address import SegmentAddress, find_segment
 from capar.pipelines.observation import observe_measured
+from capar.pipelines.trials import trial_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.explain.explanation import Explainer, Explanation
 from capar_rules.explain.why_not import Alternative
 from capar_rules.explain.why_not import why_not as alternatives
 from extractors.measure import Measurements, measure
-from extractors.readers.bundle.capture_toml import read_capture
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
@@ -87,7 +87,7 @@ def why_not(
 
 
 def _explained(capture: Capture | Path | str, rules: Profile | str) -> Explained:
-    trial = capture if isinstance(capture, Capture) else read_capture(capture)
+    trial = trial_of(capture)
     return explained(trial, rules=profile(rules) if isinstance(rules, str) else rules)
 
 

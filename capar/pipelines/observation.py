@@ -5,10 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from capar import __version__
+from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Notice, notice
 from capar.model.facts import Doubted, Fact
 from capar.model.observation import Observation, Segment
 from capar.model.par import ConstraintLocation
+from capar.pipelines.trials import trial_of
 from capar_rules.borders.deflicker import steady
 from capar_rules.borders.ranking import rank
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
@@ -16,9 +18,9 @@ from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key, infer
 from capar_rules.pars.primitive_pars import Measured, ipars, upars
 from extractors.bodies.observed_objects import observed_object
-from extractors.calibration import calibrate, thresholds_of
+from extractors.calibration import calibrate as calibration_of
+from extractors.calibration import thresholds_of
 from extractors.measure import Measurements, measure
-from extractors.readers.bundle.capture_toml import read_capture
 from extractors.segments.locations import constraint_location
 from extractors.segments.motion_kinds import moved_path
 from extractors.segments.styles import style
@@ -43,8 +45,23 @@ def observe(
     Raises:
         CaparError: The capture or the rules have a fault.
     """
-    trial = capture if isinstance(capture, Capture) else read_capture(capture)
+    trial = trial_of(capture)
     return observe_measured(trial, _measurements(trial, thresholds), rules=rules, name=name)
+
+
+def calibrate(
+    capture: Capture | Path | str, *, thresholds: Thresholds | None = None
+) -> Calibration:
+    """Decide what holds for a whole recording: noise, floors, contact distances, horizons.
+
+    Args:
+        capture: A capture, or where to read it.
+        thresholds: What extraction decides by; None for the usual.
+
+    Raises:
+        CaparError: The capture has a fault.
+    """
+    return calibration_of(trial_of(capture), thresholds)
 
 
 def observe_measured(
@@ -110,7 +127,7 @@ def facts_program(
 
 
 def _measurements(capture: Capture, thresholds: Thresholds | None) -> Measurements:
-    return measure(capture, calibrate(capture, thresholds) if thresholds else None)
+    return measure(capture, calibration_of(capture, thresholds) if thresholds else None)
 
 
 def _segments(inference: Inference) -> Iterable[Segment]:

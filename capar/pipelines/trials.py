@@ -1,0 +1,23 @@
+"""The capture that a user means: a value, or a place to read one from."""
+
+from pathlib import Path
+
+from capar.model.capture import Capture
+from capar.model.errors import CaparError
+from extractors.readers.bundle.capture_toml import read_capture
+
+
+def trial_of(capture: Capture | Path | str) -> Capture:
+    """The capture itself, or read from a folder with a capture.toml.
+
+    Raises:
+        CaparError: It is neither a capture nor a place, or there is none at that place.
+    """
+    if isinstance(capture, Capture):
+        return capture
+    if not isinstance(capture, str | Path):
+        raise CaparError(
+            f"expected a Capture, or the folder of a capture.toml, found "
+            f"{type(capture).__name__}: {capture!r}"
+        )
+    return read_capture(capture)
