@@ -26,7 +26,7 @@ from capar_rules.engine.profiles import profile
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
 from kb.language.describe import describe
-from kb.reports.complex_drawing import as_text
+from kb.reports.complex_action_drawing import as_text
 from kb.store_checks import check
 
 BUNDLE = """\

@@ -6,10 +6,10 @@ import mink
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.body.anthropometry import Measures
 from capar.body.gaze import look_tasks, share_costs
 from capar.body.grips import PITCHES, YAWS, side_grip, top_grip
 from capar.body.human import Human
-from capar.body.measures import Measures
 from capar.body.scripts import SIDES, Hand, Move, Phase, Script, between, minimum_jerk
 from capar.body.things import Scene, Thing
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
+from capar.body.anthropometry import measures_of
 from capar.body.fitting import Fit, FitError, fit
 from capar.body.human import Human
-from capar.body.measures import measures_of
 from capar.body.mounting import calibrate, places
 from capar.model.capture import Capture, Stream
 

@@ -4,8 +4,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.body.anthropometry import Measures
 from capar.body.mannequin import PALM
-from capar.body.measures import Measures
 from capar.body.things import Thing
 
 AIR_M = 0.0005

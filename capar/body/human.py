@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from jaxtyping import Bool, Float
 
-from capar.body.measures import Measures
+from capar.body.anthropometry import Measures
 from capar.body.model import body_spec
 from capar.model.errors import CaparError, UnknownNameError
 

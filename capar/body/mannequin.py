@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from capar.body.measures import Measures
+from capar.body.anthropometry import Measures
 from capar.body.skeleton import BALL, HEEL, Segment, eyes_between
 from capar.body.tables import is_right, mirrored, table
 

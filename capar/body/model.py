@@ -8,9 +8,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
+from capar.body.anthropometry import Measures
 from capar.body.inertia import Inertia, inertias
 from capar.body.mannequin import Form, forms, palm_centre
-from capar.body.measures import Measures
 from capar.body.skeleton import Segment, eyes_between, skeleton
 from capar.body.tables import is_right, mirrored, table
 

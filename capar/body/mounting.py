@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.body.anthropometry import Measures
 from capar.body.human import Human
-from capar.body.measures import Measures
 from capar.body.model import site_rows
 from capar.model import geometry
 from capar.model.capture import Stream

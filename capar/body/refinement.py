@@ -13,9 +13,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.body.anthropometry import Measures
 from capar.body.fitting import Fit
 from capar.body.human import ROOT_SIZE, Human
-from capar.body.measures import Measures
 from capar.body.mounting import PLACEMENT_M, Calibration, Mount, mounted, places
 from capar.body.targets import Target, target
 from capar.model.capture import Stream

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from capar.body.measures import Measures
+from capar.body.anthropometry import Measures
 from capar.body.tables import is_right, mirrored
 
 SPINE = {

@@ -9,10 +9,10 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
+from capar.body.anthropometry import Measures, estimate_measures
 from capar.body.conventions import Convention
 from capar.body.fitting import LARGEST_STEP, SOLVER
 from capar.body.human import Human
-from capar.body.measures import Measures, estimate_measures
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
 from capar.model.errors import CaparError
 

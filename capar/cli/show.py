@@ -18,7 +18,7 @@ def show(
     """Draw the complex action NAME: its steps, their shares of time, and who was seen to do it."""
     from capar.model.errors import UnknownNameError
     from kb import Actionary
-    from kb.reports.complex_drawing import FORMATS
+    from kb.reports.complex_action_drawing import FORMATS
 
     if format_ not in FORMATS:
         raise UnknownNameError("format", format_, FORMATS)

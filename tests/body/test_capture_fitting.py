@@ -9,11 +9,11 @@ from typer.testing import CliRunner
 from virtual_bodies.trials import rms
 
 from capar.body.acting import RELAXED
+from capar.body.anthropometry import ready_made
 from capar.body.bundles import write_bundle
 from capar.body.capture_fitting import fit_capture, worn
 from capar.body.fitting import FitError
 from capar.body.human import Human
-from capar.body.measures import ready_made
 from capar.body.mounting import places
 from capar.body.performing import perform
 from capar.body.recording import record, truth_of

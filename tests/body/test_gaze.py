@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from capar.body.anthropometry import ready_made
 from capar.body.gaze import look_at, measured_gaze
 from capar.body.human import Human
-from capar.body.measures import ready_made
 
 
 def _point(human: Human, azimuth: float, elevation: float, far_m: float) -> np.ndarray:

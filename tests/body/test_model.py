@@ -4,9 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from capar.body.hands import GraspError, grasp
-from capar.body.human import Human, PostureError
-from capar.body.measures import (
+from capar.body.anthropometry import (
     Measures,
     MeasuresError,
     estimate_measures,
@@ -14,6 +12,8 @@ from capar.body.measures import (
     measures_of,
     ready_made,
 )
+from capar.body.hands import GraspError, grasp
+from capar.body.human import Human, PostureError
 from capar.body.model import body_spec, sensor_sites, site_rows
 from capar.body.skeleton import skeleton
 from capar.body.tables import is_right, mirrored, table

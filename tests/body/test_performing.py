@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from capar.body.anthropometry import ready_made
 from capar.body.bundles import write_bundle
 from capar.body.gaze import lines_of_sight
 from capar.body.human import Human
-from capar.body.measures import ready_made
 from capar.body.performing import Performance, PerformanceError, perform
 from capar.body.recording import record, truth_of
 from capar.body.scripts import (
