@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Iterable
 from contextlib import suppress
+from math import ceil
 from pathlib import Path
 
 from capar.model.errors import CaparError
@@ -66,7 +67,7 @@ def _limit_memory() -> None:
 
 
 def _limit_time() -> None:
-    _limit(resource.RLIMIT_CPU, int(time.process_time()) + CPU_S)
+    _limit(resource.RLIMIT_CPU, ceil(time.process_time()) + CPU_S)
 
 
 def _limit(kind: int, value: int) -> None:
