@@ -77,6 +77,7 @@ def _root(
 
 def main() -> None:
     """Run a command; a user's mistake goes to standard error and exits with 2."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads spin, and sum in any order
     try:
         app()
     except CaparError as error:

@@ -68,14 +68,17 @@ def observe(
     """Say what was done in CAPTURE: segments of each link, and the complex PAR they make."""
     import sys
 
-    from capar.pipelines.observation import observe_measured
-    from capar_rules.authoring.user_rules import new_rules_folder
-    from extractors.measure import measure
     from extractors.readers.bundle.capture_toml import read_capture
 
     _prove_output(json=json, script=script, pars=pars, plot=plot)
     base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
+
+    # A mistake in the capture is reported before these are loaded, which takes longer.
+    from capar.pipelines.observation import observe_measured
+    from capar_rules.authoring.user_rules import new_rules_folder
+    from extractors.measure import measure
+
     measurements = measure(trial)
     observation = observe_measured(trial, measurements, rules=base, name=name)
     terminal = sys.stdin.isatty() and sys.stderr.isatty()

@@ -6,8 +6,6 @@ from pathlib import Path
 from capar.model.errors import RuleError
 from capar_rules.engine.profiles import DEFAULT, Profile
 from capar_rules.engine.profiles import profile as unchecked_profile
-from capar_rules.lint.checking import answers
-from capar_rules.lint.file_checks import Request
 from capar_rules.lint.findings import Finding, errors
 
 HARMLESS = {"no-primitive", "nothing-fits"}
@@ -72,6 +70,9 @@ def faults(files: Sequence[Path], *, profile: str) -> tuple[Finding, ...]:
 
 def faults_of_each(sets: Sequence[Sequence[Path]], *, profile: str) -> list[tuple[Finding, ...]]:
     """The same for several sets of files, each set by itself, in order."""
+    from capar_rules.lint.checking import answers
+    from capar_rules.lint.file_checks import Request
+
     requests = [Request(tuple(map(str, files)), profile) for files in sets]
     return [
         tuple(finding for finding in errors(found) if finding.code not in HARMLESS)
