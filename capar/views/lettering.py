@@ -1,5 +1,6 @@
 """Where names go in a picture: inside a bar, above it, or in the legend."""
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -56,11 +57,12 @@ def shortened(text: str, *, points: float, widest_in: float) -> str:
     """The text, cut to a width [inches] where it is wider."""
     if width_in(text, points=points) <= widest_in:
         return text
-    most = max(
-        (end for end in range(len(text)) if width_in(f"{text[:end]}…", points=points) <= widest_in),
-        default=0,
-    )
-    return f"{text[:most].rstrip()}…"
+
+    def width_until(end: int) -> float:
+        return width_in(f"{text[:end]}…", points=points)
+
+    first_too_wide = bisect_right(range(len(text)), widest_in, key=width_until)
+    return f"{text[: max(first_too_wide - 1, 0)].rstrip()}…"
 
 
 def place(
