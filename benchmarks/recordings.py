@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from capar.evaluation.carries import Carry, Miss, measure, near
+from capar.evaluation.carry_timing import Carry, Miss, measure, near
 from capar.evaluation.containers import halved, landings
 from capar.evaluation.grasps import Change, changes, compare, read_seen
 from extractors.readers.bundle.capture_toml import read_capture, read_files, takes

@@ -42,7 +42,7 @@ from extractors.bodies.bodies import Bodies, bodies_of
 from extractors.bodies.poses import Poses
 from extractors.calibration import calibrated, prove_clock, thresholds_of
 from extractors.contact.contacts import Contact, contacts
-from extractors.handling import handling
+from extractors.handling_facts import handling
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.relations.attention import Attention, attention

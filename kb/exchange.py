@@ -20,7 +20,7 @@ from pyoxigraph import (
 from capar.model.errors import FileError, UnknownNameError
 from kb.errors import SchemaError, ShapeError
 from kb.lookup.stored import observations
-from kb.store import names, schema, shapes
+from kb.store import names, schema, shacl_validation
 from kb.store import updates as writing
 from kb.store.answers import turtle
 from kb.store.embedded import EmbeddedStore
@@ -198,7 +198,7 @@ def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -
     present = _present(list(quads), source)
     taken = [each for each in present if each.graph_name != names.GRAPHS["ontology"]]
     triples = [each.triple for each in taken]
-    problems = (*shapes.violations(triples), *shapes.nlt_problems(triples))
+    problems = (*shacl_validation.violations(triples), *shacl_validation.nlt_problems(triples))
     if problems:
         raise ShapeError(source, problems)
     seen = sorted(

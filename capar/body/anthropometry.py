@@ -6,7 +6,7 @@ from statistics import NormalDist
 from types import MappingProxyType
 from typing import Any
 
-from capar.body.tables import table
+from capar.body.data_files import table
 from capar.model.capture import Agent
 from capar.model.errors import CaparError, UnknownNameError
 

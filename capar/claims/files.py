@@ -8,7 +8,7 @@ from functools import cache
 from glob import glob
 from pathlib import Path
 
-from capar.claims.claims import Verdict, judge
+from capar.claims.motion_claims import Verdict, judge
 from capar.claims.names import Names, names_of
 from capar.model.errors import CaparError, FileError
 from capar.model.observation import Observation

@@ -12,7 +12,7 @@ from capar.cli._output import print_json
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
-    from capar.claims.claims import Verdict
+    from capar.claims.motion_claims import Verdict
 
 app = typer.Typer()
 

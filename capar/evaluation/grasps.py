@@ -17,7 +17,7 @@ from capar.pipelines.observation import facts_program, observe_measured
 from capar_rules.borders.ticks import Tick
 from capar_rules.engine.profiles import DEFAULT, profile
 from capar_rules.engine.solver import rule_file, solve
-from extractors.handling import SHIFTS
+from extractors.handling_facts import SHIFTS
 
 PASS, OVER_TABLE, REGRASP = "pass", "over_table", "regrasp"
 KINDS = (PASS, OVER_TABLE, REGRASP)

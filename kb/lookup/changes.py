@@ -13,7 +13,7 @@ from kb.encode import encode
 from kb.encode.facts import terms
 from kb.store import names
 from kb.store import updates as writing
-from kb.store.shapes import prove
+from kb.store.shacl_validation import prove
 from kb.store.sparql import fill
 from kb.store.stores import Store
 from ontology import CAPAR

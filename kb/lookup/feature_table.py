@@ -8,8 +8,8 @@ from capar.model.errors import ParError
 from capar.model.par import FeatureSet
 from kb.encode import segments
 from kb.findings import FeatureRow
-from kb.lookup.decoding import features as decode_features
-from kb.lookup.reading import Reading
+from kb.lookup.par_decoding import features as decode_features
+from kb.lookup.statement_index import StatementIndex
 from kb.store import names
 from kb.store.answers import plain
 from kb.store.statements import LABEL, Said, Statements
@@ -28,7 +28,7 @@ GROUP BY ?features ?name ?general"""
 
 def rows(store: Store) -> tuple[FeatureRow, ...]:
     """Every named set of features, declared or seen, sorted."""
-    reading = Reading(store.graph(names.GRAPHS["actions"]))
+    reading = StatementIndex(store.graph(names.GRAPHS["actions"]))
     declared = {
         (reading.text(node, CAPAR.name), decode_features(reading, bits)): reading.words(
             node, CAPAR.general

@@ -12,7 +12,7 @@ from kb.findings import Added, Stored
 from kb.lookup import recognition
 from kb.store import names
 from kb.store import updates as writing
-from kb.store.shapes import prove
+from kb.store.shacl_validation import prove
 from kb.store.sparql import fill
 from kb.store.stores import Store, is_address
 from ontology import CAPAR

@@ -12,11 +12,11 @@ from capar.body.anthropometry import (
     measures_of,
     ready_made,
 )
+from capar.body.data_files import is_right, mirrored, table
 from capar.body.hands import GraspError, grasp
 from capar.body.human import Human, PostureError
 from capar.body.model import body_spec, sensor_sites, site_rows
 from capar.body.skeleton import skeleton
-from capar.body.tables import is_right, mirrored, table
 from capar.model.capture import Agent
 from capar.model.errors import UnknownNameError
 

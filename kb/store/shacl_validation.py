@@ -1,4 +1,4 @@
-"""Shapes: the part of SHACL that ours are written in, proved fast on each new observation."""
+"""The part of SHACL that our shapes use, checked fast on each new observation."""
 
 import math
 import re
