@@ -36,7 +36,7 @@ from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between,
 from extractors.relations.grips import shifts
 from extractors.relations.places import distances, places
 from extractors.relations.weight_bearing import bearing
-from extractors.sample_frames import marks
+from extractors.sample_frames import boundary_frames
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
 
@@ -84,9 +84,9 @@ def handling(
     for each in mobile:
         out += _motion(things[each.name], seen, upright[each.name], thresholds)
     out += bearing(capture, bodies, touches, calibration, thresholds)
-    borders = marks([*seen, *out], acting, len(capture.times) - 1)
-    figures = [*hands.values(), *(things[each.name] for each in mobile if each.name not in hands)]
-    for one in figures:
+    borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
+    others = (things[each.name] for each in mobile if each.name not in hands)
+    for one in (*hands.values(), *others):
         frames = tuple(borders.get(one.name, ()))
         out += places(one, upright[one.name], frames)
         for other in things.values():
@@ -157,9 +157,9 @@ def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Inte
     )
 
 
-def _contacts(figures: Mapping[str, BodyGeometry], touches: Iterable[Touching]) -> Iterator[Fact]:
+def _contacts(bodies: Mapping[str, BodyGeometry], touches: Iterable[Touching]) -> Iterator[Fact]:
     for each in touches:
-        body, other = figures[each.body], figures[each.other]
+        body, other = bodies[each.body], bodies[each.other]
         normal = contact_normal(body, other, each.first)
         if normal is not None:
             yield ContactNormal(each.body, each.other, each.first, round(1000.0 * float(normal[2])))

@@ -40,7 +40,7 @@ from capar.model.facts import (
 )
 from extractors.bodies.bodies import Bodies, bodies_of
 from extractors.bodies.poses import Poses
-from extractors.calibration import calibrated, prove_clock, thresholds_of
+from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.contacts import Contact, contacts
 from extractors.handling_facts import handling
 from extractors.motion.motion_edges import motion_edges
@@ -104,7 +104,7 @@ def measure(capture: Capture, calibration: Calibration | None = None) -> Measure
     if calibration is None:
         calibration, bodies = calibrated(capture, Thresholds())
     else:
-        prove_clock(capture, calibration)
+        check_clock(capture, calibration)
         bodies = bodies_of(capture, thresholds_of(calibration), calibration)
     return measured(capture, calibration, bodies)
 

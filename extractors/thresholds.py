@@ -1,4 +1,10 @@
-"""Every number that extraction decides by, with its unit, its meaning and where it comes from."""
+"""The numbers that extraction decides by, with unit, meaning and source.
+
+Not here, as they are limits of a method and no decision about motion: ``APPROACH_S`` in
+``motion/impacts.py``, the span that the low-pass filter blurs, over which the speed of a blow is
+taken; and ``FEWEST_FRAMES`` in ``relations/grips.py``, the fewest samples in which two pauses
+can be found.
+"""
 
 from dataclasses import dataclass
 
@@ -25,7 +31,8 @@ class Thresholds:
     """A shorter interruption of a contact is closed [s] (spec 4)."""
 
     contact_minimum_s: float = 0.05
-    """A shorter contact is dropped [s] (spec 4)."""
+    """A shorter contact is dropped [s] (spec 4). So is a shorter arrangement of two bodies, a
+    shorter look, and a shorter leaning or rolling."""
 
     tolerance_sigmas: float = 3.0
     """Bodies touch within so many deviations of the sensors' noise, unless a capture says [1]."""

@@ -54,7 +54,7 @@ def check(store: Store, *, full: bool = True) -> tuple[Problem, ...]:
     Raises:
         DamagedError: A statement cannot be read.
     """
-    store.prove_readable()
+    store.check_readable()
     found: list[Problem] = []
     for each in observations(store):
         quads = part(store, each.name)

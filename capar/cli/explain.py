@@ -48,13 +48,13 @@ def explain(
     svg: Annotated[Path | None, typer.Option(help="Draw the tree to this file.")] = None,
 ) -> None:
     """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
-    from capar.cli._output import prove_place
+    from capar.cli._output import check_writable
     from capar.pipelines.explanation import explained, segment_named
     from capar_rules.explain.why_not import why_not as alternatives
     from extractors.readers.bundle.capture_toml import read_capture
 
     if svg:
-        prove_place(svg, suffixes=(".svg",))
+        check_writable(svg, suffixes=(".svg",))
     base = rule_base(profile, rules, actionary, steady=steady)
     seen = explained(read_capture(capture), rules=base)
     every_one = seen.observation.segments

@@ -116,9 +116,9 @@ class Capture:
             for name in (pair.first, pair.second):
                 if name not in self.bodies:
                     raise UnknownNameError("body", name, self.bodies, where="pivot contact")
-        self._prove_agents()
+        self._check_agents()
 
-    def _prove_agents(self) -> None:
+    def _check_agents(self) -> None:
         agents = [each.name for each in self.agents]
         for name in agents:
             if agents.count(name) > 1:

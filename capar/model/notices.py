@@ -34,7 +34,7 @@ class Notice:
     """Further numbers and words, sorted by name; a unit ends the name: ``tolerance_m``."""
 
     def __post_init__(self) -> None:
-        """Prove that its sentence can be made."""
+        """Check that its sentence can be made."""
         if self.code not in KINDS:
             raise UnknownNameError("kind of notice", self.code, KINDS)
         try:

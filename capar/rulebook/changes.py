@@ -9,7 +9,7 @@ from capar.model.observation import Observation
 from capar.pipelines.observation import facts_program
 from capar.pipelines.reobservation import observe_again
 from capar_rules.authoring.transaction import put_back, take_away, unbroken
-from capar_rules.authoring.user_primitives import proven
+from capar_rules.authoring.user_primitives import checked_draft
 from capar_rules.engine.profiles import Profile
 from capar_rules.lint.admission import admitted_profile
 from capar_rules.pars.inference import infer
@@ -162,7 +162,7 @@ def add_reclassifying(
     Raises:
         CaparError: The rule does not count, or the observations cannot be made anew.
     """
-    with proven(path, folder=folder, base=base, over=over, beside=beside) as draft:
+    with checked_draft(path, folder=folder, base=base, over=over, beside=beside) as draft:
         after = admitted_profile(base, added=(*beside, draft))
         with Actionary.open(actionary) as store:
             effect, anew = _planned(store, after, captures)

@@ -4,13 +4,22 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from capar.model.facts import STATED, Doubted, Fact, Frames, Link, Observed, RateMhz, Tag
+from capar.model.facts import (
+    ALL_FACT_KINDS,
+    Fact,
+    FlickerCorrection,
+    Frames,
+    Link,
+    Observed,
+    RateMhz,
+    Tag,
+)
 from capar_rules.engine.solver import best, rule_file
 
 Key = tuple[str, str, str]
 """A relation: touching, moving or resting, the body, and the other body, or the same."""
 
-NEGATED = {kind.predicate: kind.declaration.negated for kind in STATED}
+NEGATED = {kind.predicate: kind.declaration.negated for kind in ALL_FACT_KINDS}
 """What an interval that is contradicted is taken for, by predicate; empty where none can be."""
 
 
@@ -52,18 +61,18 @@ def steady(facts: Sequence[Fact]) -> tuple[Fact, ...]:
     ends = next((each for each in facts if isinstance(each, Frames)), Frames(0, 0))
     stretches = {key: tuple(_stretches(spans, ends)) for key, spans in measured.items()}
     keys = sorted(key for key, between in stretches.items() if len(between) > 2)
-    once = [(key, stretches[key]) for key in keys if _turned(key) not in keys or key[1] <= key[2]]
+    once = [(key, stretches[key]) for key in keys if _swapped(key) not in keys or key[1] <= key[2]]
     doubted = _doubted(facts, once)
     if not doubted:
         return tuple(facts)
-    doubted |= {_turned(key): places for key, places in doubted.items() if _turned(key) in keys}
-    mended = {key: _mended(stretches[key], places) for key, places in doubted.items()}
-    told = (
-        Doubted(*key[1:], stretch[1], stretch[2], _taken(key[0], stretch[0]))
+    doubted |= {_swapped(key): places for key, places in doubted.items() if _swapped(key) in keys}
+    corrected = {key: _corrected(stretches[key], places) for key, places in doubted.items()}
+    corrections = (
+        FlickerCorrection(*key[1:], stretch[1], stretch[2], _taken(key[0], stretch[0]))
         for key, places in doubted.items()
         for stretch in (stretches[key][place] for place in places)
     )
-    return (*_restated(facts, mended), *sorted(told))
+    return (*_restated(facts, corrected), *sorted(corrections))
 
 
 Span = tuple[int, int, int]
@@ -93,7 +102,7 @@ def _taken(how: str, holds: int) -> str:
     return NEGATED[how] if holds else how
 
 
-def _turned(key: Key) -> Key:
+def _swapped(key: Key) -> Key:
     """The same relation told from the other body: contacts of two mobile objects are told twice."""
     how, body, other = key
     return how, other, body
@@ -125,7 +134,7 @@ def _doubted(
     return {key: tuple(sorted(places)) for key, places in sorted(found.items())}
 
 
-def _mended(stretches: Sequence[Span], doubted: Iterable[int]) -> list[tuple[int, int]]:
+def _corrected(stretches: Sequence[Span], doubted: Iterable[int]) -> list[tuple[int, int]]:
     """The intervals in which a relation is taken to hold."""
     flipped = set(doubted)
     spans: list[tuple[int, int]] = []
@@ -139,13 +148,13 @@ def _mended(stretches: Sequence[Span], doubted: Iterable[int]) -> list[tuple[int
     return spans
 
 
-def _restated(facts: Iterable[Fact], mended: dict[Key, list[tuple[int, int]]]) -> Iterator[Fact]:
-    """The facts in their order, those of mended relations in place of the measured ones."""
+def _restated(facts: Iterable[Fact], corrected: dict[Key, list[tuple[int, int]]]) -> Iterator[Fact]:
+    """The facts in their order, those of corrected relations in place of the measured ones."""
     written = set()
     for each in facts:
         key = relation_of(each)
-        if key is None or key not in mended or not isinstance(each, Observed):
+        if key is None or key not in corrected or not isinstance(each, Observed):
             yield each
         elif key not in written:
             written.add(key)
-            yield from (each.between(*span) for span in mended[key])
+            yield from (each.between(*span) for span in corrected[key])

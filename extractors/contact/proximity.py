@@ -46,7 +46,7 @@ def body(surface: Surface, stream: Stream, *, rests: bool) -> Body:
     return Body(surface, stream.positions, stream.orientations, centres, rests)
 
 
-def still(surface: Surface, stream: Stream, frame: int) -> Body:
+def at_frame(surface: Surface, stream: Stream, frame: int) -> Body:
     """A surface at one frame of a stream, which is frame 0 of the body."""
     place = stream.positions[frame][None]
     turn = stream.orientations[frame][None]

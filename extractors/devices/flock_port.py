@@ -150,7 +150,7 @@ class FlockPort:
         self.line.drop_input()
 
     def check(self, settings: FlockSettings) -> None:
-        """Prove that all units run and none has an error.
+        """Check that all units run and none has an error.
 
         Raises:
             DeviceError: One is missing, or reports an error.

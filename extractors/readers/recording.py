@@ -75,7 +75,7 @@ class Recording:
 
 
 def check_clock(times: Float[np.ndarray, "frames"]) -> None:
-    """Prove that time stamps are numbers that increase.
+    """Check that time stamps are numbers that increase.
 
     Raises:
         CaptureError: They are not; the message names the frame.
@@ -127,7 +127,7 @@ def contradicted_rate(times: Float[np.ndarray, "frames"], stated_hz: float) -> f
 
 
 def check_rate(times: Float[np.ndarray, "frames"], options: Mapping[str, Any]) -> None:
-    """Prove that a ``rate_hz`` in a file's options is the rate of its time stamps.
+    """Check that a ``rate_hz`` in a file's options is the rate of its time stamps.
 
     Raises:
         CaptureError: It is not; the message has both rates.

@@ -139,7 +139,7 @@ def question(name: str) -> Question:
     return questions()[name]
 
 
-def prove_known(store: "Store", asked: Question, given: Mapping[str, object]) -> None:
+def check_known(store: "Store", asked: Question, given: Mapping[str, object]) -> None:
     """Prove of a question that nothing answers that what it is asked of is there at all.
 
     Raises:

@@ -44,8 +44,8 @@ def read(data: Path, reading: Callable[[Oxigraph], _T]) -> tuple[_T, Oxigraph]:
     return _again(both, data)
 
 
-def prove_whole(data: Path) -> None:
-    """Prove that a database's files have their table of contents, before it is written.
+def check_whole(data: Path) -> None:
+    """Check that a database's files have their table of contents, before it is written.
 
     Without it the database would begin anew, and overwrite what is there.
 

@@ -30,7 +30,7 @@ class RemoteStore:
     """
 
     def __init__(self, address: str) -> None:
-        """Prove that a server answers there.
+        """Check that a server answers there.
 
         Raises:
             StoreError: No server answers there.
@@ -68,7 +68,7 @@ class RemoteStore:
             if isinstance(name, NamedNode):
                 yield from self.graph(name)
 
-    def prove_readable(self) -> None:
+    def check_readable(self) -> None:
         """A server looks after its own files."""
 
     def dataset(self) -> Any:

@@ -72,8 +72,8 @@ def migration(found: int) -> tuple[str, ...]:
     return tuple(STEPS[each] for each in range(found, SCHEMA))
 
 
-def prove_current(store: Store) -> None:
-    """Prove that a store is empty or of this version.
+def check_current(store: Store) -> None:
+    """Check that a store is empty or of this version.
 
     Raises:
         SchemaError: It is of another one; the message says what to do.

@@ -42,8 +42,8 @@ class Store(Protocol):
     def quads(self) -> Iterable[Quad]:
         """Every statement of every named graph."""
 
-    def prove_readable(self) -> None:
-        """Prove that every statement can be read.
+    def check_readable(self) -> None:
+        """Check that every statement can be read.
 
         Raises:
             DamagedError: One cannot.

@@ -9,7 +9,7 @@ import motions
 import pytest
 from recomputed import STORIES, Known, form, told
 
-from capar.model.facts import Doubted, Fact, Frames, Touching, ZeroCrossing
+from capar.model.facts import Fact, FlickerCorrection, Frames, Touching, ZeroCrossing
 from capar.pipelines.explanation import explained
 from capar_rules.engine.profiles import profile
 from capar_rules.explain.explanation import Explainer, Reason, rule_base
@@ -145,7 +145,7 @@ def test_the_summary_names_the_segment_and_its_reasons(name: str) -> None:
 @pytest.mark.parametrize("name", ["flickering", "chattering"])
 def test_below_what_was_mended_stands_each_doubt_of_it_in_the_segment(name: str) -> None:
     story = told(name)
-    doubts = [each for each in story.seen.observation.facts if isinstance(each, Doubted)]
+    doubts = [each for each in story.seen.observation.facts if isinstance(each, FlickerCorrection)]
     count = 0
     for known, explanation in zip(story.known, story.explanations, strict=True):
         first, last = known.segment.first, known.segment.last

@@ -76,7 +76,7 @@ FAULTS = (
      "Not a directory"),
     (("rules", "list", "--rules", "unread"), "unread/sip.lp", "cannot be read"),
     (("rules", "list", "--rules", "shut"), "shut", "not readable"),
-    (("inspect", "unread/motion.csv"), "unread/motion.csv", "Take the right to read it"),
+    (("inspect", "unread/motion.csv"), "unread/motion.csv", "Grant yourself read permission"),
     (("observe", DEMO, "--rules", "unread"), "unread/sip.lp", "cannot be read"),
     (("explain", DEMO, "right_hand/2", "--svg", "ro/k.svg"), "ro/k.svg", "Permission denied"),
     (("explain", DEMO, "right_hand/2", "--svg", "nowhere/k.svg"), "nowhere/k.svg",
