@@ -81,7 +81,7 @@ def _enact(out: Statements, observation: "Observation", node: NamedNode, name: s
                 if relation.first == (link.ee, index):
                     allen = _property(relation.relation)
                     properties.setdefault(allen, []).append(_step(out, *relation.second))
-            _say_step(out, node, link, index, step, relations=properties, ees=ees)
+            _add_step(out, node, link, index, step, relations=properties, ees=ees)
     out.add(
         out.about,
         (),
@@ -105,7 +105,7 @@ def _step(out: Statements, ee: str, index: int) -> NamedNode:
     return names.part(out.about, "step", ee, index)
 
 
-def _say_step(
+def _add_step(
     out: Statements,
     node: NamedNode,
     link: LinkSteps,

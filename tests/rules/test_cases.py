@@ -17,11 +17,11 @@ from capar_rules.engine.solver import rule_file, solve, text_of
 
 SHOWN = HERE / "everything.lp"
 CASES = pytest.mark.parametrize("case", all_cases(), ids=str)
-ROOMS = ("segmentation", "naming", "composition")
+RULE_PACKAGES = ("segmentation", "naming", "composition")
 CONCEPTS = sorted(
-    f"{room}/{path.stem}"
-    for room in ROOMS
-    for path in rule_file(room).glob("*.lp")
+    f"{package}/{path.stem}"
+    for package in RULE_PACKAGES
+    for path in rule_file(package).glob("*.lp")
     if path.stem != "bit_strings"
 )
 
