@@ -215,7 +215,7 @@ def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
 def _moving(
     capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
 ) -> Iterator[Fact]:
-    """When each object moves, as its floor tells, and when that truly began and ended."""
+    """When each object moves, by its floor, and when that truly began and ended."""
     for each in capture.objects:
         if each.tag is TagType.MOBILE:
             pose = bodies.objects[each.name].poses
@@ -240,7 +240,7 @@ def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:
 
 
 def _values(kind: Any) -> Callable[[Fact], Any]:
-    """What facts of a kind are sorted by: their arguments, read without building the fact anew."""
+    """What facts of a kind are sorted by: their arguments, read without rebuilding the fact."""
     names = [each.name for each in fields(kind)]
     return attrgetter(*names) if names else str
 

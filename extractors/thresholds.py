@@ -128,11 +128,11 @@ class Thresholds:
     calls touch-down weight bearing; if both are down the other one bears all the rest."""
 
     feet_apart_m: float = 0.1
-    """Feet nearer than this share the weight as nobody knows [m]: the width of a foot, within
+    """Feet nearer than this share the weight in unknown parts [m]: the width of a foot, within
     which the middle of the body is not known better than to a fifth."""
 
     off_feet_m: float = 0.3
-    """A body whose middle is further from its feet than this is borne by something else too, or
+    """A body whose middle is further from its feet than this is supported by something else too, or
     falls [m]: the length of a large foot."""
 
     level_m: float = 0.03

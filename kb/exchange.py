@@ -53,7 +53,7 @@ def format_of(path: Path | str, given: str | None = None) -> str:
     """The format of a file: what is given, else what its name says.
 
     Raises:
-        UnknownNameError: No such format, or none that the name tells.
+        UnknownNameError: No such format, or a name that states none.
         FileError: The name has no ending that could tell one.
     """
     name = given or SUFFIXES.get(Path(path).suffix.lower(), Path(path).suffix)

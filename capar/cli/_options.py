@@ -101,7 +101,7 @@ def has_actionary(place: str, *, named: str | None) -> bool:
 
 
 def require_actionary(actionary: str | None, *, observed: bool = False) -> None:
-    """Refuse an Actionary that is not there, so that a slip of the pen makes none.
+    """Refuse an Actionary that is not there, so that a typing mistake creates none.
 
     Args:
         actionary: Its place; None for the usual one.

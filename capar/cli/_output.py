@@ -1,4 +1,4 @@
-"""How commands print JSON and tables, write files whole or not at all, and tell of failures."""
+"""How commands print JSON and tables, write files whole or not at all, and report failures."""
 
 import errno
 import os
@@ -35,7 +35,7 @@ PIPE_COLUMNS = 10_000
 """Width of a table in a pipe [columns]: wide enough that nothing is cut."""
 
 
-def told(error: OSError) -> str:
+def error_message(error: OSError) -> str:
     """What went wrong, where, and what would have been right."""
     names = [os.fsdecode(each) for each in (error.filename, error.filename2) if _named(each)]
     where = f"{' -> '.join(names)}: " if names else ""
@@ -91,7 +91,7 @@ def check_writable(path: Path, *, suffixes: Collection[str] = ()) -> None:
     """
     from tempfile import TemporaryFile
 
-    with _told_of(path):
+    with _naming(path):
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
         if path.is_file():
@@ -115,7 +115,7 @@ def written(path: Path) -> Iterator[Path]:
     check_writable(path)
     target = Path(os.path.realpath(path))
     draft = target.with_name(f".{os.getpid()}.draft{path.suffix}")
-    with _told_of(path):
+    with _naming(path):
         if _is_device(path):
             yield path
             return
@@ -134,8 +134,8 @@ def _is_device(path: Path) -> bool:
 
 
 @contextmanager
-def _told_of(path: Path) -> Iterator[None]:
-    """Faults that speak of a file's draft, or of no file, speak of the file."""
+def _naming(path: Path) -> Iterator[None]:
+    """Errors that name a file's draft, or no file, name the file."""
     try:
         yield
     except OSError as error:

@@ -106,7 +106,7 @@ def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bo
         typer.echo(_header(each))
         typer.echo(each.summary)
         if tree:
-            _branch(each.reason.told(), 0)
+            _branch(each.reason.with_sentences(), 0)
 
 
 def _branch(reason: "Reason", depth: int) -> None:
@@ -154,7 +154,7 @@ def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
 
 
 def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
-    """A tree as JSON, and beside each atom the segments that it speaks of by their ticks."""
+    """A tree as JSON, and beside each atom the segments that it refers to by their ticks."""
     from capar.pipelines.explanation import segments_in
 
     placed: dict[str, Any] = {}

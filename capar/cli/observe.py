@@ -101,7 +101,7 @@ def observe(
 
 
 def _check_output(*, json: bool, script: bool, pars: bool, plot: Path | None) -> None:
-    """What is to come out can come out; told before anything is computed."""
+    """Check that the requested output can be written, before anything is computed."""
     from capar.cli._output import check_writable
     from capar.model.errors import CaparError
 

@@ -66,7 +66,7 @@ MEASURED: tuple[type[Observed], ...] = (*kinds_of(scene_facts), *kinds_of(handli
 """Every kind of fact that extractors state, in the order in which they are written."""
 
 ALL_FACT_KINDS: tuple[type[Observed], ...] = (*MEASURED, FlickerCorrection)
-"""Every kind of fact that an observation rests on: what was measured, and what was doubted."""
+"""Every kind of fact that an observation rests on: measurements and corrections of flicker."""
 
 
 def read_fact(text: str) -> Observed:

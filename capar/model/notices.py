@@ -89,7 +89,7 @@ def notice(
 
 
 def read_notice(document: Mapping[str, Any]) -> Notice:
-    """The notice that a JSON form states; its message is made anew.
+    """The notice that a JSON form states; its message is made again.
 
     Raises:
         CaparError: It has other fields, or a field of another type.

@@ -1,4 +1,4 @@
-"""Flicker: contact, motion and rest as the rules take them to have been, and what they doubted."""
+"""Contact, motion and rest without flicker, and the stretches that were corrected."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
@@ -49,7 +49,7 @@ class Stretch(Fact):
 def steady(facts: Sequence[Fact]) -> tuple[Fact, ...]:
     """The facts, with contact, motion and rest that change as seldom as measurements allow.
 
-    What is doubted is stated beside them, so that the measurements can be told again.
+    The corrections are stated beside them, so that the measurements can be restored.
 
     Args:
         facts: What the extractors measured.
@@ -98,12 +98,12 @@ def relation_of(fact: Fact) -> Key | None:
 
 
 def _taken(how: str, holds: int) -> str:
-    """What a doubted stretch is taken for, by whether the relation was measured to hold."""
+    """What a corrected stretch is taken for, by whether the relation was measured to hold."""
     return NEGATED[how] if holds else how
 
 
 def _swapped(key: Key) -> Key:
-    """The same relation told from the other body: contacts of two mobile objects are told twice."""
+    """The same relation from the other body: contacts of two mobile objects are stated twice."""
     how, body, other = key
     return how, other, body
 
@@ -123,7 +123,7 @@ def _stretches(spans: Iterable[tuple[int, int]], ends: Frames) -> Iterator[Span]
 def _doubted(
     facts: Iterable[Fact], relations: Sequence[tuple[Key, tuple[Span, ...]]]
 ) -> dict[Key, tuple[int, ...]]:
-    """The places of doubted stretches by relation; where none is, no relation."""
+    """The places of flickering stretches by relation; no relation without any."""
     asked: list[Fact] = [each for each in facts if isinstance(each, Link | RateMhz | Tag)]
     for number, (key, stretches) in enumerate(relations):
         asked.append(Relation(number, *key))

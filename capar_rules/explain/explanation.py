@@ -120,7 +120,7 @@ class Explainer:
                 return _explanation(segment, reasons)
         raise RuleError(
             f"segment {segment.index} of {segment.ee!r} is no {segment.name} by these rules; "
-            "observe the capture anew"
+            "observe the capture again"
         )
 
     def ticks(self, segment: Segment) -> tuple[int, int]:
@@ -134,7 +134,7 @@ class Explainer:
         if [frames[each] for each in found if each < len(frames)] != [segment.first, segment.last]:
             raise RuleError(
                 f"segment {segment.index} of {segment.ee!r} does not lie between frames at which "
-                "these facts change; observe the capture anew"
+                "these facts change; observe the capture again"
             )
         return found[0], found[1]
 
@@ -168,7 +168,7 @@ class Explainer:
         return found
 
     def _mood(self, grounds: Grounds) -> str:
-        """Which template tells an atom: negated, mended (partly doubted) or plain."""
+        """Which template describes an atom: negated, mended (partly doubted) or plain."""
         if grounds.absent:
             return "not"
         doubted = any(each.predicate == "doubted" for each in grounds.because)

@@ -33,7 +33,7 @@ def frames_of(predicate: str, arguments: Sequence[str], clock: Clock) -> tuple[i
 
 
 def corrected(facts: Sequence[Fact]) -> frozenset[str]:
-    """The contacts, motions and rests, as atoms, that contain doubted frames."""
+    """The contacts, motions and rests, as atoms, that contain frames corrected as flicker."""
     doubts: dict[Key, list[int]] = defaultdict(list)
     for each in facts:
         if isinstance(each, FlickerCorrection):

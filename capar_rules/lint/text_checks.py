@@ -199,7 +199,7 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
                 yield Finding(
                     head.place, "foreign-name",
                     f"{name} is stated of {arguments[at]}, which this file does not introduce.",
-                    f'It may speak of {", ".join(sorted(mine)) or "what it introduces"}; '
+                    f'It may name {", ".join(sorted(mine)) or "what it introduces"}; '
                     f'state primitive("Name") first.',
                 )  # fmt: skip
             if name == "specialises":

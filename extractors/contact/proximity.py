@@ -32,7 +32,7 @@ class Body:
 
     @property
     def turns(self) -> Float[np.ndarray, "frames 3 3"]:
-        """Rotation matrices that take the body's axes to the world's; made anew, being large."""
+        """Rotation matrices that take the body's axes to the world's; made again, being large."""
         return rotation_matrices(self.orientations)
 
     def turns_at(self, frames: Int[np.ndarray, "some"]) -> Float[np.ndarray, "some 3 3"]:

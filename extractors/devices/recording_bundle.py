@@ -34,7 +34,7 @@ class Mount:
 
     @property
     def attends(self) -> bool:
-        """Whether it tells where the performer looks, rather than what is done."""
+        """Whether it shows where the performer looks, rather than what is done."""
         return self.end_effector == "head"
 
 

@@ -16,7 +16,7 @@ EXPANDED_LIMIT = 1 << 30
 """Bytes that a compressed file may expand to [B]."""
 
 HEAD = 4096
-"""Bytes that tell a format [B]."""
+"""Bytes by which a format is recognised [B]."""
 
 _DAMAGE = (EOFError, OSError, lzma.LZMAError, zlib.error, ValueError)
 

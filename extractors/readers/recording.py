@@ -41,7 +41,7 @@ class Recording:
     notices: tuple[Notice, ...] = ()
 
     def __post_init__(self) -> None:
-        """Prove the markers against their clock and make the mappings read-only."""
+        """Check the markers against their clock and make the mappings read-only."""
         frames = len(self.marker_times)
         for name, points in self.markers.items():
             if points.shape != (frames, 3):
@@ -91,7 +91,7 @@ def track(
     positions: Float[np.ndarray, "frames 3"],
     orientations: Float[np.ndarray, "frames 4"],
 ) -> Stream:
-    """A body's poses, proven; errors name the body.
+    """A body's poses, validated; errors name the body.
 
     Raises:
         CaptureError: Time goes back, a quaternion is not unit, or shapes disagree.

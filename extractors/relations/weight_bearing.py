@@ -164,8 +164,8 @@ def _down(
         resting_low.append(_heights_at_rest(foot, thresholds))
     with np.errstate(invalid="ignore"):
         return [
-            borne | (low <= level_m + thresholds.level_m)
-            for borne, low in zip(out, resting_low, strict=True)
+            bearing_foot | (low <= level_m + thresholds.level_m)
+            for bearing_foot, low in zip(out, resting_low, strict=True)
         ]
 
 

@@ -37,7 +37,7 @@ def kind_of(seen: "ObservedObject") -> str:
 
 
 def kind(out: Statements, name: str) -> NamedNode:
-    """A kind of object; one that nobody placed in the hierarchy is an object and no more."""
+    """A kind of object; one outside the hierarchy is just an object."""
     node = names.shared("kind", name)
     if names.graph_of(node) == names.GRAPHS["ontology"]:
         return node

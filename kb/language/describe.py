@@ -42,7 +42,7 @@ def describe(
 
     Args:
         observation: What was understood of a capture.
-        detail: ``steps`` tells every step, ``summary`` only those that changed something.
+        detail: ``steps`` describes every step, ``summary`` only those that changed something.
         timed: Whether each step is followed by its time [s].
         words: What the primitives of the rule base are called; those that are not there are said
             by the verb of a more general one.
@@ -98,7 +98,7 @@ def _moved_freely(links: Sequence[ObservedLink], book: Phrasebook) -> list[str]:
 
 @dataclass(frozen=True)
 class _Part:
-    """What one sentence tells; what is repeated stands once, with how often and until when."""
+    """The content of one sentence; what is repeated stands once, with how often and until when."""
 
     steps: tuple[Clause, ...]
     often: str = ""

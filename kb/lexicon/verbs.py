@@ -91,7 +91,7 @@ class VerbAnswer:
 
 
 class UnknownVerbError(UnknownNameError):
-    """A verb that there is not; of the many that there are it tells the nearest alone."""
+    """A verb that there is not; its message lists only the nearest known ones."""
 
     def __init__(self, verb: str) -> None:
         near = nearest_verbs(verb)

@@ -79,7 +79,7 @@ class EmbeddedStore:
         return self._read(lambda store: _answer(store, query))
 
     def _read(self, reading: Callable[[Oxigraph], _T]) -> _T:
-        """What a reading gives; a reader opens the folder anew if files go meanwhile."""
+        """What a reading gives; a reader reopens the folder if files go meanwhile."""
         if self._folder is None or not self._read_only:
             with self._guarded():
                 return reading(self._store)
@@ -90,7 +90,7 @@ class EmbeddedStore:
             return found
 
     def ask_within(self, query: str, *, seconds: float) -> Answer:
-        """What anybody's query answers, asked in a process of its own."""
+        """The answer to a user's query, asked in a process of its own."""
         if self._folder is None:
             data = self._store.dump(format=RdfFormat.N_QUADS) or b""
             return bounded.ask(query, seconds=seconds, dump=data)

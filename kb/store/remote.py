@@ -51,7 +51,7 @@ class RemoteStore:
         return answers.decode(*post_query(self.place, query))
 
     def ask_within(self, query: str, *, seconds: float) -> Answer:
-        """What anybody's query answers; we stop listening in time, the server by its own limit."""
+        """The answer to a user's query; we stop listening in time, the server by its own limit."""
         return bounded.ask(query, seconds=seconds, address=self.place)
 
     def graph(self, name: NamedNode) -> list[Quad]:

@@ -1,4 +1,4 @@
-"""The version of the form in which statements are kept, stated in each store and proved on opening.
+"""The version of the form in which statements are stored, checked whenever a store is opened.
 
 Version 1 stated no version. Version 2 states it, and gives each segment its address.
 """

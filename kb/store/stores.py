@@ -29,7 +29,7 @@ class Store(Protocol):
         """What a query of ours answers, over the union of all graphs."""
 
     def ask_within(self, query: str, *, seconds: float) -> Answer:
-        """What anybody's query answers, stopped after so many seconds.
+        """The answer to a user's query, stopped after so many seconds.
 
         Raises:
             QueryError: It is no SPARQL query.

@@ -37,7 +37,7 @@ def reasons(name: str) -> Iterator[tuple[Known, Reason]]:
     """Every reason that is told in a story, with its segment."""
     story = told(name)
     for known, explanation in zip(story.known, story.explanations, strict=True):
-        for each in explanation.reason.told().walk():
+        for each in explanation.reason.with_sentences().walk():
             yield known, each
 
 
@@ -150,7 +150,7 @@ def test_below_what_was_mended_stands_each_doubt_of_it_in_the_segment(name: str)
     for known, explanation in zip(story.known, story.explanations, strict=True):
         first, last = known.segment.first, known.segment.last
         met: set[str] = set()
-        for each in explanation.reason.told().walk():
+        for each in explanation.reason.with_sentences().walk():
             if "was taken to last" not in each.sentence or each.sentence in met:
                 continue
             met.add(each.sentence)
