@@ -74,10 +74,12 @@ def handling(
     held = {each.other for each in touches if each.body in acting}
     hands = {each.name: bodies.sensors[each.name] for each in capture.acting}
     things = bodies.objects
-    mobile = [each for each in capture.objects if each.tag is TagType.MOBILE and each.name in held]
+    mobile = [
+        thing for thing in capture.objects if thing.tag is TagType.MOBILE and thing.name in held
+    ]
     mobiles = {each.name for each in mobile}
-    upright = {each.name: np.array(each.upright) for each in calibration.objects}
-    upright |= {each.name: np.array(each.upright) for each in calibration.sensors}
+    upright = {thing.name: np.array(thing.upright) for thing in calibration.objects}
+    upright |= {sensor.name: np.array(sensor.upright) for sensor in calibration.sensors}
     out: list[Fact] = []
     for name, hand in hands.items():
         out += (Resting(name, *each) for each in resting(hand.poses, thresholds))
@@ -131,9 +133,9 @@ def _arranged(
             if how in PASSED and span[0] > 0 and span[1] < len(one.middles) - 1:
                 yield Passage(one.name, how, other.name, span[0], sides(one, other, np.array(span)))
     touching = [
-        (each.first, each.last)
-        for each in touches
-        if (each.body, each.other) == (one.name, other.name)
+        (touch.first, touch.last)
+        for touch in touches
+        if (touch.body, touch.other) == (one.name, other.name)
     ]
     for first, last in _spans(pair.near, one, thresholds):
         if not any(begin <= last and end >= first for begin, end in touching):
@@ -158,10 +160,12 @@ def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Inte
 
 
 def _contacts(bodies: Mapping[str, BodyGeometry], touches: Iterable[Touching]) -> Iterator[Fact]:
-    for each in touches:
-        body, other = bodies[each.body], bodies[each.other]
-        normal = contact_normal(body, other, each.first)
+    for touch in touches:
+        body, other = bodies[touch.body], bodies[touch.other]
+        normal = contact_normal(body, other, touch.first)
         if normal is not None:
-            yield ContactNormal(each.body, each.other, each.first, round(1000.0 * float(normal[2])))
-        speed = closing_speed(body, other, each.first)
-        yield ClosingSpeed(each.body, each.other, each.first, round(1000.0 * speed))
+            yield ContactNormal(
+                touch.body, touch.other, touch.first, round(1000.0 * float(normal[2]))
+            )
+        speed = closing_speed(body, other, touch.first)
+        yield ClosingSpeed(touch.body, touch.other, touch.first, round(1000.0 * speed))

@@ -158,7 +158,9 @@ def _seeing(capture: Capture) -> tuple[Sensor, ...]:
     """Every sensor with a line of sight: heads, and what attends and is no trunk."""
     attending = {each.name for each in capture.attending if each.end_effector not in TRUNK}
     return tuple(
-        each for each in capture.sensors if each.name in attending or each.end_effector == HEAD
+        sensor
+        for sensor in capture.sensors
+        if sensor.name in attending or sensor.end_effector == HEAD
     )
 
 
@@ -183,7 +185,7 @@ def _scene(capture: Capture) -> Iterator[Fact]:
     for each in capture.objects:
         yield Tag(each.name, each.tag.value)
     if capture.others:
-        own = [each for each in capture.objects if each.tag is TagType.SELF]
+        own = [thing for thing in capture.objects if thing.tag is TagType.SELF]
         bodies: tuple[Sensor | TagObject, ...] = (*capture.acting, *_seeing(capture), *own)
         for body in bodies:
             yield OfAgent(body.name, capture.agent_of(body))
@@ -201,30 +203,30 @@ def _intended(rank: int, purpose: Purpose) -> Intended:
 
 def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
     """Each contact; of two mobile objects either may be the dominant one: stated both ways."""
-    mobile = {each.name for each in capture.objects if each.tag is TagType.MOBILE}
+    mobile = {thing.name for thing in capture.objects if thing.tag is TagType.MOBILE}
     acting = {each.name for each in capture.acting}
-    for each in touches:
-        orders = [(each.first, each.second)]
-        if each.first in mobile - acting and each.second in mobile - acting:
-            orders.append((each.second, each.first))
+    for touch in touches:
+        orders = [(touch.first, touch.second)]
+        if touch.first in mobile - acting and touch.second in mobile - acting:
+            orders.append((touch.second, touch.first))
         for first, second in orders:
-            yield Touching(first, second, *each.interval)
-            yield Gap(first, second, each.interval[0], round(1e6 * each.gap_m))
+            yield Touching(first, second, *touch.interval)
+            yield Gap(first, second, touch.interval[0], round(1e6 * touch.gap_m))
 
 
 def _moving(
     capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
 ) -> Iterator[Fact]:
     """When each object moves, by its floor, and when that truly began and ended."""
-    for each in capture.objects:
-        if each.tag is TagType.MOBILE:
-            pose = bodies.objects[each.name].poses
-            known = calibration.tag_object(each.name)
+    for thing in capture.objects:
+        if thing.tag is TagType.MOBILE:
+            pose = bodies.objects[thing.name].poses
+            known = calibration.tag_object(thing.name)
             floor = Floor(known.motion_floor_m, known.motion_floor_rad)
             rests = rest_poses(pose, floor, thresholds)
             for interval in moving(pose, rests, floor, thresholds):
-                yield Moving(each.name, *interval)
-                yield Displaced(each.name, *motion_edges(pose, interval, rests, thresholds))
+                yield Moving(thing.name, *interval)
+                yield Displaced(thing.name, *motion_edges(pose, interval, rests, thresholds))
 
 
 def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:

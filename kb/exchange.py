@@ -81,7 +81,7 @@ def export(store: Store, format_name: str, *, observation: str | None = None) ->
         quads = sorted({*part(store, observation), schema.statement()}, key=str)
     form = FORMATS[format_name]
     if form == RdfFormat.TURTLE:
-        return turtle(dict.fromkeys(each.triple for each in quads), form=form).encode()
+        return turtle(dict.fromkeys(quad.triple for quad in quads), form=form).encode()
     if form == RdfFormat.TRIG:
         return turtle(quads, form=form).encode()
     return serialize(quads, format=form) or b""

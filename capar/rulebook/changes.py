@@ -100,7 +100,7 @@ def renamed(seen: Seen, *, before: Profile, after: Profile) -> tuple[Renamed, ..
     for capture, trial in sorted(seen.items()):
         names = _names(trial.facts, before) if trial.names is None else trial.names
         old, new = (
-            {(each.ee, each.first, each.last): each for each in rows}
+            {(row.ee, row.first, row.last): row for row in rows}
             for rows in (names, _names(trial.facts, after))
         )
         for key in sorted(old.keys() | new.keys()):
@@ -227,7 +227,7 @@ def _planned(
     seen = kept.seen
     changes = renamed(seen, before=after, after=after)
     there = {each.name: each for each in store.observations()}
-    changed = sorted({each.capture for each in changes})
+    changed = sorted({change.capture for change in changes})
     return Effect(changes, kept.others), [
         (
             observe_again(

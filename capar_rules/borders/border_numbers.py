@@ -82,7 +82,7 @@ class _Scene:
                 self.rate = fact.rate / 1000.0
         for touches in self.touching.values():
             touches.sort(key=lambda each: each.first)
-        self.by_object = {each.ee: by_object(self.touching[each.ee]) for each in self.links}
+        self.by_object = {link.ee: by_object(self.touching[link.ee]) for link in self.links}
         for moves in self.moving.values():
             moves.sort(key=lambda each: each.first)
         for frames in (*self.crossings.values(), *self.pauses.values()):
@@ -151,7 +151,7 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
     if not crossings_only:
         yield from scene.stretches.numbered(ee, ticks, reach)
         yield from undisturbed(ee, ticks, scene.rests[ee], own)
-        others_too = [scene.by_object[each.ee] for each in scene.links if each.ee != ee]
+        others_too = [scene.by_object[link.ee] for link in scene.links if link.ee != ee]
         pairs = overlapping(own, others_too)
         yield from shared(ee, ticks, pairs, rate_hz=scene.rate)
         yield from _within(ee, ticks, (), sorted({each for _, each in pairs}))

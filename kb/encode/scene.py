@@ -110,7 +110,7 @@ def performer(out: Statements, agent: "Agent", who: NamedNode, *, number: int = 
 
 def objects(out: Statements, observation: "Observation") -> dict[str, NamedNode]:
     """Every tag object by name."""
-    return {each.name: _object(out, each) for each in observation.objects}
+    return {thing.name: _object(out, thing) for thing in observation.objects}
 
 
 def _object(out: Statements, seen: "ObservedObject") -> NamedNode:
@@ -141,15 +141,15 @@ def links(
 ) -> dict[str, NamedNode]:
     """Every acting link by its end-effector."""
     return {
-        each.ee: out.add(
-            names.part(out.about, "link", each.ee),
+        link.ee: out.add(
+            names.part(out.about, "link", link.ee),
             (CAPAR.Link,),
             {
-                CAPAR.ee: each.ee,
-                CAPAR.effectorType: each.kind,
-                CAPAR.side: each.side,
-                CAPAR.agent: agents[observation.performer(each.ee)],
+                CAPAR.ee: link.ee,
+                CAPAR.effectorType: link.kind,
+                CAPAR.side: link.side,
+                CAPAR.agent: agents[observation.performer(link.ee)],
             },
         )
-        for each in observation.links
+        for link in observation.links
     }

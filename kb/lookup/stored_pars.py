@@ -27,8 +27,8 @@ def find(
         filters.append(
             f"FILTER(?action = {word} || EXISTS {{ ?seen {CAPAR.step}/{CAPAR.name} {word} }})"
         )
-    for each in objects:
-        word = Literal(each)
+    for thing in objects:
+        word = Literal(thing)
         filters.append(
             f"FILTER(EXISTS {{ ?seen {CAPAR.object}/{CAPAR.name} {word} }} || "
             f"EXISTS {{ ?seen {CAPAR.object}/{CAPAR.kind}/{CAPAR.isA}/{CAPAR.name} {word} }})"
@@ -103,7 +103,7 @@ def effective(known: tuple[Upar, ...], ipar: Ipar) -> Upar:
             Preparation(_bound(each.condition, bound), _call(each.action, bound))
             for each in upar.preparation
         ),
-        steps=tuple(_call(each, bound) for each in upar.steps),
+        steps=tuple(_call(step, bound) for step in upar.steps),
         core=_overridden(upar.core, ipar.core),
         post_assertions=ipar.post_assertions
         or tuple(_bound(each, bound) for each in upar.post_assertions),
@@ -116,7 +116,7 @@ def _bound(value: Condition, to: dict[str, str]) -> Condition:
 
 
 def _call(value: Call, to: dict[str, str]) -> Call:
-    return replace(value, objects=tuple(to.get(each, each) for each in value.objects))
+    return replace(value, objects=tuple(to.get(thing, thing) for thing in value.objects))
 
 
 def _overridden(upar: CoreSemantics, ipar: CoreSemantics) -> CoreSemantics:
