@@ -13,7 +13,7 @@ from statistics import median
 from time import perf_counter
 
 from capar.model.facts import Fact, Frames, Link, Moving, RateMhz, Tag, Touching, program
-from capar_rules.borders.ranking import rank
+from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import profile
 from capar_rules.engine.solver import solve
 from capar_rules.pars.inference import infer
@@ -83,7 +83,9 @@ def measure(frames: int, *, runs: int, cubic: bool, walk: bool) -> dict[str, flo
     row = {
         "frames": float(frames),
         "segments": float(sum(len(each.segments) for each in infer(facts, profile=rules).links)),
-        "number the borders": seconds(lambda: rank(facts, crossings_only=False), runs=runs),
+        "number the borders": seconds(
+            lambda: number_borders(facts, crossings_only=False), runs=runs
+        ),
         "interval facts": seconds(lambda: infer(facts, profile=rules), runs=runs),
     }
     row["times real time"] = frames / RATE_HZ / row["interval facts"]

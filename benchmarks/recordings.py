@@ -1,4 +1,4 @@
-"""Recordings that others made, held against what they timed, where things ended, and pictures.
+"""Recordings that others made, compared with what they timed, where things ended, and pictures.
 
 python benchmarks/recordings.py [carries] [containers] [grasps] [--takes 16]
 
@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from capar.evaluation.carries import Carry, Miss, measure, near
+from capar.evaluation.carry_timing import Carry, Miss, measure, near
 from capar.evaluation.containers import halved, landings
 from capar.evaluation.grasps import Change, changes, compare, read_seen
 from extractors.readers.bundle.capture_toml import read_capture, read_files, takes
@@ -83,10 +83,12 @@ def contained(names: list[str]) -> dict[str, Any]:
             (halves, landings(parted, both)),
         ):
             for each in group:
-                right = "right" if each.told == each.true else "wrong"
+                right = "right" if each.reported == each.true else "wrong"
                 counts[f"{'into' if each.true else 'not into'}, {right}"] += 1
-                if each.told != each.true:
-                    wrong.append(f"{name}: {each.object} {each.container}, told {each.told}")
+                if each.reported != each.true:
+                    wrong.append(
+                        f"{name}: {each.object} {each.container}, reported {each.reported}"
+                    )
     return {
         "scenes": len(names),
         "whole_box": dict(sorted(whole.items())),

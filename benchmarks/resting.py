@@ -18,7 +18,7 @@ from time import perf_counter
 import clingo
 
 from capar.model.facts import Fact, Frames, Link, RateMhz, Resting, Tag, Touching, program
-from capar_rules.borders.ranking import Tick, rank
+from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.borders.undisturbed_rest import undisturbed
 from capar_rules.engine.profiles import profile
 from capar_rules.engine.solver import solve
@@ -63,11 +63,11 @@ def seconds(work: Callable[[], object], *, runs: int) -> float:
 def measure(contacts: int, *, runs: int) -> dict[str, float]:
     """Seconds for one length, by way."""
     facts, files = trial(contacts), profile("extended").files
-    ranked = rank(facts, crossings_only=False)
-    ticks = [each.frame for each in ranked if isinstance(each, Tick) and each.ee == "right_hand"]
+    numbered = number_borders(facts, crossings_only=False)
+    ticks = [each.frame for each in numbered if isinstance(each, Tick) and each.ee == "right_hand"]
     rests = [each for each in facts if isinstance(each, Resting) and each.ee == "right_hand"]
     own = [each for each in facts if isinstance(each, Touching)]
-    text = program((*facts, *ranked))
+    text = program((*facts, *numbered))
     row = {
         "contacts": float(contacts),
         "numbered outside": seconds(

@@ -10,9 +10,9 @@ falls, rolling, and how bodies are arranged. It does not hold for these:
   places of rest that hold at the beginning of a window, handed over from the window before.
 * ``Reverses`` and ``Swings``: both are sought within a motion from its beginning, so they need
   what ``Moving`` needs.
-* ``Place``, ``Posture``, ``Apart``, ``Travelled`` and ``Wound``: their frames are those of the
-  facts above; and ways and angles are summed up from the first frame. It would take sums per
-  segment instead.
+* ``Place``, ``Posture``, ``Distance``, ``Travelled`` and ``SweptAzimuth``: their frames are
+  those of the facts above; and ways and angles are summed up from the first frame. It would take
+  sums per segment instead.
 * Which mobile objects are measured at all: those that an end-effector touches in the window.
 * ``Lies`` of a shifted grip: it compares all pauses of one contact, however long.
 * Contacts across a loss or a stay within the release distance that is longer than the margin: the
@@ -86,8 +86,8 @@ def thresholds_of(calibration: Calibration) -> Thresholds:
     return Thresholds(**values)
 
 
-def prove_clock(capture: Capture, calibration: Calibration) -> None:
-    """Prove that a calibration fits a capture's clock.
+def check_clock(capture: Capture, calibration: Calibration) -> None:
+    """Check that a calibration fits a capture's clock.
 
     Raises:
         CaptureError: It was made for another rate.

@@ -40,9 +40,9 @@ from capar.model.facts import (
 )
 from extractors.bodies.bodies import Bodies, bodies_of
 from extractors.bodies.poses import Poses
-from extractors.calibration import calibrated, prove_clock, thresholds_of
+from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.contacts import Contact, contacts
-from extractors.handling import handling
+from extractors.handling_facts import handling
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.relations.attention import Attention, attention
@@ -104,7 +104,7 @@ def measure(capture: Capture, calibration: Calibration | None = None) -> Measure
     if calibration is None:
         calibration, bodies = calibrated(capture, Thresholds())
     else:
-        prove_clock(capture, calibration)
+        check_clock(capture, calibration)
         bodies = bodies_of(capture, thresholds_of(calibration), calibration)
     return measured(capture, calibration, bodies)
 
@@ -158,7 +158,9 @@ def _seeing(capture: Capture) -> tuple[Sensor, ...]:
     """Every sensor with a line of sight: heads, and what attends and is no trunk."""
     attending = {each.name for each in capture.attending if each.end_effector not in TRUNK}
     return tuple(
-        each for each in capture.sensors if each.name in attending or each.end_effector == HEAD
+        sensor
+        for sensor in capture.sensors
+        if sensor.name in attending or sensor.end_effector == HEAD
     )
 
 
@@ -183,7 +185,7 @@ def _scene(capture: Capture) -> Iterator[Fact]:
     for each in capture.objects:
         yield Tag(each.name, each.tag.value)
     if capture.others:
-        own = [each for each in capture.objects if each.tag is TagType.SELF]
+        own = [thing for thing in capture.objects if thing.tag is TagType.SELF]
         bodies: tuple[Sensor | TagObject, ...] = (*capture.acting, *_seeing(capture), *own)
         for body in bodies:
             yield OfAgent(body.name, capture.agent_of(body))
@@ -201,30 +203,30 @@ def _intended(rank: int, purpose: Purpose) -> Intended:
 
 def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
     """Each contact; of two mobile objects either may be the dominant one: stated both ways."""
-    mobile = {each.name for each in capture.objects if each.tag is TagType.MOBILE}
+    mobile = {thing.name for thing in capture.objects if thing.tag is TagType.MOBILE}
     acting = {each.name for each in capture.acting}
-    for each in touches:
-        orders = [(each.first, each.second)]
-        if each.first in mobile - acting and each.second in mobile - acting:
-            orders.append((each.second, each.first))
+    for touch in touches:
+        orders = [(touch.first, touch.second)]
+        if touch.first in mobile - acting and touch.second in mobile - acting:
+            orders.append((touch.second, touch.first))
         for first, second in orders:
-            yield Touching(first, second, *each.interval)
-            yield Gap(first, second, each.interval[0], round(1e6 * each.gap_m))
+            yield Touching(first, second, *touch.interval)
+            yield Gap(first, second, touch.interval[0], round(1e6 * touch.gap_m))
 
 
 def _moving(
     capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
 ) -> Iterator[Fact]:
-    """When each object moves, as its floor tells, and when that truly began and ended."""
-    for each in capture.objects:
-        if each.tag is TagType.MOBILE:
-            pose = bodies.objects[each.name].poses
-            known = calibration.tag_object(each.name)
+    """When each object moves, by its floor, and when that truly began and ended."""
+    for thing in capture.objects:
+        if thing.tag is TagType.MOBILE:
+            pose = bodies.objects[thing.name].poses
+            known = calibration.tag_object(thing.name)
             floor = Floor(known.motion_floor_m, known.motion_floor_rad)
             rests = rest_poses(pose, floor, thresholds)
             for interval in moving(pose, rests, floor, thresholds):
-                yield Moving(each.name, *interval)
-                yield Displaced(each.name, *motion_edges(pose, interval, rests, thresholds))
+                yield Moving(thing.name, *interval)
+                yield Displaced(thing.name, *motion_edges(pose, interval, rests, thresholds))
 
 
 def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:
@@ -240,7 +242,7 @@ def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:
 
 
 def _values(kind: Any) -> Callable[[Fact], Any]:
-    """What facts of a kind are sorted by: their arguments, read without building the fact anew."""
+    """What facts of a kind are sorted by: their arguments, read without rebuilding the fact."""
     names = [each.name for each in fields(kind)]
     return attrgetter(*names) if names else str
 

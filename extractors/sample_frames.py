@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from capar.model.facts import Fact, Observed, Touching
 
-Marks = Mapping[str, Sequence[int]]
+FramesByBody = Mapping[str, Sequence[int]]
 """Frames by body, ascending."""
 
 
-def marks(facts: Iterable[Fact], acting: Iterable[str], last_frame: int) -> Marks:
+def boundary_frames(facts: Iterable[Fact], acting: Iterable[str], last_frame: int) -> FramesByBody:
     """For each end-effector every frame where something that concerns it begins or ends.
 
     For each object that it touches, those of these frames at which it touches it, with the one

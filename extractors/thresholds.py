@@ -1,4 +1,10 @@
-"""Every number that extraction decides by, with its unit, its meaning and where it comes from."""
+"""The numbers that extraction decides by, with unit, meaning and source.
+
+Not here, as they are limits of a method and no decision about motion: ``APPROACH_S`` in
+``motion/impacts.py``, the span that the low-pass filter blurs, over which the speed of a blow is
+taken; and ``FEWEST_FRAMES`` in ``relations/grips.py``, the fewest samples in which two pauses
+can be found.
+"""
 
 from dataclasses import dataclass
 
@@ -25,7 +31,8 @@ class Thresholds:
     """A shorter interruption of a contact is closed [s] (spec 4)."""
 
     contact_minimum_s: float = 0.05
-    """A shorter contact is dropped [s] (spec 4)."""
+    """A shorter contact is dropped [s] (spec 4). So is a shorter arrangement of two bodies, a
+    shorter look, and a shorter leaning or rolling."""
 
     tolerance_sigmas: float = 3.0
     """Bodies touch within so many deviations of the sensors' noise, unless a capture says [1]."""
@@ -121,11 +128,11 @@ class Thresholds:
     calls touch-down weight bearing; if both are down the other one bears all the rest."""
 
     feet_apart_m: float = 0.1
-    """Feet nearer than this share the weight as nobody knows [m]: the width of a foot, within
+    """Feet nearer than this share the weight in unknown parts [m]: the width of a foot, within
     which the middle of the body is not known better than to a fifth."""
 
     off_feet_m: float = 0.3
-    """A body whose middle is further from its feet than this is borne by something else too, or
+    """A body whose middle is further from its feet than this is supported by something else too, or
     falls [m]: the length of a large foot."""
 
     level_m: float = 0.03

@@ -33,7 +33,7 @@ class Actionary(Knowledge):
             StoreError: The store answers like no Actionary.
         """
         self.store = store
-        schema.prove_current(store)
+        schema.check_current(store)
         if not read_only:
             self._prepare()
 

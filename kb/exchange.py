@@ -20,7 +20,7 @@ from pyoxigraph import (
 from capar.model.errors import FileError, UnknownNameError
 from kb.errors import SchemaError, ShapeError
 from kb.lookup.stored import observations
-from kb.store import names, schema, shapes
+from kb.store import names, schema, shacl_validation
 from kb.store import updates as writing
 from kb.store.answers import turtle
 from kb.store.embedded import EmbeddedStore
@@ -53,7 +53,7 @@ def format_of(path: Path | str, given: str | None = None) -> str:
     """The format of a file: what is given, else what its name says.
 
     Raises:
-        UnknownNameError: No such format, or none that the name tells.
+        UnknownNameError: No such format, or a name that states none.
         FileError: The name has no ending that could tell one.
     """
     name = given or SUFFIXES.get(Path(path).suffix.lower(), Path(path).suffix)
@@ -81,7 +81,7 @@ def export(store: Store, format_name: str, *, observation: str | None = None) ->
         quads = sorted({*part(store, observation), schema.statement()}, key=str)
     form = FORMATS[format_name]
     if form == RdfFormat.TURTLE:
-        return turtle(dict.fromkeys(each.triple for each in quads), form=form).encode()
+        return turtle(dict.fromkeys(quad.triple for quad in quads), form=form).encode()
     if form == RdfFormat.TRIG:
         return turtle(quads, form=form).encode()
     return serialize(quads, format=form) or b""
@@ -198,7 +198,7 @@ def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -
     present = _present(list(quads), source)
     taken = [each for each in present if each.graph_name != names.GRAPHS["ontology"]]
     triples = [each.triple for each in taken]
-    problems = (*shapes.violations(triples), *shapes.nlt_problems(triples))
+    problems = (*shacl_validation.violations(triples), *shacl_validation.nlt_problems(triples))
     if problems:
         raise ShapeError(source, problems)
     seen = sorted(

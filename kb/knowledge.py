@@ -12,7 +12,7 @@ from capar.model.par import (
     Upar,
 )
 from kb.findings import Ability, FeatureRow, FoundLocation, FoundStyle, Stored
-from kb.lookup import abilities, feature_table, kinds, locations, pars, recognition, styles
+from kb.lookup import abilities, feature_table, kinds, locations, recognition, stored_pars, styles
 from kb.store.stores import Store
 
 
@@ -41,7 +41,9 @@ class Knowledge:
             objects: Kinds or names of objects, all of which take part.
             performer: Name of the agent.
         """
-        return pars.find(self.store, action=action, objects=tuple(objects), performer=performer)
+        return stored_pars.find(
+            self.store, action=action, objects=tuple(objects), performer=performer
+        )
 
     def complex_par(self, name: str) -> ComplexPar:
         """A complex action as it was observed: by the observation's name, or by its own.
@@ -49,11 +51,11 @@ class Knowledge:
         Raises:
             UnknownNameError: There is none.
         """
-        return pars.complex_par(self.store, name)
+        return stored_pars.complex_par(self.store, name)
 
     def upars(self, name: str | None = None) -> tuple[Upar, ...]:
         """Uninstantiated actions of a name, or all of them, by name and number of objects."""
-        return pars.upars(self.store, name)
+        return stored_pars.upars(self.store, name)
 
     def ipars(self, observation: str) -> tuple[Ipar, ...]:
         """The instantiated actions of an observation, links in order.
@@ -61,7 +63,7 @@ class Knowledge:
         Raises:
             UnknownNameError: There is no such observation.
         """
-        return pars.ipars(self.store, observation)
+        return stored_pars.ipars(self.store, observation)
 
     def effective(self, ipar: Ipar) -> Upar:
         """An action as it is to be done: what the IPAR says overrides its UPAR (thesis 4.1.2).
@@ -69,7 +71,7 @@ class Knowledge:
         Raises:
             UnknownNameError: Its UPAR is not known.
         """
-        return pars.effective(self.upars(ipar.upar), ipar)
+        return stored_pars.effective(self.upars(ipar.upar), ipar)
 
     # Features
 

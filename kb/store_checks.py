@@ -9,7 +9,7 @@ from pyoxigraph import Literal, NamedNode, Quad, Triple
 
 from kb.exchange import part
 from kb.lookup.stored import observations
-from kb.store import names, shapes
+from kb.store import names, shacl_validation
 from kb.store.literals import LiteralError, nlt_of, numbers
 from kb.store.sparql import fill
 from kb.store.stores import Store
@@ -54,14 +54,16 @@ def check(store: Store, *, full: bool = True) -> tuple[Problem, ...]:
     Raises:
         DamagedError: A statement cannot be read.
     """
-    store.prove_readable()
+    store.check_readable()
     found: list[Problem] = []
     for each in observations(store):
         quads = part(store, each.name)
         triples = [quad.triple for quad in quads]
         judged = by_shacl(triples) if full else _by_rules(triples)
         found += [Problem(each.name, thing, message) for thing, message in judged]
-        found += [Problem(each.name, *_split(line)) for line in shapes.nlt_problems(triples)]
+        found += [
+            Problem(each.name, *_split(line)) for line in shacl_validation.nlt_problems(triples)
+        ]
         found += [Problem(each.name, *_split(line)) for line in _out_of_reach(quads)]
         found += [Problem(each.name, *_split(line)) for line in _dangling(store, each.name)]
     found += _unlisted(store)
@@ -74,7 +76,7 @@ def _split(line: str) -> tuple[str, str]:
 
 
 def _by_rules(triples: list[Triple]) -> list[tuple[str, str]]:
-    return [_split(line) for line in shapes.violations(triples)]
+    return [_split(line) for line in shacl_validation.violations(triples)]
 
 
 def by_shacl(triples: Iterable[Triple]) -> list[tuple[str, str]]:
@@ -82,7 +84,7 @@ def by_shacl(triples: Iterable[Triple]) -> list[tuple[str, str]]:
     from pyshacl import validate
     from rdflib import Graph, Namespace
 
-    shacl = Namespace(shapes.SH)
+    shacl = Namespace(shacl_validation.SH)
     data = Graph()
     data.parse(data="".join(f"{each} .\n" for each in triples), format="nt")
     _, report, _ = validate(data, shacl_graph=_shapes(), inference="none", advanced=False)

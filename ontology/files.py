@@ -88,6 +88,6 @@ def kinds() -> frozenset[str]:
 
 @cache
 def digest() -> str:
-    """SHA-256 of the ontology's statements: tells one version of it from another."""
+    """SHA-256 of the ontology's statements: distinguishes its versions."""
     text = "\n".join(map(str, ontology()))
     return hashlib.sha256(text.encode()).hexdigest()

@@ -2,9 +2,9 @@
 
 Run by hand, from the root: ``python tests/mutants.py --count 100 --jobs 2``. Faults are drawn by a
 seed from the rules and the extractors, as often from the ones as from the others. Each is put into
-a copy of the tree; tests that mention its file run first, then those of its room, then all; a fault
-is caught by the first test that fails. Results are kept, one JSON object a line, and a run goes on
-where one with the same file of results stopped.
+a copy of the tree; tests that mention its file run first, then those of its package, then all. A
+fault is caught by the first test that fails. Results are kept, one JSON object a line, and a run
+goes on where one with the same file of results stopped.
 """
 
 import argparse
@@ -28,7 +28,7 @@ from tempfile import TemporaryDirectory
 from mutations import Mutation, difference, of_python, of_rules, python_differs, rules_differ
 
 ROOT = Path(__file__).parents[1]
-RULE_ROOMS = ("primitives", "vocabulary", "segmentation", "naming", "composition")
+RULE_PACKAGES = ("primitives", "vocabulary", "segmentation", "naming", "composition")
 PACKAGES = ("capar", "extractors", "capar_rules", "kb", "ontology")
 FIRST = {
     "capar_rules": ("tests/rules",),
@@ -37,7 +37,7 @@ FIRST = {
 """By package, the tests that say most of it."""
 
 SECOND = ("tests/test_motions.py", "tests/test_published.py", "tests/capar_rules")
-NOT_RUN = ("tests/test_house.py", "tests/test_readme.py")
+NOT_RUN = ("tests/test_architecture.py", "tests/test_readme.py")
 """They judge how files are written and what is installed, not what a program does."""
 
 CAUGHT, SURVIVED, TIMEOUT = "caught", "survived", "timeout"
@@ -79,8 +79,8 @@ class Result:
 def drawn(seed: int) -> Iterator[Mutant]:
     """Every mutant there is, in an order of chance: one of rules, one of extractors, by turns."""
     chance = random.Random(seed)
-    rooms = [_rules(f"capar_rules/{room}") for room in RULE_ROOMS]
-    orders = [iter(chance.sample(room, len(room))) for room in rooms]
+    packages = [_rules(f"capar_rules/{package}") for package in RULE_PACKAGES]
+    orders = [iter(chance.sample(package, len(package))) for package in packages]
     modules = _modules()
     extractors = iter(chance.sample(modules, len(modules)))
     turns = [each for order in orders for each in (order, extractors)]
@@ -154,9 +154,9 @@ def _outcome(mutant: Mutant, tree: Path, *, until: float) -> tuple[str, str]:
     """Whether some test fails, and which one."""
     package = mutant.file.split("/")[0]
     stem = Path(mutant.file).stem
-    room = [each for each in FIRST[package] if (tree / each).exists()]
+    first = [each for each in FIRST[package] if (tree / each).exists()]
     second = [each for each in SECOND if (tree / each).exists()]
-    stages = [[*room, "-k", stem], room]
+    stages = [[*first, "-k", stem], first]
     # Rule cases take milliseconds each, so they come before the tests that mention the file.
     stages.insert(2 if package == "capar_rules" else 0, _mentioning(tree, stem))
     for tests in (*stages, second, ["tests"]):

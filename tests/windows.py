@@ -21,7 +21,7 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
-from extractors.handling import SHIFTS
+from extractors.handling_facts import SHIFTS
 from extractors.measure import Measurements, measure
 
 WINDOWED = (

@@ -1,6 +1,6 @@
 """Writes the bundle that ships: the tall man drinks from a mug, with a good tracker's noise.
 
-Run as ``python tests/write_demo.py`` to write it anew.
+Run as ``python tests/write_demo.py`` to rewrite it.
 """
 
 from pathlib import Path

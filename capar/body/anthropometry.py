@@ -6,7 +6,7 @@ from statistics import NormalDist
 from types import MappingProxyType
 from typing import Any
 
-from capar.body.tables import table
+from capar.body.data_files import table
 from capar.model.capture import Agent
 from capar.model.errors import CaparError, UnknownNameError
 
@@ -53,7 +53,7 @@ class Measures:
     """Standard deviation of each [m, kg]: of measuring, or of estimating from stature."""
 
     def __post_init__(self) -> None:
-        """Prove that they are of one body, and make them read-only."""
+        """Check that they are of one body, and make them read-only."""
         object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
         object.__setattr__(self, "deviations", MappingProxyType(dict(self.deviations)))
         for name, value in self.values.items():
@@ -117,7 +117,7 @@ def estimate_measures(
         UnknownNameError: A measure has no such name.
     """
     known = dict(given or {})
-    _prove(sex, age, percentile, known)
+    _check(sex, age, percentile, known)
     blank = Measures.__new__(Measures)
     object.__setattr__(blank, "age", age)
     object.__setattr__(blank, "sex", sex)
@@ -171,7 +171,7 @@ def measures_of(agent: Agent) -> Measures:
     return estimate_measures(sex=sex, age=agent.measures.get("age", age), given=stated)
 
 
-def _prove(sex: str, age: float, percentile: float | None, known: Mapping[str, float]) -> None:
+def _check(sex: str, age: float, percentile: float | None, known: Mapping[str, float]) -> None:
     if sex not in {"male", "female"}:
         raise UnknownNameError("sex", sex, ("male", "female"))
     for name in known:

@@ -5,7 +5,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures
-from capar.body.mannequin import PALM
+from capar.body.body_shapes import PALM
 from capar.body.things import Thing
 
 AIR_M = 0.0005

@@ -75,10 +75,10 @@ class Human:
         out[3:7] = [np.cos(heading / 2), 0.0, 0.0, np.sin(heading / 2)]
         for joint, angle in (angles or {}).items():
             out[self.index(joint)] = angle
-        self._prove(out)
+        self._check(out)
         return out
 
-    def _prove(self, posture: Float[np.ndarray, "posture"]) -> None:
+    def _check(self, posture: Float[np.ndarray, "posture"]) -> None:
         out = self.outside(posture[None])[0]
         for number in np.flatnonzero(out):
             low, high = np.degrees(self.ranges[number])

@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.body.anthropometry import Measures
+from capar.body.data_files import is_right, mirrored, table
 from capar.body.skeleton import HEEL, SPINE, Segment
-from capar.body.tables import is_right, mirrored, table
 
 LIMBS = ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
 TRUNK = ("lower_trunk", "middle_trunk", "upper_trunk")

@@ -9,10 +9,10 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.body.anthropometry import Measures
+from capar.body.body_shapes import Form, forms, palm_centre
+from capar.body.data_files import is_right, mirrored, table
 from capar.body.inertia import Inertia, inertias
-from capar.body.mannequin import Form, forms, palm_centre
 from capar.body.skeleton import Segment, eyes_between, skeleton
-from capar.body.tables import is_right, mirrored, table
 
 ROOT = "root"
 """Name of the free joint."""

@@ -92,7 +92,7 @@ def perform(
         phases.append((phase.name, start, start + count / rate_hz))
         start += count / rate_hz
     made = _gathered(human, scene, script, frames, phases, rate_hz)
-    _prove(made)
+    _check(made)
     return made
 
 
@@ -122,7 +122,7 @@ def _gathered(
     )
 
 
-def _prove(made: Performance) -> None:
+def _check(made: Performance) -> None:
     """Hands are where the script has them whenever they hold something."""
     for phase, (name, start, end) in zip(made.script, made.phases, strict=True):
         now = (made.times >= start) & (made.times < end)

@@ -7,8 +7,8 @@ import trimesh
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.body.body_shapes import Form, forms
 from capar.body.gaze import lines_of_sight
-from capar.body.mannequin import Form, forms
 from capar.body.mounting import Mount
 from capar.body.performing import TOUCH_M, Performance
 from capar.body.scripts import SIDES

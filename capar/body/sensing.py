@@ -36,7 +36,7 @@ class Tracker:
     """Mean length of a loss, exponentially distributed [s]."""
 
     def __post_init__(self) -> None:
-        """Prove the numbers."""
+        """Check the numbers."""
         for name in self.__dataclass_fields__:
             value = getattr(self, name)
             if not 0.0 <= value < np.inf:

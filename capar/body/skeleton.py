@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.body.anthropometry import Measures
-from capar.body.tables import is_right, mirrored
+from capar.body.data_files import is_right, mirrored
 
 SPINE = {
     "lumbar_lower": (0.0, 0.15),

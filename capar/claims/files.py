@@ -8,7 +8,7 @@ from functools import cache
 from glob import glob
 from pathlib import Path
 
-from capar.claims.claims import Verdict, judge
+from capar.claims.motion_claims import Verdict, judge
 from capar.claims.names import Names, names_of
 from capar.model.errors import CaparError, FileError
 from capar.model.observation import Observation
@@ -72,7 +72,7 @@ def read_motion_test(path: Path) -> MotionTest:
 def run_motion_test(
     test: MotionTest, *, rules: Path | None = None, actionary: str | None = None
 ) -> Iterator[Verdict]:
-    """Judge every claim of every capture; what cannot be judged is told beside the rest.
+    """Judge every claim of every capture; what cannot be judged is reported with the rest.
 
     Args:
         test: The claims and captures.

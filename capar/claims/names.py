@@ -1,4 +1,4 @@
-"""The names that a claim may speak of: a claim about anything else would hold of nothing."""
+"""The names that a claim may use: with an unknown name it could never be true."""
 
 import re
 from collections.abc import Collection, Iterable
@@ -17,7 +17,7 @@ STEP = re.compile(r"([A-Z]\w*)(?:\(([^()]*)\))?")
 
 
 class ClaimError(CaparError):
-    """A claim that cannot be read, or that speaks of what is not there."""
+    """A claim that cannot be read, or that names what is not there."""
 
 
 class UnknownInClaimError(ClaimError, UnknownNameError):
@@ -26,7 +26,7 @@ class UnknownInClaimError(ClaimError, UnknownNameError):
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """What there is to speak of in one capture, under one rule base."""
+    """The names that exist in one capture, under one rule base."""
 
     capture: str
     primitives: frozenset[str]
@@ -98,7 +98,7 @@ def parts(step: str) -> tuple[str, tuple[str, ...] | None]:
 def names_of(
     seen: Observation, *, rules: Profile | None = None, sensors: Iterable[str] = ()
 ) -> Names:
-    """What claims about an observed capture may speak of.
+    """The names that claims about an observed capture may use.
 
     Args:
         seen: The observation.

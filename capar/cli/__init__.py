@@ -10,7 +10,7 @@ import typer
 from typer.core import TyperGroup
 
 from capar import __version__
-from capar.cli._output import told
+from capar.cli._output import error_message
 from capar.model.errors import CaparError
 
 
@@ -84,5 +84,5 @@ def main() -> None:
         typer.echo(f"capar: {error}", err=True)
         sys.exit(2)
     except OSError as error:
-        typer.echo(f"capar: {told(error)}", err=True)
+        typer.echo(f"capar: {error_message(error)}", err=True)
         sys.exit(2)

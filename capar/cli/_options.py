@@ -101,7 +101,7 @@ def has_actionary(place: str, *, named: str | None) -> bool:
 
 
 def require_actionary(actionary: str | None, *, observed: bool = False) -> None:
-    """Refuse an Actionary that is not there, so that a slip of the pen makes none.
+    """Refuse an Actionary that is not there, so that a typing mistake creates none.
 
     Args:
         actionary: Its place; None for the usual one.
@@ -136,7 +136,7 @@ def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[Primi
 def open_words(where: str | None) -> "Iterator[Store | None]":
     """The store of an Actionary to read; None where none is named and none stands here."""
     from kb.store.embedded import DATA_FOLDER
-    from kb.store.schema import prove_current
+    from kb.store.schema import check_current
     from kb.store.stores import is_address, open_store, place
 
     target = place(where)
@@ -146,7 +146,7 @@ def open_words(where: str | None) -> "Iterator[Store | None]":
         return
     store = open_store(target, read_only=not is_address(target))
     try:
-        prove_current(store)
+        check_current(store)
         yield store
     finally:
         store.close()

@@ -1,4 +1,4 @@
-"""How commands print JSON and tables, write files whole or not at all, and tell of failures."""
+"""How commands print JSON and tables, write files whole or not at all, and report failures."""
 
 import errno
 import os
@@ -16,26 +16,26 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 REMEDIES = {
-    errno.EACCES: "Take the rights to it, or name another place.",
-    errno.EPERM: "Take the rights to it, or name another place.",
-    errno.EROFS: "Name a place that can be written to.",
-    errno.ENOENT: "Name one that exists; a new file needs a folder that is there.",
-    errno.ENOTDIR: "What stands before the last / has to be a folder.",
-    errno.EISDIR: "Name a file; this is a folder.",
-    errno.EEXIST: "Name another place.",
-    errno.ENOSPC: "Make room, or name a place on another disk.",
-    errno.EDQUOT: "Make room, or name a place on another disk.",
+    errno.EACCES: "Get permission to read or write it, or name another path.",
+    errno.EPERM: "Get permission to read or write it, or name another path.",
+    errno.EROFS: "Name a path on a writable file system.",
+    errno.ENOENT: "Name an existing path; a new file needs an existing folder.",
+    errno.ENOTDIR: "The part before the last / must be a folder.",
+    errno.EISDIR: "Name a file, not a folder.",
+    errno.EEXIST: "Name another path.",
+    errno.ENOSPC: "Free some space, or name a path on another disk.",
+    errno.EDQUOT: "Free some space, or name a path on another disk.",
     errno.ENAMETOOLONG: "Choose a shorter name.",
-    errno.ELOOP: "Links there lead in a circle; name what they should lead to.",
+    errno.ELOOP: "The symbolic links there form a loop; name their target directly.",
 }
-"""What would have been right, by what went wrong."""
+"""The remedy for each error number."""
 
 
 PIPE_COLUMNS = 10_000
-"""A table in a pipe is cut at no column that anybody meets."""
+"""Width of a table in a pipe [columns]: wide enough that nothing is cut."""
 
 
-def told(error: OSError) -> str:
+def error_message(error: OSError) -> str:
     """What went wrong, where, and what would have been right."""
     names = [os.fsdecode(each) for each in (error.filename, error.filename2) if _named(each)]
     where = f"{' -> '.join(names)}: " if names else ""
@@ -78,8 +78,8 @@ def console() -> "Console":
     return Console(width=None if sys.stdout.isatty() else PIPE_COLUMNS)
 
 
-def prove_place(path: Path, *, suffixes: Collection[str] = ()) -> None:
-    """Prove that a file could be written, before anything is computed for it.
+def check_writable(path: Path, *, suffixes: Collection[str] = ()) -> None:
+    """Check that a file could be written, before anything is computed for it.
 
     Args:
         path: The file, which is left as it is.
@@ -91,7 +91,7 @@ def prove_place(path: Path, *, suffixes: Collection[str] = ()) -> None:
     """
     from tempfile import TemporaryFile
 
-    with _told_of(path):
+    with _naming(path):
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
         if path.is_file():
@@ -112,10 +112,10 @@ def written(path: Path) -> Iterator[Path]:
     Raises:
         OSError: It cannot be written; the error bears the file's name, not the draft's.
     """
-    prove_place(path)
+    check_writable(path)
     target = Path(os.path.realpath(path))
     draft = target.with_name(f".{os.getpid()}.draft{path.suffix}")
-    with _told_of(path):
+    with _naming(path):
         if _is_device(path):
             yield path
             return
@@ -134,8 +134,8 @@ def _is_device(path: Path) -> bool:
 
 
 @contextmanager
-def _told_of(path: Path) -> Iterator[None]:
-    """Faults that speak of a file's draft, or of no file, speak of the file."""
+def _naming(path: Path) -> Iterator[None]:
+    """Errors that name a file's draft, or no file, name the file."""
     try:
         yield
     except OSError as error:

@@ -183,7 +183,7 @@ def print_word(found: "Glossary", name: str) -> None:
     for each in words:
         typer.echo(f"{each}  {each.meaning}")
         typer.echo(f"  explained in {each.file}:{each.line}" if each.line else f"  in {each.file}")
-    for signature in dict.fromkeys(each.signature for each in words):
+    for signature in dict.fromkeys(word.signature for word in words):
         for place in found.rules_of(signature):
             typer.echo(f"  defined at {place}\n{_rule(Path(place.file), place.line)}")
 
@@ -198,7 +198,7 @@ def _rule(file: Path, line: int) -> str:
 def print_words_json(found: "Glossary", name: str | None) -> None:
     """The same as JSON: one word, or all of them."""
     words = found.find(name) if name else found.words
-    print_json([_row(each, found) for each in words])
+    print_json([_row(word, found) for word in words])
 
 
 def _row(word: "Word", found: "Glossary") -> dict[str, object]:

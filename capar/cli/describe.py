@@ -11,7 +11,7 @@ app = typer.Typer()
 
 
 class Detail(StrEnum):
-    """How much is told."""
+    """How much is described."""
 
     STEPS = "steps"
     SUMMARY = "summary"

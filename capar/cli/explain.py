@@ -48,13 +48,13 @@ def explain(
     svg: Annotated[Path | None, typer.Option(help="Draw the tree to this file.")] = None,
 ) -> None:
     """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
-    from capar.cli._output import prove_place
+    from capar.cli._output import check_writable
     from capar.pipelines.explanation import explained, segment_named
     from capar_rules.explain.why_not import why_not as alternatives
     from extractors.readers.bundle.capture_toml import read_capture
 
     if svg:
-        prove_place(svg, suffixes=(".svg",))
+        check_writable(svg, suffixes=(".svg",))
     base = rule_base(profile, rules, actionary, steady=steady)
     seen = explained(read_capture(capture), rules=base)
     every_one = seen.observation.segments
@@ -106,7 +106,7 @@ def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bo
         typer.echo(_header(each))
         typer.echo(each.summary)
         if tree:
-            _branch(each.reason.told(), 0)
+            _branch(each.reason.with_sentences(), 0)
 
 
 def _branch(reason: "Reason", depth: int) -> None:
@@ -154,7 +154,7 @@ def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
 
 
 def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
-    """A tree as JSON, and beside each atom the segments that it speaks of by their ticks."""
+    """A tree as JSON, and beside each atom the segments that it refers to by their ticks."""
     from capar.pipelines.explanation import segments_in
 
     placed: dict[str, Any] = {}

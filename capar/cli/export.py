@@ -26,14 +26,14 @@ def export(
     actionary: Place = None,
 ) -> None:
     """Write everything, or one observation, as Turtle, TriG, N-Quads or JSON-LD."""
-    from capar.cli._output import prove_place, written
+    from capar.cli._output import check_writable, written
     from kb import Actionary
     from kb.exchange import export as exported
     from kb.exchange import format_of, misplaced
 
     chosen = format_of(file or "", format_ or (None if file else "trig"))
     if file is not None:
-        prove_place(file)
+        check_writable(file)
     with Actionary.open(actionary, read_only=True) as opened:
         data = exported(opened.store, chosen, observation=observation)
         lost = misplaced(opened.store) if chosen == "turtle" and observation is None else 0

@@ -70,7 +70,7 @@ def observe(
 
     from extractors.readers.bundle.capture_toml import read_capture
 
-    _prove_output(json=json, script=script, pars=pars, plot=plot)
+    _check_output(json=json, script=script, pars=pars, plot=plot)
     base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
 
@@ -84,25 +84,25 @@ def observe(
     terminal = sys.stdin.isatty() and sys.stderr.isatty()
     choice = on_unknown or (OnUnknown.ASK if terminal and not json else OnUnknown.KEEP)
     folder = new_rules_folder(rules, actionary=actionary)
-    if choice is OnUnknown.ASK and _teach(observation, folder):
+    if choice is OnUnknown.ASK and _ask_for_names(observation, folder):
         base = rule_base(profile, rules, actionary, steady=steady)
         observation = observe_measured(trial, measurements, rules=base, name=name)
     if choice is OnUnknown.FAIL:
-        _refuse(observation)
+        _fail_on_unknown(observation)
     # Files first: a reader of the output who stops early, as `head` does, ends the command.
     done = []
     if plot:
         done.append(_draw(observation, trial, measurements, plot))
     if actionary:
-        done.append(_keep(observation, actionary, name=name, wait_s=wait))
+        done.append(_store(observation, actionary, name=name, wait_s=wait))
     _print(observation, json=json, script=script, pars=pars)
     for line in done:
         typer.echo(line, err=True)
 
 
-def _prove_output(*, json: bool, script: bool, pars: bool, plot: Path | None) -> None:
-    """What is to come out can come out; told before anything is computed."""
-    from capar.cli._output import prove_place
+def _check_output(*, json: bool, script: bool, pars: bool, plot: Path | None) -> None:
+    """Check that the requested output can be written, before anything is computed."""
+    from capar.cli._output import check_writable
     from capar.model.errors import CaparError
 
     forms = {"--json": json, "--script": script, "--pars": pars}
@@ -112,10 +112,10 @@ def _prove_output(*, json: bool, script: bool, pars: bool, plot: Path | None) ->
     if plot:
         from capar.views.picture import SUFFIXES
 
-        prove_place(plot, suffixes=SUFFIXES)
+        check_writable(plot, suffixes=SUFFIXES)
 
 
-def _keep(observation: "Observation", place: str, *, name: str, wait_s: float) -> str:
+def _store(observation: "Observation", place: str, *, name: str, wait_s: float) -> str:
     from kb import Actionary
 
     with Actionary.open(place, wait_s=wait_s) as store:
@@ -195,7 +195,7 @@ def _draw(
     return f"drew {path}"
 
 
-def _refuse(observation: "Observation") -> None:
+def _fail_on_unknown(observation: "Observation") -> None:
     from capar.model.errors import RuleError
     from capar.views.tables import unknown_note
 
@@ -204,7 +204,7 @@ def _refuse(observation: "Observation") -> None:
         raise RuleError("no rule names every segment:\n  " + "\n  ".join(unknown))
 
 
-def _teach(observation: "Observation", folder: Path) -> bool:
+def _ask_for_names(observation: "Observation", folder: Path) -> bool:
     """Ask for a name for each unknown feature set; whether any was given."""
     from capar.model.par import ACTION_NAME
     from capar.views.tables import unknown_note

@@ -72,13 +72,13 @@ def query(
     raw = _raw(question)
     text = _text(question, raw, given)
     from kb import Actionary
-    from kb.queries.questions import prove_known
+    from kb.queries.questions import check_known
     from kb.queries.questions import question as named
 
     with Actionary.open(actionary, read_only=True) as opened:
         answer = opened.store.ask_within(text, seconds=time_limit)
         if raw is None and not answer.rows:
-            prove_known(opened.store, named(question), given)
+            check_known(opened.store, named(question), given)
     _print(answer, chosen)
 
 

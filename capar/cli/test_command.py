@@ -12,7 +12,7 @@ from capar.cli._output import print_json
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
-    from capar.claims.claims import Verdict
+    from capar.claims.motion_claims import Verdict
 
 app = typer.Typer()
 
@@ -92,8 +92,8 @@ def test(
 def _paths(files: Iterable[Path]) -> Iterator[Path]:
     from capar.claims.files import SUFFIX
 
-    for each in files:
-        yield from sorted(each.rglob(f"*{SUFFIX}")) if each.is_dir() else [each]
+    for file in files:
+        yield from sorted(file.rglob(f"*{SUFFIX}")) if file.is_dir() else [file]
 
 
 def _judged(path: Path, rules: Path | None, actionary: str | None) -> _Suite:

@@ -1,4 +1,4 @@
-"""What is told to go into a container, held against where it lay before and after."""
+"""What is reported to go into a container, compared with where it lay before and after."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ class Landing:
 
     object: str
     container: str
-    told: bool
+    reported: bool
     """Whether a segment says that the object goes into it."""
 
     true: bool
@@ -28,13 +28,13 @@ class Landing:
 def landings(capture: Capture, containers: Iterable[str]) -> tuple[Landing, ...]:
     """Observe a capture and compare the preposition with the objects' first and last poses.
 
-    What is true is told by the middle of an object's box and the extent of the container's alone.
+    The truth is given by the middle of an object's box and the extent of the container's alone.
 
     Raises:
         CaparError: The capture has no such container, or it has no shape.
     """
     names = list(containers)
-    told = {
+    reported = {
         (body, other)
         for segment in observe(capture).segments
         for name, body, other in segment.prepositions
@@ -45,7 +45,7 @@ def landings(capture: Capture, containers: Iterable[str]) -> tuple[Landing, ...]
         Landing(
             object=each.name,
             container=name,
-            told=(each.name, name) in told,
+            reported=(each.name, name) in reported,
             true=_inside(each, -1, capture.tag_object(name))
             and not _inside(each, 0, capture.tag_object(name)),
         )

@@ -17,7 +17,7 @@ from capar.pipelines.observation import facts_program, observe_measured
 from capar_rules.borders.ticks import Tick
 from capar_rules.engine.profiles import DEFAULT, profile
 from capar_rules.engine.solver import rule_file, solve
-from extractors.handling import SHIFTS
+from extractors.handling_facts import SHIFTS
 
 PASS, OVER_TABLE, REGRASP = "pass", "over_table", "regrasp"
 KINDS = (PASS, OVER_TABLE, REGRASP)
@@ -89,14 +89,14 @@ def read_seen(path: Path, take: str) -> tuple[Change, ...]:
         rows = tomllib.loads(path.read_text(encoding="utf-8"))[take]
         seen = [
             Change(
-                start_s=float(each["from_s"]),
-                end_s=float(each["to_s"]),
-                kind=KINDS[KINDS.index(each["kind"])],
-                ee=str(each["ee"]),
-                other=str(each.get("other", "")),
-                sure=bool(each.get("sure", True)),
+                start_s=float(row["from_s"]),
+                end_s=float(row["to_s"]),
+                kind=KINDS[KINDS.index(row["kind"])],
+                ee=str(row["ee"]),
+                other=str(row.get("other", "")),
+                sure=bool(row.get("sure", True)),
             )
-            for each in rows
+            for row in rows
         ]
     except (tomllib.TOMLDecodeError, KeyError, TypeError, ValueError) as error:
         raise FileError(
@@ -145,19 +145,21 @@ def _passes(observation: Observation, times: Times) -> Iterable[Change]:
     for segment in observation.segments:
         if "Give" not in (segment.name, *segment.general):
             continue
-        for each in touches:
-            taken = each.other in segment.objects and each.body != segment.ee
-            if taken and each.first <= segment.first <= each.last:
-                start = times[each.first]
-                yield Change(float(start), segment.start_s, PASS, segment.ee, each.other, each.body)
+        for touch in touches:
+            taken = touch.other in segment.objects and touch.body != segment.ee
+            if taken and touch.first <= segment.first <= touch.last:
+                start = times[touch.first]
+                yield Change(
+                    float(start), segment.start_s, PASS, segment.ee, touch.other, touch.body
+                )
 
 
 def _over(observation: Observation, times: Times) -> Iterable[Change]:
     """Each time that one hand lets go of what stands, and another is the next to touch it."""
-    moves = [each for each in observation.facts if isinstance(each, Moving)]
+    moves = [fact for fact in observation.facts if isinstance(fact, Moving)]
     touches = _touches(observation)
-    for thing in sorted({each.other for each in touches}):
-        own = [each for each in touches if each.other == thing]
+    for thing in sorted({touch.other for touch in touches}):
+        own = [touch for touch in touches if touch.other == thing]
         for one, two in pairwise(own):
             between = [
                 each
@@ -173,7 +175,7 @@ def _regrasps(
     observation: Observation, times: Times, told: set[tuple[str, int, str]]
 ) -> Iterable[Change]:
     """What the rules tell, at the time of the shift that begins in the segment, if one does."""
-    shifts = [each for each in observation.facts if isinstance(each, Lies) and each.how == SHIFTS]
+    shifts = [fact for fact in observation.facts if isinstance(fact, Lies) and fact.how == SHIFTS]
     for segment in observation.segments:
         for thing in segment.objects:
             if (segment.ee, segment.first, thing) not in told:
@@ -190,8 +192,8 @@ def _regrasps(
 
 def _touches(observation: Observation) -> list[Touching]:
     """Contacts of end-effectors, in order of time."""
-    hands = {each.ee for each in observation.links}
+    hands = {link.ee for link in observation.links}
     found = [
-        each for each in observation.facts if isinstance(each, Touching) and each.body in hands
+        fact for fact in observation.facts if isinstance(fact, Touching) and fact.body in hands
     ]
     return sorted(found, key=lambda each: (each.first, each.body))

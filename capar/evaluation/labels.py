@@ -148,7 +148,7 @@ def _table(path: Path, text: str) -> tuple[list[Label], bool]:
 
 
 def _row(path: Path, line: int, row: Mapping[str, str | None], columns: tuple[str, ...]) -> Label:
-    link, start, end, label = ((row[each] or "").strip() for each in columns)
+    link, start, end, label = ((row[column] or "").strip() for column in columns)
     thing = (row.get("object") or "").strip()
     place = f"{path}:{line}"
     return Label(

@@ -62,7 +62,7 @@ def read_mapping(path: Path) -> LabelMapping:
 def check_names(
     mapping: LabelMapping, *, names: Iterable[str], objects: Iterable[str], labels: Iterable[str]
 ) -> None:
-    """Prove that every name in the rules is one that exists.
+    """Check that every name in the rules is one that exists.
 
     Args:
         mapping: The rules.

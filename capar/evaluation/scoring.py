@@ -1,4 +1,4 @@
-"""Captures observed and held against their labels, link by link and pooled."""
+"""Captures observed and compared with their labels, link by link and pooled."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -57,13 +57,13 @@ class Fact:
 
 def _symbol(value: Any) -> clingo.Symbol:
     if isinstance(value, int):
-        return clingo.Number(_proven(value))
+        return clingo.Number(_checked_int32(value))
     return clingo.Function(value) if NAME.fullmatch(value) else clingo.String(value)
 
 
 def _text(value: int | str) -> str:
     """The argument as the solver writes it, some ten times faster than by way of its symbol."""
-    return str(_proven(value)) if isinstance(value, int) else _word(value)
+    return str(_checked_int32(value)) if isinstance(value, int) else _word(value)
 
 
 @cache
@@ -71,7 +71,7 @@ def _word(value: str) -> str:
     return str(_symbol(value))
 
 
-def _proven(value: int) -> int:
+def _checked_int32(value: int) -> int:
     if abs(value) > LARGEST:
         raise FactError(f"{value} does not fit the solver's 32 bits")
     return value

@@ -21,7 +21,7 @@ class TagType(StrEnum):
 
 
 class Role(StrEnum):
-    """What a tracking sensor's motion tells of (spec 2)."""
+    """What a tracking sensor's motion shows (spec 2)."""
 
     ACTS = "acts"
     ATTENDS = "attends"
@@ -49,7 +49,7 @@ class Stream:
     """Unit quaternions w x y z that take the body's axes to the world's, of continuous sign."""
 
     def __post_init__(self) -> None:
-        """Prove the stream, and make signs continuous and arrays read-only."""
+        """Check the stream, and make signs continuous and arrays read-only."""
         frames = len(self.times)
         if self.positions.shape != (frames, 3) or self.orientations.shape != (frames, 4):
             raise CaptureError(
@@ -92,7 +92,7 @@ class Shape:
     """What it is, for people: a file's name, or a form with its sizes in metres."""
 
     def __post_init__(self) -> None:
-        """Prove the triangles and make the arrays read-only."""
+        """Check the triangles and make the arrays read-only."""
         if not np.isfinite(self.vertices).all() or len(self.vertices) == 0:
             raise CaptureError(f"shape {self.description!r} has no corners or infinite ones")
         if len(self.faces) == 0 or self.faces.min() < 0 or self.faces.max() >= len(self.vertices):

@@ -1,4 +1,4 @@
-"""A capture: one trial as streams, scene, sensors and performers, frozen and proven once."""
+"""A capture: one trial as streams, scene, sensors and performers, frozen and validated once."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -94,7 +94,7 @@ class Capture:
     """Who else performed, where several agents did."""
 
     def __post_init__(self) -> None:
-        """Prove names and clocks."""
+        """Check names and clocks."""
         if not self.sensors:
             raise CaptureError(f"capture {self.name!r} has no tracking sensor; name at least one")
         for kind, group in (("sensor", self.sensors), ("object", self.objects)):
@@ -116,9 +116,9 @@ class Capture:
             for name in (pair.first, pair.second):
                 if name not in self.bodies:
                     raise UnknownNameError("body", name, self.bodies, where="pivot contact")
-        self._prove_agents()
+        self._check_agents()
 
-    def _prove_agents(self) -> None:
+    def _check_agents(self) -> None:
         agents = [each.name for each in self.agents]
         for name in agents:
             if agents.count(name) > 1:

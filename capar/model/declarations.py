@@ -40,7 +40,7 @@ class Declaration:
     meanwhile, may begin or end where the fact begins or ends, so that places are measured there;
     a set: only those of its stretches."""
 
-    told: bool
+    has_sentence: bool
     """Whether an explanation has a sentence for it, in ``capar_rules/explain/sentences.lp``."""
 
     stretch: str = ""

@@ -4,13 +4,13 @@ from collections.abc import Iterable
 
 from capar.model.atoms import Fact
 from capar.model.declarations import Observed, Span
-from capar.model.facts import STATED
+from capar.model.facts import ALL_FACT_KINDS
 
 Interval = tuple[int, int]
 """First and last frame."""
 
 _NAMED = frozenset(
-    kind.declaration.span for kind in STATED if not isinstance(kind.declaration.span, Span)
+    kind.declaration.span for kind in ALL_FACT_KINDS if not isinstance(kind.declaration.span, Span)
 )
 """The kinds of intervals that other facts name by their first frames."""
 

@@ -45,7 +45,7 @@ from capar.model.scene_facts import ZeroCrossing as ZeroCrossing
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Doubted(Observed):
+class FlickerCorrection(Observed):
     """A stretch that the rules do not take as it was measured: it is a flicker.
 
     It is taken for contact, ``touching``, or for none, ``apart``. Of one body, which stands twice,
@@ -54,7 +54,7 @@ class Doubted(Observed):
     """
 
     predicate = "doubted"
-    declaration = Declaration(about="body", span=Span.INTERVAL, border=False, told=True)
+    declaration = Declaration(about="body", span=Span.INTERVAL, border=False, has_sentence=True)
     body: str
     other: str
     first: int
@@ -65,8 +65,8 @@ class Doubted(Observed):
 MEASURED: tuple[type[Observed], ...] = (*kinds_of(scene_facts), *kinds_of(handling))
 """Every kind of fact that extractors state, in the order in which they are written."""
 
-STATED: tuple[type[Observed], ...] = (*MEASURED, Doubted)
-"""Every kind of fact that an observation rests on: what was measured, and what was doubted."""
+ALL_FACT_KINDS: tuple[type[Observed], ...] = (*MEASURED, FlickerCorrection)
+"""Every kind of fact that an observation rests on: measurements and corrections of flicker."""
 
 
 def read_fact(text: str) -> Observed:
@@ -80,8 +80,8 @@ def read_fact(text: str) -> Observed:
     except (RuntimeError, TypeError, AttributeError):
         raise FactError(f"expected an atom such as tag(mug,mobile), found {text!r}") from None
     if symbol.type is clingo.SymbolType.Function and symbol.positive:
-        for kind in STATED:
+        for kind in ALL_FACT_KINDS:
             if kind.predicate == symbol.name:
                 return kind.from_symbol(symbol)
-    known = ", ".join(each.predicate for each in STATED)
+    known = ", ".join(each.predicate for each in ALL_FACT_KINDS)
     raise FactError(f"{text!r} is no measured fact; their predicates are {known}")

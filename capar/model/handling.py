@@ -11,7 +11,7 @@ class Displaced(Observed):
     """An object that moves is elsewhere than where it rested, within 1 mm or half a degree."""
 
     predicate = "displaced"
-    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, told=False)
+    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
     object: str
     first: int
     last: int
@@ -23,7 +23,12 @@ class Resting(Observed):
 
     predicate = "resting"
     declaration = Declaration(
-        about="ee", span=Span.INTERVAL, border=True, told=True, stretch="resting", negated="going"
+        about="ee",
+        span=Span.INTERVAL,
+        border=True,
+        has_sentence=True,
+        stretch="resting",
+        negated="going",
     )
     ee: str
     first: int
@@ -35,7 +40,7 @@ class Place(Observed):
     """Where the middle of a body is at a frame [millimetres]."""
 
     predicate = "place"
-    declaration = Declaration(about="body", span=Span.INSTANT, border=False, told=True)
+    declaration = Declaration(about="body", span=Span.INSTANT, border=False, has_sentence=True)
     body: str
     frame: int
     x: int
@@ -51,7 +56,7 @@ class Travelled(Observed):
     """
 
     predicate = "travelled"
-    declaration = Declaration(about="body", span=Span.INSTANT, border=False, told=False)
+    declaration = Declaration(about="body", span=Span.INSTANT, border=False, has_sentence=False)
     body: str
     frame: int
     way: int
@@ -67,7 +72,7 @@ class Posture(Observed):
     """
 
     predicate = "posture"
-    declaration = Declaration(about="body", span=Span.INSTANT, border=False, told=False)
+    declaration = Declaration(about="body", span=Span.INSTANT, border=False, has_sentence=False)
     body: str
     frame: int
     lean: int
@@ -79,7 +84,7 @@ class Distance(Observed):
     """How far the middles of two bodies are apart at a frame [millimetres]."""
 
     predicate = "apart"
-    declaration = Declaration(about="body", span=Span.INSTANT, border=False, told=False)
+    declaration = Declaration(about="body", span=Span.INSTANT, border=False, has_sentence=False)
     body: str
     other: str
     frame: int
@@ -91,7 +96,7 @@ class SweptAzimuth(Observed):
     """The angle by which a body has gone about another, seen from above [milliradians]."""
 
     predicate = "wound"
-    declaration = Declaration(about="body", span=Span.INSTANT, border=False, told=False)
+    declaration = Declaration(about="body", span=Span.INSTANT, border=False, has_sentence=False)
     body: str
     other: str
     frame: int
@@ -106,7 +111,7 @@ class ContactNormal(Observed):
     """
 
     predicate = "upward"
-    declaration = Declaration(about="body", span=Touching, border=False, told=False)
+    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=False)
     body: str
     other: str
     first: int
@@ -118,7 +123,7 @@ class ClosingSpeed(Observed):
     """How fast two bodies approached each other when they began to touch [mm/s]."""
 
     predicate = "closing"
-    declaration = Declaration(about="body", span=Touching, border=False, told=False)
+    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=False)
     body: str
     other: str
     first: int
@@ -131,7 +136,7 @@ class Reverses(Observed):
 
     predicate = "reverses"
     declaration = Declaration(
-        about="object", span=Span.INSTANT, border=True, told=False, stretch="reverses"
+        about="object", span=Span.INSTANT, border=True, has_sentence=False, stretch="reverses"
     )
     object: str
     frame: int
@@ -143,7 +148,7 @@ class Swings(Observed):
 
     predicate = "swings"
     declaration = Declaration(
-        about="body", span=Span.INTERVAL, border=True, told=True, stretch="swings"
+        about="body", span=Span.INTERVAL, border=True, has_sentence=True, stretch="swings"
     )
     body: str
     first: int
@@ -156,7 +161,7 @@ class Leans(Observed):
 
     predicate = "leans"
     declaration = Declaration(
-        about="object", span=Span.INTERVAL, border=True, told=True, stretch="leans"
+        about="object", span=Span.INTERVAL, border=True, has_sentence=True, stretch="leans"
     )
     object: str
     first: int
@@ -169,7 +174,7 @@ class Flies(Observed):
 
     predicate = "flies"
     declaration = Declaration(
-        about="object", span=Span.INTERVAL, border=True, told=True, stretch="flies"
+        about="object", span=Span.INTERVAL, border=True, has_sentence=True, stretch="flies"
     )
     object: str
     first: int
@@ -182,7 +187,7 @@ class Rolls(Observed):
 
     predicate = "rolls"
     declaration = Declaration(
-        about="object", span=Span.INTERVAL, border=False, told=True, stretch="rolls"
+        about="object", span=Span.INTERVAL, border=False, has_sentence=True, stretch="rolls"
     )
     object: str
     first: int
@@ -198,7 +203,7 @@ class Bears(Observed):
         about="foot",
         span=Span.INTERVAL,
         border=frozenset({"bears_whole", "bears_none"}),
-        told=True,
+        has_sentence=True,
         stretch="bears_{share}",
     )
     foot: str
@@ -220,7 +225,7 @@ class Lies(Observed):
         about="body",
         span=Span.INTERVAL,
         border=False,
-        told=False,
+        has_sentence=False,
         stretch="{how}",
         others=("other",),
     )
@@ -240,7 +245,7 @@ class Between(Observed):
         about="body",
         span=Span.INTERVAL,
         border=False,
-        told=False,
+        has_sentence=False,
         stretch="between",
         others=("one", "other"),
     )
@@ -263,7 +268,7 @@ class Passage(Observed):
         about="body",
         span=Lies,
         border=False,
-        told=False,
+        has_sentence=False,
         stretch="{how}_{sides}",
         others=("other",),
     )

@@ -8,7 +8,7 @@ import json
 from typing import Any
 
 from capar.model.errors import ParError
-from capar.model.facts import STATED
+from capar.model.facts import ALL_FACT_KINDS
 
 SCHEMA = 2
 """The version that this program reads and writes, the field ``schema`` of an observation."""
@@ -56,7 +56,7 @@ def migrated(text: str, *, where: str = "") -> str:
 
 
 def _from_1(content: dict[str, Any]) -> dict[str, Any]:
-    known = {each.predicate for each in STATED}
+    known = {each.predicate for each in ALL_FACT_KINDS}
     facts = content.get("facts", [])
     kept = [each for each in facts if str(each).partition("(")[0] in known]
     notices = [_sentence_only(each) for each in content.get("notices", [])]

@@ -34,7 +34,7 @@ class Notice:
     """Further numbers and words, sorted by name; a unit ends the name: ``tolerance_m``."""
 
     def __post_init__(self) -> None:
-        """Prove that its sentence can be made."""
+        """Check that its sentence can be made."""
         if self.code not in KINDS:
             raise UnknownNameError("kind of notice", self.code, KINDS)
         try:
@@ -89,7 +89,7 @@ def notice(
 
 
 def read_notice(document: Mapping[str, Any]) -> Notice:
-    """The notice that a JSON form states; its message is made anew.
+    """The notice that a JSON form states; its message is made again.
 
     Raises:
         CaparError: It has other fields, or a field of another type.
@@ -102,7 +102,7 @@ def read_notice(document: Mapping[str, Any]) -> Notice:
     values, times = document.get("values"), (document.get("start_s"), document.get("end_s"))
     if not isinstance(code, str):
         raise CaparError(f"code: expected a text, found {code!r}")
-    if not isinstance(bodies, list) or not all(isinstance(each, str) for each in bodies):
+    if not isinstance(bodies, list) or not all(isinstance(body, str) for body in bodies):
         raise CaparError(f"bodies: expected a list of names, found {bodies!r}")
     if not isinstance(values, dict) or not all(map(_is_value, values.values())):
         raise CaparError(f"values: expected names with numbers or texts, found {values!r}")

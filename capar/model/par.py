@@ -31,7 +31,7 @@ class FeatureSet:
     force: str
 
     def __post_init__(self) -> None:
-        """Prove that the strings are bits and that their lengths agree."""
+        """Check that the strings are bits and that their lengths agree."""
         count = len(self.change_loc)
         lengths = (2 * count - 1, 2 * count - 1, count, count) if count else (0, 0, 0, 0)
         strings = (self.rel_start, self.rel_end, self.change_loc, self.force)

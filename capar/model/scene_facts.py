@@ -14,7 +14,7 @@ class Frames(Observed):
         about=None,
         span=Span.ALWAYS,
         border=False,
-        told=False,
+        has_sentence=False,
         rdf=("FramesFact", "firstFrame", "lastFrame"),
     )
     first: int
@@ -27,7 +27,7 @@ class RateMhz(Observed):
 
     predicate = "rate_mhz"
     declaration = Declaration(
-        about=None, span=Span.ALWAYS, border=False, told=False, rdf=("RateFact", "rateMhz")
+        about=None, span=Span.ALWAYS, border=False, has_sentence=False, rdf=("RateFact", "rateMhz")
     )
     rate: int
 
@@ -41,7 +41,7 @@ class Link(Observed):
         about="ee",
         span=Span.ALWAYS,
         border=False,
-        told=False,
+        has_sentence=False,
         rdf=("LinkFact", "ee", "effectorType", "side"),
     )
     ee: str
@@ -58,7 +58,7 @@ class Tag(Observed):
         about="object",
         span=Span.ALWAYS,
         border=False,
-        told=True,
+        has_sentence=True,
         rdf=("TagFact", "objectName", "tagName"),
     )
     object: str
@@ -70,7 +70,7 @@ class OfAgent(Observed):
     """Whose an end-effector or a body part is; stated where several agents perform."""
 
     predicate = "of_agent"
-    declaration = Declaration(about="body", span=Span.ALWAYS, border=False, told=True)
+    declaration = Declaration(about="body", span=Span.ALWAYS, border=False, has_sentence=True)
     body: str
     agent: str
 
@@ -81,7 +81,11 @@ class ZeroCrossing(Observed):
 
     predicate = "zero_crossing"
     declaration = Declaration(
-        about="ee", span=Span.INSTANT, border=False, told=False, rdf=("ZeroCrossing", "ee", "frame")
+        about="ee",
+        span=Span.INSTANT,
+        border=False,
+        has_sentence=False,
+        rdf=("ZeroCrossing", "ee", "frame"),
     )
     ee: str
     frame: int
@@ -92,7 +96,7 @@ class Pause(Observed):
     """A zero crossing at which the end-effector is slow: it starts, stops or turns."""
 
     predicate = "pause"
-    declaration = Declaration(about="ee", span=Span.INSTANT, border=True, told=False)
+    declaration = Declaration(about="ee", span=Span.INSTANT, border=True, has_sentence=False)
     ee: str
     frame: int
 
@@ -106,7 +110,7 @@ class Touching(Observed):
         about="body",
         span=Span.INTERVAL,
         border=True,
-        told=True,
+        has_sentence=True,
         others=("other",),
         negated="apart",
         rdf=("Touching", "body", "other", "firstFrame", "lastFrame"),
@@ -126,7 +130,7 @@ class Gap(Observed):
         about="body",
         span=Touching,
         border=False,
-        told=False,
+        has_sentence=False,
         rdf=("Gap", "body", "other", "firstFrame", "micrometres"),
     )
     body: str
@@ -144,7 +148,7 @@ class Moving(Observed):
         about="object",
         span=Span.INTERVAL,
         border=True,
-        told=True,
+        has_sentence=True,
         negated="still",
         rdf=("Moving", "objectName", "firstFrame", "lastFrame"),
     )
@@ -162,7 +166,7 @@ class LookingAt(Observed):
         about="sensor",
         span=Span.INTERVAL,
         border=True,
-        told=True,
+        has_sentence=True,
         stretch="looks",
         others=("object",),
         rdf=("LookingAt", "sensor", "objectName", "firstFrame", "lastFrame"),
@@ -179,7 +183,7 @@ class ForceTransfer(Observed):
 
     predicate = "force_transfer"
     declaration = Declaration(
-        about=None, span=Span.ALWAYS, border=False, told=True, rdf=("ForceTransfer",)
+        about=None, span=Span.ALWAYS, border=False, has_sentence=True, rdf=("ForceTransfer",)
     )
 
 
@@ -192,7 +196,7 @@ class Intended(Observed):
         about=None,
         span=Span.ALWAYS,
         border=False,
-        told=False,
+        has_sentence=False,
         rdf=("Intended", "rank", "actionName", "objectName", "goalName", "purpose"),
     )
     rank: int

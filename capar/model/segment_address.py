@@ -27,7 +27,7 @@ class SegmentAddress:
     """Name or path of the capture; empty where there is only one."""
 
     def __post_init__(self) -> None:
-        """Prove that the address can be read back from its text.
+        """Check that the address can be read back from its text.
 
         Raises:
             AddressError: The end-effector is empty or has a slash, or the index is negative.

@@ -102,7 +102,7 @@ def chosen(observation: Observation, text: str) -> tuple[Segment, ...]:
 
 
 def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
-    """The segments that an atom speaks of, as a user names them: ``right_hand/3``.
+    """The segments that an atom refers to, as a user names them: ``right_hand/3``.
 
     Rules name a segment by the tick where it begins, which is no index.
     """

@@ -53,7 +53,7 @@ def describe(
 
     Args:
         seen: An observation, or a capture or its place, which is observed first.
-        detail: ``steps`` tells every step, ``summary`` only those that changed something.
+        detail: ``steps`` describes every step, ``summary`` only those that changed something.
         timed: Whether each step is followed by its time [s].
         words: What the primitives are called; by default as the rules that ship call them.
 
@@ -105,7 +105,7 @@ def _classes(store: "Store") -> tuple[VerbClass, ...]:
 
 
 def vocabulary(words: Sequence[PrimitiveWords], store: "Store | None" = None) -> Vocabulary:
-    """What sentences can speak of: with a store, only the objects and agents that it knows."""
+    """What sentences can refer to: with a store, only the objects and agents that it knows."""
     if store is None:
         return Vocabulary(tuple(words))
     objects = _names(store, f"?thing {CAPAR.tag} ?tag ; {CAPAR.name} ?name")

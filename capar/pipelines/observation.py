@@ -7,12 +7,12 @@ from pathlib import Path
 from capar import __version__
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Notice, notice
-from capar.model.facts import Doubted, Fact
+from capar.model.facts import Fact, FlickerCorrection
 from capar.model.observation import Observation, Segment
 from capar.model.par import ConstraintLocation
 from capar.pipelines.trials import trial_of
+from capar_rules.borders.border_numbers import number_borders
 from capar_rules.borders.deflicker import steady
-from capar_rules.borders.ranking import rank
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key, infer
@@ -123,7 +123,9 @@ def facts_program(
     base = profile(rules) if isinstance(rules, str) else rules
     measurements = _measurements(capture, thresholds)
     facts = steady(measurements.facts) if base.steady else measurements.facts
-    return replace(measurements, facts=facts), rank(facts, crossings_only=base.crossings_only)
+    return replace(measurements, facts=facts), number_borders(
+        facts, crossings_only=base.crossings_only
+    )
 
 
 def _measurements(capture: Capture, thresholds: Thresholds | None) -> Measurements:
@@ -165,7 +167,7 @@ def _violations(inference: Inference) -> Iterable[Notice]:
 
 def _doubts(facts: Iterable[Fact], rate_hz: float) -> Iterable[Notice]:
     for each in facts:
-        if isinstance(each, Doubted):
+        if isinstance(each, FlickerCorrection):
             yield notice(
                 "flicker",
                 *dict.fromkeys((each.body, each.other)),

@@ -48,7 +48,7 @@ def observe_again(
         files[0][0] if files else known.name,
         f"and the other files from which {known.name!r} was observed are not below {searched}, or "
         "have changed; nothing was renamed.",
-        "Name the folder that holds them with --captures, or observe and add it anew.",
+        "Name the folder that holds them with --captures, or observe and add it again.",
     )
 
 

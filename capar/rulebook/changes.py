@@ -9,7 +9,7 @@ from capar.model.observation import Observation
 from capar.pipelines.observation import facts_program
 from capar.pipelines.reobservation import observe_again
 from capar_rules.authoring.transaction import put_back, take_away, unbroken
-from capar_rules.authoring.user_primitives import proven
+from capar_rules.authoring.user_primitives import checked_draft
 from capar_rules.engine.profiles import Profile
 from capar_rules.lint.admission import admitted_profile
 from capar_rules.pars.inference import infer
@@ -100,7 +100,7 @@ def renamed(seen: Seen, *, before: Profile, after: Profile) -> tuple[Renamed, ..
     for capture, trial in sorted(seen.items()):
         names = _names(trial.facts, before) if trial.names is None else trial.names
         old, new = (
-            {(each.ee, each.first, each.last): each for each in rows}
+            {(row.ee, row.first, row.last): row for row in rows}
             for rows in (names, _names(trial.facts, after))
         )
         for key in sorted(old.keys() | new.keys()):
@@ -121,7 +121,7 @@ def reclassified(actionary: str | None, *, after: Profile, captures: Sequence[Pa
         after: The rules that are to name the segments observed with their profile.
         captures: Folders below which the captures are, as they were when they were observed.
 
-    Each observation that changes is made anew from its capture's files, which must be those that
+    Each observation that changes is made again from its capture's files, which must be those that
     it was made from, and with flicker resolved only if it was; it then says which rules it rests
     on.
 
@@ -130,8 +130,8 @@ def reclassified(actionary: str | None, *, after: Profile, captures: Sequence[Pa
         StoreError: The Actionary cannot be used.
     """
     with Actionary.open(actionary) as store:
-        effect, anew = _planned(store, after, captures)
-        replace_all(store.store, anew)
+        effect, renewed = _planned(store, after, captures)
+        replace_all(store.store, renewed)
     return effect
 
 
@@ -160,17 +160,17 @@ def add_reclassifying(
         Where the file now is, and the segments that have another name.
 
     Raises:
-        CaparError: The rule does not count, or the observations cannot be made anew.
+        CaparError: The rule does not count, or the observations cannot be made again.
     """
-    with proven(path, folder=folder, base=base, over=over, beside=beside) as draft:
+    with checked_draft(path, folder=folder, base=base, over=over, beside=beside) as draft:
         after = admitted_profile(base, added=(*beside, draft))
         with Actionary.open(actionary) as store:
-            effect, anew = _planned(store, after, captures)
+            effect, renewed = _planned(store, after, captures)
             target = folder / path.name
             with unbroken():
                 draft.replace(target)
                 try:
-                    replace_all(store.store, anew)
+                    replace_all(store.store, renewed)
                 except BaseException:
                     target.unlink()
                     raise
@@ -189,14 +189,14 @@ def remove_reclassifying(
         captures: Folders below which the captures are.
 
     Raises:
-        CaparError: The observations cannot be made anew.
+        CaparError: The observations cannot be made again.
     """
     with Actionary.open(actionary) as store:
-        effect, anew = _planned(store, after, captures)
+        effect, renewed = _planned(store, after, captures)
         with unbroken():
             aside = take_away(path)
             try:
-                replace_all(store.store, anew)
+                replace_all(store.store, renewed)
             except BaseException:
                 put_back(aside, path)
                 raise
@@ -227,7 +227,7 @@ def _planned(
     seen = kept.seen
     changes = renamed(seen, before=after, after=after)
     there = {each.name: each for each in store.observations()}
-    changed = sorted({each.capture for each in changes})
+    changed = sorted({change.capture for change in changes})
     return Effect(changes, kept.others), [
         (
             observe_again(

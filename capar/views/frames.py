@@ -42,45 +42,45 @@ def _pandas() -> Any:
 
 
 def _segments(observation: Observation) -> Iterator[Row]:
-    for each in observation.segments:
+    for segment in observation.segments:
         yield {
             "capture": observation.capture,
-            "performer": observation.performer(each.ee),
-            "ee": each.ee,
-            "index": each.index,
-            "name": each.name,
-            "objects": each.objects,
-            "start_s": each.start_s,
-            "end_s": each.end_s,
-            "first": each.first,
-            "last": each.last,
-            "possessed": each.possessed,
-            "purpose": each.purpose,
-            **asdict(each.features),
+            "performer": observation.performer(segment.ee),
+            "ee": segment.ee,
+            "index": segment.index,
+            "name": segment.name,
+            "objects": segment.objects,
+            "start_s": segment.start_s,
+            "end_s": segment.end_s,
+            "first": segment.first,
+            "last": segment.last,
+            "possessed": segment.possessed,
+            "purpose": segment.purpose,
+            **asdict(segment.features),
         }
 
 
 def _contacts(observation: Observation) -> Iterator[Row]:
-    for each in observation.facts:
-        if isinstance(each, Touching):
+    for fact in observation.facts:
+        if isinstance(fact, Touching):
             yield {
                 "capture": observation.capture,
-                "body": each.body,
-                "other": each.other,
-                "start_s": each.first / observation.rate_hz,
-                "end_s": each.last / observation.rate_hz,
-                "first": each.first,
-                "last": each.last,
+                "body": fact.body,
+                "other": fact.other,
+                "start_s": fact.first / observation.rate_hz,
+                "end_s": fact.last / observation.rate_hz,
+                "first": fact.first,
+                "last": fact.last,
             }
 
 
 def _facts(observation: Observation) -> Iterator[Row]:
-    for each in observation.facts:
+    for fact in observation.facts:
         yield {
             "capture": observation.capture,
-            "predicate": each.predicate,
-            "arguments": tuple(asdict(each).values()),
-            "atom": str(each),
+            "predicate": fact.predicate,
+            "arguments": tuple(asdict(fact).values()),
+            "atom": str(fact),
         }
 
 

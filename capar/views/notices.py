@@ -7,7 +7,7 @@ from capar.model.notices import KINDS, Notice
 HEADING = "Known with reservations:"
 
 MOST = 5
-"""So many notices of one code are told one by one."""
+"""So many notices of one code are listed one by one."""
 
 NAMED = 3
 """Of more, so many are named."""
@@ -16,7 +16,7 @@ NAMED = 3
 def reservations(
     notices: Iterable[Notice], *, about: Collection[str] | None = None
 ) -> tuple[Notice, ...]:
-    """The notices that bear on the truth of what is told of some bodies; None is all."""
+    """The notices that affect what is reported of some bodies; None is all."""
     return tuple(
         each
         for each in notices

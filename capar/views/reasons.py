@@ -24,7 +24,7 @@ def reasons_svg(told: Sequence[Explanation]) -> str:
         lines = _lines(title, TEXT + STRIP, BOLD)
         rows.append(f'<text x="8" y="{y}" font-weight="bold">{_set(lines, 8)}</text>')
         y += ROW + (len(lines) - 1) * LINE
-        tree = each.reason.told()
+        tree = each.reason.with_sentences()
         span, above = _span(tree), y
         for depth, reason in _rows(tree, 0):
             drawn, height = _row(reason, depth, y, span, above=above)

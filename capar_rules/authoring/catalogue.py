@@ -50,15 +50,15 @@ def rules_of(base: Profile, *, actionary: str | Path | None = None) -> tuple[Rul
             heads.setdefault(each.place.file, each.text)
     found = [
         RuleInfo(
-            split_arguments(each.heads[0].text)[0].strip('"'),
-            origins.get(each.place.file, "core"),
-            each.place.file,
-            _definition(heads.get(each.place.file, "")),
+            split_arguments(statement.heads[0].text)[0].strip('"'),
+            origins.get(statement.place.file, "core"),
+            statement.place.file,
+            _definition(heads.get(statement.place.file, "")),
             "",
             (),
         )
-        for each in statements
-        if each.heads and each.heads[0].signature == ("primitive", 1)
+        for statement in statements
+        if statement.heads and statement.heads[0].signature == ("primitive", 1)
     ]
     return tuple(
         sorted(
@@ -81,8 +81,8 @@ def rule_of(base: Profile, name: str, *, actionary: str | Path | None = None) ->
 
 
 def _pairs(statements: Sequence[Statement], predicate: str) -> Iterator[tuple[str, str]]:
-    for each in statements:
-        for head in each.heads:
+    for statement in statements:
+        for head in statement.heads:
             if head.signature == (predicate, 2):
                 first, second = split_arguments(head.text)
                 yield first.strip('"'), second.strip('"')
@@ -131,6 +131,6 @@ def dependants(path: Path, *, files: Sequence[Path]) -> dict[str, Path]:
 
 def _read(rule: Statement) -> set[str]:
     """The primitives that a rule depends on."""
-    atoms = [each for each in rule.heads if each.signature == ("specialises", 2)]
+    atoms = [head for head in rule.heads if head.signature == ("specialises", 2)]
     atoms += [atom for each in rule.body for atom in each.atoms if atom.signature == FITS]
     return {split_arguments(each.text)[1].strip('"') for each in atoms}

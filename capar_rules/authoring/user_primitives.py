@@ -133,12 +133,12 @@ def add_rule(
         RuleError: The check finds errors, an ambiguity among them, or an example fails.
         FileError: A file of that name is there already.
     """
-    with proven(path, folder=folder, base=base, over=over, beside=beside) as draft:
+    with checked_draft(path, folder=folder, base=base, over=over, beside=beside) as draft:
         return draft.replace(folder / path.name)
 
 
 @contextmanager
-def proven(
+def checked_draft(
     path: Path,
     *,
     folder: Path,

@@ -63,7 +63,9 @@ def rule_files(folder: Path | None = None) -> tuple[Path, ...]:
         return tuple(sorted(each for each in place.iterdir() if each.match("*.lp")))
     except OSError as error:
         message = f"cannot be read: {error.strerror}."
-        raise FileError(place, message, "Take the rights to it, or name another folder.") from None
+        raise FileError(
+            place, message, "Get write permission for it, or name another folder."
+        ) from None
 
 
 def user_rules(

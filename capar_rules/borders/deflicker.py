@@ -1,16 +1,25 @@
-"""Flicker: contact, motion and rest as the rules take them to have been, and what they doubted."""
+"""Contact, motion and rest without flicker, and the stretches that were corrected."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from capar.model.facts import STATED, Doubted, Fact, Frames, Link, Observed, RateMhz, Tag
+from capar.model.facts import (
+    ALL_FACT_KINDS,
+    Fact,
+    FlickerCorrection,
+    Frames,
+    Link,
+    Observed,
+    RateMhz,
+    Tag,
+)
 from capar_rules.engine.solver import best, rule_file
 
 Key = tuple[str, str, str]
 """A relation: touching, moving or resting, the body, and the other body, or the same."""
 
-NEGATED = {kind.predicate: kind.declaration.negated for kind in STATED}
+NEGATED = {kind.predicate: kind.declaration.negated for kind in ALL_FACT_KINDS}
 """What an interval that is contradicted is taken for, by predicate; empty where none can be."""
 
 
@@ -40,7 +49,7 @@ class Stretch(Fact):
 def steady(facts: Sequence[Fact]) -> tuple[Fact, ...]:
     """The facts, with contact, motion and rest that change as seldom as measurements allow.
 
-    What is doubted is stated beside them, so that the measurements can be told again.
+    The corrections are stated beside them, so that the measurements can be restored.
 
     Args:
         facts: What the extractors measured.
@@ -52,18 +61,18 @@ def steady(facts: Sequence[Fact]) -> tuple[Fact, ...]:
     ends = next((each for each in facts if isinstance(each, Frames)), Frames(0, 0))
     stretches = {key: tuple(_stretches(spans, ends)) for key, spans in measured.items()}
     keys = sorted(key for key, between in stretches.items() if len(between) > 2)
-    once = [(key, stretches[key]) for key in keys if _turned(key) not in keys or key[1] <= key[2]]
+    once = [(key, stretches[key]) for key in keys if _swapped(key) not in keys or key[1] <= key[2]]
     doubted = _doubted(facts, once)
     if not doubted:
         return tuple(facts)
-    doubted |= {_turned(key): places for key, places in doubted.items() if _turned(key) in keys}
-    mended = {key: _mended(stretches[key], places) for key, places in doubted.items()}
-    told = (
-        Doubted(*key[1:], stretch[1], stretch[2], _taken(key[0], stretch[0]))
+    doubted |= {_swapped(key): places for key, places in doubted.items() if _swapped(key) in keys}
+    corrected = {key: _corrected(stretches[key], places) for key, places in doubted.items()}
+    corrections = (
+        FlickerCorrection(*key[1:], stretch[1], stretch[2], _taken(key[0], stretch[0]))
         for key, places in doubted.items()
         for stretch in (stretches[key][place] for place in places)
     )
-    return (*_restated(facts, mended), *sorted(told))
+    return (*_restated(facts, corrected), *sorted(corrections))
 
 
 Span = tuple[int, int, int]
@@ -89,12 +98,12 @@ def relation_of(fact: Fact) -> Key | None:
 
 
 def _taken(how: str, holds: int) -> str:
-    """What a doubted stretch is taken for, by whether the relation was measured to hold."""
+    """What a corrected stretch is taken for, by whether the relation was measured to hold."""
     return NEGATED[how] if holds else how
 
 
-def _turned(key: Key) -> Key:
-    """The same relation told from the other body: contacts of two mobile objects are told twice."""
+def _swapped(key: Key) -> Key:
+    """The same relation from the other body: contacts of two mobile objects are stated twice."""
     how, body, other = key
     return how, other, body
 
@@ -114,7 +123,7 @@ def _stretches(spans: Iterable[tuple[int, int]], ends: Frames) -> Iterator[Span]
 def _doubted(
     facts: Iterable[Fact], relations: Sequence[tuple[Key, tuple[Span, ...]]]
 ) -> dict[Key, tuple[int, ...]]:
-    """The places of doubted stretches by relation; where none is, no relation."""
+    """The places of flickering stretches by relation; no relation without any."""
     asked: list[Fact] = [each for each in facts if isinstance(each, Link | RateMhz | Tag)]
     for number, (key, stretches) in enumerate(relations):
         asked.append(Relation(number, *key))
@@ -125,7 +134,7 @@ def _doubted(
     return {key: tuple(sorted(places)) for key, places in sorted(found.items())}
 
 
-def _mended(stretches: Sequence[Span], doubted: Iterable[int]) -> list[tuple[int, int]]:
+def _corrected(stretches: Sequence[Span], doubted: Iterable[int]) -> list[tuple[int, int]]:
     """The intervals in which a relation is taken to hold."""
     flipped = set(doubted)
     spans: list[tuple[int, int]] = []
@@ -139,13 +148,13 @@ def _mended(stretches: Sequence[Span], doubted: Iterable[int]) -> list[tuple[int
     return spans
 
 
-def _restated(facts: Iterable[Fact], mended: dict[Key, list[tuple[int, int]]]) -> Iterator[Fact]:
-    """The facts in their order, those of mended relations in place of the measured ones."""
+def _restated(facts: Iterable[Fact], corrected: dict[Key, list[tuple[int, int]]]) -> Iterator[Fact]:
+    """The facts in their order, those of corrected relations in place of the measured ones."""
     written = set()
     for each in facts:
         key = relation_of(each)
-        if key is None or key not in mended or not isinstance(each, Observed):
+        if key is None or key not in corrected or not isinstance(each, Observed):
             yield each
         elif key not in written:
             written.add(key)
-            yield from (each.between(*span) for span in mended[key])
+            yield from (each.between(*span) for span in corrected[key])

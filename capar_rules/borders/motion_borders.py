@@ -37,7 +37,7 @@ class Settles(Fact):
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """A frame at which a motion begins or ends, and the frame that the hand tells instead."""
+    """A frame at which a motion begins or ends, and the frame by the hand instead."""
 
     kind: type[SetsOff] | type[Settles]
     object: str

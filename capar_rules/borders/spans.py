@@ -72,7 +72,7 @@ class Stretches:
         """First and last frames at which rules may draw a border for this body."""
         return self._borders.get(body, ())
 
-    def ranked(
+    def numbered(
         self, ee: str, ticks: Sequence[int], reach: dict[str, list[tuple[int, int]]]
     ) -> Iterable[Fact]:
         """The stretches of an end-effector and of what it handles, and looks of its agent.

@@ -51,7 +51,7 @@ def measured(
     told = [*counted(words), *sorted(COURSE & heads_of(words))]
     lines = _every_move(segment, ticks)
     plain = _measured(base, facts, (*READ, *SCENE, BESIDE, *told), MOVED, lines)
-    bodily = heads_of(each for each in words if signatures_below([each]) & BODILY)
+    bodily = heads_of(word for word in words if signatures_below([word]) & BODILY)
     lines += _every_figure(segment, ticks)
     wider = _measured(base, facts, sorted(bodily & {*told}), {*MOVED, ("figure", 2)}, lines)
     return _bearing(sorted({*plain, *wider}), segment, ticks)
@@ -68,7 +68,7 @@ def _measured(
     others = [each for each in base if not {head.signature for head in each.heads} & {*instead}]
     rules = towards(others, [*shown, ("contact_at", 5)])
     shows = (f"#show {name}/{arity}." for name, arity in shown)
-    text = [*(each.text for each in rules), *lines, *shows, program(tuple(facts))]
+    text = [*(rule.text for rule in rules), *lines, *shows, program(tuple(facts))]
     (atoms,) = worlds("\n".join(text))[:1]
     return atoms
 
@@ -166,11 +166,11 @@ def _counting(word: Signature) -> list[str]:
 
 def _possible(words: Iterable[Statement]) -> Iterator[str]:
     """For each choice, when an atom of it could hold: when the body of its rule does."""
-    for each in words:
-        if each.head_kind != "choice":
+    for word in words:
+        if word.head_kind != "choice":
             continue
-        body = "; ".join(literal.text for literal in each.body)
-        for head in each.heads:
+        body = "; ".join(literal.text for literal in word.body)
+        for head in word.heads:
             if head.signature in heads_of(words) and head.signature != ("tag", 2):
                 yield f"could(Atom) :- actual(Atom); Atom = {head.text}; {body}."
 

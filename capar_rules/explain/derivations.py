@@ -61,7 +61,7 @@ class Recorder:
         messages: list[str] = []
         control = clingo.Control(["--models=1"], logger=lambda _, text: messages.append(text))
         try:
-            symbols = [each.symbol() for each in facts]
+            symbols = [fact.symbol() for fact in facts]
             measured = frozenset((each.name, len(each.arguments)) for each in symbols)
             control.add("base", [], self.text(measured))
             with control.backend() as backend:

@@ -10,12 +10,12 @@ from capar.model.errors import RuleError
 from capar.model.facts import Fact
 from capar.model.observation import Segment
 from capar.model.par import UNKNOWN
-from capar_rules.borders.ranking import rank
+from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.solver import rule_file
 from capar_rules.engine.syntax import Place, Statement, parse, parse_text
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
-from capar_rules.explain.instants import frames_of, mended
+from capar_rules.explain.instants import corrected, frames_of
 from capar_rules.explain.reason import Reason as Reason
 from capar_rules.explain.sentences import Clock, Sentences
 from capar_rules.explain.summary import summary
@@ -98,9 +98,9 @@ class Explainer:
             distance_m: How far an object moved between two frames [m]; None to leave it out.
         """
         self.base = rule_base(profile)
-        self.windows = Windows(facts, rank(facts, crossings_only=profile.crossings_only))
+        self.windows = Windows(facts, number_borders(facts, crossings_only=profile.crossings_only))
         self.distance_m = distance_m
-        self.mended = mended(facts)
+        self.corrected = corrected(facts)
 
     def explain(self, segment: Segment) -> Explanation:
         """Why a segment has its name, or why it has none.
@@ -120,7 +120,7 @@ class Explainer:
                 return _explanation(segment, reasons)
         raise RuleError(
             f"segment {segment.index} of {segment.ee!r} is no {segment.name} by these rules; "
-            "observe the capture anew"
+            "observe the capture again"
         )
 
     def ticks(self, segment: Segment) -> tuple[int, int]:
@@ -134,7 +134,7 @@ class Explainer:
         if [frames[each] for each in found if each < len(frames)] != [segment.first, segment.last]:
             raise RuleError(
                 f"segment {segment.index} of {segment.ee!r} does not lie between frames at which "
-                "these facts change; observe the capture anew"
+                "these facts change; observe the capture again"
             )
         return found[0], found[1]
 
@@ -168,11 +168,11 @@ class Explainer:
         return found
 
     def _mood(self, grounds: Grounds) -> str:
-        """Which template tells an atom: negated, mended (partly doubted) or plain."""
+        """Which template describes an atom: negated, mended (partly doubted) or plain."""
         if grounds.absent:
             return "not"
         doubted = any(each.predicate == "doubted" for each in grounds.because)
-        return "mended" if doubted or grounds.atom in self.mended else ""
+        return "mended" if doubted or grounds.atom in self.corrected else ""
 
 
 def _roots(

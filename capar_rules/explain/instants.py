@@ -5,12 +5,12 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 
-from capar.model.facts import STATED, Doubted, Fact, Observed
+from capar.model.facts import ALL_FACT_KINDS, Fact, FlickerCorrection, Observed
+from capar_rules.borders.border_numbers import Tick
 from capar_rules.borders.deflicker import Key, relation_of
-from capar_rules.borders.ranking import Tick
 from capar_rules.explain.sentences import Clock
 
-_KINDS: tuple[type[Fact], ...] = (*STATED, Tick)
+_KINDS: tuple[type[Fact], ...] = (*ALL_FACT_KINDS, Tick)
 _FIELDS = {
     (each.predicate, len(fields(each))): tuple(field.name for field in fields(each))
     for each in _KINDS
@@ -32,11 +32,11 @@ def frames_of(predicate: str, arguments: Sequence[str], clock: Clock) -> tuple[i
     return None
 
 
-def mended(facts: Sequence[Fact]) -> frozenset[str]:
-    """The contacts, motions and rests, as atoms, that contain doubted frames."""
+def corrected(facts: Sequence[Fact]) -> frozenset[str]:
+    """The contacts, motions and rests, as atoms, that contain frames corrected as flicker."""
     doubts: dict[Key, list[int]] = defaultdict(list)
     for each in facts:
-        if isinstance(each, Doubted):
+        if isinstance(each, FlickerCorrection):
             doubts[each.taken, each.body, each.other].append(each.first)
     for frames in doubts.values():
         frames.sort()

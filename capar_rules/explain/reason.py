@@ -9,7 +9,7 @@ class Reason:
     """One node of an explanation."""
 
     sentence: str
-    """Empty if no template tells this atom; then the nodes below it do."""
+    """Empty if no template describes this atom; then the nodes below it do."""
 
     atom: str
     rule: str
@@ -23,9 +23,9 @@ class Reason:
 
     because: tuple["Reason", ...]
 
-    def told(self) -> "Reason":
+    def with_sentences(self) -> "Reason":
         """The tree of the nodes that have a sentence, each subtree only once."""
-        return _told(self, set())
+        return _with_sentences(self, set())
 
     def walk(self) -> Iterator["Reason"]:
         """This node and all below it, from the top."""
@@ -34,12 +34,12 @@ class Reason:
             yield from each.walk()
 
 
-def _told(reason: Reason, known: set[str]) -> Reason:
+def _with_sentences(reason: Reason, known: set[str]) -> Reason:
     """The tree of sentences; a repeated sentence has nothing below it."""
     below: list[Reason] = []
     if reason.sentence not in known:
         known.add(reason.sentence)
-        below = [_told(each, known) for each in _nearest(reason)]
+        below = [_with_sentences(each, known) for each in _nearest(reason)]
     return replace(reason, because=tuple(below))
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from capar.model.fact_intervals import FactIntervals
 from capar.model.facts import Fact, Observed, RateMhz
-from capar_rules.borders.ranking import LastTick, MovesDuring, Shares, Tick, Within
+from capar_rules.borders.border_numbers import LastTick, MovesDuring, Shares, Tick, Within
 from capar_rules.borders.times import in_frames, times
 
 BUCKET = 256
@@ -19,10 +19,10 @@ Span = tuple[int, int]
 class Windows:
     """The facts of a capture, indexed by when they hold."""
 
-    def __init__(self, facts: Sequence[Fact], ranked: Sequence[Fact]) -> None:
+    def __init__(self, facts: Sequence[Fact], numbered: Sequence[Fact]) -> None:
         self.rate = next(each.rate for each in facts if isinstance(each, RateMhz)) / 1000.0
         self.frames: dict[str, list[int]] = defaultdict(list)
-        for each in sorted(each for each in ranked if isinstance(each, Tick)):
+        for each in sorted(each for each in numbered if isinstance(each, Tick)):
             self.frames[each.ee].append(each.frame)
         self.always: list[Fact] = []
         self.timed = _Index()
@@ -34,7 +34,7 @@ class Windows:
                 self.always.append(fact)
             else:
                 self.timed.add(span, fact)
-        for fact in ranked:
+        for fact in numbered:
             self._number(fact)
 
     def _number(self, fact: Fact) -> None:

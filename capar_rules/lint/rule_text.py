@@ -69,7 +69,9 @@ def _text(path: Path) -> tuple[str, list[Finding]]:
         content = path.read_bytes()
     except OSError as error:
         message = f"it cannot be read: {error.strerror}."
-        return "", [Finding(start, "no-file", message, "Take the right to read it, or move it.")]
+        return "", [
+            Finding(start, "no-file", message, "Grant yourself read permission, or move it.")
+        ]
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:

@@ -71,14 +71,14 @@ def known(rules: Sequence[Statement]) -> Known:
     return Known(
         tuple(rules),
         heads_of(rules),
-        frozenset(each.defines for each in rules if isinstance(each.defines, tuple)),
+        frozenset(rule.defines for rule in rules if isinstance(rule.defines, tuple)),
         frozenset(
-            each.defines
-            for each in rules
-            if isinstance(each.defines, tuple) and each.place.file.endswith("inputs.lp")
+            rule.defines
+            for rule in rules
+            if isinstance(rule.defines, tuple) and rule.place.file.endswith("inputs.lp")
         ),
         dict(_named(rules, "primitive")),
-        frozenset(each.defines for each in rules if isinstance(each.defines, str)),
+        frozenset(rule.defines for rule in rules if isinstance(rule.defines, str)),
     )
 
 
@@ -199,7 +199,7 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
                 yield Finding(
                     head.place, "foreign-name",
                     f"{name} is stated of {arguments[at]}, which this file does not introduce.",
-                    f'It may speak of {", ".join(sorted(mine)) or "what it introduces"}; '
+                    f'It may name {", ".join(sorted(mine)) or "what it introduces"}; '
                     f'state primitive("Name") first.',
                 )  # fmt: skip
             if name == "specialises":
@@ -221,8 +221,8 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
 def _circular(arguments: Sequence[str], rules: Iterable[Statement]) -> bool:
     """Whether the more general one specialises the other, directly or not."""
     general: dict[str, set[str]] = {}
-    for each in rules:
-        for head in each.heads:
+    for rule in rules:
+        for head in rule.heads:
             if head.signature == ("specialises", 2):
                 name, other = split_arguments(head.text)
                 general.setdefault(name, set()).add(other)
@@ -266,10 +266,10 @@ def _documentation(own: Sequence[Statement]) -> Iterator[Finding]:
 
 def _named(rules: Iterable[Statement], predicate: str) -> Iterator[tuple[str, str]]:
     """The arguments of a unary predicate's facts, each with its file."""
-    for each in rules:
-        for head in each.heads:
+    for rule in rules:
+        for head in rule.heads:
             if head.signature == (predicate, 1):
-                yield split_arguments(head.text)[0].strip('"'), each.place.file
+                yield split_arguments(head.text)[0].strip('"'), rule.place.file
 
 
 def _listed(signatures: Iterable[Signature]) -> str:

@@ -81,11 +81,11 @@ def solver_findings(message: str, file: str) -> Iterator[Finding]:
 def world_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
     """Rules that can never fire or always do, and names that clash with others."""
     rules = [each for each in own if each.kind == "rule" and each.heads]
-    judged = [each for each in rules if not _beyond(each, own, base)]
-    for each in rules:
-        if each not in judged:
-            words = ", ".join(f"{name}/{arity}" for name, arity in _beyond(each, own, base))
-            yield _not_judged(each, f"{words}, which the worlds of the audit do not contain")
+    judged = [rule for rule in rules if not _beyond(rule, own, base)]
+    for rule in rules:
+        if rule not in judged:
+            words = ", ".join(f"{name}/{arity}" for name, arity in _beyond(rule, own, base))
+            yield _not_judged(rule, f"{words}, which the worlds of the audit do not contain")
     asked = (*ASKED, FIRED, IDLE, HELD, ("feature_row", 6))
     atoms = evaluate([*base.rules, *own, *_probes(judged)], asked)
     yield from _firing(judged, atoms, lambda number: _missing(number, judged, own, base, atoms))

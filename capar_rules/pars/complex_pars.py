@@ -47,7 +47,7 @@ def _common(inference: Inference, name: str, frames: int) -> Step | None:
     ]
     if not segments:
         return None
-    begin = max(each.first for each in segments)
+    begin = max(segment.first for segment in segments)
     return Step(
         action=segments[0].name,
         ee=ALL,
@@ -55,7 +55,7 @@ def _common(inference: Inference, name: str, frames: int) -> Step | None:
         share=_share(begin, frames, frames),
         purpose=segments[0].purpose,
         begin=_share(0, begin, frames),
-        segments=tuple(each.index for each in segments),
+        segments=tuple(segment.index for segment in segments),
         posture=f"{name}End",
     )
 
@@ -64,7 +64,9 @@ def _steps(
     inference: Inference, link: ObservedLink, name: str, frames: int, end: float
 ) -> tuple[Step, ...]:
     """One step a segment, but for rest; the last before a common step waits for it."""
-    own = [each for each in link.segments if (each.ee, each.index) not in inference.common]
+    own = [
+        segment for segment in link.segments if (segment.ee, segment.index) not in inference.common
+    ]
     steps = [_step(each, name, frames) for each in _waited(own, inference)]
     if steps and steps[-1].begin + steps[-1].share != end:
         steps[-1] = _lasting(steps[-1], end - steps[-1].begin)
@@ -73,7 +75,9 @@ def _steps(
 
 def _waited(segments: Sequence[Segment], inference: Inference) -> list[Segment]:
     """Segments without those of rest: it belongs to what it precedes, or, at the end, follows."""
-    active = [each for each in segments if (each.ee, each.index) not in inference.no_steps]
+    active = [
+        segment for segment in segments if (segment.ee, segment.index) not in inference.no_steps
+    ]
     if not active:
         return list(segments)
     edges = [segments[0].first, *(each.last for each in active[:-1]), segments[-1].last]

@@ -8,7 +8,7 @@ from typing import Any
 from capar.model.facts import Fact, Frames, Link, OfAgent, RateMhz
 from capar.model.observation import Border, JointAction, ObservedLink, Segment
 from capar.model.par import UNKNOWN, FeatureSet
-from capar_rules.borders.ranking import Tick, rank
+from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.solver import Answer, Term, solve
 from capar_rules.pars.joint_actions import joint_actions
@@ -60,21 +60,23 @@ def infer(facts: Sequence[Fact], *, profile: Profile) -> Inference:
     Raises:
         RuleError: The rules have a fault, or not exactly one answer.
     """
-    ranked = rank(facts, crossings_only=profile.crossings_only)
-    answer = solve(profile.files, (*facts, *ranked))
-    return _Reading(facts, ranked, answer).inference()
+    numbered = number_borders(facts, crossings_only=profile.crossings_only)
+    answer = solve(profile.files, (*facts, *numbered))
+    return _Reading(facts, numbered, answer).inference()
 
 
 class _Reading:
     """The tables of an answer, by segment."""
 
-    def __init__(self, facts: Sequence[Fact], ranked: Sequence[Fact], answer: Answer) -> None:
+    def __init__(self, facts: Sequence[Fact], numbered: Sequence[Fact], answer: Answer) -> None:
         self.answer = answer
         self.linked = [each for each in facts if isinstance(each, Link)]
         self.agents = {each.body: each.agent for each in facts if isinstance(each, OfAgent)}
         self.rate = next(each.rate for each in facts if isinstance(each, RateMhz)) / 1000.0
         self.end = next(each.last for each in facts if isinstance(each, Frames))
-        self.frame = {(each.ee, each.tick): each.frame for each in ranked if isinstance(each, Tick)}
+        self.frame = {
+            (each.ee, each.tick): each.frame for each in numbered if isinstance(each, Tick)
+        }
         spans = sorted(
             (str(term[1]), int(term[2]), int(last)) for term, _, last in self._rows("segment")
         )

@@ -47,9 +47,9 @@ def bodies_of(
         sensors[sensor.name] = geometry_of(sensor, thresholds, known)
     for each in capture.objects:
         known = calibration.tag_object(each.name) if calibration else None
-        rides = next((one for one in capture.sensors if one.stream is each.stream), None)
-        if rides and each.tag is not TagType.FIXED:
-            poses = sensors[rides.name].poses
+        sensor_of_it = next((one for one in capture.sensors if one.stream is each.stream), None)
+        if sensor_of_it and each.tag is not TagType.FIXED:
+            poses = sensors[sensor_of_it.name].poses
             objects[each.name] = BodyGeometry(each.name, each.shape, poses)
         else:
             objects[each.name] = geometry_of(each, thresholds, known)

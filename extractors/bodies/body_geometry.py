@@ -52,7 +52,7 @@ class BodyGeometry:
         return self.poses.smooth.positions, self.poses.smooth.orientations
 
     def turns_at(self, frames: Int[np.ndarray, "some"] | slice) -> Float[np.ndarray, "some 3 3"]:
-        """Rotation matrices from the body's axes to the world's; made anew, being large."""
+        """Rotation matrices from the body's axes to the world's; made again, being large."""
         return rotation_matrices(self.orientations[frames])
 
     def turn(self, frame: int) -> Float[np.ndarray, "3 3"]:

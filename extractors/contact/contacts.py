@@ -119,11 +119,11 @@ def watched(capture: Capture, bodies: Bodies) -> Iterator[tuple[BodyGeometry, Bo
         for each in capture.objects:
             if each.name != sensor.name:
                 yield bodies.sensors[sensor.name], bodies.objects[each.name]
-    mobile = sorted(each.name for each in capture.objects if each.tag is TagType.MOBILE)
+    mobile = sorted(thing.name for thing in capture.objects if thing.tag is TagType.MOBILE)
     for name in mobile:
-        for each in sorted(capture.objects, key=lambda other: other.name):
-            if each.name != name and not (each.tag is TagType.MOBILE and each.name < name):
-                yield bodies.objects[name], bodies.objects[each.name]
+        for thing in sorted(capture.objects, key=lambda other: other.name):
+            if thing.name != name and not (thing.tag is TagType.MOBILE and thing.name < name):
+                yield bodies.objects[name], bodies.objects[thing.name]
 
 
 def bridged(

@@ -1,12 +1,11 @@
-"""Shells: the surfaces at a distance of a surface, as loose sets of triangles.
+"""Offset surfaces: all points at a distance of a surface, as loose sets of triangles.
 
-A shell at distance r of a surface bounds all points within r of it: two bodies come within r
-exactly if one meets the other's shell, or lies inside it. Meeting is a question that a tree of
-triangles answers far faster than it tells a distance. The shell here is a set of triangles that
-need not be joined: every face moved out by r, an arc of a cylinder along each edge, a part of a
-ball about each corner. That is the Minkowski sum with a ball before its union, which the question
-does not need; so a shell costs milliseconds where the sum takes seconds, and an open surface has
-one as well.
+The offset surface at distance r bounds all points within r of a surface: two bodies come within r
+exactly if one meets the other's offset surface, or lies inside it. A tree of triangles answers
+whether two sets meet far faster than it computes a distance. The triangles need not be joined:
+every face moved out by r, an arc of a cylinder along each edge, a part of a ball about each
+corner. That is the Minkowski sum with a ball before its union, which the question does not need;
+so it costs milliseconds where the sum takes seconds, and an open surface has one as well.
 """
 
 from collections.abc import Iterator
@@ -17,10 +16,10 @@ import trimesh
 from jaxtyping import Bool, Float, Int
 
 EXACTNESS_M = 0.00004
-"""How far a shell may lie from its true distance [m]."""
+"""How far an offset surface may lie from its true distance [m]."""
 
 
-def shell(
+def offset_surface(
     mesh: trimesh.Trimesh, distance_m: float, *, closed: bool, exactness_m: float = EXACTNESS_M
 ) -> Float[np.ndarray, "triangles 3 3"]:
     """Triangles that bound all points within a distance [m] of a surface, as a loose set.
@@ -32,7 +31,7 @@ def shell(
         mesh: The surface.
         distance_m: The distance [m].
         closed: Whether it bounds a solid, so that nothing is needed on its inner side.
-        exactness_m: How far the shell may lie from its true distance [m].
+        exactness_m: How far the offset surface may lie from its true distance [m].
     """
     vertices = np.asarray(mesh.vertices, float)
     faces = np.asarray(mesh.faces)

@@ -32,7 +32,7 @@ class Body:
 
     @property
     def turns(self) -> Float[np.ndarray, "frames 3 3"]:
-        """Rotation matrices that take the body's axes to the world's; made anew, being large."""
+        """Rotation matrices that take the body's axes to the world's; made again, being large."""
         return rotation_matrices(self.orientations)
 
     def turns_at(self, frames: Int[np.ndarray, "some"]) -> Float[np.ndarray, "some 3 3"]:
@@ -46,7 +46,7 @@ def body(surface: Surface, stream: Stream, *, rests: bool) -> Body:
     return Body(surface, stream.positions, stream.orientations, centres, rests)
 
 
-def still(surface: Surface, stream: Stream, frame: int) -> Body:
+def at_frame(surface: Surface, stream: Stream, frame: int) -> Body:
     """A surface at one frame of a stream, which is frame 0 of the body."""
     place = stream.positions[frame][None]
     turn = stream.orientations[frame][None]

@@ -1,4 +1,4 @@
-"""Surfaces ready for questions of contact: trees of triangles, shells, and what lies inside."""
+"""Surfaces ready for questions of contact: trees of triangles, offsets, point tests."""
 
 from collections import OrderedDict
 from dataclasses import dataclass
@@ -11,11 +11,11 @@ import trimesh
 from jaxtyping import Bool, Float, Int
 
 from capar.model.capture import Shape
-from extractors.contact.offset_surfaces import EXACTNESS_M, shell
+from extractors.contact.offset_surfaces import EXACTNESS_M, offset_surface
 
 
 @dataclass(frozen=True, eq=False)
-class Shell:
+class OffsetSurface:
     """Triangles at a distance of a surface, and their tree for the proximity library."""
 
     tree: fcl.BVHModel
@@ -68,22 +68,22 @@ class Surface:
         return len(self.shape.faces)
 
     @cached_property
-    def _shells(self) -> dict[tuple[float, float], Shell]:
+    def _offset_surfaces(self) -> dict[tuple[float, float], OffsetSurface]:
         return {}
 
-    def shell(self, distance_m: float, *, exactness_m: float = EXACTNESS_M) -> Shell:
-        """The shell at that distance [m], made when first asked for; at none, the surface."""
+    def offset(self, distance_m: float, *, exactness_m: float = EXACTNESS_M) -> OffsetSurface:
+        """The offset surface at a distance [m], made at the first call; at zero, the surface."""
         key = distance_m, exactness_m
-        if key not in self._shells:
-            self._shells[key] = self._shell(distance_m, exactness_m)
-        return self._shells[key]
+        if key not in self._offset_surfaces:
+            self._offset_surfaces[key] = self._made_offset(distance_m, exactness_m)
+        return self._offset_surfaces[key]
 
-    def _shell(self, distance_m: float, exactness_m: float) -> Shell:
+    def _made_offset(self, distance_m: float, exactness_m: float) -> OffsetSurface:
         if distance_m <= 0.0:
-            return Shell(self.tree, self.triangles)
-        parts = shell(self.mesh, distance_m, closed=self.closed, exactness_m=exactness_m)
+            return OffsetSurface(self.tree, self.triangles)
+        parts = offset_surface(self.mesh, distance_m, closed=self.closed, exactness_m=exactness_m)
         faces = np.arange(3 * len(parts)).reshape(-1, 3)
-        return Shell(tree(parts.reshape(-1, 3), faces), parts)
+        return OffsetSurface(tree(parts.reshape(-1, 3), faces), parts)
 
     def contains(self, points: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, "points"]:
         """Whether points [m, body's frame] lie in the solid; never, if it bounds none."""
@@ -102,7 +102,7 @@ _MOST_KEPT = 256
 
 
 def surface(shape: Shape) -> Surface:
-    """The surface of a shape; equal triangles share one, with its trees and shells."""
+    """The surface of a shape; equal triangles share one, with its trees and offset surfaces."""
     digest = sha256(shape.vertices.tobytes() + b"/" + shape.faces.tobytes()).digest()
     found = _KEPT.pop(digest, None) or Surface(shape)
     _KEPT[digest] = found

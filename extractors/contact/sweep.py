@@ -30,16 +30,17 @@ FRUITLESS_QUERIES = 4
 """Queries in a row that decide no other pose before a distance is computed, ten times slower."""
 
 FEW = 1000
-"""Poses up to which distances cost less than the making of shells [1]."""
+"""Poses up to which distances cost less than the making of offset surfaces [1]."""
 
 DEPTHS = (0.0, 0.4, 0.75, 1.0)
-"""Shares of the distance at whose shells a point of contact is sought, deepest first [1]."""
+"""Offset surfaces on which a point of contact is sought, as shares of the distance [1]; deepest
+first."""
 
 RESTART_EVERY = 4
 """One in so many such searches begins at the deepest, the others where the last one ended [1]."""
 
 _Meeting = tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3 3"]]
-"""A triangle of the first's shell in its frame, and one of the second in its own [m]."""
+"""A triangle of the first's offset surface in its frame, and one of the second in its own [m]."""
 
 _UNKNOWN, _APART, _TOUCHES = 0, 1, 2
 
@@ -144,19 +145,19 @@ class _Sweep:
         return self._touch()
 
     def _sticks_out(self, distance_m: float) -> bool:
-        """Whether some point of the second is beyond the first's shell for certain.
+        """Whether some point of the second is beyond the first's offset surface for certain.
 
-        A shell is a surface: what lies between it and the first, wholly, does not cut it either.
+        What lies wholly between the offset surface and the first does not cut it either.
         """
         turn, place = self.turns[self.index], self.places[self.index]
         apart = np.linalg.norm(self.tips @ turn.T + place - self.first.centre, axis=1)
         return bool(apart.max() > self.first.radius + distance_m)
 
     def _meet(self, distance_m: float, exactness_m: float) -> _Meeting | None:
-        """Which triangle of the second meets the first's shell, if one does."""
+        """Which triangle of the second meets the first's offset surface, if one does."""
         if distance_m not in self.stand:
-            shell = self.first.shell(distance_m, exactness_m=exactness_m)
-            self.stand[distance_m] = fcl.CollisionObject(shell.tree), shell.triangles
+            offset = self.first.offset(distance_m, exactness_m=exactness_m)
+            self.stand[distance_m] = fcl.CollisionObject(offset.tree), offset.triangles
         stands, triangles = self.stand[distance_m]
         result = fcl.CollisionResult()
         if not fcl.collide(stands, self.moved, self.ask, result):
@@ -175,7 +176,7 @@ class _Sweep:
         return np.full(3, np.nan) if point is None else np.array(point)
 
     def _distance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
-        """What ``_touch`` or ``_clearance`` would say with shells at every distance."""
+        """What ``_touch`` or ``_clearance`` would say with offset surfaces at every distance."""
         result = fcl.DistanceResult()
         request = fcl.DistanceRequest(enable_nearest_points=True)
         apart = fcl.distance(self.bare, self.moved, request, result)

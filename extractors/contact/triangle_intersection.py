@@ -18,19 +18,19 @@ def meeting_points(
     """
     edges = np.stack([first, second], axis=1)
     others = np.stack([second, first], axis=1)
-    way = edges[:, :, _NEXT] - edges
+    direction = edges[:, :, _NEXT] - edges
     base = others[:, :, :1]
     one, two = others[:, :, 1:2] - base, others[:, :, 2:] - base
     normal = _cross(one, two)
     offset = edges - base
     with np.errstate(divide="ignore", invalid="ignore"):
-        slope = np.einsum("...i,...i", way, normal)
-        share = -np.einsum("...i,...i", offset, normal) / slope
-        point = offset + share[..., None] * way
+        slope = np.einsum("...i,...i", direction, normal)
+        parameter = -np.einsum("...i,...i", offset, normal) / slope
+        point = offset + parameter[..., None] * direction
         area = np.einsum("...i,...i", normal, normal)
         u = np.einsum("...i,...i", _cross(point, two), normal) / area
         v = np.einsum("...i,...i", _cross(one, point), normal) / area
-        hit = (share >= 0.0) & (share <= 1.0) & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
+        hit = (parameter >= 0.0) & (parameter <= 1.0) & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
         places = np.where(hit[..., None], point + base, 0.0)
         return places.sum(axis=(1, 2)) / hit.sum(axis=(1, 2))[:, None]
 
@@ -69,10 +69,10 @@ def _piercings(
         if slope == 0.0 or area == 0.0:
             continue
         ox, oy, oz = px - ax, py - ay, pz - az
-        share = -(ox * nx + oy * ny + oz * nz) / slope
-        if not 0.0 <= share <= 1.0:
+        parameter = -(ox * nx + oy * ny + oz * nz) / slope
+        if not 0.0 <= parameter <= 1.0:
             continue
-        x, y, z = ox + share * wx, oy + share * wy, oz + share * wz
+        x, y, z = ox + parameter * wx, oy + parameter * wy, oz + parameter * wz
         u = ((y * vz - z * vy) * nx + (z * vx - x * vz) * ny + (x * vy - y * vx) * nz) / area
         v = ((uy * z - uz * y) * nx + (uz * x - ux * z) * ny + (ux * y - uy * x) * nz) / area
         if u >= 0.0 and v >= 0.0 and u + v <= 1.0:

@@ -101,7 +101,7 @@ class FastrakTracker(LiveTracker):
         self._next_poll_s = time.monotonic()
 
     def describe(self) -> Description:
-        """The stations, and how they were told to send."""
+        """The stations, and how they were configured to send."""
         settings = self._settings
         return Description(
             kind="fastrak",

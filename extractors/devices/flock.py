@@ -38,7 +38,7 @@ POLL_IDLE_S = 0.1
 """A poll's answer that stops for so long has ended [s]."""
 
 AFTER_RESET_S = 2.0
-"""How long units take to start anew [s]."""
+"""How long units take to restart [s]."""
 
 AHEAD = 50
 """How many cycles birds with lines of their own may be apart."""
@@ -53,7 +53,7 @@ POLL_IDLE_S = 0.1
 """A poll's answer that stops for so long has ended [s]."""
 
 AFTER_RESET_S = 2.0
-"""How long units take to start anew [s]."""
+"""How long units take to restart [s]."""
 
 AHEAD = 50
 """How many cycles birds with lines of their own may be apart."""

@@ -28,7 +28,7 @@ POLL_IDLE_S = 0.1
 """A poll's answer that stops for so long has ended [s]."""
 
 AFTER_RESET_S = 2.0
-"""How long units take to start anew [s]."""
+"""How long units take to restart [s]."""
 
 AHEAD = 3
 """How many cycles birds with lines of their own may be apart."""
@@ -49,7 +49,7 @@ POLL_IDLE_S = 0.1
 """A poll's answer that stops for so long has ended [s]."""
 
 AFTER_RESET_S = 2.0
-"""How long units take to start anew [s]."""
+"""How long units take to restart [s]."""
 
 AHEAD = 3
 """How many cycles birds with lines of their own may be apart."""
@@ -61,7 +61,7 @@ POLL_IDLE_S = 0.1
 """A poll's answer that stops for so long has ended [s]."""
 
 AFTER_RESET_S = 2.0
-"""How long units take to start anew [s]."""
+"""How long units take to restart [s]."""
 
 AHEAD = 3
 """How many cycles birds with lines of their own may be apart."""
@@ -70,13 +70,13 @@ POLL_IDLE_S = 0.1
 """A poll's answer that stops for so long has ended [s]."""
 
 AFTER_RESET_S = 2.0
-"""How long units take to start anew [s]."""
+"""How long units take to restart [s]."""
 
 AHEAD = 3
 """How many cycles birds with lines of their own may be apart."""
 
 AFTER_RESET_S = 2.0
-"""How long units take to start anew [s]."""
+"""How long units take to restart [s]."""
 
 AHEAD = 3
 """How many cycles birds with lines of their own may be apart."""
@@ -150,7 +150,7 @@ class FlockPort:
         self.line.drop_input()
 
     def check(self, settings: FlockSettings) -> None:
-        """Prove that all units run and none has an error.
+        """Check that all units run and none has an error.
 
         Raises:
             DeviceError: One is missing, or reports an error.

@@ -1,4 +1,4 @@
-"""What a simulated flock consists of, and what its units and lines were told."""
+"""What a simulated flock consists of, and the settings of its units and lines."""
 
 from dataclasses import dataclass, field
 
@@ -31,7 +31,7 @@ class FlockRig:
 
 @dataclass
 class Bird:
-    """What one unit was told."""
+    """The settings of one unit."""
 
     form: BirdFormat = FORMATS["pos_ang"]
     hemisphere: bytes = b"\x00\x00"

@@ -1,7 +1,7 @@
 """Which sign a Flock of Birds' quaternions have on the wire, found with the flock itself.
 
 The vendor's documents and drivers disagree for some firmware. A sensor that lies still and
-turned is read as a matrix, of which there is no doubt, and as a quaternion in both ways.
+turned is read as a matrix, which is unambiguous, and as a quaternion in both ways.
 """
 
 import time

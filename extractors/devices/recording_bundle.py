@@ -34,7 +34,7 @@ class Mount:
 
     @property
     def attends(self) -> bool:
-        """Whether it tells where the performer looks, rather than what is done."""
+        """Whether it shows where the performer looks, rather than what is done."""
         return self.end_effector == "head"
 
 
@@ -85,7 +85,7 @@ def write_bundle(
         UnknownNameError: A mount is of no sensor.
     """
     folder = Path(folder)
-    _prove(recording, folder, mounts or {})
+    _check(recording, folder, mounts or {})
     times = frame_times(recording)
     later = np.maximum.accumulate(np.append(-np.inf, times[:-1]))
     kept = np.flatnonzero(times > later)
@@ -104,7 +104,7 @@ def write_bundle(
         shutil.rmtree(made, ignore_errors=True)
 
 
-def _prove(recording: Recording, folder: Path, mounts: Mapping[str, Mount]) -> None:
+def _check(recording: Recording, folder: Path, mounts: Mapping[str, Mount]) -> None:
     description = recording.description
     for name in mounts:
         if name not in description.sensors:

@@ -52,7 +52,7 @@ def cookie() -> bytes:
 
 
 def check_cookie(data: bytes) -> None:
-    """Prove what the other side sent first.
+    """Check what the other side sent first.
 
     Raises:
         DeviceLostError: It is no VRPN of this major version.

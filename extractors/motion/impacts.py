@@ -11,7 +11,10 @@ GRAVITY_MPS2 = 9.81
 """Standard acceleration of free fall, rounded [m/s^2]."""
 
 APPROACH_S = 0.05
-"""How long before a contact the speed of approach is taken [s]: the filter's own blur."""
+"""How long before a contact the speed of approach is taken [s].
+
+No threshold: it is the time over which the low-pass filter blurs a blow.
+"""
 
 
 def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:

@@ -1,4 +1,4 @@
-"""When a motion truly begins and ends, beyond the floor that tells it from none."""
+"""When a motion truly begins and ends, within the floor that separates motion from rest."""
 
 from extractors.bodies.poses import Poses
 from extractors.motion.object_motion import Floor, RestPose, rests_at

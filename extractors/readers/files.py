@@ -16,13 +16,13 @@ EXPANDED_LIMIT = 1 << 30
 """Bytes that a compressed file may expand to [B]."""
 
 HEAD = 4096
-"""Bytes that tell a format [B]."""
+"""Bytes by which a format is recognised [B]."""
 
 _DAMAGE = (EOFError, OSError, lzma.LZMAError, zlib.error, ValueError)
 
 
 def check_file(path: Path) -> None:
-    """Prove that a path is a file with something in it.
+    """Check that a path is a file with something in it.
 
     Raises:
         FileError: It is not there, is a folder, or is empty.
@@ -31,7 +31,7 @@ def check_file(path: Path) -> None:
         if not path.exists():
             raise FileError(path, "no such file.", _neighbours(path))
         if not path.is_file():
-            raise FileError(path, "is no file but a folder or a device.", "Name a file in it.")
+            raise FileError(path, "is a folder or a device, not a file.", "Name a file in it.")
         if path.stat().st_size == 0:
             raise FileError(path, "is empty.", "Copy or export it again.")
     except (OSError, ValueError) as error:
@@ -109,7 +109,7 @@ def _read(path: Path, limit: int, *, whole: bool) -> bytes:
             return file.read(limit)
     except PermissionError as error:
         what = f"cannot be read: {error.strerror}."
-        raise FileError(path, what, "Take the right to read it.") from error
+        raise FileError(path, what, "Grant yourself read permission.") from error
     except _DAMAGE as error:
         hint = "Copy it again." if whole else "It seems compressed, and damaged."
         raise FileError(path, f"cannot be read to its end: {error}.", hint) from error

@@ -31,13 +31,13 @@ _SIDES = {
 
 
 def limb_of(name: str) -> str:
-    """The end-effector that a name tells of, or an empty string."""
+    """The end-effector that a name mentions, or an empty string."""
     low = name.lower()
     return next((limb for limb, words in LIMBS.items() if any(w in low for w in words)), "")
 
 
 def side_of(name: str) -> str:
-    """The side that a name tells of: ``right``, ``left`` or ``none``."""
+    """The side that a name mentions: ``right``, ``left`` or ``none``."""
     for side, pattern in _SIDES.items():
         if pattern.search(name) or side in name.lower():
             return side

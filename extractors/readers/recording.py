@@ -41,7 +41,7 @@ class Recording:
     notices: tuple[Notice, ...] = ()
 
     def __post_init__(self) -> None:
-        """Prove the markers against their clock and make the mappings read-only."""
+        """Check the markers against their clock and make the mappings read-only."""
         frames = len(self.marker_times)
         for name, points in self.markers.items():
             if points.shape != (frames, 3):
@@ -75,7 +75,7 @@ class Recording:
 
 
 def check_clock(times: Float[np.ndarray, "frames"]) -> None:
-    """Prove that time stamps are numbers that increase.
+    """Check that time stamps are numbers that increase.
 
     Raises:
         CaptureError: They are not; the message names the frame.
@@ -91,7 +91,7 @@ def track(
     positions: Float[np.ndarray, "frames 3"],
     orientations: Float[np.ndarray, "frames 4"],
 ) -> Stream:
-    """A body's poses, proven; errors name the body.
+    """A body's poses, validated; errors name the body.
 
     Raises:
         CaptureError: Time goes back, a quaternion is not unit, or shapes disagree.
@@ -127,7 +127,7 @@ def contradicted_rate(times: Float[np.ndarray, "frames"], stated_hz: float) -> f
 
 
 def check_rate(times: Float[np.ndarray, "frames"], options: Mapping[str, Any]) -> None:
-    """Prove that a ``rate_hz`` in a file's options is the rate of its time stamps.
+    """Check that a ``rate_hz`` in a file's options is the rate of its time stamps.
 
     Raises:
         CaptureError: It is not; the message has both rates.

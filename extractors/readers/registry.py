@@ -1,4 +1,4 @@
-"""The table of formats: which reader reads a file is told by what the file is."""
+"""The table of formats: a file's content selects its reader."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

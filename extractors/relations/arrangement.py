@@ -17,7 +17,7 @@ BLOCK_VALUES = 1 << 19
 """How many points are placed at once [1]: 12 MB."""
 
 BLOCK_POINTS = 1 << 10
-"""How many points are held against all planes at once [1]: few enough for a processor's cache."""
+"""How many points are compared with all planes at once [1]: few enough for a processor's cache."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,10 @@ from extractors.signals.zero_crossings import horizon_frames, pauses, zero_cross
 from extractors.thresholds import Thresholds
 
 FEWEST_FRAMES = 5
-"""Fewest frames of a contact in which a change of place can be detected [1]."""
+"""Fewest frames of a contact in which a change of place can be detected [1].
+
+No threshold: two slowest samples, a faster one between them, and one on each side.
+"""
 
 
 def shifts(

@@ -13,44 +13,44 @@ from extractors.relations.arrangement import beyond_shadow
 
 
 def places(
-    figure: BodyGeometry, upright: Float[np.ndarray, "3"], frames: tuple[int, ...]
+    body: BodyGeometry, upright: Float[np.ndarray, "3"], frames: tuple[int, ...]
 ) -> Iterator[Fact]:
     """Place, way, turn and posture of a body at some frames; lost frames are left out.
 
     Args:
-        figure: The body.
+        body: The body.
         upright: The axis that points up while it stands, in its own frame.
         frames: Frames, ascending.
     """
     if not frames:
         return
-    way, turn = _cumulated(figure)
+    way, turn = _cumulated(body)
     at = np.asarray(frames)
-    at = at[~np.isnan(figure.middles[at]).any(axis=1)]
-    middles = _thousandths(figure.middles[at])
+    at = at[~np.isnan(body.middles[at]).any(axis=1)]
+    middles = _thousandths(body.middles[at])
     ways = _thousandths(np.stack([way[at], turn[at]], axis=1))
-    orientations = figure.orientations
+    orientations = body.orientations
     postures = np.stack([lean(orientations[at], upright), spin(orientations)[at]], axis=1)
     rows = zip(at.tolist(), middles, ways, _thousandths(postures), strict=True)
     for frame, middle, travelled, posture in rows:
-        yield Place(figure.name, frame, *middle)
-        yield Travelled(figure.name, frame, *travelled)
-        yield Posture(figure.name, frame, *posture)
+        yield Place(body.name, frame, *middle)
+        yield Travelled(body.name, frame, *travelled)
+        yield Posture(body.name, frame, *posture)
 
 
-def distances(figure: BodyGeometry, other: BodyGeometry, frames: tuple[int, ...]) -> Iterator[Fact]:
+def distances(body: BodyGeometry, other: BodyGeometry, frames: tuple[int, ...]) -> Iterator[Fact]:
     """Distance of two bodies' middles, and the angle by which one has gone about the other."""
     if not frames:
         return
-    offset = figure.middles - other.middles
-    wound = _wound(offset, beyond_shadow(figure.middles, *other.boxes) > 0.0)
+    offset = body.middles - other.middles
+    wound = _wound(offset, beyond_shadow(body.middles, *other.boxes) > 0.0)
     at = np.asarray(frames)
     apart = np.linalg.norm(offset[at], axis=1)
     known = ~np.isnan(apart)
     values = _thousandths(np.stack([apart[known], wound[at[known]]], axis=1))
     for frame, (millimetres, milliradians) in zip(at[known].tolist(), values, strict=True):
-        yield Distance(figure.name, other.name, frame, millimetres)
-        yield SweptAzimuth(figure.name, other.name, frame, milliradians)
+        yield Distance(body.name, other.name, frame, millimetres)
+        yield SweptAzimuth(body.name, other.name, frame, milliradians)
 
 
 def _thousandths(values: Float[np.ndarray, "rows columns"]) -> list[list[int]]:
@@ -60,11 +60,11 @@ def _thousandths(values: Float[np.ndarray, "rows columns"]) -> list[list[int]]:
 
 
 def _cumulated(
-    figure: BodyGeometry,
+    body: BodyGeometry,
 ) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
     """Length of the path [m] and sum of the rotation [rad] up to each frame."""
-    steps = np.linalg.norm(np.diff(figure.middles, axis=0), axis=1)
-    angles = geometry.angle_between(figure.orientations[1:], figure.orientations[:-1])
+    steps = np.linalg.norm(np.diff(body.middles, axis=0), axis=1)
+    angles = geometry.angle_between(body.orientations[1:], body.orientations[:-1])
     return _sum(steps), _sum(angles)
 
 

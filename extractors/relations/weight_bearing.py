@@ -70,10 +70,10 @@ def _loads(
     thresholds: Thresholds,
 ) -> Iterator[Bears]:
     """What the two feet of one agent bear."""
-    figures = [bodies.sensors[each.name] for each in feet]
-    down = _down(bodies, figures, touches, level_m, thresholds)
+    feet_geometry = [bodies.sensors[each.name] for each in feet]
+    down = _down(bodies, feet_geometry, touches, level_m, thresholds)
     share = share_of_first(
-        figures[0].middles, figures[1].middles, down[0], down[1], middle, thresholds
+        feet_geometry[0].middles, feet_geometry[1].middles, down[0], down[1], middle, thresholds
     )
     for foot, standing, own in zip(feet, down, (share, 1.0 - share), strict=True):
         for how, holds in _shares(own, standing, thresholds).items():
@@ -164,8 +164,8 @@ def _down(
         resting_low.append(_heights_at_rest(foot, thresholds))
     with np.errstate(invalid="ignore"):
         return [
-            borne | (low <= level_m + thresholds.level_m)
-            for borne, low in zip(out, resting_low, strict=True)
+            bearing_foot | (low <= level_m + thresholds.level_m)
+            for bearing_foot, low in zip(out, resting_low, strict=True)
         ]
 
 

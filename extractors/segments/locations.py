@@ -12,7 +12,7 @@ from capar.model.observation import Segment
 from capar.model.par import ConstraintLocation
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.contact.proximity import nearest, still
+from extractors.contact.proximity import at_frame, nearest
 from extractors.contact.surfaces import surface
 from extractors.relations.attention import NOTHING, Attention
 
@@ -95,8 +95,8 @@ def _points(moved: BodyGeometry, target: BodyGeometry, frame: int) -> tuple[_Poi
     """The contact's place in the frame of what comes and in the target's [m]."""
     if moved.shape is None or target.shape is None:
         return np.zeros(3), _local(target, moved.poses.settled.positions[frame], frame)
-    one = still(surface(moved.shape), moved.poses.settled, frame)
-    two = still(surface(target.shape), target.poses.settled, frame)
+    one = at_frame(surface(moved.shape), moved.poses.settled, frame)
+    two = at_frame(surface(target.shape), target.poses.settled, frame)
     _, on_moved, on_target = nearest(one, two, 0)
     return on_moved, on_target
 

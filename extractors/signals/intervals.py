@@ -1,4 +1,4 @@
-"""Stretches of frames as closed intervals [first, last], closed up and weeded by duration."""
+"""Closed intervals of frames [first, last], merged over short gaps and filtered by duration."""
 
 from collections.abc import Callable
 
@@ -11,8 +11,8 @@ from extractors.signals.clock import time_step
 Interval = tuple[int, int]
 """First and last frame, both inside."""
 
-Telling = Callable[[slice], Bool[np.ndarray, "some"]]
-"""Tells of consecutive frames at which something holds."""
+FramePredicate = Callable[[slice], Bool[np.ndarray, "some"]]
+"""Whether something holds at each of some consecutive frames."""
 
 NEAREST = 64
 """How many frames are asked about at first when one is looked for; each further time twice."""
@@ -62,7 +62,7 @@ def mask(found: list[Interval], frames: int) -> Bool[np.ndarray, "frames"]:
     return out
 
 
-def first_where(holds: Telling, frame: int, frames: int) -> int | None:
+def first_where(holds: FramePredicate, frame: int, frames: int) -> int | None:
     """The first of so many frames, from one on, at which something holds.
 
     It costs what the way to that frame does, however long the capture is.
@@ -76,7 +76,7 @@ def first_where(holds: Telling, frame: int, frames: int) -> int | None:
     return None
 
 
-def last_where(holds: Telling, frame: int) -> int | None:
+def last_where(holds: FramePredicate, frame: int) -> int | None:
     """The last frame up to one at which something holds, at the same cost."""
     few = NEAREST
     while frame >= 0:

@@ -9,7 +9,7 @@ from capar.model.par import UNKNOWN, ComplexPar, LinkSteps, Step
 from kb.encode.scene import GENERATED
 from kb.encode.segments import action, segment_node
 from kb.store import names
-from kb.store.statements import LABEL, Said, Statements
+from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
 from ontology.vocabularies import ALLEN
 
@@ -36,20 +36,22 @@ def complex_par(out: Statements, observation: "Observation", name: str) -> Named
     value = observation.complex_par
     known = is_known(value)
     node = complex_node(value) if known else names.part(out.about, "complex")
-    say = out.share if known else out.say
+    add = out.share if known else out.add
     numbers = {each: index for index, each in enumerate(value.objects)}
     steps = []
     for link in _with_common(value):
         for index, step in enumerate(link.steps):
-            said: Said = {
+            properties: PropertyValues = {
                 CAPAR.ee: link.ee,
                 CAPAR.index: index,
                 CAPAR.action: action(out, step.action),
                 CAPAR.name: step.action,
                 CAPAR.objectNumbers: " ".join(str(numbers[each]) for each in step.objects),
             }
-            steps.append(say(names.part(node, "step", link.ee, index), (CAPAR.ComplexStep,), said))
-    say(node, (CAPAR.ComplexPar,), {CAPAR.arity: len(value.objects), CAPAR.complexStep: steps})
+            steps.append(
+                add(names.part(node, "step", link.ee, index), (CAPAR.ComplexStep,), properties)
+            )
+    add(node, (CAPAR.ComplexPar,), {CAPAR.arity: len(value.objects), CAPAR.complexStep: steps})
     _enact(out, observation, node, name)
     return node
 
@@ -72,15 +74,15 @@ def _enact(out: Statements, observation: "Observation", node: NamedNode, name: s
     for link in links:
         for index, step in enumerate(link.steps):
             after = (link.ee, index + 1)
-            said: dict[NamedNode, list[NamedNode]] = {
+            properties: dict[NamedNode, list[NamedNode]] = {
                 CAPAR.nextStep: [_step(out, *after)] if after in known else []
             }
             for relation in value.relations:
                 if relation.first == (link.ee, index):
                     allen = _property(relation.relation)
-                    said.setdefault(allen, []).append(_step(out, *relation.second))
-            _say_step(out, node, link, index, step, relations=said, ees=ees)
-    out.say(
+                    properties.setdefault(allen, []).append(_step(out, *relation.second))
+            _add_step(out, node, link, index, step, relations=properties, ees=ees)
+    out.add(
         out.about,
         (),
         {
@@ -103,17 +105,17 @@ def _step(out: Statements, ee: str, index: int) -> NamedNode:
     return names.part(out.about, "step", ee, index)
 
 
-def _say_step(
+def _add_step(
     out: Statements,
     node: NamedNode,
     link: LinkSteps,
     index: int,
     step: Step,
     *,
-    relations: Said,
+    relations: PropertyValues,
     ees: list[str],
 ) -> None:
-    said: Said = {
+    properties: PropertyValues = {
         LABEL: f"{link.ee} {index}: {step.action}",
         CAPAR.realises: names.part(node, "step", link.ee, index),
         CAPAR.ee: link.ee,
@@ -130,8 +132,8 @@ def _say_step(
         GENERATED: out.about,
         **relations,
     }
-    node_of_step = out.say(_step(out, link.ee, index), (CAPAR.Step,), said)
-    out.say(out.about, (), {CAPAR.step: node_of_step})
+    node_of_step = out.add(_step(out, link.ee, index), (CAPAR.Step,), properties)
+    out.add(out.about, (), {CAPAR.step: node_of_step})
 
 
 def _segments(out: Statements, link: LinkSteps, step: Step, ees: list[str]) -> list[NamedNode]:

@@ -1,4 +1,8 @@
-"""Facts as statements: each has its predicate as its class, and its arguments by name."""
+"""Facts as statements: of the class that its kind declares, or else a generic fact.
+
+A kind whose declaration names a class of the ontology has a property for each argument. Any other
+is a ``Fact`` with its predicate as its name, and its arguments as one text.
+"""
 
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
@@ -32,13 +36,13 @@ def _terms(kind: Any) -> tuple[NamedNode, ...]:
 
 def _fact(out: Statements, fact: "Fact", capture: NamedNode) -> NamedNode:
     values = [getattr(fact, each) for each in arguments(cast(Any, type(fact)))]
-    kind, *properties = terms(type(fact))
+    kind, *predicates = terms(type(fact))
     if kind == CAPAR.Fact:
-        said: dict[NamedNode, Value] = {
+        properties: dict[NamedNode, Value] = {
             CAPAR.name: fact.predicate,
             CAPAR.parameters: " ".join(map(str, values)),
         }
     else:
-        said = dict(zip(properties, values, strict=True))
-    said[DERIVED] = capture
-    return out.say(names.part(out.about, "fact", fact.predicate, *values), (kind,), said)
+        properties = dict(zip(predicates, values, strict=True))
+    properties[DERIVED] = capture
+    return out.add(names.part(out.about, "fact", fact.predicate, *values), (kind,), properties)

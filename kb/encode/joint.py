@@ -7,7 +7,7 @@ from pyoxigraph import NamedNode
 from kb.encode.scene import GENERATED
 from kb.encode.segments import action, segment_node
 from kb.store import names
-from kb.store.statements import LABEL, Said, Statements
+from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def _joint(
     out: Statements, index: int, seen: "JointAction", objects: dict[str, NamedNode]
 ) -> NamedNode:
     parts = zip(seen.ees, seen.segments, strict=True)
-    said: Said = {
+    properties: PropertyValues = {
         LABEL: f"{', '.join(seen.ees)}: {seen.name}",
         CAPAR.index: index,
         CAPAR.action: action(out, seen.name),
@@ -42,4 +42,4 @@ def _joint(
         CAPAR.duration: float(seen.end_s - seen.start_s),
         GENERATED: out.about,
     }
-    return out.say(names.part(out.about, "joint", index), (CAPAR.JointAction,), said)
+    return out.add(names.part(out.about, "joint", index), (CAPAR.JointAction,), properties)

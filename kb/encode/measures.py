@@ -8,7 +8,7 @@ from capar.model.par import ConstraintLocation, Style
 from kb.encode.scene import GENERATED, kind, kind_of
 from kb.encode.segments import action, segment_node
 from kb.store import literals, names
-from kb.store.statements import Said, Statements
+from kb.store.statements import PropertyValues, Statements
 from ontology import CAPAR
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def _location(
     out: Statements,
     index: int,
     value: ConstraintLocation,
-    made: Said,
+    made: PropertyValues,
     *,
     objects: dict[str, NamedNode],
     kinds: dict[str, str],
@@ -56,7 +56,7 @@ def _location(
     def kind_named(name: str) -> NamedNode | None:
         return kind(out, kinds.get(name, name)) if name else None
 
-    said: Said = {
+    properties: PropertyValues = {
         CAPAR.index: index,
         **made,
         CAPAR.ee: value.ee,
@@ -76,7 +76,9 @@ def _location(
         CAPAR.vNlt: literals.nlt(value.v_nlt) if value.v_nlt else None,
         GENERATED: out.about,
     }
-    return out.say(names.part(out.about, "location", index), (CAPAR.ConstraintLocation,), said)
+    return out.add(
+        names.part(out.about, "location", index), (CAPAR.ConstraintLocation,), properties
+    )
 
 
 def styles(
@@ -90,7 +92,7 @@ def styles(
 
 
 def _style(out: Statements, index: int, value: Style, agent: NamedNode) -> NamedNode:
-    said: Said = {
+    properties: PropertyValues = {
         CAPAR.index: index,
         CAPAR.agent: agent,
         CAPAR.action: action(out, value.action),
@@ -101,4 +103,4 @@ def _style(out: Statements, index: int, value: Style, agent: NamedNode) -> Named
         CAPAR.pathStyle: literals.path(value.path) if value.path else None,
         GENERATED: out.about,
     }
-    return out.say(names.part(out.about, "style", index), (CAPAR.AgentStyle,), said)
+    return out.add(names.part(out.about, "style", index), (CAPAR.AgentStyle,), properties)

@@ -6,7 +6,7 @@ from pyoxigraph import NamedNode
 
 from kb.encode import complex_pars, facts, joint, measures, pars, scene, segments
 from kb.store import names
-from kb.store.statements import LABEL, Said, Statements
+from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
     )
     for upar in observation.upars:
         pars.upar(out, upar)
-    said: Said = {
+    properties: PropertyValues = {
         LABEL: observation.capture,
         CAPAR.capture: capture,
         scene.USED: [capture, rules],
@@ -64,13 +64,13 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
         CAPAR.notice: _notices(out, observation),
     }
     pars.ipars(out, observation, agents, objects)
-    out.say(out.about, (CAPAR.Observation,), said)
+    out.add(out.about, (CAPAR.Observation,), properties)
     return out
 
 
 def _notices(out: Statements, observation: "Observation") -> list[NamedNode]:
     return [
-        out.say(
+        out.add(
             names.part(out.about, "notice", index),
             (CAPAR.Notice,),
             {CAPAR.noticeCode: each.code, CAPAR.message: each.message},

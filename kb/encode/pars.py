@@ -18,7 +18,7 @@ from capar.model.par import (
 from kb.encode.scene import DERIVED, GENERATED
 from kb.encode.segments import action, actions, features, segment_node
 from kb.store import literals, names
-from kb.store.statements import LABEL, Said, Statements
+from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ MOTIONS = {
     Motion.BOTH: CAPAR.TranslationAndRotation,
 }
 
-Say = Callable[[NamedNode, tuple[NamedNode, ...], Said], NamedNode]
+Add = Callable[[NamedNode, tuple[NamedNode, ...], PropertyValues], NamedNode]
 """How a part is stated: as the observation's own, or as shared."""
 
 
@@ -40,13 +40,13 @@ def condition(out: Statements, value: Condition) -> NamedNode:
     sign = "" if value.holds else "not"
     node = names.shared("condition", value.kind, *value.arguments, *([sign] if sign else []))
     text = f"{'' if value.holds else 'not '}{value.kind}({', '.join(value.arguments)})"
-    said: Said = {
+    properties: PropertyValues = {
         LABEL: text,
         CAPAR.conditionKind: value.kind,
         CAPAR.parameters: " ".join(value.arguments),
         CAPAR.holds: value.holds,
     }
-    return out.share(node, (CAPAR.Condition,), said)
+    return out.share(node, (CAPAR.Condition,), properties)
 
 
 def conditions(out: Statements, values: tuple[Condition, ...]) -> list[NamedNode]:
@@ -62,7 +62,7 @@ def upar_node(value: Upar) -> NamedNode:
 def upar(out: Statements, value: Upar) -> NamedNode:
     """An uninstantiated action; equal ones of several observations are one."""
     node = upar_node(value)
-    said: Said = {
+    properties: PropertyValues = {
         LABEL: value.name,
         CAPAR.name: value.name,
         CAPAR.ofAction: action(out, value.name),
@@ -80,7 +80,7 @@ def upar(out: Statements, value: Upar) -> NamedNode:
         CAPAR.core: _core(out, out.share, node, value.core),
         CAPAR.postAssertion: conditions(out, value.post_assertions),
     }
-    return out.share(node, (CAPAR.Upar,), said)
+    return out.share(node, (CAPAR.Upar,), properties)
 
 
 def ipars(
@@ -111,7 +111,7 @@ def _ipar(
     objects: dict[str, NamedNode],
 ) -> NamedNode:
     node = names.part(out.about, "ipar", segment.ee, segment.index)
-    said: Said = {
+    properties: PropertyValues = {
         CAPAR.name: value.upar,
         CAPAR.ofAction: action(out, value.upar),
         CAPAR.instanceOf: of,
@@ -120,48 +120,48 @@ def _ipar(
         CAPAR.objects: " ".join(value.objects),
         CAPAR.object: [objects[each] for each in value.objects if each in objects],
         CAPAR.start: float(value.start_s),
-        CAPAR.core: _core(out, out.say, node, value.core),
-        CAPAR.preparation: _preparation(out, out.say, node, value.preparation),
+        CAPAR.core: _core(out, out.add, node, value.core),
+        CAPAR.preparation: _preparation(out, out.add, node, value.preparation),
         CAPAR.postAssertion: conditions(out, value.post_assertions),
         CAPAR.posture: value.posture,
         CAPAR.parentName: value.parent,
         DERIVED: segment_node(out.about, segment.ee, segment.index),
         GENERATED: out.about,
     }
-    return out.say(node, (CAPAR.Ipar,), said)
+    return out.add(node, (CAPAR.Ipar,), properties)
 
 
 def _preparation(
-    out: Statements, say: Say, of: NamedNode, values: tuple[Preparation, ...]
+    out: Statements, add: Add, of: NamedNode, values: tuple[Preparation, ...]
 ) -> list[NamedNode]:
     nodes = []
     for index, each in enumerate(values):
         node = names.part(of, "preparation", index)
-        remedy = _call(out, say, names.part(node, "remedy"), each.action, 0)
-        said: Said = {
+        remedy = _call(out, add, names.part(node, "remedy"), each.action, 0)
+        properties: PropertyValues = {
             CAPAR.index: index,
             CAPAR.condition: condition(out, each.condition),
             CAPAR.remedy: remedy,
         }
-        nodes.append(say(node, (CAPAR.Preparation,), said))
+        nodes.append(add(node, (CAPAR.Preparation,), properties))
     return nodes
 
 
-def _call(out: Statements, say: Say, node: NamedNode, value: Call, index: int) -> NamedNode:
-    said: Said = {
+def _call(out: Statements, add: Add, node: NamedNode, value: Call, index: int) -> NamedNode:
+    properties: PropertyValues = {
         CAPAR.index: index,
         CAPAR.action: action(out, value.action),
         CAPAR.name: value.action,
         CAPAR.parameters: " ".join(value.objects),
         CAPAR.purpose: value.purpose,
     }
-    return say(node, (CAPAR.Call,), said)
+    return add(node, (CAPAR.Call,), properties)
 
 
-def _core(out: Statements, say: Say, of: NamedNode, value: CoreSemantics) -> NamedNode:
+def _core(out: Statements, add: Add, of: NamedNode, value: CoreSemantics) -> NamedNode:
     node = names.part(of, "core")
     first, second = value.constraint.colliding_objects
-    constraint = say(
+    constraint = add(
         names.part(node, "constraint"),
         (CAPAR.Constraint,),
         {
@@ -171,7 +171,7 @@ def _core(out: Statements, say: Say, of: NamedNode, value: CoreSemantics) -> Nam
         },
     )
     ends = [each for point in value.path for each in point]
-    said: Said = {
+    properties: PropertyValues = {
         CAPAR.motion: MOTIONS[value.motion],
         CAPAR.moved: value.moved,
         CAPAR.causal: value.causal,
@@ -184,4 +184,4 @@ def _core(out: Statements, say: Say, of: NamedNode, value: CoreSemantics) -> Nam
         CAPAR.manner: value.manner,
         CAPAR.constraint: constraint,
     }
-    return say(node, (CAPAR.CoreSemantics,), said)
+    return add(node, (CAPAR.CoreSemantics,), properties)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from pyoxigraph import Literal, NamedNode
 
 from kb.store import literals, names
-from kb.store.statements import LABEL, Said, Statements
+from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
 from ontology.vocabularies import PREFIXES, PROV
 
@@ -37,24 +37,24 @@ def kind_of(seen: "ObservedObject") -> str:
 
 
 def kind(out: Statements, name: str) -> NamedNode:
-    """A kind of object; one that nobody placed in the hierarchy is an object and no more."""
+    """A kind of object; one outside the hierarchy is just an object."""
     node = names.shared("kind", name)
     if names.graph_of(node) == names.GRAPHS["ontology"]:
         return node
     above = names.shared("kind", "object")
     thing = names.shared("kind", "thing")
-    said: Said = {
+    properties: PropertyValues = {
         LABEL: Literal(name.replace("_", " "), language="en"),
         CAPAR.name: name,
         CAPAR.isA: [node, above, thing],
     }
-    return out.share(node, (CAPAR.ObjectKind,), said)
+    return out.share(node, (CAPAR.ObjectKind,), properties)
 
 
 def capture(out: Statements, observation: "Observation") -> NamedNode:
     """The capture with the files that it was read from."""
     files = [
-        out.say(
+        out.add(
             names.part(out.about, "source", index),
             (CAPAR.SourceFile,),
             {
@@ -65,7 +65,7 @@ def capture(out: Statements, observation: "Observation") -> NamedNode:
         )
         for index, each in enumerate(observation.sources)
     ]
-    said: Said = {
+    properties: PropertyValues = {
         LABEL: observation.capture,
         CAPAR.name: observation.capture,
         CAPAR.frames: observation.frames,
@@ -73,7 +73,7 @@ def capture(out: Statements, observation: "Observation") -> NamedNode:
         CAPAR.duration: float(observation.duration_s),
         DERIVED: files,
     }
-    return out.say(names.part(out.about, "capture"), (CAPAR.Capture,), said)
+    return out.add(names.part(out.about, "capture"), (CAPAR.Capture,), properties)
 
 
 def agents(out: Statements, observation: "Observation") -> dict[str, NamedNode]:
@@ -93,25 +93,29 @@ def performer(out: Statements, agent: "Agent", who: NamedNode, *, number: int = 
     words = (number,) if number else ()
     node = names.part(out.about, "performer", *words)
     measures = [
-        out.say(
+        out.add(
             names.part(node, "measure", name),
             (CAPAR.Measure,),
             {CAPAR.name: name, CAPAR.value: float(agent.measures[name])},
         )
         for name in sorted(agent.measures)
     ]
-    said: Said = {CAPAR.agent: who, CAPAR.kind: kind(out, agent.kind), CAPAR.measure: measures}
-    return out.say(node, (CAPAR.Performer,), said)
+    properties: PropertyValues = {
+        CAPAR.agent: who,
+        CAPAR.kind: kind(out, agent.kind),
+        CAPAR.measure: measures,
+    }
+    return out.add(node, (CAPAR.Performer,), properties)
 
 
 def objects(out: Statements, observation: "Observation") -> dict[str, NamedNode]:
     """Every tag object by name."""
-    return {each.name: _object(out, each) for each in observation.objects}
+    return {thing.name: _object(out, thing) for thing in observation.objects}
 
 
 def _object(out: Statements, seen: "ObservedObject") -> NamedNode:
     node = names.part(out.about, "object", seen.name)
-    site = out.say(
+    site = out.add(
         names.part(node, "site"),
         (CAPAR.Site,),
         {
@@ -119,7 +123,7 @@ def _object(out: Statements, seen: "ObservedObject") -> NamedNode:
             CAPAR.orientation: literals.vector(seen.orientation),
         },
     )
-    said: Said = {
+    properties: PropertyValues = {
         LABEL: seen.name,
         CAPAR.name: seen.name,
         CAPAR.kind: kind(out, kind_of(seen)),
@@ -129,7 +133,7 @@ def _object(out: Statements, seen: "ObservedObject") -> NamedNode:
         CAPAR.assumedFrom: seen.assumed,
         CAPAR.coordinateSystem: site,
     }
-    return out.say(node, (CAPAR.TagObject,), said)
+    return out.add(node, (CAPAR.TagObject,), properties)
 
 
 def links(
@@ -137,15 +141,15 @@ def links(
 ) -> dict[str, NamedNode]:
     """Every acting link by its end-effector."""
     return {
-        each.ee: out.say(
-            names.part(out.about, "link", each.ee),
+        link.ee: out.add(
+            names.part(out.about, "link", link.ee),
             (CAPAR.Link,),
             {
-                CAPAR.ee: each.ee,
-                CAPAR.effectorType: each.kind,
-                CAPAR.side: each.side,
-                CAPAR.agent: agents[observation.performer(each.ee)],
+                CAPAR.ee: link.ee,
+                CAPAR.effectorType: link.kind,
+                CAPAR.side: link.side,
+                CAPAR.agent: agents[observation.performer(link.ee)],
             },
         )
-        for each in observation.links
+        for link in observation.links
     }

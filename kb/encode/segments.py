@@ -9,7 +9,7 @@ from capar.model.par import UNKNOWN, FeatureSet
 from capar.model.segment_address import SegmentAddress
 from kb.encode.scene import GENERATED
 from kb.store import names
-from kb.store.statements import LABEL, Said, Statements
+from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
 from ontology.vocabularies import TIME
 
@@ -44,8 +44,8 @@ def action(out: Statements, name: str) -> NamedNode | None:
     """What an action is called; the unknown has no name."""
     if name in {"", UNKNOWN}:
         return None
-    said: Said = {LABEL: name, CAPAR.name: name}
-    return out.share(names.shared("action", name), (CAPAR.Action,), said)
+    properties: PropertyValues = {LABEL: name, CAPAR.name: name}
+    return out.share(names.shared("action", name), (CAPAR.Action,), properties)
 
 
 def actions(out: Statements, known: tuple[str, ...]) -> list[NamedNode]:
@@ -56,7 +56,7 @@ def actions(out: Statements, known: tuple[str, ...]) -> list[NamedNode]:
 def features(out: Statements, value: FeatureSet) -> NamedNode:
     """A set of features, called after its bits."""
     bits = (value.rel_start, value.rel_end, value.change_loc, value.end_effector, value.force)
-    said: Said = {
+    properties: PropertyValues = {
         CAPAR.relStart: value.rel_start,
         CAPAR.relEnd: value.rel_end,
         CAPAR.changeLoc: value.change_loc,
@@ -64,7 +64,7 @@ def features(out: Statements, value: FeatureSet) -> NamedNode:
         CAPAR.forceApplied: value.force,
         CAPAR.objectCount: value.count,
     }
-    return out.share(names.shared("features", *(bits)), (CAPAR.FeatureSet,), said)
+    return out.share(names.shared("features", *(bits)), (CAPAR.FeatureSet,), properties)
 
 
 def segment_node(about: NamedNode, ee: str, index: int) -> NamedNode:
@@ -96,7 +96,7 @@ def _segment(
     node = segment_node(out.about, seen.ee, seen.index)
     after = seen.index + 1
     follows = segment_node(out.about, seen.ee, after) if after < len(link.segments) else None
-    said: Said = {
+    properties: PropertyValues = {
         LABEL: f"{seen.ee} {seen.index}: {seen.name}",
         CAPAR.ofLink: link_node,
         CAPAR.ee: seen.ee,
@@ -128,7 +128,7 @@ def _segment(
         GENERATED: out.about,
     }
     kinds = (CAPAR.Segment,) if seen.known else (CAPAR.Segment, CAPAR.UnknownSegment)
-    return out.say(node, kinds, said)
+    return out.add(node, kinds, properties)
 
 
 def border_kind(word: str) -> NamedNode:
@@ -146,7 +146,7 @@ def _placements(
     out: Statements, of: NamedNode, prepositions: tuple[tuple[str, str, str], ...]
 ) -> list[NamedNode]:
     return [
-        out.say(
+        out.add(
             names.part(of, "placement", index),
             (CAPAR.Placement,),
             {CAPAR.preposition: preposition, CAPAR.body: body, CAPAR.other: other},
@@ -162,7 +162,7 @@ def _looks(
     objects: dict[str, NamedNode],
 ) -> list[NamedNode]:
     return [
-        out.say(
+        out.add(
             names.part(of, "look", index),
             (CAPAR.Look,),
             {CAPAR.seen: objects[seen], CAPAR.when: when},
@@ -176,7 +176,7 @@ def _borders(
     out: Statements, of: NamedNode, where: str, borders: "tuple[Border, ...]"
 ) -> list[NamedNode]:
     return [
-        out.say(
+        out.add(
             names.part(of, where, index),
             (CAPAR.Border,),
             {

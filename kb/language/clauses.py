@@ -29,7 +29,7 @@ class Clause:
     """Whether it changes the world: moves something, strikes it, or is the end itself."""
 
     purpose: str = ""
-    """What it was done for, in words, where nothing else tells it: ``pour``."""
+    """What it was done for, in words, where nothing else says it: ``pour``."""
 
     known: bool = True
     count: int = 1
@@ -49,7 +49,7 @@ class Clause:
 
 
 def in_time(clause: Clause) -> tuple[float, float, tuple[str, ...]]:
-    """What clauses are told in the order of."""
+    """The key by which clauses are sorted."""
     return clause.start_s, clause.end_s, clause.ees
 
 
@@ -97,7 +97,7 @@ def _told_segments(link: ObservedLink, book: Phrasebook, *, only_changes: bool) 
 
 
 def _quiet(segment: Segment, book: Phrasebook) -> bool:
-    """Whether it tells of the hand alone."""
+    """Whether it describes the hand alone."""
     return book.pattern(segment.name, segment.general, (), 1) in QUIET
 
 
@@ -217,7 +217,7 @@ def _deed(segment: Segment, before: Segment | None, cases: set[str], names: set[
 def _purpose_verb(purpose: str, names: set[str]) -> str:
     """A user's purpose as a verb that WordNet knows; empty for any other.
 
-    A purpose that is the name of another step only tells what comes next.
+    A purpose that is the name of another step only says what comes next.
     """
     if not purpose or purpose in names:
         return ""
@@ -226,7 +226,7 @@ def _purpose_verb(purpose: str, names: set[str]) -> str:
 
 
 def _with_purposes(found: Sequence[tuple[Segment, Clause]], names: set[str]) -> tuple[Clause, ...]:
-    """The clauses, with those purposes told that no later clause of the link fulfils."""
+    """The clauses, with those purposes stated that no later clause of the link fulfils."""
     out = []
     for index, (segment, clause) in enumerate(found):
         verb = _purpose_verb(segment.purpose, names)

@@ -16,13 +16,13 @@ class Scene:
 
     def __init__(self, observation: Observation) -> None:
         effectors = {link.ee for link in observation.links}
-        effectors |= {each.ee for each in observation.facts if isinstance(each, Link)}
-        touching = [each for each in observation.facts if isinstance(each, Touching)]
+        effectors |= {fact.ee for fact in observation.facts if isinstance(fact, Link)}
+        touching = [fact for fact in observation.facts if isinstance(fact, Touching)]
         self._hands = [each for each in touching if each.body in effectors]
         self._pairs = [each for each in touching if each.body not in effectors]
-        self._moving = [each for each in observation.facts if isinstance(each, Moving)]
-        self._tags = {each.name: each.tag for each in observation.objects}
-        owners = [each for each in observation.facts if isinstance(each, OfAgent)]
+        self._moving = [fact for fact in observation.facts if isinstance(fact, Moving)]
+        self._tags = {thing.name: thing.tag for thing in observation.objects}
+        owners = [fact for fact in observation.facts if isinstance(fact, OfAgent)]
         self._owners = {each.body: each.agent for each in owners}
         self._kinds = {each.name: each.kind for each in (observation.agent, *observation.others)}
 

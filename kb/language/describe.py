@@ -11,7 +11,7 @@ from kb.language.clauses import Clause, clauses
 from kb.language.contacts import Scene
 from kb.language.hands import spoken_links, told_in_order
 from kb.language.lexicalisation import FREE, Phrasebook
-from kb.language.realisation import Telling
+from kb.language.realisation import Realiser
 from kb.language.repeating import counted, repetition
 from kb.lexicon.english import capital, the_agent, times
 from kb.lexicon.links import PrimitiveWords
@@ -42,7 +42,7 @@ def describe(
 
     Args:
         observation: What was understood of a capture.
-        detail: ``steps`` tells every step, ``summary`` only those that changed something.
+        detail: ``steps`` describes every step, ``summary`` only those that changed something.
         timed: Whether each step is followed by its time [s].
         words: What the primitives of the rule base are called; those that are not there are said
             by the verb of a more general one.
@@ -70,13 +70,13 @@ def _story(
     if not timed:
         steps = edited(steps, summary=summary)
     subject = the_agent(observation.agent.name, observation.agent.kind)
-    telling = Telling(links, timed=timed)
+    realiser = Realiser(links, timed=timed)
     if not steps:
-        return f"{capital(subject)} {telling.idle(_moved_freely(links, book))}."
+        return f"{capital(subject)} {realiser.idle(_moved_freely(links, book))}."
     out: list[str] = []
     for index, part in enumerate(parts := _sentences(steps)):
         opening = _opening(index, parts[index - 1], part) if index else ""
-        sentence = f"{opening}{subject} {telling.sentence(part.steps, part.often, part.end_s)}."
+        sentence = f"{opening}{subject} {realiser.sentence(part.steps, part.often, part.end_s)}."
         out.append(capital(sentence))
     return " ".join(out)
 
@@ -98,7 +98,7 @@ def _moved_freely(links: Sequence[ObservedLink], book: Phrasebook) -> list[str]:
 
 @dataclass(frozen=True)
 class _Part:
-    """What one sentence tells; what is repeated stands once, with how often and until when."""
+    """The content of one sentence; what is repeated stands once, with how often and until when."""
 
     steps: tuple[Clause, ...]
     often: str = ""

@@ -16,7 +16,7 @@ JOINT = "|"
 """Between the verbs of a pattern that says several things of one object: ``raise|tilt {1}``."""
 
 QUIET = frozenset({"reach for {1}", "let go of {1}", "take {ee} away"})
-"""Patterns that tell of the hand alone: what moves meanwhile is not moved by what they say."""
+"""Patterns that describe the hand alone: what moves meanwhile is not moved by what they say."""
 
 FREE = "move {ee}"
 """The pattern of what a hand does that is of no object."""

@@ -51,7 +51,7 @@ def parse(text: str, vocabulary: Vocabulary | None = None) -> Instruction | Ques
 
 
 def _beginnings(words: Vocabulary) -> list[str]:
-    verbs = sorted({" ".join(each) for each in words.verbs})
+    verbs = sorted({" ".join(verb) for verb in words.verbs})
     return [*verbs, *(" ".join(each) for each in QUESTION_WORDS)]
 
 

@@ -14,7 +14,7 @@ _ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
 """Places of several objects that a verb has as one."""
 
 
-class Telling:
+class Realiser:
     """Says clauses; remembers the hand, and within a sentence what each hand has to do with."""
 
     def __init__(self, links: Sequence[ObservedLink], *, timed: bool) -> None:

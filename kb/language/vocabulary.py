@@ -1,4 +1,4 @@
-"""What controlled English can speak of: verbs with their places, objects and end-effectors."""
+"""What controlled English can express: verbs with their places, objects and end-effectors."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

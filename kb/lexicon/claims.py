@@ -1,4 +1,4 @@
-"""What rule files state of words, held against WordNet's verbs and Levin's classes."""
+"""What rule files state of words, compared with WordNet's verbs and Levin's classes."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
@@ -8,7 +8,7 @@ from kb.lexicon.links import PrimitiveWords, sense_key
 from kb.lexicon.wordnet import wordnet
 
 MOST = 5
-"""How many names near a wrong one are told."""
+"""How many names near a wrong one are listed."""
 
 
 def doubts(verb: str, levin_classes: Sequence[str], senses: Sequence[str]) -> tuple[str, ...]:

@@ -47,26 +47,26 @@ def lexical_facts(
         *(_classes() if classes else ()),
         *(_members(members) if classes else ()),
         *_senses(words, asked),
-        *(_fact("rule", each) for each in rules),
+        *(_fact("rule", rule) for rule in rules),
         *(_fact("observed", each.primitive, each.observation) for each in seen if each.primitive),
         *(
             _fact("done_to", words_of(each.purpose), each.primitive, each.observation)
             for each in seen
             if each.purpose and each.primitive
         ),
-        *(_fact("tested", each.primitive, each.name) for each in cases),
+        *(_fact("tested", case.primitive, case.name) for case in cases),
     }
     return "\n".join(sorted(lines)) + "\n"
 
 
 def _primitives(words: Sequence[PrimitiveWords]) -> Iterator[str]:
-    for each in words:
-        yield _fact("primitive", each.name)
-        yield from (_fact("specialises", each.name, general) for general in each.general)
-        yield from (_fact("verb", each.name, verb) for verb in each.verbs)
-        own = own_links(each.name)
-        classes = each.levin or (own[1] or ("",) if own else ())
-        yield from (_fact("levin", each.name, number) for number in classes)
+    for word in words:
+        yield _fact("primitive", word.name)
+        yield from (_fact("specialises", word.name, general) for general in word.general)
+        yield from (_fact("verb", word.name, verb) for verb in word.verbs)
+        own = own_links(word.name)
+        classes = word.levin or (own[1] or ("",) if own else ())
+        yield from (_fact("levin", word.name, number) for number in classes)
 
 
 def _fact(predicate: str, *arguments: str) -> str:

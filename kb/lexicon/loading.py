@@ -52,7 +52,7 @@ def load_verbnet(store: Store, classes: Sequence[VerbClass], words: WordNet) -> 
 
 
 def _load(store: Store, source: str, digest: str, triples: Callable[[], Iterable[Triple]]) -> bool:
-    """Fill a source's graph, its mark last: a graph without it is not whole, and is made anew."""
+    """Fill a source's graph, its mark last: a graph without it is not whole, and is made again."""
     graph = terms.graph(source)
     mark = Triple(graph, CAPAR.sha256, Literal(digest))
     if store.ask(f"ASK {{ GRAPH {graph} {{ {mark} }} }}").boolean:

@@ -43,7 +43,7 @@ def read_verbnet(folder: Path) -> tuple[VerbClass, ...]:
     if not paths:
         raise FileError(folder, "holds no XML file;", "name the one that holds VerbNet's.")
     classes = tuple(read_class(path) for path in paths)
-    _prove_distinct(folder, classes)
+    _check_distinct(folder, classes)
     return classes
 
 
@@ -76,7 +76,7 @@ def key_rate(classes: Iterable[VerbClass], words: WordNet) -> KeyRate:
     return KeyRate(len(keys), sum(key in words for key in keys))
 
 
-def _prove_distinct(folder: Path, classes: tuple[VerbClass, ...]) -> None:
+def _check_distinct(folder: Path, classes: tuple[VerbClass, ...]) -> None:
     names = [each.id for top in classes for each in top.family]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:

@@ -91,7 +91,7 @@ class VerbAnswer:
 
 
 class UnknownVerbError(UnknownNameError):
-    """A verb that there is not; of the many that there are it tells the nearest alone."""
+    """A verb that there is not; its message lists only the nearest known ones."""
 
     def __init__(self, verb: str) -> None:
         near = nearest_verbs(verb)
@@ -209,6 +209,6 @@ def _is_kind(key: str, tops: Sequence[Synset]) -> bool:
 def keys_of_primitives(words: Iterable[PrimitiveWords]) -> dict[str, tuple[str, ...]]:
     """The sense keys of each primitive that WordNet 3.1 has, as we claim them."""
     return {
-        each.name: tuple(link.key for link in sense_links(each) if link.key in wordnet())
-        for each in words
+        word.name: tuple(link.key for link in sense_links(word) if link.key in wordnet())
+        for word in words
     }

@@ -9,7 +9,7 @@ from kb.encode import segments
 from kb.errors import StoreError
 from kb.findings import Ability
 from kb.lookup import kinds
-from kb.lookup.pars import upars
+from kb.lookup.stored_pars import upars
 from kb.store import names
 from kb.store.sparql import fill
 from kb.store.statements import LABEL, TYPE, Statements

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from pyoxigraph import Literal, NamedNode
 
-from capar.model.facts import STATED, Fact
+from capar.model.facts import ALL_FACT_KINDS, Fact
 from capar.model.par import UNKNOWN
 from kb.encode import encode
 from kb.encode.facts import terms
 from kb.store import names
 from kb.store import updates as writing
-from kb.store.shapes import prove
+from kb.store.shacl_validation import validate_statements
 from kb.store.sparql import fill
 from kb.store.stores import Store
 from ontology import CAPAR
@@ -41,7 +41,7 @@ def facts(store: Store, name: str) -> tuple[Fact, ...]:
             said[str(fact)][str(key)] = value.value if isinstance(value, Literal) else str(value)
     stated = [_fact(kinds[node], said[node]) for node in said]
     found = [each for each in stated if each is not None]
-    rank: dict[type[Fact], int] = {kind: index for index, kind in enumerate(STATED)}
+    rank: dict[type[Fact], int] = {kind: index for index, kind in enumerate(ALL_FACT_KINDS)}
     return tuple(sorted(found, key=lambda each: (rank[type(each)], each)))
 
 
@@ -101,8 +101,8 @@ def named_segments(store: Store, name: str) -> tuple[NamedSegment, ...]:
     return tuple(sorted(found))
 
 
-_BY_CLASS = {str(terms(kind)[0]): kind for kind in STATED if terms(kind)[0] != CAPAR.Fact}
-_BY_PREDICATE = {each.predicate: each for each in STATED}
+_BY_CLASS = {str(terms(kind)[0]): kind for kind in ALL_FACT_KINDS if terms(kind)[0] != CAPAR.Fact}
+_BY_PREDICATE = {each.predicate: each for each in ALL_FACT_KINDS}
 
 
 def _fact(kind: str, said: dict[str, str]) -> Fact | None:
@@ -134,7 +134,7 @@ def replace_all(store: Store, observations: Iterable[tuple["Observation", str]])
     updates = []
     for observation, called in observations:
         statements = encode(observation, name=called)
-        prove(observation.capture, statements)
+        validate_statements(observation.capture, statements)
         graph = names.observation(observation.capture)
         updates.append(writing.replacement(graph, statements.quads))
     if updates:

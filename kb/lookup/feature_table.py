@@ -8,11 +8,11 @@ from capar.model.errors import ParError
 from capar.model.par import FeatureSet
 from kb.encode import segments
 from kb.findings import FeatureRow
-from kb.lookup.decoding import features as decode_features
-from kb.lookup.reading import Reading
+from kb.lookup.par_decoding import features as decode_features
+from kb.lookup.statement_index import StatementIndex
 from kb.store import names
 from kb.store.answers import plain
-from kb.store.statements import LABEL, Said, Statements
+from kb.store.statements import LABEL, PropertyValues, Statements
 from kb.store.stores import Store
 from ontology import CAPAR
 
@@ -28,7 +28,7 @@ GROUP BY ?features ?name ?general"""
 
 def rows(store: Store) -> tuple[FeatureRow, ...]:
     """Every named set of features, declared or seen, sorted."""
-    reading = Reading(store.graph(names.GRAPHS["actions"]))
+    reading = StatementIndex(store.graph(names.GRAPHS["actions"]))
     declared = {
         (reading.text(node, CAPAR.name), decode_features(reading, bits)): reading.words(
             node, CAPAR.general
@@ -61,7 +61,7 @@ def add(store: Store, name: str, value: FeatureSet, general: tuple[str, ...]) ->
     bits = segments.features(out, value)
     action = segments.action(out, name)
     above = segments.actions(out, general)
-    said: Said = {
+    properties: PropertyValues = {
         LABEL: name,
         CAPAR.name: name,
         CAPAR.features: bits,
@@ -70,7 +70,7 @@ def add(store: Store, name: str, value: FeatureSet, general: tuple[str, ...]) ->
         CAPAR.specialises: above,
     }
     node = names.shared("row", names.hashed((name, value)))
-    out.share(node, (CAPAR.FeatureRow,), said)
+    out.share(node, (CAPAR.FeatureRow,), properties)
     keep = [each for each in (node, bits, action, *above) if each is not None]
     marks = [Quad(each, CAPAR.declared, Literal(True), graph) for each in keep]
     store.insert([each for each in out.quads if each.predicate != CAPAR.mentions] + marks)

@@ -12,7 +12,7 @@ from ontology.files import closure
 _PAIRS = f"SELECT DISTINCT ?lower ?upper WHERE {{ ?lower {CAPAR.broaderKind} ?upper }}"
 _CLOSURE = f"SELECT DISTINCT ?lower ?upper WHERE {{ ?lower {CAPAR.isA} ?upper }}"
 GENERAL = ("object", "thing")
-"""What every kind is, if nobody says otherwise."""
+"""What every kind is by default."""
 
 
 def _pairs(store: Store, query: str) -> set[tuple[str, str]]:

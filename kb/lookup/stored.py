@@ -12,7 +12,7 @@ from kb.findings import Added, Stored
 from kb.lookup import recognition
 from kb.store import names
 from kb.store import updates as writing
-from kb.store.shapes import prove
+from kb.store.shacl_validation import validate_statements
 from kb.store.sparql import fill
 from kb.store.stores import Store, is_address
 from ontology import CAPAR
@@ -48,7 +48,7 @@ def add(store: Store, observation: "Observation", *, name: str | None, replace: 
     recognised = recognition.recognise(store, observation.complex_par, besides=graph) or ""
     called = name or observation.complex_par.name or recognised or observation.capture
     statements = encode(observation, name=called)
-    prove(observation.capture, statements)
+    validate_statements(observation.capture, statements)
     quads = statements.quads
     if there or is_address(store.place):
         store.change(writing.replacement(graph, quads))

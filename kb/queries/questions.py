@@ -139,8 +139,8 @@ def question(name: str) -> Question:
     return questions()[name]
 
 
-def prove_known(store: "Store", asked: Question, given: Mapping[str, object]) -> None:
-    """Prove of a question that nothing answers that what it is asked of is there at all.
+def check_known(store: "Store", asked: Question, given: Mapping[str, object]) -> None:
+    """Check that what a question without answers asks about exists at all.
 
     Raises:
         UnknownNameError: Nothing that was observed bears a name; the message lists those there are.

@@ -99,8 +99,8 @@ class _Parts:
         self.proofs = defaultdict(list)
         for number, primitive, kind, where in derived.of("proof"):
             self.proofs[number].append(Proof(primitive, kind, where))
-        self.words = {each.name: each for each in words}
-        self.files = {each.name: each.file for each in words if each.file}
+        self.words = {word.name: word for word in words}
+        self.files = {word.name: word.file for word in words if word.file}
         self.seen = seen
         self.members = members
 
@@ -192,8 +192,8 @@ def _needs(number: str, verb: str, lacking: Sequence[str]) -> tuple[str, ...]:
 def _senses(words: Sequence[PrimitiveWords]) -> Iterable[SenseRow]:
     for link in thesis_senses():
         yield _sense_row(link)
-    for each in sorted(words):
-        for link in sense_links(each):
+    for word in sorted(words):
+        for link in sense_links(word):
             yield _sense_row(link)
 
 
@@ -201,7 +201,7 @@ def _sense_row(link: SenseLink) -> SenseRow:
     if link.key not in wordnet():
         return SenseRow(link, None, 0)
     synset = wordnet().of_key(link.key)
-    number = next((each.number for each in synset.senses if each.key == link.key), 0)
+    number = next((sense.number for sense in synset.senses if sense.key == link.key), 0)
     return SenseRow(link, synset, number)
 
 
@@ -214,9 +214,9 @@ def _coverage(
         classes_addressed=sum(each.status is Status.ADDRESSED for each in classes),
         classes_partly=sum(each.status is Status.PARTLY for each in classes),
         verbs=len(verbs),
-        verbs_addressed=sum(each.how is How.ADDRESSED for each in verbs),
-        verbs_general=sum(each.how is How.GENERAL for each in verbs),
-        verbs_purpose=sum(each.how is How.PURPOSE for each in verbs),
+        verbs_addressed=sum(verb.how is How.ADDRESSED for verb in verbs),
+        verbs_general=sum(verb.how is How.GENERAL for verb in verbs),
+        verbs_purpose=sum(verb.how is How.PURPOSE for verb in verbs),
         segments=total(seen),
         segments_named=total(each for each in seen if each.primitive),
         segments_in_classes=total(showing),

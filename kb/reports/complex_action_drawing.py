@@ -10,7 +10,7 @@ from capar.model.par import ComplexPar, Step
 from kb.encode.complex_pars import COMMON
 from kb.exchange import part
 from kb.findings import Stored
-from kb.lookup import pars
+from kb.lookup import stored_pars
 from kb.lookup.stored import observations
 from kb.reports import svg
 from kb.store import names
@@ -43,7 +43,7 @@ def seen(store: Store, name: str) -> tuple[Stored, ...]:
 def as_text(store: Store, name: str) -> str:
     """The action's links and steps, and every observation of it with its shares of time."""
     found = seen(store, name)
-    values = [pars.complex_par(store, each.name) for each in found]
+    values = [stored_pars.complex_par(store, each.name) for each in found]
     first = values[0]
     lines = [f"{first.name}({', '.join(first.objects)})"]
     for ee, steps in _rows(first):
@@ -67,7 +67,7 @@ def as_text(store: Store, name: str) -> str:
 
 def _performers(store: Store, observed: Stored) -> str:
     """Everyone who acts in an observation, its first agent first."""
-    acting = {each.agent for each in pars.ipars(store, observed.name)} or {observed.agent}
+    acting = {each.agent for each in stored_pars.ipars(store, observed.name)} or {observed.agent}
     return " and ".join(sorted(acting, key=lambda name: (name != observed.agent, name)))
 
 
@@ -85,7 +85,7 @@ def _share(value: ComplexPar, ee: str, index: int) -> float:
 
 def as_svg(store: Store, name: str) -> str:
     """The action's steps as bars over its duration, a row a link."""
-    value = pars.complex_par(store, seen(store, name)[0].name)
+    value = stored_pars.complex_par(store, seen(store, name)[0].name)
     actions = sorted({step.action for _, steps in _rows(value) for step in steps})
     colour = {each: COLOURS[index % len(COLOURS)] for index, each in enumerate(actions)}
     links = [ee for ee, _ in _rows(value) if ee != COMMON]

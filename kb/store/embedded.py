@@ -13,7 +13,7 @@ from kb.store import answers, sparql
 from kb.store import timed_query as bounded
 from kb.store.answers import Answer
 from kb.store.lock import WriterLock
-from kb.store.readonly_folder import open_reader, prove_whole, read, unusable
+from kb.store.readonly_folder import check_whole, open_reader, read, unusable
 
 _T = TypeVar("_T")
 
@@ -48,7 +48,7 @@ class EmbeddedStore:
         data = self._folder / DATA_FOLDER
         if self._read_only:
             return _reader(self._folder, data)
-        prove_whole(data)
+        check_whole(data)
         with self._guarded():
             return Oxigraph(data)
 
@@ -79,7 +79,7 @@ class EmbeddedStore:
         return self._read(lambda store: _answer(store, query))
 
     def _read(self, reading: Callable[[Oxigraph], _T]) -> _T:
-        """What a reading gives; a reader opens the folder anew if files go meanwhile."""
+        """What a reading gives; a reader reopens the folder if files go meanwhile."""
         if self._folder is None or not self._read_only:
             with self._guarded():
                 return reading(self._store)
@@ -90,7 +90,7 @@ class EmbeddedStore:
             return found
 
     def ask_within(self, query: str, *, seconds: float) -> Answer:
-        """What anybody's query answers, asked in a process of its own."""
+        """The answer to a user's query, asked in a process of its own."""
         if self._folder is None:
             data = self._store.dump(format=RdfFormat.N_QUADS) or b""
             return bounded.ask(query, seconds=seconds, dump=data)
@@ -104,7 +104,7 @@ class EmbeddedStore:
         """Every statement of every named graph."""
         return self._read(list)
 
-    def prove_readable(self) -> None:
+    def check_readable(self) -> None:
         """Read every statement by way of every index, so that damage anywhere is found."""
         self._read(_read_all)
 

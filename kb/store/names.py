@@ -67,13 +67,13 @@ def observation_name(node: NamedNode) -> str:
 
 
 def part(of: NamedNode, *words: str | int) -> NamedNode:
-    """Something that belongs to an observation or another whole, by what tells it apart."""
+    """Something that belongs to an observation or another whole, by what distinguishes it."""
     fragment = ".".join(_quoted(str(each)) for each in words)
     return NamedNode(f"{of.value}{'.' if '#' in of.value else '#'}{fragment}")
 
 
 def shared(folder: str, *words: str | int) -> NamedNode:
-    """Something that several observations may speak of, by what tells it apart."""
+    """Something that several observations may speak of, by what distinguishes it."""
     return NamedNode(DATA + folder + "/" + ".".join(_quoted(str(each)) for each in words))
 
 

@@ -29,13 +29,13 @@ def answer(source: BinaryIO) -> bytes:
     try:
         media_type, data = _ask(request, source)
     except (QueryError, SyntaxError) as error:
-        return b"query-error " + json.dumps(told(str(error))).encode()
+        return b"query-error " + json.dumps(user_message(str(error))).encode()
     except (StoreError, OSError) as error:
         return b"store-error " + json.dumps(str(error)).encode()
     return f"answer {media_type}\n".encode() + data
 
 
-def told(problem: str) -> str:
+def user_message(problem: str) -> str:
     """A parser's message in short; an unknown function with the names of those that exist."""
     if slip := _NO_FUNCTION.search(problem):
         known = [*(f"capar:{each}" for each in sparql.FUNCTIONS), "those of SPARQL"]

@@ -31,7 +31,7 @@ def open_reader(data: Path) -> Oxigraph:
 
 
 def read(data: Path, reading: Callable[[Oxigraph], _T]) -> tuple[_T, Oxigraph]:
-    """What a reading of the database gives, and the database; read anew if files go meanwhile.
+    """What a reading of the database gives, and the database; read again if files go meanwhile.
 
     Raises:
         StoreError: It cannot be read even so.
@@ -44,10 +44,10 @@ def read(data: Path, reading: Callable[[Oxigraph], _T]) -> tuple[_T, Oxigraph]:
     return _again(both, data)
 
 
-def prove_whole(data: Path) -> None:
-    """Prove that a database's files have their table of contents, before it is written.
+def check_whole(data: Path) -> None:
+    """Check that a database's files have their table of contents, before it is written.
 
-    Without it the database would begin anew, and overwrite what is there.
+    Without it the database would start empty, and overwrite what is there.
 
     Raises:
         DamagedError: They have none.

@@ -30,7 +30,7 @@ class RemoteStore:
     """
 
     def __init__(self, address: str) -> None:
-        """Prove that a server answers there.
+        """Check that a server answers there.
 
         Raises:
             StoreError: No server answers there.
@@ -51,7 +51,7 @@ class RemoteStore:
         return answers.decode(*post_query(self.place, query))
 
     def ask_within(self, query: str, *, seconds: float) -> Answer:
-        """What anybody's query answers; we stop listening in time, the server by its own limit."""
+        """The answer to a user's query; we stop listening in time, the server by its own limit."""
         return bounded.ask(query, seconds=seconds, address=self.place)
 
     def graph(self, name: NamedNode) -> list[Quad]:
@@ -68,7 +68,7 @@ class RemoteStore:
             if isinstance(name, NamedNode):
                 yield from self.graph(name)
 
-    def prove_readable(self) -> None:
+    def check_readable(self) -> None:
         """A server looks after its own files."""
 
     def dataset(self) -> Any:

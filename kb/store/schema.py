@@ -1,4 +1,4 @@
-"""The version of the form in which statements are kept, stated in each store and proved on opening.
+"""The version of the form in which statements are stored, checked whenever a store is opened.
 
 Version 1 stated no version. Version 2 states it, and gives each segment its address.
 """
@@ -72,8 +72,8 @@ def migration(found: int) -> tuple[str, ...]:
     return tuple(STEPS[each] for each in range(found, SCHEMA))
 
 
-def prove_current(store: Store) -> None:
-    """Prove that a store is empty or of this version.
+def check_current(store: Store) -> None:
+    """Check that a store is empty or of this version.
 
     Raises:
         SchemaError: It is of another one; the message says what to do.

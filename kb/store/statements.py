@@ -1,4 +1,4 @@
-"""Statements as they are collected: a thing, what it is, and what is said of it."""
+"""Statements as they are collected: a thing, its classes and its properties."""
 
 from collections.abc import Iterable, Mapping
 from typing import TypeAlias
@@ -11,52 +11,56 @@ from ontology.vocabularies import RDF, RDFS
 
 Term: TypeAlias = NamedNode | Literal
 Value: TypeAlias = NamedNode | Literal | str | float | int | bool | None
-Said: TypeAlias = Mapping[NamedNode, Value | Iterable[NamedNode]]
+PropertyValues: TypeAlias = Mapping[NamedNode, Value | Iterable[NamedNode]]
 
 TYPE = NamedNode(RDF + "type")
 LABEL = NamedNode(RDFS + "label")
 
 
 Things: TypeAlias = dict[NamedNode, dict[NamedNode, dict[Term, None]]]
-"""What is said of things: of each, by property, its values in order and each once."""
+"""The properties of things: of each, by property, its values in order and each once."""
 
 
 class Statements:
-    """What an observation says: of its own things, and of things that it shares with others."""
+    """What an observation states: of its own things, and of things that it shares with others."""
 
     def __init__(self, about: NamedNode) -> None:
         self.about = about
         self.things: Things = {}
-        """Everything that was said, by thing."""
+        """Everything that was added, by thing."""
 
         self._shared: set[NamedNode] = set()
 
-    def say(self, subject: NamedNode, kinds: Iterable[NamedNode], said: Said) -> NamedNode:
-        """State what a thing of the observation's own is; empty values say nothing."""
+    def add(
+        self, subject: NamedNode, kinds: Iterable[NamedNode], properties: PropertyValues
+    ) -> NamedNode:
+        """Add classes and properties of a thing of the observation; empty values add nothing."""
         thing = self.things.setdefault(subject, {})
         for kind in kinds:
             thing.setdefault(TYPE, {})[kind] = None
-        for predicate, value in said.items():
+        for predicate, value in properties.items():
             if found := terms(value):
                 thing.setdefault(predicate, {}).update(dict.fromkeys(found))
         return subject
 
-    def share(self, subject: NamedNode, kinds: Iterable[NamedNode], said: Said) -> NamedNode:
+    def share(
+        self, subject: NamedNode, kinds: Iterable[NamedNode], properties: PropertyValues
+    ) -> NamedNode:
         """State what a shared thing is, whose name follows from all that is said of it."""
         if subject not in self._shared:
             self._shared.add(subject)
             self.things.setdefault(self.about, {}).setdefault(CAPAR.mentions, {})[subject] = None
-            self.say(subject, kinds, said)
+            self.add(subject, kinds, properties)
         return subject
 
     @property
     def quads(self) -> list[Quad]:
-        """Everything that was said, each statement in the graph where it stands."""
+        """Everything that was added, each statement in the graph where it stands."""
         return [
             Quad(thing, predicate, value, graph)
-            for thing, said in self.things.items()
+            for thing, properties in self.things.items()
             for graph in (names.graph_of(thing) if thing in self._shared else self.about,)
-            for predicate, values in said.items()
+            for predicate, values in properties.items()
             for value in values
         ]
 

@@ -29,7 +29,7 @@ class Store(Protocol):
         """What a query of ours answers, over the union of all graphs."""
 
     def ask_within(self, query: str, *, seconds: float) -> Answer:
-        """What anybody's query answers, stopped after so many seconds.
+        """The answer to a user's query, stopped after so many seconds.
 
         Raises:
             QueryError: It is no SPARQL query.
@@ -42,8 +42,8 @@ class Store(Protocol):
     def quads(self) -> Iterable[Quad]:
         """Every statement of every named graph."""
 
-    def prove_readable(self) -> None:
-        """Prove that every statement can be read.
+    def check_readable(self) -> None:
+        """Check that every statement can be read.
 
         Raises:
             DamagedError: One cannot.

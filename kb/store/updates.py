@@ -23,7 +23,7 @@ WHERE {{
 
 
 def removal(graph: NamedNode) -> str:
-    """The update that takes an observation back, and what nobody else mentions."""
+    """The update that takes an observation back, and what nothing else mentions."""
     shared = " ".join(str(GRAPHS[each]) for each in ("agents", "objects", "actions"))
     orphans = fill(_ORPHANS, graph=str(graph), shared=shared)
     return f"{orphans} ;\nDROP SILENT GRAPH {graph}"
@@ -40,7 +40,7 @@ def graph_replacement(graph: NamedNode, quads: list[Quad]) -> str:
 
 
 def ontology_digest() -> Quad:
-    """What tells the ontology that a store holds from another one."""
+    """What distinguishes the ontology of a store from another one."""
     graph = GRAPHS["ontology"]
     return Quad(graph, CAPAR.sha256, Literal(ontology_files.digest()), graph)
 

@@ -12,11 +12,11 @@ from capar.body.anthropometry import (
     measures_of,
     ready_made,
 )
+from capar.body.data_files import is_right, mirrored, table
 from capar.body.hands import GraspError, grasp
 from capar.body.human import Human, PostureError
 from capar.body.model import body_spec, sensor_sites, site_rows
 from capar.body.skeleton import skeleton
-from capar.body.tables import is_right, mirrored, table
 from capar.model.capture import Agent
 from capar.model.errors import UnknownNameError
 
@@ -44,12 +44,12 @@ def test_a_body_of_any_size_has_its_measures(who: str) -> None:
     measures = PEOPLE[who]
     human = Human.of(measures)
     assert human.model.body_subtreemass[0] == pytest.approx(measures["mass"], abs=1e-9)
-    _prove_lengths(human)
-    _prove_ranges(human)
-    _prove_mirrored(human)
+    _check_lengths(human)
+    _check_ranges(human)
+    _check_mirrored(human)
 
 
-def _prove_lengths(human: Human) -> None:
+def _check_lengths(human: Human) -> None:
     measures, standing = human.measures, human.posture()[None]
     joints = {"upper_arm": "forearm", "forearm": "hand", "thigh": "shank", "shank": "foot"}
     for side in ("right", "left"):
@@ -68,7 +68,7 @@ def _prove_lengths(human: Human) -> None:
         assert places[0, 2] == pytest.approx(measures[name], abs=1e-3)
 
 
-def _prove_ranges(human: Human) -> None:
+def _check_ranges(human: Human) -> None:
     rows = {row["name"]: row for row in table("joints")["joint"]}
     share = human.measures.adult_share
     assert len(human.joints) == 60
@@ -80,7 +80,7 @@ def _prove_ranges(human: Human) -> None:
         assert limits[0] <= 0.0 <= limits[1], f"{joint} cannot stand"
 
 
-def _prove_mirrored(human: Human) -> None:
+def _check_mirrored(human: Human) -> None:
     rng = np.random.default_rng(7)
     low, high = human.ranges.T
     drawn = dict(zip(human.joints, rng.uniform(low, high), strict=True))

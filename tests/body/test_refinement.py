@@ -1,4 +1,4 @@
-"""A motion tells its performer's limb lengths, and how well it does."""
+"""A motion reveals its performer's limb lengths, and how well it does."""
 
 import numpy as np
 import pytest

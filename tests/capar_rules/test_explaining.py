@@ -9,7 +9,7 @@ import motions
 import pytest
 from recomputed import STORIES, Known, form, told
 
-from capar.model.facts import Doubted, Fact, Frames, Touching, ZeroCrossing
+from capar.model.facts import Fact, FlickerCorrection, Frames, Touching, ZeroCrossing
 from capar.pipelines.explanation import explained
 from capar_rules.engine.profiles import profile
 from capar_rules.explain.explanation import Explainer, Reason, rule_base
@@ -37,7 +37,7 @@ def reasons(name: str) -> Iterator[tuple[Known, Reason]]:
     """Every reason that is told in a story, with its segment."""
     story = told(name)
     for known, explanation in zip(story.known, story.explanations, strict=True):
-        for each in explanation.reason.told().walk():
+        for each in explanation.reason.with_sentences().walk():
             yield known, each
 
 
@@ -145,12 +145,12 @@ def test_the_summary_names_the_segment_and_its_reasons(name: str) -> None:
 @pytest.mark.parametrize("name", ["flickering", "chattering"])
 def test_below_what_was_mended_stands_each_doubt_of_it_in_the_segment(name: str) -> None:
     story = told(name)
-    doubts = [each for each in story.seen.observation.facts if isinstance(each, Doubted)]
+    doubts = [each for each in story.seen.observation.facts if isinstance(each, FlickerCorrection)]
     count = 0
     for known, explanation in zip(story.known, story.explanations, strict=True):
         first, last = known.segment.first, known.segment.last
         met: set[str] = set()
-        for each in explanation.reason.told().walk():
+        for each in explanation.reason.with_sentences().walk():
             if "was taken to last" not in each.sentence or each.sentence in met:
                 continue
             met.add(each.sentence)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from capar.model.facts import Doubted, Fact, Frames, Link, RateMhz, Resting, Tag, Touching
+from capar.model.facts import Fact, FlickerCorrection, Frames, Link, RateMhz, Resting, Tag, Touching
 from capar_rules.borders.deflicker import steady
 from capar_rules.borders.times import times
 
@@ -27,7 +27,7 @@ Interval = Touching | Resting
 
 
 def doubts(facts: tuple[Fact, ...]) -> set[Fact]:
-    return {each for each in steady(facts) if isinstance(each, Doubted)}
+    return {each for each in steady(facts) if isinstance(each, FlickerCorrection)}
 
 
 def scene(intervals: list[Interval], first: int, last: int) -> tuple[Fact, ...]:
@@ -104,7 +104,7 @@ def test_flicker_that_never_ends_is_resolved_a_window_at_a_time(lengths: list[in
 
 
 def last(fact: Fact) -> int:
-    assert isinstance(fact, Doubted)
+    assert isinstance(fact, FlickerCorrection)
     return fact.last
 
 
@@ -112,6 +112,8 @@ def last(fact: Fact) -> int:
 def test_what_holds_at_the_end_of_a_window_is_believed(windows: int) -> None:
     intervals = chatter([1])
     end = intervals[0].first + windows * WINDOW - 1
-    found = [each for each in doubts(scene(intervals, 0, LAST)) if isinstance(each, Doubted)]
+    found = [
+        each for each in doubts(scene(intervals, 0, LAST)) if isinstance(each, FlickerCorrection)
+    ]
     assert [each for each in found if each.first <= end <= each.last] == []
     assert found, "the rest of the flicker is resolved"

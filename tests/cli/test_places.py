@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from capar.cli._output import REMEDIES, told, written
+from capar.cli._output import REMEDIES, error_message, written
 
 DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
 CAPAR = Path(sys.executable).parent / "capar"
@@ -76,7 +76,7 @@ FAULTS = (
      "Not a directory"),
     (("rules", "list", "--rules", "unread"), "unread/sip.lp", "cannot be read"),
     (("rules", "list", "--rules", "shut"), "shut", "not readable"),
-    (("inspect", "unread/motion.csv"), "unread/motion.csv", "Take the right to read it"),
+    (("inspect", "unread/motion.csv"), "unread/motion.csv", "Grant yourself read permission"),
     (("observe", DEMO, "--rules", "unread"), "unread/sip.lp", "cannot be read"),
     (("explain", DEMO, "right_hand/2", "--svg", "ro/k.svg"), "ro/k.svg", "Permission denied"),
     (("explain", DEMO, "right_hand/2", "--svg", "nowhere/k.svg"), "nowhere/k.svg",
@@ -117,10 +117,10 @@ def test_a_rule_is_not_added_to_a_folder_that_takes_none(closed):
 @pytest.mark.parametrize("number", [*REMEDIES, errno.EIO])
 def test_every_fault_says_what_where_and_what_would_be_right(number):
     what = os.strerror(number)
-    assert told(OSError(number, what, "a/b")).startswith(f"a/b: cannot be used: {what}. ")
-    assert told(OSError(number, what, "a/b")).count(". ") == 1
-    assert told(OSError(number, what, "a", None, "b")).startswith("a -> b: ")
-    assert told(OSError(number, what)).startswith("cannot be used: ")
+    assert error_message(OSError(number, what, "a/b")).startswith(f"a/b: cannot be used: {what}. ")
+    assert error_message(OSError(number, what, "a/b")).count(". ") == 1
+    assert error_message(OSError(number, what, "a", None, "b")).startswith("a -> b: ")
+    assert error_message(OSError(number, what)).startswith("cannot be used: ")
 
 
 def test_an_interrupt_is_told_once_without_a_traceback(tmp_path):
@@ -161,7 +161,9 @@ def test_a_fault_while_a_file_is_written_leaves_the_old_one_and_no_draft(tmp_pat
 
     with pytest.raises(OSError, match="No space left") as caught:
         half()
-    assert told(caught.value).startswith(f"{path}: cannot be used: No space left on device. ")
+    assert error_message(caught.value).startswith(
+        f"{path}: cannot be used: No space left on device. "
+    )
     assert [(each.name, each.read_text()) for each in tmp_path.iterdir()] == [("a.txt", "old")]
 
 

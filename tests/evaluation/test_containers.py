@@ -26,7 +26,7 @@ def test_two_halves_fill_the_box_that_they_part() -> None:
 
 
 def test_what_stands_on_a_table_went_into_nothing() -> None:
-    assert [(each.told, each.true) for each in landings(pick_and_place(), ["table"])] == [
+    assert [(each.reported, each.true) for each in landings(pick_and_place(), ["table"])] == [
         (False, False)
     ]
 
@@ -45,7 +45,7 @@ def test_groceries_go_into_the_box_where_they_are_found_in_the_end(
     found = landings(capture, ["carton"])
     assert sum(each.true for each in found) == goes
     assert sum(not each.true for each in found) == stays
-    assert all(each.told == each.true for each in found)
+    assert all(each.reported == each.true for each in found)
 
 
 def test_what_is_put_into_one_half_of_the_box_is_not_put_into_the_other(
@@ -55,11 +55,11 @@ def test_what_is_put_into_one_half_of_the_box_is_not_put_into_the_other(
     monkeypatch.setenv("CAPAR_DATA", str(recordings_folder()))
     capture, halves = halved(read_capture(f"{SCENES}:p78_s1"), "carton")
     found = landings(capture, halves)
-    wrong = [each for each in found if each.told != each.true]
+    wrong = [each for each in found if each.reported != each.true]
     assert len(found) == 20
     assert sum(each.true for each in found) == 10
     assert len(wrong) <= 1
-    assert not [each for each in wrong if each.told]
+    assert not [each for each in wrong if each.reported]
 
 
 def test_objects_without_a_mesh_are_counted_and_left_out(monkeypatch: pytest.MonkeyPatch) -> None:

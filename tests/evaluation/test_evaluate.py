@@ -1,4 +1,4 @@
-"""Observations are held against labels, link by link and pooled."""
+"""Observations are compared with labels, link by link and pooled."""
 
 import json
 import os

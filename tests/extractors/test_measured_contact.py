@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Shape, Stream
 from extractors.contact.contacts import bridged
-from extractors.contact.offset_surfaces import EXACTNESS_M, shell
+from extractors.contact.offset_surfaces import EXACTNESS_M, offset_surface
 from extractors.contact.proximity import Body, body, near, nearest
 from extractors.contact.surfaces import surface
 from extractors.contact.sweep import FEW, sweep
@@ -116,9 +116,9 @@ def test_a_lost_body_touches_nothing() -> None:
 
 @pytest.mark.parametrize("distance_m", [0.002, 0.005, 0.02])
 @pytest.mark.parametrize("of", [box(0.1, 0.2, 0.05), cup(), handle(), ball(0.03)])
-def test_no_part_of_a_shell_is_further_out_than_its_distance(of: Shape, distance_m: float) -> None:
+def test_no_part_of_an_offset_surface_is_beyond_its_distance(of: Shape, distance_m: float) -> None:
     mesh = surface(of).mesh
-    corners = shell(mesh, distance_m, closed=True).reshape(-1, 3)
+    corners = offset_surface(mesh, distance_m, closed=True).reshape(-1, 3)
     some = corners[:: max(1, len(corners) // 100)]
     _, far, _ = trimesh.proximity.closest_point_naive(mesh, some)
     assert far.max() <= distance_m + 1.05 * EXACTNESS_M
@@ -138,7 +138,7 @@ def test_the_nearest_points_lie_as_far_apart_as_the_distance_says() -> None:
 
 
 @given(st.lists(st.booleans(), min_size=3, max_size=80), st.integers(0, 8), st.integers(1, 8))
-def test_closed_and_weeded_intervals_leave_no_short_gap_and_no_short_stretch(
+def test_merged_and_filtered_intervals_leave_no_short_gap_and_no_short_stretch(
     holds: list[bool], dropout: int, least: int
 ) -> None:
     times = np.arange(len(holds)) / 100.0
@@ -163,7 +163,7 @@ def test_a_bridged_contact_keeps_its_first_and_its_last_frame_and_spans_only_wha
 
 @pytest.mark.parametrize("size_m", [0.01, 0.05, 0.15])
 def test_many_poses_are_answered_as_few_are(size_m: float) -> None:
-    """A thing that fits between a body and a shell far around it is not taken to be apart."""
+    """A thing that fits between a body and an offset surface far around it is not apart."""
     times = np.linspace(0.0, 40.0, 4 * FEW)
     distance = 0.08 * (1.0 + np.sin(times)) + 0.15 + size_m / 2.0 - 0.002
     way = np.stack([distance, 0.05 * np.sin(0.7 * times), 0.05 * np.cos(1.3 * times)], axis=1)

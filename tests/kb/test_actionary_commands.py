@@ -261,7 +261,9 @@ def test_a_file_without_statements_is_a_mistake_and_makes_no_actionary(
 def test_a_full_disk_is_told_with_the_file(folder: Path) -> None:
     done = capar("export", "/dev/full", "--format", "trig", at=folder)
     assert done.returncode == 2
-    assert "capar: /dev/full: cannot be used: No space left on device. Make room" in done.stderr
+    assert (
+        "capar: /dev/full: cannot be used: No space left on device. Free some space" in done.stderr
+    )
 
 
 def test_an_export_that_cannot_be_written_is_refused_before_the_actionary_is_read(

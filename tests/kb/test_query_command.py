@@ -1,4 +1,4 @@
-"""What the query command takes for SPARQL, what it says of slips, and what machines get of it."""
+"""What the query command accepts as SPARQL, its messages, and its output for machines."""
 
 import csv
 import io

@@ -208,7 +208,7 @@ def test_what_is_missing_is_never_something_that_is_refused() -> None:
         try:
             store.query(text)
         except SyntaxError as error:
-            told.append((text, str(error), asker.told(str(error))))
+            told.append((text, str(error), asker.user_message(str(error))))
     assert any("SERVICE" in raw for _, raw, _ in told)
     for text, _, said in told:
         assert "SERVICE" not in said and "LATERAL" not in said, text

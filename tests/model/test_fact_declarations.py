@@ -11,11 +11,11 @@ from capar.model.declarations import GENERIC, Declaration, Observed, Span, kinds
 from capar.model.errors import FactError
 from capar.model.fact_intervals import FactIntervals
 from capar.model.facts import (
+    ALL_FACT_KINDS,
     MEASURED,
-    STATED,
     Bears,
     ContactNormal,
-    Doubted,
+    FlickerCorrection,
     Frames,
     Lies,
     Passage,
@@ -26,7 +26,7 @@ from ontology import CAPAR
 
 SENTENCES = rule_file("explain/sentences.lp").read_text()
 INPUTS = rule_file("inputs.lp").read_text()
-KINDS = pytest.mark.parametrize("kind", STATED, ids=lambda kind: kind.__name__)
+KINDS = pytest.mark.parametrize("kind", ALL_FACT_KINDS, ids=lambda kind: kind.__name__)
 
 
 def test_a_kind_without_a_declaration_is_refused_where_it_is_defined() -> None:
@@ -38,8 +38,8 @@ def test_a_kind_without_a_declaration_is_refused_where_it_is_defined() -> None:
 
 
 def declare(**changes: object) -> None:
-    told: dict[str, object] = {"about": "body", "span": Span.INTERVAL, "border": False}
-    declared = Declaration(**{**told, "told": False, **changes})  # type: ignore[arg-type]
+    given: dict[str, object] = {"about": "body", "span": Span.INTERVAL, "border": False}
+    declared = Declaration(**{**given, "has_sentence": False, **changes})  # type: ignore[arg-type]
 
     class Wrong(Observed):
         predicate = "wrong"
@@ -75,7 +75,7 @@ def test_a_kind_is_exported_where_everybody_looks_for_it(kind: type[Observed]) -
 
 def test_the_kinds_are_the_inputs_of_the_rules() -> None:
     measured = INPUTS.split("% Borders.")[0] + INPUTS.split("% What was doubted")[1]
-    stated = {(kind.predicate, len(fields(kind))) for kind in STATED}
+    stated = {(kind.predicate, len(fields(kind))) for kind in ALL_FACT_KINDS}
     found = re.findall(r"^#defined (\w+)/(\d+)\.", measured, re.MULTILINE)
     assert {(name, int(arity)) for name, arity in found} == stated
 
@@ -83,7 +83,7 @@ def test_the_kinds_are_the_inputs_of_the_rules() -> None:
 @KINDS
 def test_explanations_have_a_sentence_for_exactly_what_declares_one(kind: type[Observed]) -> None:
     pattern = rf"^%!!? {kind.predicate}/{len(fields(kind))}( \w+)?:"
-    assert bool(re.search(pattern, SENTENCES, re.MULTILINE)) == kind.declaration.told
+    assert bool(re.search(pattern, SENTENCES, re.MULTILINE)) == kind.declaration.has_sentence
 
 
 @KINDS
@@ -92,12 +92,12 @@ def test_the_ontology_has_the_declared_class_and_properties(kind: type[Observed]
 
 
 def test_no_two_kinds_share_a_class_of_their_own() -> None:
-    own = [kind.declaration.rdf[0] for kind in STATED if kind.declaration.rdf != GENERIC]
+    own = [kind.declaration.rdf[0] for kind in ALL_FACT_KINDS if kind.declaration.rdf != GENERIC]
     assert len(set(own)) == len(own)
 
 
 def test_explanations_have_a_sentence_for_each_way_to_doubt() -> None:
-    flickering = [kind for kind in STATED if kind.declaration.negated]
+    flickering = [kind for kind in ALL_FACT_KINDS if kind.declaration.negated]
     assert {"touching", "moving", "resting"} == {kind.predicate for kind in flickering}
     for kind in flickering:
         assert f"%!! doubted/5 {kind.predicate}:" in SENTENCES
@@ -106,7 +106,7 @@ def test_explanations_have_a_sentence_for_each_way_to_doubt() -> None:
 
 def test_facts_are_written_in_the_order_of_their_definitions() -> None:
     assert (*kinds_of(scene_facts), *kinds_of(handling)) == MEASURED
-    assert (*MEASURED, Doubted) == STATED
+    assert (*MEASURED, FlickerCorrection) == ALL_FACT_KINDS
     assert MEASURED[0] is Frames
 
 

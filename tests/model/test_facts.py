@@ -10,8 +10,8 @@ from observations import drink_from_mug
 
 from capar.model.errors import FactError
 from capar.model.facts import (
+    ALL_FACT_KINDS,
     LARGEST,
-    STATED,
     Fact,
     Frames,
     Tag,
@@ -32,7 +32,7 @@ def _facts(kind: type[Fact]) -> st.SearchStrategy[Fact]:
     )
 
 
-every = st.one_of(*map(_facts, STATED))
+every = st.one_of(*map(_facts, ALL_FACT_KINDS))
 
 
 @given(every)
@@ -88,5 +88,5 @@ def test_what_is_no_measured_fact_is_refused(text: str) -> None:
 
 
 def test_each_predicate_belongs_to_one_kind_of_fact() -> None:
-    names = [each.predicate for each in STATED]
+    names = [each.predicate for each in ALL_FACT_KINDS]
     assert len(set(names)) == len(names)

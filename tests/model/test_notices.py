@@ -123,8 +123,8 @@ def test_no_source_matches_against_a_message() -> None:
         r"re\.\w+\([^\n]*\.message|\w+\.(?:match|search|fullmatch|findall)\(\w+\.message"
         r"|\.message\.(?:split|partition|startswith|removeprefix)"
     )
-    sources = [path for room in ("capar", "extractors", "capar_rules", "kb")
-               for path in (ROOT / room).rglob("*.py")]  # fmt: skip
+    sources = [path for package in ("capar", "extractors", "capar_rules", "kb")
+               for path in (ROOT / package).rglob("*.py")]  # fmt: skip
     assert len(sources) > 100
     found = [str(path) for path in sources if reading.search(path.read_text(encoding="utf-8"))]
     assert found == []

@@ -13,7 +13,7 @@ import ontology
 from capar.model.errors import UnknownNameError
 from capar.model.observation import Border
 from kb.encode.segments import BORDER_KINDS
-from kb.store.shapes import rules
+from kb.store.shacl_validation import rules
 from ontology import BASE, CAPAR, terms
 from ontology.files import closure, kinds, read, term_files
 from ontology.vocabularies import PREFIXES, RDF, RDFS

@@ -24,7 +24,7 @@ def _measured(spans: Spans, first: float, last: float) -> bool:
     return any(near(each.first, first) and near(each.last, last) for each in spans)
 
 
-def _mended(known: Known, spans: Spans, first: float, last: float) -> bool:
+def _corrected(known: Known, spans: Spans, first: float, last: float) -> bool:
     """It holds from the one frame to the other, but for gaps that are flickers, at least one."""
     inside = sorted((each.first, each.last) for each in spans
                     if each.first >= first - 1 and each.last <= last + 1)  # fmt: skip
@@ -58,15 +58,15 @@ def paused(known: Known, what: str, first: str, last: str) -> bool:
 
 
 def taken_contact(known: Known, one: str, other: str, first: str, last: str) -> bool:
-    return _mended(known, known.touching(one, other), known.at(first), known.at(last))
+    return _corrected(known, known.touching(one, other), known.at(first), known.at(last))
 
 
 def taken_motion(known: Known, what: str, first: str, last: str) -> bool:
-    return _mended(known, known.moving(what), known.at(first), known.at(last))
+    return _corrected(known, known.moving(what), known.at(first), known.at(last))
 
 
 def taken_rest(known: Known, what: str, first: str, last: str) -> bool:
-    return _mended(known, known.resting(what), known.at(first), known.at(last))
+    return _corrected(known, known.resting(what), known.at(first), known.at(last))
 
 
 def taken_to_rest(known: Known, what: str, first: str, last: str) -> bool:

@@ -1,4 +1,4 @@
-"""What a sentence is held against: the capture, and what was measured in it."""
+"""What a sentence is compared with: the capture, and what was measured in it."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

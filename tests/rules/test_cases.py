@@ -11,17 +11,17 @@ from rule_cases import HERE, Case, all_cases, read_cases
 
 from capar.model.errors import RuleError
 from capar.model.facts import Fact
+from capar_rules.borders.border_numbers import number_borders
 from capar_rules.borders.deflicker import steady
-from capar_rules.borders.ranking import rank
 from capar_rules.engine.solver import rule_file, solve, text_of
 
 SHOWN = HERE / "everything.lp"
 CASES = pytest.mark.parametrize("case", all_cases(), ids=str)
-ROOMS = ("segmentation", "naming", "composition")
+RULE_PACKAGES = ("segmentation", "naming", "composition")
 CONCEPTS = sorted(
-    f"{room}/{path.stem}"
-    for room in ROOMS
-    for path in rule_file(room).glob("*.lp")
+    f"{package}/{path.stem}"
+    for package in RULE_PACKAGES
+    for path in rule_file(package).glob("*.lp")
     if path.stem != "bit_strings"
 )
 
@@ -32,7 +32,7 @@ _SEGMENT = re.compile(r"seg\(\w+,\d+\)")
 def facts_of(case: Case) -> tuple[Fact, ...]:
     """The facts of a case as the rules take them, with the numbers of their borders."""
     facts = steady(case.measured()) if case.profile.steady else case.measured()
-    return (*facts, *rank(facts, crossings_only=case.profile.crossings_only))
+    return (*facts, *number_borders(facts, crossings_only=case.profile.crossings_only))
 
 
 def solved_alone(case: Case) -> set[str]:

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float
 
+from capar.body.data_files import mirrored
 from capar.body.human import ROOT_SIZE, Human
-from capar.body.tables import mirrored
 
 SPINE = ("lumbar_lower", "lumbar_upper", "thorax_lower", "thorax_upper")
 HINGES = {

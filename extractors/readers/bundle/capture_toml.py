@@ -111,7 +111,7 @@ def _name(document: "CaptureFile", take: str) -> str:
 
 
 def _check_names(document: "CaptureFile") -> None:
-    """Prove that sensors and objects have names of their own, and that named agents exist."""
+    """Check that sensors and objects have names of their own, and that named agents exist."""
     agents = [each.name for each in document.performers]
     for kind, entries in (("sensor", document.sensor), ("object", document.object)):
         lines: dict[str, str] = {}

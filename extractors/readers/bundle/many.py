@@ -45,7 +45,7 @@ def many_sensors(entry: "ManySensors", files: Mapping[str, WorldRecording]) -> "
 
 
 def _side(name: str, sides: Mapping[Any, str]) -> tuple[str, str]:
-    """The side that a name's beginning tells, and the name without it."""
+    """The side that a name's beginning states, and the name without it."""
     for side, start in sorted(sides.items()):
         if name.startswith(start):
             return side, name.removeprefix(start)

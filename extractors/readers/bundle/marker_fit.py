@@ -113,7 +113,7 @@ def check_fit(
     *,
     limit_m: float,
 ) -> None:
-    """Prove that the markers keep their arrangement.
+    """Check that the markers keep their arrangement.
 
     Raises:
         CaptureError: They do not, or only in a mirror.

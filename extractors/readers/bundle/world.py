@@ -92,7 +92,7 @@ def check_span(
     markers: Mapping[str, Float[np.ndarray, "frames 3"]],
     unit_m: float,
 ) -> None:
-    """Prove that a recording is of the size of people.
+    """Check that a recording is of the size of people.
 
     Raises:
         CaptureError: It is not; the message names the unit that would make it so.

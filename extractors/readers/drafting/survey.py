@@ -1,4 +1,4 @@
-"""Streams in figures: rate, gaps, noise, ranges, and which come near each other."""
+"""Streams in numbers: rate, gaps, noise, ranges, and which come near each other."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -23,7 +23,7 @@ SHORTEST = 8
 
 @dataclass(frozen=True, slots=True)
 class StreamSurvey:
-    """One stream in figures."""
+    """One stream in numbers."""
 
     name: str
     kind: str
@@ -60,7 +60,7 @@ class NearPair:
 
 
 def survey(name: str, kind: str, stream: Stream) -> StreamSurvey:
-    """A stream's figures; positions in metres."""
+    """Numbers of a stream; positions in metres."""
     steps = np.diff(stream.times)
     lost = geometry.runs(stream.lost)
     known = stream.positions[~stream.lost]

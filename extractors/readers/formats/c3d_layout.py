@@ -1,4 +1,4 @@
-"""C3D's header and parameters, every count proven against the file's length."""
+"""C3D's header and parameters, every count checked against the file's length."""
 
 import re
 import struct

@@ -23,7 +23,7 @@ SUFFIX = "_trajectory"
 
 
 def recognises(path: Path, head: bytes) -> bool:
-    """Whether the file is a tar archive, or JSON that speaks of time stamps."""
+    """Whether the file is a tar archive, or JSON with time stamps."""
     text = head.lstrip()
     return head[257:262] == b"ustar" or (text[:1] in {b"[", b"{"} and b"timeStamp" in text)
 

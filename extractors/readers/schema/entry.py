@@ -98,7 +98,7 @@ class Entry(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _check_keys(cls, data: Any) -> Any:
-        """Prove that every key is known, and given with the keys that it belongs to."""
+        """Check that every key is known, and given with the keys that it belongs to."""
         if isinstance(data, dict):
             for name in data:
                 cls._check_key(name, data)

@@ -107,7 +107,7 @@ def _field(kind: type[Entry], parts: Iterable[int | str]) -> FieldInfo | None:
 
 
 def _entries(annotation: Any) -> Iterable[type[Entry]]:
-    """The tables that a type speaks of."""
+    """The tables that a type refers to."""
     if isinstance(annotation, type) and issubclass(annotation, Entry):
         yield annotation
     for each in get_args(annotation):

@@ -137,7 +137,7 @@ SHAPES: dict[str, type[Pose]] = {
     "capsules": CapsulesShape,
     "parts": PartsShape,
 }
-"""The kinds of shapes by the key that tells them; ``box = "markers"`` is one of its own."""
+"""The kinds of shapes by the key that selects them; ``box = "markers"`` is one of its own."""
 
 
 def shape_tag(value: Any) -> str | None:

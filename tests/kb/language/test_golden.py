@@ -1,7 +1,7 @@
 """What is told of real recordings: texts that we read, kept beside this file.
 
 A text holds every step, then a summary. Where rules or words change what is told, the test fails
-until ``CAPAR_GOLDEN=write`` writes the texts anew; then they are to be read again.
+until ``CAPAR_GOLDEN=write`` rewrites the texts; then they are to be read again.
 """
 
 import os
@@ -48,7 +48,7 @@ def test_a_recording_is_told_as_we_read_it(
     if os.environ.get("CAPAR_GOLDEN") == "write":
         path.write_text(told, encoding="utf-8")
     assert told == path.read_text(encoding="utf-8"), (
-        f"{take} is told otherwise than {path.name}; CAPAR_GOLDEN=write writes it anew, to be read"
+        f"{take} is told otherwise than {path.name}; CAPAR_GOLDEN=write rewrites it, to be read"
     )
 
 

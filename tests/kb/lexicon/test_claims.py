@@ -1,4 +1,4 @@
-"""What rule files state of words is held against the shipped tables."""
+"""What rule files state of words is compared with the shipped tables."""
 
 from pathlib import Path
 

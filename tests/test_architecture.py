@@ -1,4 +1,4 @@
-"""The house keeps its rules: who imports whom, style, types, and what is shipped."""
+"""The architecture holds: who imports whom, style, types, and what is shipped."""
 
 import subprocess
 import sys
@@ -19,7 +19,7 @@ CHECKS = {
 
 
 @pytest.mark.parametrize("check", CHECKS)
-def test_the_house_rules_hold(check: str) -> None:
+def test_the_architecture_and_style_rules_hold(check: str) -> None:
     tool, *arguments = CHECKS[check]
     done = subprocess.run(
         [str(BIN / tool), *arguments], cwd=ROOT, capture_output=True, text=True, check=False

@@ -36,7 +36,7 @@ from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between,
 from extractors.relations.grips import shifts
 from extractors.relations.places import distances, places
 from extractors.relations.weight_bearing import bearing
-from extractors.sample_frames import marks
+from extractors.sample_frames import boundary_frames
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
 
@@ -74,19 +74,21 @@ def handling(
     held = {each.other for each in touches if each.body in acting}
     hands = {each.name: bodies.sensors[each.name] for each in capture.acting}
     things = bodies.objects
-    mobile = [each for each in capture.objects if each.tag is TagType.MOBILE and each.name in held]
+    mobile = [
+        thing for thing in capture.objects if thing.tag is TagType.MOBILE and thing.name in held
+    ]
     mobiles = {each.name for each in mobile}
-    upright = {each.name: np.array(each.upright) for each in calibration.objects}
-    upright |= {each.name: np.array(each.upright) for each in calibration.sensors}
+    upright = {thing.name: np.array(thing.upright) for thing in calibration.objects}
+    upright |= {sensor.name: np.array(sensor.upright) for sensor in calibration.sensors}
     out: list[Fact] = []
     for name, hand in hands.items():
         out += (Resting(name, *each) for each in resting(hand.poses, thresholds))
     for each in mobile:
         out += _motion(things[each.name], seen, upright[each.name], thresholds)
     out += bearing(capture, bodies, touches, calibration, thresholds)
-    borders = marks([*seen, *out], acting, len(capture.times) - 1)
-    figures = [*hands.values(), *(things[each.name] for each in mobile if each.name not in hands)]
-    for one in figures:
+    borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
+    others = (things[each.name] for each in mobile if each.name not in hands)
+    for one in (*hands.values(), *others):
         frames = tuple(borders.get(one.name, ()))
         out += places(one, upright[one.name], frames)
         for other in things.values():
@@ -131,9 +133,9 @@ def _arranged(
             if how in PASSED and span[0] > 0 and span[1] < len(one.middles) - 1:
                 yield Passage(one.name, how, other.name, span[0], sides(one, other, np.array(span)))
     touching = [
-        (each.first, each.last)
-        for each in touches
-        if (each.body, each.other) == (one.name, other.name)
+        (touch.first, touch.last)
+        for touch in touches
+        if (touch.body, touch.other) == (one.name, other.name)
     ]
     for first, last in _spans(pair.near, one, thresholds):
         if not any(begin <= last and end >= first for begin, end in touching):
@@ -157,11 +159,13 @@ def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Inte
     )
 
 
-def _contacts(figures: Mapping[str, BodyGeometry], touches: Iterable[Touching]) -> Iterator[Fact]:
-    for each in touches:
-        body, other = figures[each.body], figures[each.other]
-        normal = contact_normal(body, other, each.first)
+def _contacts(bodies: Mapping[str, BodyGeometry], touches: Iterable[Touching]) -> Iterator[Fact]:
+    for touch in touches:
+        body, other = bodies[touch.body], bodies[touch.other]
+        normal = contact_normal(body, other, touch.first)
         if normal is not None:
-            yield ContactNormal(each.body, each.other, each.first, round(1000.0 * float(normal[2])))
-        speed = closing_speed(body, other, each.first)
-        yield ClosingSpeed(each.body, each.other, each.first, round(1000.0 * speed))
+            yield ContactNormal(
+                touch.body, touch.other, touch.first, round(1000.0 * float(normal[2]))
+            )
+        speed = closing_speed(body, other, touch.first)
+        yield ClosingSpeed(touch.body, touch.other, touch.first, round(1000.0 * speed))

@@ -1,4 +1,4 @@
-"""Shapes: the part of SHACL that ours are written in, proved fast on each new observation."""
+"""The part of SHACL that our shapes use, checked fast on each new observation."""
 
 import math
 import re
@@ -47,7 +47,7 @@ class Rule:
     """Another property whose value may not be smaller."""
 
 
-def _after(value: Node) -> str:
+def _text_of(value: Node) -> str:
     assert not isinstance(value, BlankNode)
     return value.value
 
@@ -72,7 +72,7 @@ def _rule(name: str, target: Node, said: dict[object, dict[str, list[Node]]], no
     asked = said[node]
 
     def one(key: str, default: str) -> str:
-        return _after(asked[key][0]) if key in asked else default
+        return _text_of(asked[key][0]) if key in asked else default
 
     def term(key: str) -> NamedNode | None:
         return NamedNode(one(key, "")) if key in asked else None
@@ -80,7 +80,7 @@ def _rule(name: str, target: Node, said: dict[object, dict[str, list[Node]]], no
     pattern = one("pattern", "")
     return Rule(
         shape=name,
-        target=NamedNode(_after(target)),
+        target=NamedNode(_text_of(target)),
         path=NamedNode(one("path", "")),
         message=one("message", ""),
         least=int(one("minCount", "0")),
@@ -158,7 +158,7 @@ def _fits(value: Node, rule: Rule) -> bool:
 
 def _number(value: Node) -> float:
     try:
-        return float(_after(value))
+        return float(_text_of(value))
     except ValueError:
         return math.nan
 
@@ -185,7 +185,7 @@ def nlt_problem(text: str) -> str:
     return ""
 
 
-def prove(name: str, statements: Statements) -> None:
+def validate_statements(name: str, statements: Statements) -> None:
     """Refuse statements that break the model.
 
     Raises:

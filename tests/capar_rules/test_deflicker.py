@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from capar.model.facts import (
-    Doubted,
     Fact,
+    FlickerCorrection,
     Frames,
     Link,
     Moving,
@@ -49,14 +49,14 @@ def contacts(facts: tuple[Fact, ...], body: str = "hand", other: str = "mug") ->
     ]
 
 
-def doubts(facts: tuple[Fact, ...]) -> list[Doubted]:
-    return [each for each in facts if isinstance(each, Doubted)]
+def doubts(facts: tuple[Fact, ...]) -> list[FlickerCorrection]:
+    return [each for each in facts if isinstance(each, FlickerCorrection)]
 
 
 def test_a_short_loss_of_contact_is_bridged_and_told() -> None:
     found = steady((*SCENE, *touches((50, 100), (111, 200))))
     assert contacts(found) == [(50, 200)]
-    assert doubts(found) == [Doubted("hand", "mug", 101, 110, "touching")]
+    assert doubts(found) == [FlickerCorrection("hand", "mug", 101, 110, "touching")]
 
 
 def test_a_loss_as_long_as_letting_go_and_taking_again_stays() -> None:
@@ -78,13 +78,13 @@ def test_chatter_before_a_grasp_is_one_beginning() -> None:
 def test_a_thing_that_stops_for_a_moment_moves_on() -> None:
     found = steady((*SCENE, *touches((50, 300)), Moving("mug", 80, 120), Moving("mug", 125, 200)))
     assert Moving("mug", 80, 200) in found
-    assert doubts(found) == [Doubted("mug", "mug", 121, 124, "moving")]
+    assert doubts(found) == [FlickerCorrection("mug", "mug", 121, 124, "moving")]
 
 
 def test_a_hand_that_twitches_rests_on() -> None:
     found = steady((*SCENE, Resting("hand", 0, 100), Resting("hand", 110, 300)))
     assert Resting("hand", 0, 300) in found
-    assert doubts(found) == [Doubted("hand", "hand", 101, 109, "resting")]
+    assert doubts(found) == [FlickerCorrection("hand", "hand", 101, 109, "resting")]
 
 
 def test_what_passes_from_one_thing_to_another_changes_once() -> None:

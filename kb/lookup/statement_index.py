@@ -1,4 +1,4 @@
-"""Statements as they are read back: what is said of each thing."""
+"""Statements read back from a store, indexed by subject and property."""
 
 from collections.abc import Iterable
 
@@ -8,8 +8,8 @@ from kb.store.answers import Plain, plain
 from kb.store.statements import TYPE
 
 
-class Reading:
-    """Statements by what they are about."""
+class StatementIndex:
+    """Statements by subject and property."""
 
     def __init__(self, statements: Iterable[Quad | Triple]) -> None:
         self._said: dict[object, dict[NamedNode, list[NamedNode | Literal]]] = {}

@@ -116,7 +116,7 @@ def _sequence(ee: str, names: str, seen: _Scene) -> tuple[bool, str]:
     for each in wanted:
         if each != "...":
             seen.names.step(each)
-    found = ", ".join(each.name for each in segments)
+    found = ", ".join(segment.name for segment in segments)
     return _follows(wanted, list(segments)), f"{ee}: {found}"
 
 
@@ -191,7 +191,7 @@ def _together(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
     if len(set(who)) < len(who):
         raise ClaimError(f"{found[0]!r} names an end-effector twice")
     step = seen.names.step(found[2])
-    segments = {(each.ee, each.index): each for each in seen.seen.segments}
+    segments = {(segment.ee, segment.index): segment for segment in seen.seen.segments}
     for joint in seen.seen.joint:
         own = [segments[each] for each in zip(joint.ees, joint.segments, strict=True)]
         acting = [seen.seen.who(joint)] if both else joint.ees
@@ -209,7 +209,7 @@ _EVENTS: tuple[tuple[str, Callable[[re.Match[str], _Scene], Iterator[Span]]], ..
 
 
 def _facts(seen: _Scene, kind: type[_Kind]) -> Iterator[_Kind]:
-    return (each for each in seen.seen.facts if isinstance(each, kind))
+    return (fact for fact in seen.seen.facts if isinstance(fact, kind))
 
 
 def _when(first: int, last: int, seen: _Scene, *, ending: bool) -> Span:
@@ -224,7 +224,7 @@ def _cut_off(last: int, seen: _Scene) -> bool:
 
 def _of(ee: str, seen: _Scene) -> Sequence[Segment]:
     seen.names.ee(ee)
-    return next(each.segments for each in seen.seen.links if each.ee == ee)
+    return next(link.segments for link in seen.seen.links if link.ee == ee)
 
 
 def _told(spans: Sequence[Span]) -> str:

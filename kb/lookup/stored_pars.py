@@ -1,4 +1,4 @@
-"""Finding actions, and reading them back as values."""
+"""Finding stored actions, and reading them back as PARs."""
 
 from dataclasses import replace
 
@@ -7,8 +7,8 @@ from pyoxigraph import Literal, NamedNode
 from capar.model.errors import UnknownNameError
 from capar.model.par import Call, ComplexPar, Condition, CoreSemantics, Ipar, Preparation, Upar
 from kb.findings import Stored
-from kb.lookup import decoding
-from kb.lookup.reading import Reading
+from kb.lookup import par_decoding
+from kb.lookup.statement_index import StatementIndex
 from kb.lookup.stored import observations
 from kb.store import names
 from kb.store.stores import Store
@@ -27,8 +27,8 @@ def find(
         filters.append(
             f"FILTER(?action = {word} || EXISTS {{ ?seen {CAPAR.step}/{CAPAR.name} {word} }})"
         )
-    for each in objects:
-        word = Literal(each)
+    for thing in objects:
+        word = Literal(thing)
         filters.append(
             f"FILTER(EXISTS {{ ?seen {CAPAR.object}/{CAPAR.name} {word} }} || "
             f"EXISTS {{ ?seen {CAPAR.object}/{CAPAR.kind}/{CAPAR.isA}/{CAPAR.name} {word} }})"
@@ -36,7 +36,7 @@ def find(
     return observations(store, "\n  ".join(filters))
 
 
-def observation_reading(store: Store, name: str) -> tuple[NamedNode, Reading]:
+def observation_reading(store: Store, name: str) -> tuple[NamedNode, StatementIndex]:
     """An observation and everything that it says or mentions."""
     node = names.observation(name)
     own = store.graph(node)
@@ -47,7 +47,7 @@ def observation_reading(store: Store, name: str) -> tuple[NamedNode, Reading]:
         f"CONSTRUCT {{ ?s ?p ?o }} WHERE {{ {node} {CAPAR.mentions} ?s . "
         f"GRAPH {names.GRAPHS['actions']} {{ ?s ?p ?o }} }}"
     )
-    return node, Reading([*own, *(shared.triples or ())])
+    return node, StatementIndex([*own, *(shared.triples or ())])
 
 
 def complex_par(store: Store, name: str) -> ComplexPar:
@@ -60,13 +60,13 @@ def complex_par(store: Store, name: str) -> ComplexPar:
         known = {each.name for each in seen} | {each.action for each in seen}
         raise UnknownNameError("complex action", name, known, where=store.place)
     node, reading = observation_reading(store, fitting[0].name)
-    return decoding.complex_par(reading, node)
+    return par_decoding.complex_par(reading, node)
 
 
 def upars(store: Store, name: str | None) -> tuple[Upar, ...]:
     """Uninstantiated actions, by name and number of objects."""
-    reading = Reading(store.graph(names.GRAPHS["actions"]))
-    found = [decoding.upar(reading, node) for node in reading.things(CAPAR.Upar)]
+    reading = StatementIndex(store.graph(names.GRAPHS["actions"]))
+    found = [par_decoding.upar(reading, node) for node in reading.things(CAPAR.Upar)]
     fitting = [each for each in found if name in {None, each.name}]
     return tuple(sorted(fitting, key=lambda each: (each.name, len(each.objects), repr(each))))
 
@@ -80,7 +80,7 @@ def ipars(store: Store, observation: str) -> tuple[Ipar, ...]:
         for each in reading.things(CAPAR.Ipar)
     ]
     found.sort(key=lambda each: each[:2])
-    return tuple(decoding.ipar(reading, each) for _, _, each in found)
+    return tuple(par_decoding.ipar(reading, each) for _, _, each in found)
 
 
 def effective(known: tuple[Upar, ...], ipar: Ipar) -> Upar:
@@ -103,7 +103,7 @@ def effective(known: tuple[Upar, ...], ipar: Ipar) -> Upar:
             Preparation(_bound(each.condition, bound), _call(each.action, bound))
             for each in upar.preparation
         ),
-        steps=tuple(_call(each, bound) for each in upar.steps),
+        steps=tuple(_call(step, bound) for step in upar.steps),
         core=_overridden(upar.core, ipar.core),
         post_assertions=ipar.post_assertions
         or tuple(_bound(each, bound) for each in upar.post_assertions),
@@ -116,7 +116,7 @@ def _bound(value: Condition, to: dict[str, str]) -> Condition:
 
 
 def _call(value: Call, to: dict[str, str]) -> Call:
-    return replace(value, objects=tuple(to.get(each, each) for each in value.objects))
+    return replace(value, objects=tuple(to.get(thing, thing) for thing in value.objects))
 
 
 def _overridden(upar: CoreSemantics, ipar: CoreSemantics) -> CoreSemantics:

@@ -1,4 +1,4 @@
-"""Carries that a recorder has timed, held against when motion alone says they begin and end."""
+"""Carries that a recorder has timed, compared with the times that motion alone gives."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace

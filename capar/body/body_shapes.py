@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.body.anthropometry import Measures
+from capar.body.data_files import is_right, mirrored, table
 from capar.body.skeleton import BALL, HEEL, Segment, eyes_between
-from capar.body.tables import is_right, mirrored, table
 
 CHIN_BELOW_EYES = 0.063
 """[share of stature]; Drillis & Contini 1966 have the chin at 0.870."""

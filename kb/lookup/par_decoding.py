@@ -1,4 +1,4 @@
-"""From statements back to actions: the values that were encoded, conditions in sorted order."""
+"""RDF statements back to PARs: the values that were encoded, conditions in sorted order."""
 
 from pyoxigraph import NamedNode
 
@@ -18,7 +18,7 @@ from capar.model.par import (
 )
 from kb.encode.complex_pars import COMMON
 from kb.encode.pars import MOTIONS
-from kb.lookup.reading import Reading
+from kb.lookup.statement_index import StatementIndex
 from kb.store import names
 from kb.store.literals import numbers
 from ontology import CAPAR
@@ -27,18 +27,18 @@ from ontology.vocabularies import ALLEN
 _MOTION_OF = {node: motion for motion, node in MOTIONS.items()}
 
 
-def condition(of: Reading, node: NamedNode) -> Condition:
+def condition(of: StatementIndex, node: NamedNode) -> Condition:
     """A condition."""
     holds = of.value(node, CAPAR.holds) is not False
     return Condition(of.text(node, CAPAR.conditionKind), of.words(node, CAPAR.parameters), holds)
 
 
-def conditions(of: Reading, node: NamedNode, predicate: NamedNode) -> tuple[Condition, ...]:
+def conditions(of: StatementIndex, node: NamedNode, predicate: NamedNode) -> tuple[Condition, ...]:
     """Conditions that are said of a thing, sorted."""
     return tuple(sorted(condition(of, each) for each in of.all(node, predicate)))
 
 
-def features(of: Reading, node: NamedNode) -> FeatureSet:
+def features(of: StatementIndex, node: NamedNode) -> FeatureSet:
     """A set of features."""
     return FeatureSet(
         of.text(node, CAPAR.relStart),
@@ -49,7 +49,7 @@ def features(of: Reading, node: NamedNode) -> FeatureSet:
     )
 
 
-def upar(of: Reading, node: NamedNode) -> Upar:
+def upar(of: StatementIndex, node: NamedNode) -> Upar:
     """An uninstantiated action; the parents it was seen in stand with its instances."""
     return Upar(
         name=of.text(node, CAPAR.name),
@@ -66,7 +66,7 @@ def upar(of: Reading, node: NamedNode) -> Upar:
     )
 
 
-def ipar(of: Reading, node: NamedNode) -> Ipar:
+def ipar(of: StatementIndex, node: NamedNode) -> Ipar:
     """An instantiated action."""
     agent = of.one(node, CAPAR.agent)
     return Ipar(
@@ -83,7 +83,7 @@ def ipar(of: Reading, node: NamedNode) -> Ipar:
     )
 
 
-def _preparation(of: Reading, node: NamedNode) -> tuple[Preparation, ...]:
+def _preparation(of: StatementIndex, node: NamedNode) -> tuple[Preparation, ...]:
     found = []
     for each in of.ordered(node, CAPAR.preparation, by=CAPAR.index):
         needed, remedy = of.one(each, CAPAR.condition), of.one(each, CAPAR.remedy)
@@ -92,12 +92,12 @@ def _preparation(of: Reading, node: NamedNode) -> tuple[Preparation, ...]:
     return tuple(found)
 
 
-def _call(of: Reading, node: NamedNode) -> Call:
+def _call(of: StatementIndex, node: NamedNode) -> Call:
     words = of.words(node, CAPAR.parameters)
     return Call(of.text(node, CAPAR.name), words, of.text(node, CAPAR.purpose))
 
 
-def _core(of: Reading, owner: NamedNode) -> CoreSemantics:
+def _core(of: StatementIndex, owner: NamedNode) -> CoreSemantics:
     node = of.one(owner, CAPAR.core) or owner
     constraint = of.one(node, CAPAR.constraint) or node
     bits = of.one(constraint, CAPAR.features) or constraint
@@ -125,7 +125,7 @@ def _core(of: Reading, owner: NamedNode) -> CoreSemantics:
     )
 
 
-def complex_par(of: Reading, node: NamedNode) -> ComplexPar:
+def complex_par(of: StatementIndex, node: NamedNode) -> ComplexPar:
     """The complex action as an observation saw it."""
     links: dict[str, list[NamedNode]] = {}
     for each in of.ordered(node, CAPAR.step, by=CAPAR.index):
@@ -144,7 +144,7 @@ def complex_par(of: Reading, node: NamedNode) -> ComplexPar:
     )
 
 
-def _step(of: Reading, node: NamedNode) -> Step:
+def _step(of: StatementIndex, node: NamedNode) -> Step:
     return Step(
         action=of.text(node, CAPAR.name),
         ee=of.text(node, CAPAR.ee),
@@ -157,7 +157,7 @@ def _step(of: Reading, node: NamedNode) -> Step:
     )
 
 
-def _relations(of: Reading, steps: list[NamedNode]) -> tuple[Relation, ...]:
+def _relations(of: StatementIndex, steps: list[NamedNode]) -> tuple[Relation, ...]:
     found = []
     for node in steps:
         first = of.text(node, CAPAR.ee), of.count(node, CAPAR.index)

@@ -35,7 +35,7 @@ from capar_rules.borders.times import in_frames, times
 from capar_rules.borders.undisturbed_rest import undisturbed
 
 
-def rank(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:
+def number_borders(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:
     """The facts that number the borders of every link.
 
     Args:
@@ -44,8 +44,10 @@ def rank(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:
             and last frames of every contact and motion that concerns the link.
     """
     scene = _Scene(facts)
-    ranked = (fact for link in scene.links for fact in _rank_link(scene, link.ee, crossings_only))
-    return tuple(sorted(ranked, key=lambda each: (type(each).predicate, each)))
+    numbered = (
+        fact for link in scene.links for fact in _number_link(scene, link.ee, crossings_only)
+    )
+    return tuple(sorted(numbered, key=lambda each: (type(each).predicate, each)))
 
 
 class _Scene:
@@ -80,14 +82,14 @@ class _Scene:
                 self.rate = fact.rate / 1000.0
         for touches in self.touching.values():
             touches.sort(key=lambda each: each.first)
-        self.by_object = {each.ee: by_object(self.touching[each.ee]) for each in self.links}
+        self.by_object = {link.ee: by_object(self.touching[link.ee]) for link in self.links}
         for moves in self.moving.values():
             moves.sort(key=lambda each: each.first)
         for frames in (*self.crossings.values(), *self.pauses.values()):
             frames.sort()
 
 
-def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
+def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
     own = scene.touching[ee]
     reach = _reach(own, round(in_frames(times().margin_ms, scene.rate)))
     others = [
@@ -104,22 +106,22 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
     crossings = scene.crossings[ee]
     refined: tuple[Edge, ...] = ()
     if crossings_only:
-        marks = set(crossings)
+        frames = set(crossings)
     else:
         held = (each for name in reach for each in moves[name])
         refined = edges(own, held, scene.pauses[ee], rate_hz=scene.rate)
-        marks = {frame for each in (*own, *others) for frame in (each.first, each.last)}
-        marks |= {frame for name in reach for each in moves[name] for frame in _ends(each)}
-        marks |= {each.refined for each in refined}
-        marks |= {
+        frames = {frame for each in (*own, *others) for frame in (each.first, each.last)}
+        frames |= {frame for name in reach for each in moves[name] for frame in _ends(each)}
+        frames |= {each.refined for each in refined}
+        frames |= {
             pause
             for gap in _free(own)
             for pause in scene.pauses[ee][
                 bisect_right(scene.pauses[ee], gap[0]) : bisect_left(scene.pauses[ee], gap[1])
             ]
         }
-        marks |= {frame for ends in scene.stretches.frames(ee) for frame in ends}
-        marks |= {
+        frames |= {frame for ends in scene.stretches.frames(ee) for frame in ends}
+        frames |= {
             frame
             for name in reach
             for ends in scene.stretches.frames(name)
@@ -127,7 +129,7 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
             for frame in ends
         }
     first, last = scene.frames.first, scene.frames.last
-    ticks = sorted({first, last} | {frame for frame in marks if first < frame < last})
+    ticks = sorted({first, last} | {frame for frame in frames if first < frame < last})
     yield from (Tick(ee, index, frame) for index, frame in enumerate(ticks))
     yield LastTick(ee, len(ticks) - 1)
     yield from _within(ee, ticks, own, others)
@@ -147,9 +149,9 @@ def _rank_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]:
         )
     )
     if not crossings_only:
-        yield from scene.stretches.ranked(ee, ticks, reach)
+        yield from scene.stretches.numbered(ee, ticks, reach)
         yield from undisturbed(ee, ticks, scene.rests[ee], own)
-        others_too = [scene.by_object[each.ee] for each in scene.links if each.ee != ee]
+        others_too = [scene.by_object[link.ee] for link in scene.links if link.ee != ee]
         pairs = overlapping(own, others_too)
         yield from shared(ee, ticks, pairs, rate_hz=scene.rate)
         yield from _within(ee, ticks, (), sorted({each for _, each in pairs}))

@@ -45,13 +45,13 @@ def linguistics(
 ) -> None:
     """Which verbs and classes of verbs the system addresses, with what proves it."""
     from capar.cli._options import open_words
-    from capar.cli._output import prove_place, written
+    from capar.cli._output import check_writable, written
     from capar.pipelines.linguistic_report import cases_of, primitive_files
     from capar.pipelines.linguistic_report import linguistics as report_of
     from kb.reports.writing import write
 
     if out is not None:
-        prove_place(out)
+        check_writable(out)
     files = primitive_files(rule_base("extended", rules, opened(actionary)).added)
     with open_words(actionary) as store:
         report = report_of(files, store=store, cases=cases_of(files, cases))

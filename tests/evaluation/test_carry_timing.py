@@ -7,7 +7,7 @@ import pytest
 from measured_bodies import eased, stream
 from motion_files import recordings_folder
 
-from capar.evaluation.carries import NEAR_S, Carry, Miss, measure, near
+from capar.evaluation.carry_timing import NEAR_S, Carry, Miss, measure, near
 from extractors.readers.bundle.capture_toml import read_files, takes
 from extractors.readers.bundle.location import open_bundle
 
