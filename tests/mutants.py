@@ -40,6 +40,9 @@ SECOND = ("tests/test_motions.py", "tests/test_published.py", "tests/capar_rules
 NOT_RUN = ("tests/test_architecture.py", "tests/test_readme.py")
 """They judge how files are written and what is installed, not what a program does."""
 
+UNLIKELY = ("tests/extractors/devices", "tests/body", "tests/kb/test_kills.py")
+"""They take minutes and run little of what is changed, so they run only for their own modules."""
+
 CAUGHT, SURVIVED, TIMEOUT = "caught", "survived", "timeout"
 FAILED, NO_TESTS = 1, 5
 """Exit codes of pytest: a test failed, and none was selected."""
@@ -155,10 +158,13 @@ def _outcome(mutant: Mutant, tree: Path, *, until: float) -> tuple[str, str]:
     package = mutant.file.split("/")[0]
     stem = Path(mutant.file).stem
     first = [each for each in FIRST[package] if (tree / each).exists()]
+    mirror = Path("tests", *Path(mutant.file).parts[:2])
     second = [each for each in SECOND if (tree / each).exists()]
     stages = [[*first, "-k", stem], first]
     # Rule cases take milliseconds each, so they come before the tests that mention the file.
     stages.insert(2 if package == "capar_rules" else 0, _mentioning(tree, stem))
+    if (tree / mirror).is_dir():
+        stages.insert(2, [str(mirror)])
     for tests in (*stages, second, ["tests"]):
         code, output = _run(tree, tests, until=until) if tests else (0, "")
         if code is None:
@@ -180,7 +186,8 @@ def _mentioning(tree: Path, stem: str) -> list[str]:
 
 def _run(tree: Path, tests: Sequence[str], *, until: float) -> tuple[int | None, str]:
     """The exit code of tests, None where they ran out of time, and what they said."""
-    left_out = [part for each in NOT_RUN for part in ("--ignore", each)]
+    unlikely = [each for each in UNLIKELY if each not in tests]
+    left_out = [part for each in (*NOT_RUN, *unlikely) for part in ("--ignore", each)]
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-rfE", "-p", "no:cacheprovider"]
     try:
         done = subprocess.run(
