@@ -11,7 +11,7 @@ from typer.core import TyperGroup
 
 from capar import __version__
 from capar.cli._output import error_message
-from capar.model.errors import CaparError
+from capar.model.errors import CaparError, UnknownNameError
 
 
 class Commands(TyperGroup):
@@ -38,6 +38,18 @@ class Commands(TyperGroup):
         command = typer.main.get_command(module.app)
         command.name = name
         return command
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The command that is named first.
+
+        Raises:
+            UnknownNameError: There is none of that name.
+        """
+        name = args[0]
+        wanted = not ctx.resilient_parsing and not name.startswith("-")
+        if wanted and self.get_command(ctx, name) is None:
+            raise UnknownNameError("command", name, self.list_commands(ctx))
+        return super().resolve_command(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command; typer itself would end an interrupted one without a word."""

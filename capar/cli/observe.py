@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from capar.cli._options import Rules, Steady, Wait, rule_base
+from capar.model.errors import FileError
 
 if TYPE_CHECKING:
     from capar.model.capture import Capture
@@ -71,6 +72,8 @@ def observe(
     from extractors.readers.bundle.capture_toml import read_capture
 
     _check_output(json=json, script=script, pars=pars, plot=plot)
+    if actionary and Path(actionary).is_file():
+        raise FileError(actionary, "is a file; an Actionary is a folder.", "Name a folder.")
     base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
 

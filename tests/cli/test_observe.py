@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 import sys
 from dataclasses import replace
 from importlib import resources
@@ -187,3 +188,27 @@ def test_what_cannot_come_out_is_refused_before_anything_is_computed(
     monkeypatch.setattr("extractors.readers.bundle.capture_toml.read_capture", pytest.fail)
     assert run(monkeypatch, "observe", DEMO, *asked) == 2
     assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("obsreve", DEMO), "no command 'obsreve'; .* Did you mean 'observe'?"),
+        (("observe", "notes.md"), r"notes.md: is no capture.toml, and there is none beside it\."),
+        (
+            ("observe", DEMO, "--actionary", "notes.md"),
+            "notes.md: is a file; an Actionary is a fol",
+        ),
+    ],
+)
+def test_a_mistyped_command_or_place_is_reported_before_anything_is_computed(
+    arguments: tuple[str, ...],
+    message: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    Path("notes.md").write_text("# Notes\n")
+    assert run(monkeypatch, *arguments) == 2
+    printed = capsys.readouterr()
+    assert re.search(message, printed.err)
+    assert not printed.out

@@ -12,7 +12,7 @@ import pytest
 from actionaries import ACTIONS, STORES, opened
 from observations import with_unknown
 
-from capar.cli.observe import _keep
+from capar.cli.observe import _store
 from capar.model.observation import Observation
 from kb.actionary import Actionary
 from kb.exchange import bring_in, export, misplaced, read
@@ -40,7 +40,7 @@ def keep_all(place: str, observations: tuple[Observation, ...]) -> None:
     """What the command does with each observation; those without a name are to be recognised."""
     for each in (*observations, with_unknown()):
         name = each.complex_par.name
-        _keep(each, place, name="" if name == each.capture else name, wait_s=0)
+        _store(each, place, name="" if name == each.capture else name, wait_s=0)
 
 
 @pytest.fixture(scope="module")

@@ -36,7 +36,14 @@ def find_place(place: str | Path) -> Place:
     if path.is_dir():
         path = path / FILE
     elif path.is_file() and path.suffix != ".toml":
-        path = path.parent / FILE
+        beside = path.parent / FILE
+        if not beside.is_file():
+            raise FileError(
+                text,
+                f"is no {FILE}, and there is none beside it.",
+                f"If it is a recording, write one with: capar new-capture {path} -o {beside}",
+            )
+        path = beside
     if not path.is_file():
         raise FileError(
             text,

@@ -32,7 +32,10 @@ def read_toml(path: Path) -> tuple[dict[str, Any], "Location"]:
     try:
         data = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise FileError(path, f"is not valid TOML: {error}.") from error
+        line = re.search(r" \(at line (\d+), column \d+\)$", str(error))
+        reason = str(error).removesuffix(line[0]) if line else str(error)
+        where = f"{path}:{line[1]}" if line else path
+        raise FileError(where, f"is not valid TOML: {reason}.") from error
     return data, Location(path, line_numbers(text))
 
 
@@ -93,6 +96,7 @@ def line_numbers(text: str) -> dict[str, int]:
         if header := _HEADER.match(line):
             prefix = _header_path(header, counts)
             lines.setdefault(prefix, number)
+            lines.setdefault(header.group(2).strip("\"'"), number)
         elif key := _KEY.match(line):
             name = key.group(1).strip("\"'")
             lines.setdefault(f"{prefix}.{name}".strip("."), number)

@@ -99,6 +99,8 @@ def test_the_words_of_the_schema_are_those_that_the_code_knows() -> None:
         ("[files]", "rate = 3\n[files]", "capture.toml:3: no key 'rate'; .*'rate_hz'"),
         ('tag = "mobile"', 'tag = "mobil"', "capture.toml:12: no tag 'mobil'; .*'mobile'"),
         ('tag = "mobile"', "", "capture.toml:10: 'tag' is missing. tag: A part of the agent, fix"),
+        ("[[object]]", "[[objects]]", "capture.toml:10: no key 'objects'; .* mean 'object'"),
+        ('name = "mug"', 'name = "mug', "capture.toml:11: is not valid TOML: Illegal character"),
         ('name = "mug"', "name = 3", "capture.toml:11: name = 3 is not a text in quotes"),
         ("0.9]", "0.9, 1, 1]", r"capture.toml:13: position = .*at most 3. .*z axis points up"),
         ("0.9]", "true]", "capture.toml:13: position = True is not a number. .*z axis points up"),
