@@ -1,0 +1,72 @@
+"""Processor and wall time of commands from a cold start.
+
+Run by hand: ``python benchmarks/starting.py [--runs 10] [--json]``. Each command is a process of
+its own; bytecode is there, as after any installation and first run. Commands take turns, so that
+a machine whose speed changes treats them alike.
+"""
+
+import argparse
+import json
+import resource
+import subprocess
+import sys
+import time
+from importlib import resources
+from statistics import median
+
+DEMO = str(resources.files("capar") / "demo" / "drink_from_mug")
+MAIN = "from capar.cli import main; main()"
+COMMANDS = {
+    "capar observe, 4 s capture": [sys.executable, "-c", MAIN, "observe", DEMO],
+    "capar --help": [sys.executable, "-c", MAIN, "--help"],
+    "import capar": [sys.executable, "-c", "import capar"],
+    "import numpy, scipy.spatial, trimesh": [
+        sys.executable,
+        "-c",
+        "import numpy, scipy.spatial.transform, trimesh",
+    ],
+}
+
+
+def spent(command: list[str]) -> tuple[float, float]:
+    """Processor time and wall time of one run [s]."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    start = time.perf_counter()
+    subprocess.run(command, capture_output=True, check=True)
+    wall = time.perf_counter() - start
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, wall
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("--runs", type=int, default=10)
+    parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+    asked = parser.parse_args()
+    for command in COMMANDS.values():
+        spent(command)
+    found: dict[str, list[tuple[float, float]]] = {name: [] for name in COMMANDS}
+    for _ in range(asked.runs):
+        for name, command in COMMANDS.items():
+            found[name].append(spent(command))
+    figures = {
+        name: {
+            "processor_s": [round(f([run[0] for run in runs]), 3) for f in (min, median, max)],
+            "wall_s": [round(f([run[1] for run in runs]), 3) for f in (min, median, max)],
+        }
+        for name, runs in found.items()
+    }
+    if asked.json:
+        print(json.dumps(figures, indent=2))
+        return
+    print(f"{'':38}  processor time [s]     wall time [s]")
+    print(f"{'':38}  min   median  max      min   median  max")
+    for name, row in figures.items():
+        cells = [
+            "  ".join(f"{each:5.2f}" for each in row[key]) for key in ("processor_s", "wall_s")
+        ]
+        print(f"{name:38} {cells[0]}    {cells[1]}")
+
+
+if __name__ == "__main__":
+    main()
