@@ -94,9 +94,7 @@ def _quietly(path: Path, read: Callable[[], Any], remedy: str) -> Any:
         raise FileError(path, f"cannot be read to its end ({kind}: {error}).", remedy) from None
 
 
-def _aligned(
-    file: Any, path: Path, tier: str, name: str, lines: dict[str, int]
-) -> Annotation:
+def _aligned(file: Any, path: Path, tier: str, name: str, lines: dict[str, int]) -> Annotation:
     first, last, text, _ = file.tiers[tier][0][name]
     where = f"{path}:{lines[name]}" if name in lines else f"{path}: tier {tier!r}, {name}"
     times = [file.timeslots.get(each) for each in (first, last)]

@@ -114,8 +114,8 @@ def _thing(scene: Capture, name: str, stream: Stream) -> TagObject:
 
 
 def _pivots(scene: Capture, hand: Sensor, name: str) -> tuple[PivotContact, ...]:
-    own = tuple(each for each in scene.pivot_contacts if {each.first, each.second} == {hand.name,
-                                                                                       name})  # fmt: skip
+    pair = {hand.name, name}
+    own = tuple(each for each in scene.pivot_contacts if {each.first, each.second} == pair)
     return own or (PivotContact(hand.name, name, TOUCHES_M),)
 
 

@@ -153,7 +153,8 @@ def _labelled(pair: Pair, plan: Plan, base: Profile) -> Scored:
 
 def _recorded(pair: Pair, plan: Plan, base: Profile) -> Scored:
     """Carries that the presence of objects in a recording tells, each in a capture of its own."""
-    parts, channels = {}, []
+    parts: dict[str, CarryCounts] = {}
+    channels: list[Channel] = []
     last_s = 0.0
     for each in carry_captures(pair.capture, plan.carries):
         mark = Label("", each.start_s, each.end_s, CARRY, each.object)

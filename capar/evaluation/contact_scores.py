@@ -124,8 +124,9 @@ def compare_contacts(
 
 def _scored(pair: Pair, plan: Plan, base: Profile) -> Scored:
     capture = read_capture(pair.capture)
+    pairs: tuple[tuple[str, str], ...] = ()
     if plan.contacts is None:
-        labels, pairs = read_case_labels(pair, plan), ()
+        labels = read_case_labels(pair, plan)
     else:
         assert pair.labels is not None, "a plan without label files has other kinds"
         times = frame_times(pair.capture, file=plan.frames_of)
@@ -183,8 +184,7 @@ def _together(
     def intervals(mask: Frames) -> tuple[Interval, ...]:
         after = np.append(times[1:], np.inf)
         return tuple(
-            Interval(float(times[first]), float(after[last]), CONTACT)
-            for first, last in runs(mask)
+            Interval(float(times[first]), float(after[last]), CONTACT) for first, last in runs(mask)
         )
 
     return Channel(

@@ -148,8 +148,7 @@ def _scores(part: str, captures: Sequence[Scored]) -> dict[str, Any]:
 def _parts(captures: Sequence[Scored]) -> dict[str, Any]:
     names = sorted({name for each in captures for name in each.parts})
     return {
-        name: summed(each.parts[name] for each in captures if name in each.parts)
-        for name in names
+        name: summed(each.parts[name] for each in captures if name in each.parts) for name in names
     }
 
 

@@ -152,10 +152,9 @@ def _rows(
     names = list(header if header is not None else (rows[0][1] if rows else ()))
     columns, times = COLUMNS[kind], [each for each in TIMES if set(each) <= set(names)]
     missing = [each for each in columns.needed if not _column(getattr(columns, each), names)]
-    if rows or header is not None:
-        if missing or not times:
-            raise FileError(f"{path}:{rows[0][0] if rows else 1}" if header is None else path,
-                            f"its columns are {', '.join(names) or 'none'}.", _wanted(kind))  # fmt: skip
+    if (missing or not times) and (rows or header is not None):
+        place = f"{path}:{rows[0][0]}" if header is None else path
+        raise FileError(place, f"its columns are {', '.join(names) or 'none'}.", _wanted(kind))
     marks = [_mark(f"{path}:{line}", row, columns, times[0]) for line, row in rows]
     kept = [each for each in marks if each.label not in UNNAMED]
     return kept, bool(times) and times[0] == TIMES[1]
@@ -257,7 +256,5 @@ def _alternating(link: str, marks: list[Any], where: str) -> list[Label]:
         number, _, thing = action
         if number is not None:
             label = BIMACTS[number]
-            out.append(
-                Label(link, float(start), float(end), label, str(thing or ""), where=where)
-            )
+            out.append(Label(link, float(start), float(end), label, str(thing or ""), where=where))
     return out

@@ -203,7 +203,7 @@ def _channels(marks: list[Label], kind: Kind) -> list[list[Label]]:
         Kind.ACTIONS: lambda mark: mark.link,
         Kind.CONTACTS: lambda mark: (mark.link, mark.object),
         Kind.CARRIES: lambda mark: mark.object,
-        Kind.EVENTS: lambda mark: id(mark),
+        Kind.EVENTS: id,
     }[kind]
     groups: dict[object, list[Label]] = {}
     for each in marks:

@@ -10,7 +10,7 @@ from capar.evaluation.labels import Contradictions, Kind
 from capar.evaluation.mapping import LabelMapping, read_mapping
 from capar.evaluation.plan_schema import CarryOptions, ContactArrays, EvaluationFile
 from capar.model.errors import CaparError, FileError, UnknownNameError
-from extractors.readers.bundle.location import find_place, take_words
+from extractors.readers.bundle.location import FILE, find_place, take_words
 from extractors.readers.schema.document import expanded, read_toml, substituted, validated
 
 
@@ -28,8 +28,10 @@ class Pair:
 
     @property
     def name(self) -> str:
-        """The take, or the capture where it has no takes."""
-        return self.take or self.capture
+        """The take; where the bundle has none, its folder, or its file if that says more."""
+        file = find_place(self.capture).file
+        folder = file.resolve().parent.name
+        return self.take or (folder if file.name == FILE else f"{folder}_{file.stem}")
 
 
 @dataclass(frozen=True)

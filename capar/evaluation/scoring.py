@@ -1,8 +1,7 @@
 """Segments held against labels of actions: captures observed, link by link and pooled."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
@@ -56,7 +55,7 @@ def compare(
     cases: Sequence[Case],
     mapping: LabelMapping,
     *,
-    groups: dict[str, tuple[str, ...]] | None = None,
+    groups: Mapping[str, tuple[str, ...]] | None = None,
     notices: Sequence[str] = (),
 ) -> Evaluation:
     """Compare observations with labels.
@@ -97,7 +96,7 @@ def _case(pair: Pair, plan: Plan, rules: Profile) -> Case:
     labels = read_case_labels(pair, plan)
     capture = read_capture(pair.capture)
     check_span(labels, capture.times)
-    return Case(observe(capture, rules=rules), labels, capture.times, Path(pair.name).name)
+    return Case(observe(capture, rules=rules), labels, capture.times, pair.name)
 
 
 def _scored(case: Case, mapping: LabelMapping) -> Scored:
