@@ -212,9 +212,13 @@ def _edges(mask: Frames, step: int, times: Float[np.ndarray, "frames"]) -> list[
 
 
 def _nearest(wanted: Sequence[float], found: Sequence[float]) -> tuple[float, ...]:
-    """From each wanted time to the nearest found one, with its sign [s]."""
+    """From each wanted time to the nearest found one, the earlier of two, with its sign [s]."""
+
+    def rank(off_s: float) -> tuple[float, float]:
+        return round(abs(off_s), 6), off_s
+
     return tuple(
-        min((each - want for each in found), key=abs, default=float("inf")) for want in wanted
+        min((each - want for each in found), key=rank, default=float("inf")) for want in wanted
     )
 
 

@@ -1,6 +1,6 @@
 """Segments held against labels of actions: captures observed, link by link and pooled."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from capar.evaluation.labels import Kind, Labels, check_known, check_span, in_se
 from capar.evaluation.mapping import LabelMapping, check_names, labelled
 from capar.evaluation.metrics import Interval, tally
 from capar.evaluation.plan import Pair, Plan
+from capar.model.capture import Capture
 from capar.model.observation import Observation
 from capar.model.par import UNKNOWN
 from capar.pipelines.observation import observe
@@ -41,7 +42,11 @@ def score_actions(plan: Plan, base: Profile) -> Evaluation:
         CaparError: A capture, a label file or the mapping has a fault.
     """
     assert plan.mapping is not None, "a plan of actions has a mapping"
-    cases = [_case(pair, plan, base) for pair in plan.pairs]
+    read = [(pair, _prepared(pair, plan, plan.mapping)) for pair in plan.pairs]
+    cases = [
+        Case(observe(capture, rules=base), labels, capture.times, pair.name)
+        for pair, (labels, capture) in read
+    ]
     notices = check_names(
         plan.mapping,
         names=known_names([each.observation for each in cases], base),
@@ -92,17 +97,24 @@ def read_case_labels(pair: Pair, plan: Plan) -> Labels:
     return labels.renamed(dict(plan.names))
 
 
-def _case(pair: Pair, plan: Plan, rules: Profile) -> Case:
+def _prepared(pair: Pair, plan: Plan, mapping: LabelMapping) -> tuple[Labels, Capture]:
+    """Labels and capture, with every fault of the labels found before anything is observed."""
     labels = read_case_labels(pair, plan)
     capture = read_capture(pair.capture)
+    links = [mapping.links.get(each.name, each.name) for each in capture.acting]
+    _check_labels(labels, links, mapping)
     check_span(labels, capture.times)
-    return Case(observe(capture, rules=rules), labels, capture.times, pair.name)
+    return labels, capture
+
+
+def _check_labels(labels: Labels, links: Iterable[str], mapping: LabelMapping) -> None:
+    check_known(labels, "observed link", links, at="link")
+    check_known(labels, "label in the mapping", mapping.labels, at="label")
 
 
 def _scored(case: Case, mapping: LabelMapping) -> Scored:
     links = {mapping.links.get(each.ee, each.ee): each for each in case.observation.links}
-    check_known(case.labels, "observed link", links, at="link")
-    check_known(case.labels, "label in the mapping", mapping.labels, at="label")
+    _check_labels(case.labels, links, mapping)
     channels = tuple(
         Channel(
             name,

@@ -91,7 +91,6 @@ def test_segments_have_the_times_of_their_frames(tmp_path: Path) -> None:
     ("conditions", "says"),
     [
         ({"name": "Raech", "label": "a"}, "mapping.toml:2: no action 'Raech'"),
-        ({"name": "Reach", "label": "b"}, "no label 'b'; there are: a."),
         ({"name": "Reach", "label": "a", "object": "mgu"}, "no object 'mgu'"),
         ({"name": "Reach", "label": "a", "next": "Lit"}, "no action 'Lit'"),
     ],
@@ -103,6 +102,17 @@ def test_a_name_that_does_not_exist_is_refused_with_those_that_do(
     with pytest.raises(UnknownNameError) as raised:
         check_names(given, names=["Reach", "Touch"], objects=["mug"], labels=["a"])
     assert says in str(raised.value)
+
+
+def test_a_label_in_no_label_file_is_a_notice_with_its_line(tmp_path: Path) -> None:
+    given = mapping(tmp_path, rule(name="Reach", label="b") + rule(name="Touch", label="b"))
+    (notice,) = check_names(given, names=["Reach", "Touch"], objects=[], labels=["a"])
+    assert notice.endswith("mapping.toml:2: the label 'b' is in no label file")
+
+
+def test_labels_that_no_rule_gives_are_known_if_the_mapping_says_so(tmp_path: Path) -> None:
+    given = mapping(tmp_path, 'others = ["cut"]\n' + rule(name="Reach", label="a"))
+    assert given.labels == {"a", "cut"}
 
 
 def test_the_names_of_the_rules_that_ship_are_known_even_if_not_observed() -> None:
