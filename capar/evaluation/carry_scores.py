@@ -87,8 +87,8 @@ class CarryCounts:
 def score_carries(plan: Plan, base: Profile) -> Evaluation:
     """Observe captures and compare printed carries with labelled ones.
 
-    A printed carry of an object is a run of segments, each beginning where the last one ends, of
-    which the object is the dominant one, from the first in which it is carried to the last.
+    A printed carry of an object is a run of segments, one after the other, of which the object is
+    the dominant one: from the first in which it is carried to the last.
 
     Raises:
         CaparError: A capture or a label file has a fault.
@@ -131,7 +131,7 @@ def printed_carries(segments: Iterable[Segment], names: Sequence[str]) -> tuple[
     """
     runs: list[list[Segment]] = []
     for each in segments:
-        if not runs or runs[-1][-1].ee != each.ee or runs[-1][-1].last != each.first:
+        if not runs or (runs[-1][-1].ee, runs[-1][-1].index + 1) != (each.ee, each.index):
             runs.append([])
         runs[-1].append(each)
     out = []

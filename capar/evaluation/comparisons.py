@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
-from capar.evaluation.metrics import NOTHING, Interval, frame_labels
+from capar.evaluation.metrics import NOTHING, SAME_S, Interval, frame_labels, within
 from capar.model.geometry import runs
 from capar.model.observation import Segment
 
@@ -89,10 +89,12 @@ def inside(
     """Whether each frame lies in one of the intervals: [start, end)."""
     out = np.zeros(len(times), dtype=bool)
     for each in intervals:
-        out |= (times >= each.start_s) & (times < each.end_s)
+        out |= within(each, times)
     return out
 
 
 def _said(segments: Sequence[Segment], start_s: float, end_s: float) -> str:
-    there = [each for each in segments if each.start_s < end_s and each.end_s > start_s]
+    there = [
+        each for each in segments if each.start_s < end_s - SAME_S and each.end_s > start_s + SAME_S
+    ]
     return ", ".join(f"{each.index} {each.name}" for each in there)

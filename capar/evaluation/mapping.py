@@ -8,9 +8,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-from jaxtyping import Float
-
 from capar.evaluation.metrics import Interval
 from capar.model.errors import FileError, UnknownNameError
 from capar.model.observation import ObservedLink, Segment
@@ -101,25 +98,18 @@ def check_names(
     return tuple(notices.values())
 
 
-def labelled(
-    link: ObservedLink, mapping: LabelMapping, times: Float[np.ndarray, "frames"]
-) -> tuple[Interval, ...]:
-    """The segments of a link under the labels that the rules give them.
+def labelled(link: ObservedLink, mapping: LabelMapping) -> tuple[Interval, ...]:
+    """The segments of a link, with the times that are printed, under the labels of the rules.
 
     Args:
         link: The segments.
         mapping: The rules.
-        times: Time of each frame of the capture [s].
 
     Raises:
         UnknownNameError: No rule fits a segment; it lists the names that have rules.
     """
     return tuple(
-        Interval(
-            float(times[each.first]),
-            float(times[each.last]),
-            _label(link.segments, index, mapping),
-        )
+        Interval(each.start_s, each.end_s, _label(link.segments, index, mapping))
         for index, each in enumerate(link.segments)
     )
 

@@ -14,13 +14,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 THRESHOLDS = (10, 25, 50)
 """Least intersection over union of a right segment [%]."""
 
 MATCH_AT = THRESHOLDS[0]
 """The threshold at which segments count as matched for errors of onset and offset [%]."""
+
+SAME_S = 1e-6
+"""Times that differ by less are one [s]."""
 
 NOTHING = "(nothing)"
 """The name of a time that no predicted segment covers."""
@@ -159,10 +162,16 @@ def frame_labels(
     """The label at each time; empty where there is none. The last frame closes its interval."""
     names = np.full(len(times), "", dtype=object)
     for each in intervals:
-        names[(times >= each.start_s) & (times < each.end_s)] = each.label
-    if intervals and len(times) and not names[-1] and times[-1] == intervals[-1].end_s:
+        names[within(each, times)] = each.label
+    last = intervals[-1].end_s if intervals else float("nan")
+    if len(times) and not names[-1] and abs(times[-1] - last) <= SAME_S:
         names[-1] = intervals[-1].label
     return tuple(names)
+
+
+def within(interval: Interval, times: Float[np.ndarray, "frames"]) -> Bool[np.ndarray, "frames"]:
+    """Whether each time is in an interval: [start, end), but for what rounding does to them."""
+    return (times >= interval.start_s - SAME_S) & (times < interval.end_s - SAME_S)
 
 
 def matches(

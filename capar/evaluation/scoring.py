@@ -119,7 +119,7 @@ def _scored(case: Case, mapping: LabelMapping) -> Scored:
         Channel(
             name,
             true=tuple(Interval(each.start, each.end, each.label) for each in case.labels.of(name)),
-            found=labelled(links[name], mapping, case.times),
+            found=labelled(links[name], mapping),
             segments=links[name].segments,
         )
         for name in case.labels.links
