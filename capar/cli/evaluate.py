@@ -7,7 +7,7 @@ import typer
 
 from capar.cli._options import Beside, Rules, Steady, rule_base
 from capar.cli._output import console, print_json, prove_place, written
-from capar.evaluation.labels import Contradictions, Kind
+from capar.evaluation.kinds import Contradictions, Kind
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
@@ -80,6 +80,7 @@ def evaluate(
     """
     from capar.evaluation.plan import Plan, read_pairs, read_plan
 
+    base = rule_base(profile, rules, actionary, steady=steady)
     if len(places) == 1 and Path(places[0]).suffix == ".toml":
         _prove_alone(mapping, kind, frames_of, contradictions)
         plan = read_plan(Path(places[0]), takes=takes or ())
@@ -97,7 +98,6 @@ def evaluate(
     from capar.evaluation.evaluations import report
     from capar.evaluation.running import evaluate as carry_out
 
-    base = rule_base(profile, rules, actionary, steady=steady)
     found = carry_out(plan, rules=base)
     drawn = _draw(found, plot) if plot else []
     result = report(found)

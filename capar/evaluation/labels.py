@@ -2,36 +2,14 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
 
+from capar.evaluation.kinds import Contradictions as Contradictions
+from capar.evaluation.kinds import Kind as Kind
 from capar.model.errors import FileError, UnknownNameError
-
-
-class Kind(StrEnum):
-    """What labels are about."""
-
-    ACTIONS = "actions"
-    """What each link does, from when to when; one action at a time."""
-
-    CONTACTS = "contacts"
-    """When two bodies touch."""
-
-    CARRIES = "carries"
-    """From when to when an object is carried."""
-
-    EVENTS = "events"
-    """What a hand does at about a time; a label is a window in which it must be found."""
-
-
-class Contradictions(StrEnum):
-    """What to do about marks that end before they start, and marks that overlap."""
-
-    REFUSE = "refuse"
-    LEAVE_OUT = "leave-out"
 
 
 @dataclass(frozen=True, slots=True, order=True)
