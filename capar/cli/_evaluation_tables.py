@@ -153,7 +153,13 @@ def _whole(value: float | None) -> str:
     return "-" if value is None else f"{value:.0f}"
 
 
-PARTS = {"actions": "links", "contacts": "bodies", "carries": "objects", "events": "events"}
+PARTS = {
+    "actions": "links",
+    "contacts": "bodies",
+    "carries": "objects",
+    "events": "events",
+    "containers": "containers",
+}
 
 COLUMNS: dict[str, dict[str, Cell]] = {
     "actions": {
@@ -192,6 +198,14 @@ COLUMNS: dict[str, dict[str, Cell]] = {
         "F1": _score("f1"),
         "away": _error("away_ms"),
     },
+    "containers": {
+        "objects": _count("objects"),
+        "right": _count("right"),
+        "went in": _count("went_in"),
+        "told": _count("told"),
+        "told wrongly": _count("told_wrongly"),
+        "untold": _count("untold"),
+    },
 }
 """What is printed of each kind of labels, and from which scores."""
 
@@ -201,5 +215,6 @@ CAPTIONS = {
     "onset, offset: median / 95th percentile of the way to the nearest found one [ms]",
     "carries": "start, end, both: carries whose printed ends are near the labelled ones [%]\n"
     "off: median / 95th percentile of the size of the error [ms]",
+    "containers": "went in: the middle lies in the container at the end and did not before",
     "events": "away: median / 95th percentile of the way from what was seen to what was found [ms]",
 }

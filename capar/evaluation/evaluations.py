@@ -18,6 +18,7 @@ PARTS = {
     Kind.CONTACTS: "bodies",
     Kind.CARRIES: "objects",
     Kind.EVENTS: "events",
+    Kind.CONTAINERS: "containers",
 }
 """What is scored on its own beside the whole."""
 

@@ -15,6 +15,9 @@ class Kind(StrEnum):
     CARRIES = "carries"
     """From when to when an object is carried."""
 
+    CONTAINERS = "containers"
+    """What goes into a container; the capture itself tells, by first and last poses."""
+
     EVENTS = "events"
     """What a hand does at about a time; a label is a window in which it must be found."""
 

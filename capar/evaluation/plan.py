@@ -8,7 +8,12 @@ from pathlib import Path
 
 from capar.evaluation.labels import Contradictions, Kind
 from capar.evaluation.mapping import LabelMapping, read_mapping
-from capar.evaluation.plan_schema import CarryOptions, ContactArrays, EvaluationFile
+from capar.evaluation.plan_schema import (
+    CarryOptions,
+    ContactArrays,
+    ContainerOptions,
+    EvaluationFile,
+)
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from extractors.readers.bundle.location import FILE, find_place, take_words
 from extractors.readers.schema.document import expanded, read_toml, substituted, validated
@@ -50,9 +55,14 @@ class Plan:
 
     contacts: ContactArrays | None = None
     carries: CarryOptions = field(default_factory=CarryOptions)
+    containers: ContainerOptions | None = None
 
     def __post_init__(self) -> None:
-        """Prove that actions have a mapping."""
+        """Prove that actions have a mapping, and that containers are named."""
+        if self.kind is Kind.CONTAINERS and self.containers is None:
+            raise CaparError(
+                'containers are named in an evaluation file: [containers] names = ["box"]'
+            )
         if self.kind is Kind.ACTIONS and self.mapping is None:
             raise CaparError(
                 "labels of actions need --mapping FILE: a TOML file from our names to the labels, "
@@ -92,6 +102,7 @@ def read_plan(path: Path, *, takes: Sequence[str] = ()) -> Plan:
         groups={name: members for name, members in groups.items() if members},
         contacts=table.contacts,
         carries=table.carries or CarryOptions(),
+        containers=table.containers,
     )
 
 
@@ -136,7 +147,8 @@ def _couple(place: str, labels: str) -> list[Pair]:
 
 def _pair(table: EvaluationFile, place: Path, take: str, words: Mapping[str, str]) -> Pair:
     labels = _filled(os.fspath(expanded(table, "labels")), words) if table.labels else None
-    if labels is None and not (table.carries and table.carries.presence_of):
+    unneeded = table.containers or (table.carries and table.carries.presence_of)
+    if labels is None and not unneeded:
         raise table.error("labels", "names no labels.", 'Write labels = "FILE", with {take} in it.')
     return Pair(f"{place}:{take}" if take else str(place), labels, take, words)
 

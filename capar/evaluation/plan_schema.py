@@ -45,11 +45,21 @@ class CarryOptions(Entry):
     ] = 2.0
 
 
+class ContainerOptions(Entry):
+    """Containers, into which objects are told to go or not."""
+
+    names: Annotated[list[str], key("Objects that are containers.")]
+    halves: Annotated[
+        bool, key("Whether each is parted across its middle into two containers.")
+    ] = False
+
+
 class EvaluationFile(Entry):
     """Captures, labels, and what the labels are about."""
 
     kind: Annotated[
-        Literal["actions", "contacts", "carries", "events"], key("What the labels are about.")
+        Literal["actions", "contacts", "carries", "events", "containers"],
+        key("What the labels are about."),
     ]
     capture: Annotated[str, key("A bundle, relative to this file.")] = "capture.toml"
     takes: Annotated[list[str], key("Patterns of the takes' names.")] = ["*"]
@@ -77,3 +87,6 @@ class EvaluationFile(Entry):
         ContactArrays | None, key("Contacts: labels that are arrays of an NPZ file.")
     ] = None
     carries: Annotated[CarryOptions | None, key("Carries: how they are found.")] = None
+    containers: Annotated[
+        ContainerOptions | None, key("Containers: which; the poses of objects are the labels.")
+    ] = None

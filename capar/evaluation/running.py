@@ -2,6 +2,7 @@
 
 from capar.evaluation.carry_scores import score_carries
 from capar.evaluation.contact_scores import score_contacts
+from capar.evaluation.container_scores import score_containers
 from capar.evaluation.evaluations import Evaluation
 from capar.evaluation.event_scores import score_events
 from capar.evaluation.labels import Kind
@@ -14,6 +15,7 @@ SCORERS = {
     Kind.CONTACTS: score_contacts,
     Kind.CARRIES: score_carries,
     Kind.EVENTS: score_events,
+    Kind.CONTAINERS: score_containers,
 }
 
 
