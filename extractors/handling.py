@@ -32,9 +32,9 @@ from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
 from extractors.motion.impacts import closing_speed, falls
 from extractors.motion.leaning import leaning
+from extractors.motion.phases import phases, turns_of_height
 from extractors.motion.rest import resting
 from extractors.motion.rolling import rolling
-from extractors.motion.phases import phases, turns_of_height
 from extractors.motion.seats import seat
 from extractors.motion.turning_points import swings
 from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between, sides

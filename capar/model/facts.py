@@ -21,10 +21,10 @@ from capar.model.handling import Flies as Flies
 from capar.model.handling import Leans as Leans
 from capar.model.handling import Lies as Lies
 from capar.model.handling import Passage as Passage
+from capar.model.handling import Phase as Phase
 from capar.model.handling import Place as Place
 from capar.model.handling import Posture as Posture
 from capar.model.handling import Resting as Resting
-from capar.model.handling import Phase as Phase
 from capar.model.handling import Reverses as Reverses
 from capar.model.handling import Rolls as Rolls
 from capar.model.handling import Seated as Seated

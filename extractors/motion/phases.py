@@ -88,9 +88,7 @@ def _rise(phase: Phase, middles: Float[np.ndarray, "frames 3"]) -> float:
     return float(middles[phase.last, 2] - middles[phase.first, 2])
 
 
-def _parts(
-    body: BodyGeometry, span: slice, rate_hz: float, thresholds: Thresholds
-) -> list[Phase]:
+def _parts(body: BodyGeometry, span: slice, rate_hz: float, thresholds: Thresholds) -> list[Phase]:
     """The phases of one stretch of known frames, however short they are."""
     half = max(1, round(0.5 * thresholds.rest_window_s * rate_hz))
     way = slopes(body.middles[span], half) * rate_hz

@@ -12,7 +12,7 @@ from motions.paths import Still, aimed, pose
 from motions.performers import Performer
 from motions.trials import Body, Options, Trial
 
-TAKE, LEAVE = ("Reach", "Touch"), ("Withdraw",)
+TAKE, LEAVE = ("Reach", "Touch"), ("ResumePosture",)
 UP, DOWN = Leg((0.0, 0.0, 0.25)), Leg((0.0, 0.0, -0.25))
 LIFTED, LOWERED = (*TAKE, "Lift", "Touch"), ("Touch", "Lower", "TouchWith", *LEAVE)
 
@@ -73,7 +73,11 @@ def pull(performer: Performer, **options: Unpack[Options]) -> Trial:
 def slide(performer: Performer, **options: Unpack[Options]) -> Trial:
     """A palm at a block's side moves it along, neither from behind nor from before."""
     return handle(
-        performer, "slide", (Leg((0.25, 0.0, 0.0)),), (*TAKE, "Slide", "TouchWith", *LEAVE), **options
+        performer,
+        "slide",
+        (Leg((0.25, 0.0, 0.0)),),
+        (*TAKE, "Slide", "TouchWith", *LEAVE),
+        **options,
     )
 
 
