@@ -12,15 +12,18 @@ from capar.model.facts import (
     Between,
     ClosingSpeed,
     ContactNormal,
+    Displaced,
     Fact,
     Flies,
     Leans,
     Lies,
     Moving,
     Passage,
+    Phase,
     Resting,
     Reverses,
     Rolls,
+    Seated,
     Swings,
     Touching,
 )
@@ -29,9 +32,11 @@ from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
 from extractors.motion.impacts import closing_speed, falls
 from extractors.motion.leaning import leaning
+from extractors.motion.phases import phases, turns_of_height
 from extractors.motion.rest import resting
 from extractors.motion.rolling import rolling
-from extractors.motion.turning_points import reversals, swings
+from extractors.motion.seats import seat
+from extractors.motion.turning_points import swings
 from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between, sides
 from extractors.relations.grips import shifts
 from extractors.relations.places import distances, places
@@ -85,6 +90,7 @@ def handling(
         out += (Resting(name, *each) for each in resting(hand.poses, thresholds))
     for each in mobile:
         out += _motion(things[each.name], seen, upright[each.name], thresholds)
+    out += _seats(things, touches, seen, thresholds)
     out += bearing(capture, bodies, touches, calibration, thresholds)
     borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
     others = (things[each.name] for each in mobile if each.name not in hands)
@@ -114,7 +120,15 @@ def _motion(
         for fact in known
         if isinstance(fact, Moving) and fact.object == one.name
     )
-    yield from (Reverses(one.name, frame) for frame in reversals(pose, moves, thresholds))
+    motions = tuple(
+        (fact.first, fact.last)
+        for fact in known
+        if isinstance(fact, Displaced) and fact.object == one.name
+    )
+    found = phases(one, motions, thresholds)
+    yield from (Phase(one.name, each.kind, each.first, each.last) for each in found)
+    turns = turns_of_height(found, one.middles, thresholds)
+    yield from (Reverses(one.name, frame) for frame in turns)
     yield from (Swings(one.name, *span) for span in swings(pose, moves, thresholds))
     length_m = float(one.shape.size.max()) if one.shape else 0.0
     leans = leaning(pose, upright, thresholds, length_m=length_m)
@@ -157,6 +171,24 @@ def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Inte
         dropout_s=thresholds.dropout_s,
         minimum_s=thresholds.contact_minimum_s,
     )
+
+
+def _seats(
+    things: Mapping[str, BodyGeometry],
+    touches: Iterable[Touching],
+    known: Iterable[Fact],
+    thresholds: Thresholds,
+) -> Iterator[Fact]:
+    """When each thing is down on what bears it: it comes and goes while one of the two moves."""
+    moves = [each for each in known if isinstance(each, Displaced)]
+    for each in touches:
+        if each.body in things and each.other in things:
+            body, other = things[each.body], things[each.other]
+            normal = contact_normal(body, other, each.first)
+            if normal is not None and normal[2] >= thresholds.steep:
+                spans = [(m.first, m.last) for m in moves if m.object in (each.body, each.other)]
+                down = seat(body, other, (each.first, each.last), spans, thresholds)
+                yield Seated(each.body, each.other, *down)
 
 
 def _contacts(bodies: Mapping[str, BodyGeometry], touches: Iterable[Touching]) -> Iterator[Fact]:

@@ -43,12 +43,13 @@ from extractors.bodies.poses import Poses
 from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.contacts import Contact, contacts
 from extractors.handling_facts import handling
-from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import Floor, moving, rest_poses
+from extractors.motion.motion_edges import motion_edges, onset
+from extractors.motion.object_motion import Floor, RestPose, moving, rest_poses
 from extractors.relations.attention import Attention, attention
 from extractors.relations.weight_bearing import TRUNK
 from extractors.signals.filters import speed
 from extractors.signals.gaps import long_gaps
+from extractors.signals.intervals import Interval
 from extractors.signals.zero_crossings import horizon_frames, pauses, zero_crossings
 from extractors.thresholds import Thresholds
 
@@ -226,7 +227,23 @@ def _moving(
             rests = rest_poses(pose, floor, thresholds)
             for interval in moving(pose, rests, floor, thresholds):
                 yield Moving(thing.name, *interval)
-                yield Displaced(thing.name, *motion_edges(pose, interval, rests, thresholds))
+                yield Displaced(thing.name, *_edges(pose, interval, rests, floor, thresholds))
+
+
+def _edges(
+    poses: Poses,
+    interval: Interval,
+    rests: tuple[RestPose, ...],
+    floor: Floor,
+    thresholds: Thresholds,
+) -> Interval:
+    """When a motion that its floor tells began and ended; what is not known from rest stays."""
+    first, last = motion_edges(poses, interval, rests, thresholds)
+    if first < interval[0]:
+        first = onset(first, interval[0], poses, floor, thresholds)
+    if last > interval[1]:
+        last = onset(last, interval[1], poses, floor, thresholds)
+    return first, last
 
 
 def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:

@@ -95,7 +95,17 @@ class Thresholds:
     """An axis moves if its way is at least this share of the largest axis's way [1]."""
 
     reversal_m: float = 0.05
-    """Way up and way down that make a reversal of height [m]: the half of a hand's width."""
+    """Steep way up and steep way down that make a reversal of height [m] (spec 10): the half of a
+    hand's width."""
+
+    bend_rad: float = 0.7854
+    """Slope of a path at which it goes up or down as much as aside [rad]: 45 degrees (spec 10)."""
+
+    flat_rad: float = 0.6109
+    """A steep path becomes level below this slope [rad]: 35 degrees (spec 10)."""
+
+    steep_rad: float = 0.9599
+    """A level path becomes steep above this slope [rad]: 55 degrees (spec 10)."""
 
     swing_m: float = 0.010
     """Least way between turning points of motion to and fro [m]: the floor of motion."""
@@ -158,6 +168,9 @@ class Thresholds:
     edge_m: float = 0.001
     """From a place of rest a motion that is known begins at this distance [m]: the tenth part of
     its floor, and still more than trackers of the day make of a thing that lies."""
+
+    onset_s: float = 0.1
+    """At most so long before it is that far a motion began [s]: what takes longer drifts."""
 
     edge_rad: float = 0.00873
     """The same for its orientation [rad]: half a degree."""

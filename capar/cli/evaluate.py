@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from capar.cli._options import Beside, Rules, Steady, rule_base
-from capar.cli._output import console, print_json, check_writable, written
+from capar.cli._output import check_writable, console, print_json, written
 from capar.evaluation.kinds import Contradictions, Kind
 from capar.model.errors import CaparError
 

@@ -21,11 +21,13 @@ from capar.model.handling import Flies as Flies
 from capar.model.handling import Leans as Leans
 from capar.model.handling import Lies as Lies
 from capar.model.handling import Passage as Passage
+from capar.model.handling import Phase as Phase
 from capar.model.handling import Place as Place
 from capar.model.handling import Posture as Posture
 from capar.model.handling import Resting as Resting
 from capar.model.handling import Reverses as Reverses
 from capar.model.handling import Rolls as Rolls
+from capar.model.handling import Seated as Seated
 from capar.model.handling import SweptAzimuth as SweptAzimuth
 from capar.model.handling import Swings as Swings
 from capar.model.handling import Travelled as Travelled

@@ -8,10 +8,14 @@ from capar.model.scene_facts import Touching
 
 @dataclass(frozen=True, slots=True, order=True)
 class Displaced(Observed):
-    """An object that moves is elsewhere than where it rested, within 1 mm or half a degree."""
+    """An object moves, from when it truly set off until it truly stopped.
+
+    That is where it was last within 1 mm and half a degree of a place of rest, or what noise makes,
+    and the little before that by which a motion from rest grows so far.
+    """
 
     predicate = "displaced"
-    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
+    declaration = Declaration(about="object", span=Span.INTERVAL, border=True, has_sentence=False)
     object: str
     first: int
     last: int
@@ -131,8 +135,41 @@ class ClosingSpeed(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class Seated(Observed):
+    """A body is down on another one that bears it: in a contact, less its coming and going."""
+
+    predicate = "seated"
+    declaration = Declaration(about="body", span=Span.INTERVAL, border=True, has_sentence=False)
+    body: str
+    other: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Phase(Observed):
+    """A part of an object's motion: rising, level or sinking, by its path; turning, or still."""
+
+    predicate = "phase"
+    declaration = Declaration(
+        about="object",
+        span=Span.INTERVAL,
+        border=frozenset({"goes_level"}),
+        has_sentence=False,
+        stretch="goes_{kind}",
+    )
+    object: str
+    kind: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Reverses(Observed):
-    """The height of a moving object has an extremum, with a real way before and after it."""
+    """A moving object that rose begins to sink, or one that sank after that to rise again.
+
+    Both are real ways and steep; the frame lies in the middle between the two.
+    """
 
     predicate = "reverses"
     declaration = Declaration(

@@ -142,27 +142,36 @@ def slow_frames(
     slow = np.zeros(len(stream.times), dtype=bool)
     for first, last in geometry.runs(~stream.lost):
         part = slice(first, last + 1)
-        speed = _slope(stream.positions[part], half) * rate_hz
+        speed = _pace(stream.positions[part], half) * rate_hz
         # A quaternion changes by half of the angle.
-        turning = 2.0 * _slope(stream.orientations[part], half) * rate_hz
+        turning = 2.0 * _pace(stream.orientations[part], half) * rate_hz
         slow[part] = (speed < max(thresholds.rest_speed_mps, left * noise.position_m)) & (
             turning < max(thresholds.rest_speed_radps, left * noise.orientation_rad)
         )
     return slow
 
 
-def _slope(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.ndarray, "frames"]:
-    """Length of the slope of a straight line fitted to the frames around each, a frame."""
+def _pace(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.ndarray, "frames"]:
+    """Length of that slope, a frame."""
+    return np.asarray(np.linalg.norm(slopes(positions, half), axis=1))
+
+
+def slopes(
+    positions: Float[np.ndarray, "frames axes"], half: int
+) -> Float[np.ndarray, "frames axes"]:
+    """Slope of a straight line fitted to the frames around each, so many on either side, a frame.
+
+    At the ends it is that of the first and the last frame with so many around.
+    """
     count = len(positions)
     half = min(half, (count - 1) // 2)
     if half < 1:
-        return np.zeros(count)
+        return np.zeros(positions.shape)
     weights = np.arange(-half, half + 1) * 3.0 / (half * (half + 1) * (2 * half + 1))
-    slope = correlate1d(positions, weights, axis=0, mode="nearest")
-    length = np.linalg.norm(slope, axis=1)
-    length[:half] = length[half]
-    length[count - half :] = length[count - half - 1]
-    return np.asarray(length)
+    slope = np.asarray(correlate1d(positions, weights, axis=0, mode="nearest"))
+    slope[:half] = slope[half]
+    slope[count - half :] = slope[count - half - 1]
+    return slope
 
 
 def _stay(stream: Stream, seed: Interval, floor: Floor) -> RestPose:
