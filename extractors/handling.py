@@ -99,7 +99,7 @@ def handling(
             touching = (touch.first, touch.last)
             spans = shifts(hands[touch.body], things[touch.other], touching, thresholds)
             out += (Lies(touch.body, SHIFTS, touch.other, *span) for span in spans)
-    out += _contacts({**things, **hands}, touches)
+    out += _contacts({**things, **hands}, touches, thresholds)
     return tuple(out)
 
 
@@ -157,11 +157,17 @@ def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Inte
     )
 
 
-def _contacts(figures: Mapping[str, BodyGeometry], touches: Iterable[Touching]) -> Iterator[Fact]:
+def _contacts(
+    figures: Mapping[str, BodyGeometry], touches: Iterable[Touching], thresholds: Thresholds
+) -> Iterator[Fact]:
+    upward: dict[tuple[str, str, int], int] = {}
     for each in touches:
         body, other = figures[each.body], figures[each.other]
-        normal = contact_normal(body, other, each.first)
-        if normal is not None:
-            yield ContactNormal(each.body, each.other, each.first, round(1000.0 * float(normal[2])))
+        swapped = upward.get((each.other, each.body, each.first))
+        if swapped is not None:
+            yield ContactNormal(each.body, each.other, each.first, -swapped)
+        elif (normal := contact_normal(body, other, each.first, thresholds)) is not None:
+            permille = upward[each.body, each.other, each.first] = round(1000.0 * float(normal[2]))
+            yield ContactNormal(each.body, each.other, each.first, permille)
         speed = closing_speed(body, other, each.first)
         yield ClosingSpeed(each.body, each.other, each.first, round(1000.0 * speed))

@@ -36,6 +36,10 @@ class Thresholds:
     tolerance_most_m: float = 0.010
     """The largest such tolerance [m]: beyond a centimetre, nearness is no contact."""
 
+    patch_m: float = 0.005
+    """Surfaces that are no further apart than this beyond where they are nearest belong to the
+    patch at which bodies press on each other [m]: the least tolerance, and the depth of skin."""
+
     release_sigmas: float = 3.0
     """Between two frames of contact of noisy bodies it lasts while they are nearer than the
     tolerance and so many deviations of what noise the filter leaves [1], twice the tolerance at
