@@ -1,5 +1,6 @@
 """What is measured of bodies that handle and are handled, beside contact and motion."""
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import combinations
 
@@ -20,6 +21,7 @@ from capar.model.facts import (
     Passage,
     Resting,
     Reverses,
+    Rides,
     Rolls,
     Swings,
     Touching,
@@ -34,6 +36,7 @@ from extractors.motion.rolling import rolling
 from extractors.motion.turning_points import reversals, swings
 from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between, sides
 from extractors.relations.grips import shifts
+from extractors.relations.loads import rides
 from extractors.relations.places import distances, places
 from extractors.relations.weight_bearing import bearing
 from extractors.sample_frames import marks
@@ -100,6 +103,7 @@ def handling(
             spans = shifts(hands[touch.body], things[touch.other], touching, thresholds)
             out += (Lies(touch.body, SHIFTS, touch.other, *span) for span in spans)
     out += _contacts({**things, **hands}, touches, thresholds)
+    out += _loads(capture, things, seen, thresholds)
     return tuple(out)
 
 
@@ -155,6 +159,26 @@ def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Inte
         dropout_s=thresholds.dropout_s,
         minimum_s=thresholds.contact_minimum_s,
     )
+
+
+def _loads(
+    capture: Capture,
+    things: Mapping[str, BodyGeometry],
+    known: list[Fact],
+    thresholds: Thresholds,
+) -> Iterator[Fact]:
+    """What mobile objects bear in or on them and take along."""
+    mobile = {each.name for each in capture.objects if each.tag is TagType.MOBILE}
+    motions: dict[str, list[Interval]] = defaultdict(list)
+    for fact in known:
+        if isinstance(fact, Moving):
+            motions[fact.object].append((fact.first, fact.last))
+    for fact in known:
+        if isinstance(fact, Touching) and {fact.body, fact.other} <= mobile:
+            load, bearer = things[fact.body], things[fact.other]
+            span = fact.first, fact.last
+            if rides(load, bearer, span, motions[fact.other], thresholds):
+                yield Rides(fact.body, fact.other, fact.first)
 
 
 def _contacts(

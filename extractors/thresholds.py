@@ -132,6 +132,10 @@ class Thresholds:
     """A body whose middle is further from its feet than this is borne by something else too, or
     falls [m]: the length of a large foot."""
 
+    ride_share: float = 0.25
+    """What is borne goes along while it shifts on its bearer by no more than this share of the
+    bearer's way [1]: a load slides or rolls a little; what stays behind shifts by the whole."""
+
     level_m: float = 0.03
     """Feet that rest within this height of the lowest rest stand on one level [m]: the sole of a
     foot and the noise of a tracker are that thick."""

@@ -25,6 +25,7 @@ from capar.model.handling import Place as Place
 from capar.model.handling import Posture as Posture
 from capar.model.handling import Resting as Resting
 from capar.model.handling import Reverses as Reverses
+from capar.model.handling import Rides as Rides
 from capar.model.handling import Rolls as Rolls
 from capar.model.handling import SweptAzimuth as SweptAzimuth
 from capar.model.handling import Swings as Swings
