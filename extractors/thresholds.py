@@ -114,6 +114,13 @@ class Thresholds:
     """A smaller turn is no rolling [rad]: 45 degrees. The middle of a thing that is tipped over
     its edge is near enough above the edge for 35 degrees that it slips no more than that."""
 
+    blow_s: float = 0.1
+    """A blow is over within this time, and the low-pass blurs it by no more [s]."""
+
+    struck_mps: float = 0.3
+    """A thing that lay, and is as fast within that time, was struck [m/s]: that takes 3 m/s2, twice
+    what a hand gives to what it pushes or takes along."""
+
     fall_share: float = 0.3
     """A body falls freely while its acceleration is within this share of gravity's [1]."""
 

@@ -19,9 +19,10 @@ APPROACH_S = 0.05
 def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     """How fast two bodies' middles move relative to each other just before a frame [m/s].
 
-    The slope of their offset over the last twentieth of a second as it was recorded, or, if more,
-    the fastest relative speed of the low-passed motion in that time: a filter rounds a blow that
-    ends in a halt. Zero where either is lost or the contact begins the capture.
+    The fastest relative speed of the low-passed motion in the last twentieth of a second or, if
+    more, the steepest slope over as long a time of their offset as it was recorded: a filter
+    rounds a blow that ends in a halt, and lets it touch later. Zero where either is lost or the
+    contact begins the capture.
     """
     times = body.poses.filled.times
     first = int(np.searchsorted(times, times[frame] - APPROACH_S))
@@ -30,8 +31,15 @@ def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     if frame == 0 or len(offset) < 2 or np.isnan(offset).any():
         return 0.0
     speeds = np.linalg.norm(np.diff(offset, axis=0), axis=1) / np.diff(times[span])
-    recorded = recorded_middles(body, span) - recorded_middles(other, span)
-    return max(float(speeds.max()), _slope(recorded, times[span]))
+    begin = int(np.searchsorted(times, times[first] - APPROACH_S))
+    long = slice(begin, frame + 1)
+    recorded = recorded_middles(body, long) - recorded_middles(other, long)
+    width = frame + 1 - first
+    slopes = (
+        _slope(recorded[start : start + width], times[begin + start : begin + start + width])
+        for start in range(len(recorded) - width + 1)
+    )
+    return max(float(speeds.max()), *slopes)
 
 
 def recorded_middles(body: BodyGeometry, span: slice) -> Float[np.ndarray, "some 3"]:
