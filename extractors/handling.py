@@ -19,6 +19,7 @@ from capar.model.facts import (
     Lies,
     Moving,
     Passage,
+    ReleaseSpeed,
     Resting,
     Reverses,
     Rides,
@@ -29,7 +30,7 @@ from capar.model.facts import (
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
-from extractors.motion.impacts import closing_speed, falls
+from extractors.motion.impacts import closing_speed, falls, release_speed
 from extractors.motion.leaning import leaning
 from extractors.motion.rest import resting
 from extractors.motion.rolling import rolling
@@ -102,6 +103,8 @@ def handling(
             touching = (touch.first, touch.last)
             spans = shifts(hands[touch.body], things[touch.other], touching, thresholds)
             out += (Lies(touch.body, SHIFTS, touch.other, *span) for span in spans)
+            left_mps = release_speed(things[touch.other], touch.last)
+            out.append(ReleaseSpeed(touch.body, touch.other, touch.first, round(1000.0 * left_mps)))
     out += _contacts({**things, **hands}, touches, thresholds)
     out += _loads(capture, things, seen, thresholds)
     return tuple(out)

@@ -157,8 +157,14 @@ class Thresholds:
     near_m: float = 0.15
     """Bodies whose boxes are nearer than this are beside each other [m]: a hand's length."""
 
+    near_stays_m: float = 0.2
+    """... and they are so until they are further apart than this [m]: a third more."""
+
     inside_share: float = 0.5
     """Share of a body that lies in another's hull, from which on it is inside [1]."""
+
+    inside_stays_share: float = 0.4
+    """... and it is so while at least this share lies there [1]: a fifth less."""
 
     along_rad: float = 0.5236
     """Largest angle between motion along a body and its longest axis [rad]: thirty degrees."""

@@ -23,6 +23,7 @@ from capar.model.handling import Lies as Lies
 from capar.model.handling import Passage as Passage
 from capar.model.handling import Place as Place
 from capar.model.handling import Posture as Posture
+from capar.model.handling import ReleaseSpeed as ReleaseSpeed
 from capar.model.handling import Resting as Resting
 from capar.model.handling import Reverses as Reverses
 from capar.model.handling import Rides as Rides

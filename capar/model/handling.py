@@ -132,7 +132,22 @@ class ClosingSpeed(Observed):
     """How fast two bodies approached each other when they began to touch [mm/s]."""
 
     predicate = "closing"
-    declaration = Declaration(about="body", span=Touching, border=False, told=False)
+    declaration = Declaration(about="body", span=Touching, border=False, told=True)
+    body: str
+    other: str
+    first: int
+    speed: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class ReleaseSpeed(Observed):
+    """How fast an object goes when an end-effector's contact with it ends [mm/s].
+
+    Stated of the contact that begins at the first frame.
+    """
+
+    predicate = "released"
+    declaration = Declaration(about="body", span=Touching, border=False, told=True)
     body: str
     other: str
     first: int

@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import rotation_matrices
-from extractors.signals.filters import velocity
+from extractors.signals.filters import speed, velocity
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
 
@@ -16,12 +16,17 @@ APPROACH_S = 0.05
 """How long before a contact the speed of approach is taken [s]: the filter's own blur."""
 
 
+LATE_S = 0.03
+"""By how much a filter may let a blow touch later, and over how long a time its slope is taken
+[s]: half of the filter's blur, and a hand's slowing to a soft contact takes much longer."""
+
+
 def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     """How fast two bodies' middles move relative to each other just before a frame [m/s].
 
     The fastest relative speed of the low-passed motion in the last twentieth of a second or, if
-    more, the steepest slope over as long a time of their offset as it was recorded: a filter
-    rounds a blow that ends in a halt, and lets it touch later. Zero where either is lost or the
+    more, the steepest slope of their offset as it was recorded, just before: a filter rounds a
+    blow that ends in a halt, and lets it touch later. Zero where either is lost or the
     contact begins the capture.
     """
     times = body.poses.filled.times
@@ -31,15 +36,22 @@ def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     if frame == 0 or len(offset) < 2 or np.isnan(offset).any():
         return 0.0
     speeds = np.linalg.norm(np.diff(offset, axis=0), axis=1) / np.diff(times[span])
-    begin = int(np.searchsorted(times, times[first] - APPROACH_S))
-    long = slice(begin, frame + 1)
-    recorded = recorded_middles(body, long) - recorded_middles(other, long)
-    width = frame + 1 - first
+    latest = int(np.searchsorted(times, times[frame] - LATE_S))
+    begin = int(np.searchsorted(times, times[frame] - 2.0 * LATE_S))
+    span = slice(begin, frame + 1)
+    recorded, clock = recorded_middles(body, span) - recorded_middles(other, span), times[span]
+    width = max(latest - begin, 1) + 1
     slopes = (
-        _slope(recorded[start : start + width], times[begin + start : begin + start + width])
+        _slope(recorded[start : start + width], clock[start : start + width])
         for start in range(len(recorded) - width + 1)
     )
     return max(float(speeds.max()), *slopes)
+
+
+def release_speed(thing: BodyGeometry, frame: int) -> float:
+    """How fast a body's middle goes at a frame [m/s]; zero where it is lost there."""
+    pace = float(speed(thing.middles, thing.poses.smooth.times)[frame])
+    return 0.0 if np.isnan(pace) else pace
 
 
 def recorded_middles(body: BodyGeometry, span: slice) -> Float[np.ndarray, "some 3"]:

@@ -5,7 +5,7 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from measured_bodies import ball, box, eased, still, stream
+from measured_bodies import ball, box, eased, shape, still, stream
 
 from capar.model.capture import Shape, TagObject, TagType
 from extractors.bodies.body_geometry import BodyGeometry, geometry_of
@@ -19,8 +19,8 @@ TIMES = np.arange(FRAMES) / 100.0
 SHARE = eased(TIMES, 0.5, 1.5)
 
 
-def thing(name: str, shape: Shape, way: np.ndarray) -> BodyGeometry:
-    return geometry_of(TagObject(name, TagType.MOBILE, stream(way), shape), LIMITS)
+def thing(name: str, of: Shape, way: np.ndarray) -> BodyGeometry:
+    return geometry_of(TagObject(name, TagType.MOBILE, stream(way), of), LIMITS)
 
 
 def tray(way_m: tuple[float, float, float]) -> BodyGeometry:
@@ -73,7 +73,7 @@ def test_a_ball_in_a_carton_rides_though_it_rolls_from_wall_to_wall(x: float, y:
     mesh = trimesh.util.concatenate(parts)
     carton = thing(
         "carton",
-        Shape(np.array(mesh.vertices), np.array(mesh.faces)),
+        shape(mesh),
         np.outer(SHARE, [0.3, 0.0, 0.2]),
     )
     way = np.outer(SHARE, [0.3 + x, y, 0.2]) + np.array([0.0, 0.0, 0.045])
