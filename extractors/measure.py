@@ -41,6 +41,7 @@ from capar.model.facts import (
 from extractors.bodies.bodies import Bodies, bodies_of
 from extractors.bodies.poses import Poses
 from extractors.calibration import calibrated, check_clock, thresholds_of
+from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
 from extractors.handling_facts import handling
 from extractors.motion.motion_edges import motion_edges, onset
@@ -118,7 +119,9 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
         for name, body in bodies.sensors.items()
     }
     looks = {each.name: attention(capture, each, bodies, limits) for each in _seeing(capture)}
+    moves = tuple(_moving(capture, bodies, calibration, limits))
     touches = contacts(capture, bodies, calibration)
+    touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
     reach = horizon_frames(capture.times, limits)
     facts = [
         *_scene(capture),
@@ -133,7 +136,7 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
             for frame in pauses(tracks[each.name].speed_mps, tracks[each.name].crossings, reach)
         ),
         *_touching(capture, touches),
-        *_moving(capture, bodies, calibration, limits),
+        *moves,
         *(
             LookingAt(sensor, name, *interval)
             for sensor, look in looks.items()
@@ -244,6 +247,15 @@ def _edges(
     if last > interval[1]:
         last = onset(last, interval[1], poses, floor, thresholds)
     return first, last
+
+
+def _motions(moves: tuple[Fact, ...]) -> dict[str, list[Interval]]:
+    """When each object moves, by its name."""
+    found: dict[str, list[Interval]] = defaultdict(list)
+    for each in moves:
+        if isinstance(each, Moving):
+            found[each.object].append((each.first, each.last))
+    return found
 
 
 def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:

@@ -43,6 +43,10 @@ class Thresholds:
     tolerance_most_m: float = 0.010
     """The largest such tolerance [m]: beyond a centimetre, nearness is no contact."""
 
+    patch_m: float = 0.005
+    """Surfaces that are no further apart than this beyond where they are nearest belong to the
+    patch at which bodies press on each other [m]: the least tolerance, and the depth of skin."""
+
     release_sigmas: float = 3.0
     """Between two frames of contact of noisy bodies it lasts while they are nearer than the
     tolerance and so many deviations of what noise the filter leaves [1], twice the tolerance at
@@ -127,6 +131,13 @@ class Thresholds:
     """A smaller turn is no rolling [rad]: 45 degrees. The middle of a thing that is tipped over
     its edge is near enough above the edge for 35 degrees that it slips no more than that."""
 
+    blow_s: float = 0.1
+    """A blow is over within this time, and the low-pass blurs it by no more [s]."""
+
+    struck_mps: float = 0.3
+    """A thing that lay, and is as fast within that time, was struck [m/s]: that takes 3 m/s2, twice
+    what a hand gives to what it pushes or takes along."""
+
     fall_share: float = 0.3
     """A body falls freely while its acceleration is within this share of gravity's [1]."""
 
@@ -145,6 +156,10 @@ class Thresholds:
     """A body whose middle is further from its feet than this is supported by something else too, or
     falls [m]: the length of a large foot."""
 
+    ride_share: float = 0.25
+    """What is borne goes along while it shifts on its bearer by no more than this share of the
+    bearer's way [1]: a load slides or rolls a little; what stays behind shifts by the whole."""
+
     level_m: float = 0.03
     """Feet that rest within this height of the lowest rest stand on one level [m]: the sole of a
     foot and the noise of a tracker are that thick."""
@@ -159,8 +174,14 @@ class Thresholds:
     near_m: float = 0.15
     """Bodies whose boxes are nearer than this are beside each other [m]: a hand's length."""
 
+    near_stays_m: float = 0.2
+    """... and they are so until they are further apart than this [m]: a third more."""
+
     inside_share: float = 0.5
     """Share of a body that lies in another's hull, from which on it is inside [1]."""
+
+    inside_stays_share: float = 0.4
+    """... and it is so while at least this share lies there [1]: a fifth less."""
 
     along_rad: float = 0.5236
     """Largest angle between motion along a body and its longest axis [rad]: thirty degrees."""

@@ -123,11 +123,40 @@ class ContactNormal(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class Rides(Observed):
+    """A body is borne by another one, in or on it, and goes along when that one moves.
+
+    Stated of the contact that begins at the first frame.
+    """
+
+    predicate = "rides"
+    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    body: str
+    other: str
+    first: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class ClosingSpeed(Observed):
     """How fast two bodies approached each other when they began to touch [mm/s]."""
 
     predicate = "closing"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=False)
+    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    body: str
+    other: str
+    first: int
+    speed: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class ReleaseSpeed(Observed):
+    """How fast an object goes when an end-effector's contact with it ends [mm/s].
+
+    Stated of the contact that begins at the first frame.
+    """
+
+    predicate = "released"
+    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
     body: str
     other: str
     first: int

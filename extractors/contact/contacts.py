@@ -1,7 +1,7 @@
 """Which bodies touch, from which frame to which, at every frame of a capture (thesis 3.2)."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -13,10 +13,11 @@ from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import Poses
 from extractors.contact.proximity import Body, body, distance, near
+from extractors.contact.screening import screened
 from extractors.contact.surfaces import surface
 from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
-from extractors.signals.intervals import Interval, intervals
+from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
 
 
@@ -106,7 +107,29 @@ def contacts(capture: Capture, bodies: Bodies, calibration: Calibration) -> tupl
             else:
                 gap = distance(one, two, interval[0])
             found.append(Contact(first.name, second.name, interval, gap))
-    return tuple(found)
+    return tuple(_direct(capture, found, surfaces, calibration))
+
+
+def _direct(
+    capture: Capture,
+    found: list[Contact],
+    surfaces: Mapping[BodyGeometry, Body | None],
+    calibration: Calibration,
+) -> Iterator[Contact]:
+    """The contacts without the stretches in which a mobile object is between the two."""
+    mobile = [each.name for each in capture.objects if each.tag is TagType.MOBILE]
+    bodies = {each.name: shape for each, shape in surfaces.items() if shape is not None}
+    met = [(each.first, each.second, each.interval) for each in found]
+    for contact, parts in zip(found, screened(met, bodies, mobile), strict=True):
+        if not parts:
+            yield contact
+            continue
+        count = len(capture.times)
+        holds = mask([contact.interval], count) & ~mask(list(parts), count)
+        for interval in intervals(
+            holds, capture.times, dropout_s=0.0, minimum_s=calibration.contact_minimum_s
+        ):
+            yield replace(contact, interval=interval)
 
 
 def watched(capture: Capture, bodies: Bodies) -> Iterator[tuple[BodyGeometry, BodyGeometry]]:

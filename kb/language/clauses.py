@@ -126,6 +126,8 @@ def _cases(
     if len(segment.objects) < 2:
         return cases | {"alone"}
     thing, other = segment.objects[:2]
+    if ("with", other, thing) in segment.prepositions:
+        cases.add("tool")
     if before is not None and before.objects[:2] == (thing, other):
         cases.add("there")
     if scene.is_self(other):

@@ -166,7 +166,7 @@ def test_a_contact_presses_along_the_side_where_bodies_meet(
     place: tuple[float, float, float], normal: tuple[int, int, int]
 ) -> None:
     table = body(np.zeros(3), shape=TABLE)
-    found = contact_normal(body(np.array(place)), table, 100)
+    found = contact_normal(body(np.array(place)), table, 100, Thresholds())
     assert found is not None
     assert found == pytest.approx(normal)
 
