@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
+from capar.cli._options import Set
 from capar.cli._output import console, print_json
 
 app = typer.Typer()
@@ -26,10 +27,11 @@ def inspect(
         bool,
         typer.Option("--calibration", help="Say what is decided once for the whole capture."),
     ] = False,
+    set_: Set = None,
 ) -> None:
     """Say what a capture holds: streams, rate, gaps, noise, ranges and near pairs."""
     if calibration:
-        _calibration(place, as_json=as_json)
+        _calibration(place, set_ or [], as_json=as_json)
         return
     report = _report(place)
     if as_json:
@@ -38,13 +40,14 @@ def inspect(
         _show(report)
 
 
-def _calibration(place: str, *, as_json: bool) -> None:
+def _calibration(place: str, settings: list[str], *, as_json: bool) -> None:
     from capar.model.json_form import to_json
     from capar.views.calibration import calibration_tables
     from extractors.calibration import calibrate
     from extractors.readers.bundle.capture_toml import read_capture
+    from extractors.set_values import set_values
 
-    known = calibrate(read_capture(place))
+    known = set_values(calibrate(read_capture(place)), settings)
     if as_json:
         typer.echo(to_json(known), nl=False)
         return
