@@ -43,6 +43,7 @@ from extractors.bodies.poses import Poses
 from extractors.calibration import calibrated, prove_clock, thresholds_of
 from extractors.contact.contacts import Contact, contacts
 from extractors.handling import handling
+from extractors.motion.company import company
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.relations.attention import Attention, attention
@@ -139,6 +140,7 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
             for name, interval in look.looks
         ),
     ]
+    facts += company(capture, bodies, calibration, limits)
     facts += handling(capture, bodies, facts, calibration, limits)
     own = [each for each in capture.notices if each.code != LOSS]
     notices = (*own, *_notices(capture, calibration, limits))

@@ -199,6 +199,25 @@ def _mount_gap(each: Notice) -> str:
     )
 
 
+WHY_UNMOVED: Mapping[str, str] = {
+    "nobody": "nothing that is recorded was near and went with it: is a sensor missing, is the "
+    "unit of a file wrong, or was it tracked wrongly?",
+    "beyond_reach": "something went with it beyond reach: is a mount, a distance or a unit wrong?",
+    "left_behind": "what touched it rested meanwhile: is a distance of contact too large, or a "
+    "sensor missing?",
+}
+"""What would explain that nothing moves an object, by what the rules found."""
+
+
+def _no_mover(each: Notice) -> str:
+    share = 100.0 * float(each["share"])
+    often = "" if each["times"] == 1 else f", the longest of {each['times']} times"
+    return (
+        f"nothing moves {each.bodies[0]!r} in {share:.1f} % of its motion, from {each.start_s:.2f} "
+        f"to {each.end_s:.2f} s{often}; {WHY_UNMOVED[str(each['why'])]}"
+    )
+
+
 def _flicker(each: Notice) -> str:
     return (
         f"{' with '.join(each.bodies)}: {each['length_s']:.2f} s at {each.start_s:.2f} s taken for "
@@ -242,6 +261,7 @@ KINDS: Mapping[str, NoticeKind] = {
         _distance_contradicted, "stated distances that the recording contradicts"
     ),
     "mount-gap": NoticeKind(_mount_gap, "bodies carried with a gap"),
+    "no-mover": NoticeKind(_no_mover, "objects that move and nothing moves them"),
     "contact-tolerance": NoticeKind(_contact_tolerance),
     "doubled-stamps": NoticeKind("{samples} samples repeat a stamp; the last of each is kept"),
     "flicker": NoticeKind(_flicker),

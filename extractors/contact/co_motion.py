@@ -20,11 +20,17 @@ def travelling(stream: Stream, thresholds: Thresholds) -> Bool[np.ndarray, "fram
 def steady_in(carrier: Stream, thing: Stream, thresholds: Thresholds) -> Bool[np.ndarray, "frames"]:
     """Where a thing covers some way in the world and stays where it is in a carrier's frame.
 
-    Steady means that it strays there by no more than a centimetre, or by no more than a share of
+    Or the carrier stays where it is in the thing's frame, as a hand does that takes a large thing
+    by its rim and tips it: its origin, far from the hand, then strays in the hand's frame. Steady
+    means that it strays there by no more than a centimetre, or by no more than a share of
     its way through the world, within the window of co-motion.
     """
     way = spread(thing.positions, thing, thresholds)
-    stray = spread(relative(carrier, thing), thing, thresholds)
+    strays = [
+        spread(relative(one, other), thing, thresholds)
+        for one, other in ((carrier, thing), (thing, carrier))
+    ]
+    stray = np.minimum(*strays)
     limit = np.maximum(thresholds.co_motion_stray_m, thresholds.co_motion_share * way)
     with np.errstate(invalid="ignore"):
         return np.asarray((way >= thresholds.co_motion_way_m) & (stray <= limit))
