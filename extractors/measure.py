@@ -9,7 +9,7 @@ from typing import Any, cast
 import numpy as np
 from jaxtyping import Float, Int
 
-from capar.model.calibration import Calibration
+from capar.model.calibration import Calibration, Found
 from capar.model.capture import (
     Capture,
     Notice,
@@ -44,6 +44,7 @@ from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
 from extractors.handling_facts import handling
+from extractors.motion.company import company
 from extractors.motion.motion_edges import motion_edges, onset
 from extractors.motion.object_motion import Floor, RestPose, moving, rest_poses
 from extractors.relations.attention import Attention, attention
@@ -143,6 +144,7 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
             for name, interval in look.looks
         ),
     ]
+    facts += company(capture, bodies, calibration, limits)
     facts += handling(capture, bodies, facts, calibration, limits)
     own = [each for each in capture.notices if each.code != LOSS]
     notices = (*own, *_notices(capture, calibration, limits))
@@ -281,16 +283,31 @@ def _notices(
 ) -> Iterator[Notice]:
     stated = capture.contact_tolerance_m is not None
     yield notice("contact-tolerance", tolerance_m=calibration.contact_tolerance_m, stated=stated)
-    for pair in capture.pivot_contacts:
-        yield notice("pivot-distance", pair.first, pair.second, distance_m=pair.distance_m)
-    pivots = {name for pair in capture.pivot_contacts for name in (pair.first, pair.second)}
+    yield from _distance_notices(calibration)
+    found = [each for each in calibration.pairs if each.found is not Found.NEVER]
+    known = {name for each in found for name in (each.first, each.second)}
     touching: tuple[Sensor | TagObject, ...] = (*capture.acting, *capture.objects)
     for each in touching:
-        if each.shape is None and each.name not in pivots:
+        if each.shape is None and each.name not in known:
             yield notice("no-shape", each.name)
         elif each.shape is not None and each.shape.source is ShapeSource.STAND_IN:
             yield notice("stand-in-shape", each.name, shape=each.shape.description)
     yield from _pose_notices(capture, thresholds)
+
+
+def _distance_notices(calibration: Calibration) -> Iterator[Notice]:
+    """How bodies without surfaces touch, and where the recording contradicts what is taken."""
+    for pair in calibration.pairs:
+        names, taken = (pair.first, pair.second), pair.touch_m
+        if pair.found is Found.ALL_FACT_KINDS:
+            yield notice("pivot-distance", *names, distance_m=taken)
+        elif pair.found not in (Found.TOLERANCE, Found.NEVER):
+            how = pair.found.value
+            yield notice("touch-estimated", *names, touch_m=taken, found=how, frames=pair.frames)
+        if pair.shown_m is not None:
+            code = "mount-gap" if pair.found is Found.TOLERANCE else "distance-contradicted"
+            values = {"touch_m": taken, "shown_m": pair.shown_m, "frames": pair.frames}
+            yield notice(code, *names, **values)
 
 
 def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:

@@ -195,3 +195,46 @@ class Thresholds:
 
     edge_rad: float = 0.00873
     """The same for its orientation [rad]: half a degree."""
+
+    co_motion_window_s: float = 0.4
+    """Bodies move as one if they do for so long [s]: a hand that passes a thing is faster."""
+
+    co_motion_way_m: float = 0.03
+    """Least way of a thing through the world in that window that tells with whom it moves [m]:
+    three floors of motion."""
+
+    co_motion_stray_m: float = 0.010
+    """It is steady in a frame in which it strays no farther than this meanwhile [m]: the floor
+    of motion, which a firm grip keeps to."""
+
+    co_motion_share: float = 0.25
+    """Or no farther than this share of its way through the world [1]: a thing slips and turns in
+    a loose grip, and one that is left behind strays as far as it or the hand goes."""
+
+    co_motion_least: float = 0.2
+    """Who moves as one with a thing for a smaller share of its motion does so by chance [1]."""
+
+    touch_quantile: float = 0.95
+    """Quantile of the distances in frames of evidence that counts as touching [1] (spec 10)."""
+
+    touch_margin_m: float = 0.02
+    """What is added to that quantile [m]: how far fingers open about what they let go (spec 10)."""
+
+    touch_ridge: float = 0.02
+    """Weight of a point's distance from its body's origin, against the misfit, where two points
+    that come together are sought [1]: of bodies that hardly turn against each other they lie
+    midway between the origins, and a misfit of a hundredth of their distance is left."""
+
+    settle_reach_m: float = 0.25
+    """A body known by its origin alone touches nothing whose origin is farther than this [m]: a
+    hand's length and the half of a thing that one hand can hold."""
+
+    settle_nearer_m: float = 0.03
+    """Where a distance settles counts as touching if it is so much shorter than where the bodies
+    rest apart [m]: a hand's thickness."""
+
+    dwell_s: float = 1.0
+    """What is held dwells where its mean over this time stays [s]: two turns of stirring."""
+
+    dwell_m: float = 0.05
+    """Way of that mean within the same time, below which it dwells [m]."""

@@ -343,3 +343,27 @@ class Passage(Observed):
     other: str
     first: int
     sides: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Travels(Observed):
+    """An object covers more way than a floor of motion in a moment, throughout."""
+
+    predicate = "travels"
+    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
+    object: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class MovesWith(Observed):
+    """A travelling object is steady in another body's frame, so far from touching it [mm]."""
+
+    predicate = "moves_with"
+    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
+    object: str
+    body: str
+    first: int
+    last: int
+    gap: int

@@ -1,5 +1,6 @@
 """When an object is away from each place where it rests (thesis 4.4.1)."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from weakref import WeakKeyDictionary
@@ -86,8 +87,27 @@ def _rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Res
     for first, last in intervals(calm, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
         if found and last <= found[-1].interval[1]:
             continue
-        found.append(_stay(stream, (first, last), floor))
+        least = max(1, round(thresholds.rest_minimum_s * rate_hz))
+        found += _stays(stream, (first, last), floor, least)
     return tuple(found)
+
+
+def _stays(stream: Stream, seed: Interval, floor: Floor, least: int) -> Iterator[RestPose]:
+    """The place of a slow stretch; of one that creeps beyond the floor of it, one place each.
+
+    Args:
+        stream: The object's poses.
+        seed: The slow stretch.
+        floor: Displacement from a place below which it is still there.
+        least: Fewest frames of a rest [1].
+    """
+    stay = _stay(stream, seed, floor)
+    begin, end = stay.interval
+    if begin - seed[0] >= least:
+        yield from _stays(stream, (seed[0], begin - 1), floor, least)
+    yield stay
+    if seed[1] - end >= least:
+        yield from _stays(stream, (end + 1, seed[1]), floor, least)
 
 
 def moving(
