@@ -161,6 +161,11 @@ def _clause(
         objects = tuple(sorted(objects))
         places = [f"{{{number}}}" for number in range(1, len(objects) + 1)]
         pattern = pattern.replace("{1}", joined(places))
+    loads = _loads(segment)
+    if loads and "{1}" in pattern:
+        places = [f"{{{len(objects) + number}}}" for number in range(1, len(loads) + 1)]
+        pattern = pattern.replace("{1}", f"{{1}} with {joined(places)}")
+        objects = (*objects, *loads)
     return Clause(
         pattern=pattern,
         objects=objects,
@@ -168,6 +173,15 @@ def _clause(
         start_s=segment.start_s,
         end_s=segment.end_s,
         changes=_changes(segment, book),
+    )
+
+
+def _loads(segment: Segment) -> tuple[str, ...]:
+    """What goes along in or on the object that the segment is about."""
+    return tuple(
+        other
+        for word, body, other in segment.prepositions
+        if word == "with" and body in segment.objects[:1] and other not in segment.objects
     )
 
 
