@@ -43,8 +43,8 @@ def motion_edges(
 def onset(edge: int, floor: int, poses: Poses, least: Floor, thresholds: Thresholds) -> int:
     """The frame at which a motion began, or ended, by the frames at which it passed two distances.
 
-    People start and stop smoothly: displacement grows with the cube of time (minimum jerk; Flash and
-    Hogan 1985). With the times at which it was a hair and the floor of motion that gives the
+    People start and stop smoothly: displacement grows with the cube of time (minimum jerk; Flash
+    and Hogan 1985). With the times at which it was a hair and the floor of motion that gives the
     beginning; it is no further from the edge than thresholds allow.
 
     Args:
@@ -65,7 +65,7 @@ def onset(edge: int, floor: int, poses: Poses, least: Floor, thresholds: Thresho
 
 
 def hair(poses: Poses, thresholds: Thresholds) -> Floor:
-    """Displacement that a body at rest does not show: what noise makes, and at least a hair's width."""
+    """Displacement that a body at rest does not show: what noise makes, at least a hair's width."""
     times = poses.filled.times
     rate_hz = frame_rate(times)
     left = thresholds.motion_sigmas * gains(rate_hz, thresholds)[0]

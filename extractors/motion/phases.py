@@ -1,4 +1,4 @@
-"""Phases of an object's motion: rising, level, sinking, turning or still, by its path's direction."""
+"""Phases of an object's motion, by its path: rising, level, sinking, turning or still."""
 
 from dataclasses import dataclass
 from itertools import pairwise

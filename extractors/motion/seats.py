@@ -21,8 +21,8 @@ def seat(
     """The closed interval within a contact in which the body is down on the other.
 
     Bodies touch within a tolerance, so that a contact begins before the body has come down and
-    lasts after it has risen. It is down until it begins to rise to where the contact ends: until its
-    lowest point was last no more than a hair above its level before that, as far back as it was
+    lasts after it has risen. It is down until it begins to rise to where the contact ends: until
+    its lowest point was last no more than a hair above its level before that, as far back as it was
     no higher than a hair above the lowest; and likewise at the beginning.
 
     Args:
