@@ -43,10 +43,10 @@ from extractors.bodies.poses import Poses
 from extractors.calibration import calibrated, prove_clock, thresholds_of
 from extractors.contact.contacts import Contact, contacts
 from extractors.handling import handling
-from extractors.motion.company import company
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.relations.attention import Attention, attention
+from extractors.relations.company import company
 from extractors.relations.weight_bearing import TRUNK
 from extractors.signals.filters import speed
 from extractors.signals.gaps import long_gaps
