@@ -7,6 +7,7 @@ from jaxtyping import Float
 
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.motion.motion_edges import hair
+from extractors.signals.clock import frame_rate
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
 
@@ -36,14 +37,21 @@ def seat(
     span = slice(first, last + 1)
     height = body.boxes[0][span, 2] - other.middles[span, 2]
     least = hair(body.poses, thresholds).position_m
-    begin, end = first + _settled(height, least), last - _settled(height[::-1], least)
+    most = round(thresholds.onset_s * frame_rate(body.poses.filled.times))
+    begin = first + _settled(height, least, most)
+    end = last - _settled(height[::-1], least, most)
     coming = max((m[1] for m in motions if m[0] <= first <= m[1]), default=first)
     going = min((m[0] for m in motions if m[0] <= last <= m[1]), default=last)
     return min(begin, coming), max(end, going)
 
 
-def _settled(height: Float[np.ndarray, "frames"], least: float) -> int:
-    """How many frames pass before it is down, from the first on; none where it was lost."""
+def _settled(height: Float[np.ndarray, "frames"], least: float, most: int) -> int:
+    """How many frames pass before it is down, from the first on; none where it was lost.
+
+    People stop smoothly: the height over what bears it shrinks with the cube of time (minimum jerk;
+    Flash and Hogan 1985), so it comes down later than it passes a hair's width, by at most so many
+    frames.
+    """
     if np.isnan(height).any():
         return 0
     lowest = np.minimum.accumulate(height)
@@ -51,4 +59,7 @@ def _settled(height: Float[np.ndarray, "frames"], least: float) -> int:
     end = int(higher[0]) if higher.size else len(height)
     down = np.flatnonzero(height[:end] <= lowest[end - 1] + least)[0]
     level = float(np.median(height[down:end]))
-    return int(np.flatnonzero(height[:end] <= level + least)[0])
+    passed = int(np.flatnonzero(height[:end] <= level + least)[0])
+    share = np.cbrt(max(float(height[0]) - level, 0.0) / least)
+    later = min(round(passed / (share - 1.0)), most) if share > 1.0 else 0
+    return min(passed + later, end - 1)
