@@ -21,6 +21,12 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "against", 4, ""): "only prepositions rest on it, and no name on a preposition",
     ("", "support", 2, ""): "it keeps an object off the list: what is told is that it is none",
     ("", "bears", 4, "part"): "names rest on a foot's bearing all or nothing",
+    ("", "event", 6, "levels"): "no story has a transit of three phases; the scenes have",
+    ("", "rides", 3, ""): "no story has a load; the scenes and tests/extractors/test_loads.py have",
+    ("", "borne_along", 3, ""): "no story has a load",
+    ("", "strikes_with", 2, ""): "no story has a tool; tests/kb/language/test_instruments.py has",
+    ("", "pushes_with", 2, ""): "no story has a tool",
+    ("", "sends_off", 2, ""): "no story strikes away what a hand does not hold; the scenes do",
 }
 """Templates of what holds that no explanation tells, and why."""
 
