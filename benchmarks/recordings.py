@@ -1,6 +1,6 @@
-"""Recordings that others made, compared with what they timed, where things ended, and pictures.
+"""Recordings that others made, held against what they timed and where things ended.
 
-python benchmarks/recordings.py [carries] [containers] [grasps] [--takes 16]
+python benchmarks/recordings.py [carries] [containers] [--takes 16]
 
 The recordings are found through the environment variable CAPAR_DATA; without it nothing is done.
 """
@@ -17,13 +17,11 @@ import numpy as np
 
 from capar.evaluation.carry_timing import Carry, Miss, measure, near
 from capar.evaluation.containers import halved, landings
-from capar.evaluation.grasps import Change, changes, compare, read_seen
 from extractors.readers.bundle.capture_toml import read_capture, read_files, takes
 from extractors.readers.bundle.location import open_bundle
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 SCENES = EXAMPLES / "boxed_vr" / "scenes.toml"
-HANDS = EXAMPLES / "manipnet"
 UNSEEN = {Miss.STILL, Miss.CREEPS}
 """What motion alone cannot tell: the object does not move, or less than what counts as motion."""
 
@@ -83,12 +81,10 @@ def contained(names: list[str]) -> dict[str, Any]:
             (halves, landings(parted, both)),
         ):
             for each in group:
-                right = "right" if each.reported == each.true else "wrong"
+                right = "right" if each.told == each.true else "wrong"
                 counts[f"{'into' if each.true else 'not into'}, {right}"] += 1
-                if each.reported != each.true:
-                    wrong.append(
-                        f"{name}: {each.object} {each.container}, reported {each.reported}"
-                    )
+                if each.told != each.true:
+                    wrong.append(f"{name}: {each.object} {each.container}, told {each.told}")
     return {
         "scenes": len(names),
         "whole_box": dict(sorted(whole.items())),
@@ -96,27 +92,6 @@ def contained(names: list[str]) -> dict[str, Any]:
         "wrong": wrong,
         "left_out": left_out,
     }
-
-
-def grasped(names: list[str]) -> dict[str, Any]:
-    """Passes and regrasps by the rules, beside what the pictures show."""
-    out = {}
-    for take in ("cup1", "mug1"):
-        seen = read_seen(HANDS / "seen.toml", take)
-        held = compare(seen, changes(read_capture(f"{HANDS}:{take}")))
-        out[take] = {
-            "seen": _counts(each.kind for each in seen if each.sure),
-            "found": [f"{_line(one)}: {_line(other)}" for one, other in held.found],
-            "missed": [_line(each) for each in held.missed],
-            "open_in_the_pictures": [_line(each) for each in held.open],
-            "not_seen": [_line(each) for each in held.extra],
-        }
-    return out
-
-
-def _line(change: Change) -> str:
-    other = f" to {change.other}" if change.other else ""
-    return f"{change.kind} {change.ee}{other} {change.start_s:.2f}-{change.end_s:.2f} s"
 
 
 def _percent(hits: Any) -> float:
@@ -130,14 +105,13 @@ def _counts(kinds: Any) -> dict[str, int]:
 PARTS: dict[str, Callable[[list[str]], dict[str, Any]]] = {
     "carries": carried,
     "containers": contained,
-    "grasps": grasped,
 }
 
 
 def main() -> None:
     """Print each part as JSON that people can read."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("parts", nargs="*", help="carries, containers, grasps; else all")
+    parser.add_argument("parts", nargs="*", help="carries, containers; else all")
     parser.add_argument("--takes", type=int, default=16, help="scenes of groceries, at most")
     options = parser.parse_args()
     if unknown := sorted(set(options.parts) - set(PARTS)):

@@ -8,6 +8,7 @@ from jaxtyping import Float
 
 from capar.model.capture import Capture, Shape, TagObject, TagType
 from capar.pipelines.observation import observe
+from capar_rules.engine.profiles import DEFAULT, Profile
 
 INTO = "into"
 
@@ -25,7 +26,9 @@ class Landing:
     """Whether its middle lies inside at the end and did not at the beginning."""
 
 
-def landings(capture: Capture, containers: Iterable[str]) -> tuple[Landing, ...]:
+def landings(
+    capture: Capture, containers: Iterable[str], *, rules: Profile | str = DEFAULT
+) -> tuple[Landing, ...]:
     """Observe a capture and compare the preposition with the objects' first and last poses.
 
     The truth is given by the middle of an object's box and the extent of the container's alone.
@@ -36,7 +39,7 @@ def landings(capture: Capture, containers: Iterable[str]) -> tuple[Landing, ...]
     names = list(containers)
     reported = {
         (body, other)
-        for segment in observe(capture).segments
+        for segment in observe(capture, rules=rules).segments
         for name, body, other in segment.prepositions
         if name == INTO and other in names
     }

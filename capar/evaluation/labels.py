@@ -1,54 +1,37 @@
-"""Label files: who did what from when to when, as people marked it."""
+"""Labels: what people say was done, by whom and when, checked against themselves and the clock."""
 
-import csv
-import json
-import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from io import StringIO
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.errors import FileError
-from extractors.readers.files import read_text
-
-BIMACTS = (
-    "idle",
-    "approach",
-    "retreat",
-    "lift",
-    "place",
-    "hold",
-    "pour",
-    "cut",
-    "hammer",
-    "saw",
-    "stir",
-    "screw",
-    "drink",
-    "wipe",
-)
-"""Names of the action numbers of the KIT Bimanual Actions Dataset."""
-
-SECONDS = ("link", "start_s", "end_s", "label")
-FRAMES = ("hand", "start_frame", "end_frame", "action")
-UNNAMED = {"", "None", "none", "null"}
+from capar.evaluation.kinds import Contradictions as Contradictions
+from capar.evaluation.kinds import Kind as Kind
+from capar.model.errors import FileError, UnknownNameError
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Label:
-    """One mark: an action of a link from a start to an end."""
+    """One mark from a start to an end."""
 
     link: str
+    """Who acts: a link, or of a contact its first body; empty where a carry names none."""
+
     start: float
     """Seconds, or a frame's number."""
 
     end: float
     label: str
     object: str = ""
+    """What it is done to: an object, or the other body of a contact or event."""
+
+    sure: bool = True
+    """Whether it counts; what is open is counted neither as right nor as wrong."""
+
+    where: str = field(default="", compare=False)
+    """File and line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,26 +60,36 @@ class Labels:
         """The labels that occur."""
         return tuple(sorted({each.label for each in self.marks}))
 
+    def renamed(self, names: dict[str, str]) -> "Labels":
+        """The same marks with our names of links and bodies in the place of the file's."""
+        marks = [
+            replace(
+                each,
+                link=names.get(each.link, each.link),
+                object=names.get(each.object, each.object),
+            )
+            for each in self.marks
+        ]
+        return replace(self, marks=tuple(sorted(marks)))
 
-def read_labels(path: Path) -> Labels:
-    """Read a label file, whichever of the known forms it has.
 
-    The forms are CSV in seconds (``link,start_s,end_s,label[,object]``), CSV in frames
-    (``hand,start_frame,end_frame,...,action,...,object``) and the JSON of the KIT Bimanual
-    Actions Dataset.
+def check_known(labels: Labels, kind: str, known: Iterable[str], *, at: str) -> None:
+    """Prove that every name in the marks exists.
 
-    A mark that ends before it starts is left out, and what two marks claim belongs to neither;
-    notices say so.
+    Args:
+        labels: The marks.
+        kind: What is named, for the message.
+        known: The names that exist.
+        at: The field of the marks that holds the name; an empty name is not looked at.
 
     Raises:
-        FileError: It is none of these forms, or it marks nothing.
+        UnknownNameError: One does not exist; it says file and line, and lists those that do.
     """
-    text = read_text(path)
-    if text.lstrip().startswith("{"):
-        marks, in_frames = _bimacts(path, text), True
-    else:
-        marks, in_frames = _table(path, text)
-    return _agreed(path, marks, "frame" if in_frames else "second")
+    names = set(known)
+    for each in labels.marks:
+        name = getattr(each, at)
+        if name and name not in names:
+            raise UnknownNameError(kind, name, names, where=each.where or str(labels.path))
 
 
 def in_seconds(labels: Labels, times: Float[np.ndarray, "frames"]) -> Labels:
@@ -107,112 +100,132 @@ def in_seconds(labels: Labels, times: Float[np.ndarray, "frames"]) -> Labels:
         times: Time of each frame that the labels count [s].
 
     Raises:
-        FileError: The marks name frames that there are not.
+        FileError: A mark is outside the recording; it says file and line.
     """
     if not labels.in_frames:
         return labels
-    last = max(each.end for each in labels.marks)
-    first = min(each.start for each in labels.marks)
-    if first < 0 or last > len(times):
-        raise FileError(
-            labels.path,
-            f"frames from {first:.0f} to {last:.0f} are marked, but the recording has frames "
-            f"0 to {len(times) - 1}.",
-            "Labels count the frames of the file that the capture is read from.",
-        )
-    frames = np.arange(len(times))
+    for each in labels.marks:
+        if each.start < 0 or each.end > len(times):
+            raise FileError(
+                each.where or labels.path,
+                f"frames from {each.start:.0f} to {each.end:.0f} are marked, but the recording "
+                f"has frames 0 to {len(times) - 1}.",
+                "Labels count the frames of the file that the capture is read from.",
+            )
+    frames = np.arange(len(times) + 1)
+    clock = np.append(times, _after_last(times))
     marks = [
         replace(
             each,
-            start=float(np.interp(each.start, frames, times)),
-            end=float(np.interp(each.end, frames, times)),
+            start=float(np.interp(each.start, frames, clock)),
+            end=float(np.interp(each.end, frames, clock)),
         )
         for each in labels.marks
     ]
-    return Labels(labels.path, tuple(marks), False, labels.notices)
+    return replace(labels, marks=tuple(marks), in_frames=False)
 
 
-def _table(path: Path, text: str) -> tuple[list[Label], bool]:
-    lines = csv.DictReader(StringIO(text))
-    header = tuple(lines.fieldnames or ())
-    for columns, in_frames in ((SECONDS, False), (FRAMES, True)):
-        if set(columns) <= set(header):
-            rows = [_row(path, lines.line_num, row, columns) for row in lines]
-            return [each for each in rows if each.label not in UNNAMED], in_frames
-    raise FileError(
-        path,
-        f"its columns are {', '.join(header) or 'none'}.",
-        f"A label table has the columns {','.join(SECONDS)}[,object], or {','.join(FRAMES)}; "
-        "or give the JSON of the KIT Bimanual Actions Dataset.",
-    )
+def check_span(labels: Labels, times: Float[np.ndarray, "frames"]) -> None:
+    """Prove that no mark in seconds lies outside the capture by more than a frame.
 
-
-def _row(path: Path, line: int, row: Mapping[str, str | None], columns: tuple[str, ...]) -> Label:
-    link, start, end, label = ((row[column] or "").strip() for column in columns)
-    thing = (row.get("object") or "").strip()
-    place = f"{path}:{line}"
-    return Label(
-        link, _number(place, start), _number(place, end), label, "" if thing in UNNAMED else thing
-    )
-
-
-def _number(place: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise FileError(place, f"{text!r} is no number.")
-    return value
-
-
-def _bimacts(path: Path, text: str) -> list[Label]:
-    try:
-        content: dict[str, list[Any]] = json.loads(text)
-        return [each for link, marks in content.items() for each in _alternating(link, marks)]
-    except (ValueError, TypeError, IndexError, AttributeError) as error:
-        raise FileError(
-            path,
-            f"is no label file of the KIT Bimanual Actions Dataset: {error}.",
-            'It reads {"right_hand": [0, [action, class, object], 98, ..., last frame]}.',
-        ) from None
-
-
-def _alternating(link: str, marks: list[Any]) -> list[Label]:
-    """Marks from a list that alternates frames and actions."""
-    out = []
-    for start, action, end in zip(marks[:-1:2], marks[1::2], marks[2::2], strict=True):
-        number, _, thing = action
-        if number is not None:
-            label = BIMACTS[number]
-            out.append(Label(link, float(start), float(end), label, str(thing or "")))
-    return out
-
-
-def _agreed(path: Path, marks: list[Label], unit: str) -> Labels:
-    """The marks without what contradicts itself, which the notices name."""
-    if not marks:
-        raise FileError(path, "marks nothing.", "A label file has at least one mark.")
-    out: list[Label] = []
-    notices = []
-    claims: dict[str, Label] = {}
-    for each in sorted(marks):
-        if each.end < each.start:
-            notices.append(f"{path}: left out {_shown(each, unit)}: it ends before it starts")
-            continue
-        claim = claims.get(each.link, each)
-        if each.start < claim.end and claim is not each:
-            notices.append(
-                f"{path}: {_shown(each, unit)} and {_shown(claim, unit)} overlap; "
-                "what both claim is not counted"
+    Raises:
+        FileError: One does; it says file and line.
+    """
+    step = _after_last(times) - float(times[-1])
+    for each in labels.marks:
+        if each.start < float(times[0]) - 1.5 * step or each.end > float(times[-1]) + 1.5 * step:
+            raise FileError(
+                each.where or labels.path,
+                f"{shown(each, 'second')} is outside of the capture, which lasts from "
+                f"{times[0]:.2f} to {times[-1]:.2f} s.",
+                "Give times in seconds of the capture's own clock.",
             )
+
+
+def agreed(
+    path: Path,
+    marks: Iterable[Label],
+    *,
+    in_frames: bool,
+    kind: Kind = Kind.ACTIONS,
+    contradictions: Contradictions = Contradictions.REFUSE,
+) -> Labels:
+    """The marks of a file, none of which contradicts itself or another.
+
+    Raises:
+        FileError: There are none, or one contradicts itself or another and is not to be left out.
+    """
+    every = sorted(marks)
+    if not every:
+        raise FileError(path, "marks nothing.", "A label file has at least one mark.")
+    unit = "frame" if in_frames else "second"
+    out: list[Label] = []
+    notices: list[str] = []
+    for group in _channels(every, kind):
+        kept, said = _consistent(path, group, unit, strict=contradictions == Contradictions.REFUSE)
+        out += kept
+        notices += said
+    return Labels(path, tuple(sorted(out)), in_frames, tuple(notices))
+
+
+def shown(mark: Label, unit: str) -> str:
+    """A mark in words, with its times in frames or seconds."""
+    who = " and ".join(filter(None, (mark.link, mark.object if mark.label == "contact" else "")))
+    about = who or mark.object
+    return f"{mark.label} of {about} from {unit} {mark.start:g} to {mark.end:g}"
+
+
+def _channels(marks: list[Label], kind: Kind) -> list[list[Label]]:
+    """Marks that exclude each other in time, together; events exclude none."""
+    key = {
+        Kind.ACTIONS: lambda mark: mark.link,
+        Kind.CONTACTS: lambda mark: (mark.link, mark.object),
+        Kind.CARRIES: lambda mark: mark.object,
+        Kind.EVENTS: id,
+    }[kind]
+    groups: dict[object, list[Label]] = {}
+    for each in marks:
+        groups.setdefault(key(each), []).append(each)
+    return list(groups.values())
+
+
+def _consistent(
+    path: Path, marks: list[Label], unit: str, *, strict: bool
+) -> tuple[list[Label], list[str]]:
+    """The marks of one channel without what contradicts itself, which the notices name."""
+    out: list[Label] = []
+    notices: list[str] = []
+    claim: Label | None = None
+    for each in sorted(marks, key=lambda mark: (mark.start, mark.end)):
+        if each.end < each.start:
+            _refuse(each, f"{shown(each, unit)} ends before it starts.", path, strict=strict)
+            notices.append(f"{path}: left out {shown(each, unit)}: it ends before it starts")
+            continue
+        if claim is not None and each.start < claim.end:
+            both = f"{shown(each, unit)} and {shown(claim, unit)} overlap"
+            _refuse(each, f"{both}{_line(claim)}.", path, strict=strict)
+            notices.append(f"{path}: {both}; what both claim is not counted")
             out[-1] = replace(out[-1], end=min(out[-1].end, each.start))
             out.append(replace(each, start=min(claim.end, each.end)))
         else:
             out.append(each)
-        claims[each.link] = max(claim, each, key=lambda mark: mark.end)
-    return Labels(path, tuple(out), unit == "frame", tuple(notices))
+        claim = each if claim is None else max(claim, each, key=lambda mark: mark.end)
+    return out, notices
 
 
-def _shown(mark: Label, unit: str) -> str:
-    return f"{mark.label} of {mark.link} from {unit} {mark.start:g} to {mark.end:g}"
+def _refuse(mark: Label, problem: str, path: Path, *, strict: bool) -> None:
+    if strict:
+        remedy = "Correct it, or leave such marks out: --contradictions leave-out."
+        raise FileError(mark.where or path, problem, remedy)
+
+
+def _line(mark: Label) -> str:
+    """The line of the other mark."""
+    _, _, line = mark.where.rpartition(":")
+    return f" (the other in line {line})" if line.isdigit() else ""
+
+
+def _after_last(times: Float[np.ndarray, "frames"]) -> float:
+    """When the frame after the last would be taken [s]."""
+    step = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+    return float(times[-1]) + step

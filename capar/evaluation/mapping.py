@@ -8,9 +8,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-from jaxtyping import Float
-
 from capar.evaluation.metrics import Interval
 from capar.model.errors import FileError, UnknownNameError
 from capar.model.observation import ObservedLink, Segment
@@ -43,6 +40,14 @@ class LabelMapping:
     links: Mapping[str, str]
     """Of the label file, by ours, where they differ."""
 
+    others: tuple[str, ...] = ()
+    """Labels that no rule gives and that may nevertheless occur."""
+
+    @property
+    def labels(self) -> set[str]:
+        """Every label that may occur."""
+        return {*(each.label for each in self.rules), *self.others}
+
 
 def read_mapping(path: Path) -> LabelMapping:
     """Read a mapping file.
@@ -56,13 +61,13 @@ def read_mapping(path: Path) -> LabelMapping:
     if not table.rule:
         raise FileError(path, "has no rule.", 'Write [[rule]], name = "Reach", label = "approach".')
     rules = tuple(Rule(**dict(each), where=each.where("name")) for each in table.rule)
-    return LabelMapping(path, rules, table.links)
+    return LabelMapping(path, rules, table.links, tuple(table.others))
 
 
 def check_names(
     mapping: LabelMapping, *, names: Iterable[str], objects: Iterable[str], labels: Iterable[str]
-) -> None:
-    """Check that every name in the rules is one that exists.
+) -> tuple[str, ...]:
+    """Prove that every name in the rules is one that exists.
 
     Args:
         mapping: The rules.
@@ -70,38 +75,41 @@ def check_names(
         objects: What objects are called.
         labels: The labels that occur in the label files.
 
+    Returns:
+        A notice for each label that a rule gives and that is in no label file, as where the labels
+        are of one hand only.
+
     Raises:
         UnknownNameError: One does not; it lists those that do.
     """
-    known = {"action": {*names, ANY}, "object": set(objects), "label": set(labels)}
+    known = {"action": {*names, ANY}, "object": set(objects)}
+    occur = set(labels)
+    notices: dict[str, str] = {}
     for rule in mapping.rules:
-        wanted = [("action", rule.name), ("label", rule.label)]
+        if rule.label not in occur:
+            text = f"{rule.where}: the label {rule.label!r} is in no label file"
+            notices.setdefault(rule.label, text)
+        wanted = [("action", rule.name)]
         wanted += [("action", each) for each in (rule.previous, rule.next) if each]
         wanted += [("object", each) for each in (rule.object, rule.dominant) if each]
         for kind, name in wanted:
             if name not in known[kind]:
                 raise UnknownNameError(kind, name, known[kind], where=rule.where)
+    return tuple(notices.values())
 
 
-def labelled(
-    link: ObservedLink, mapping: LabelMapping, times: Float[np.ndarray, "frames"]
-) -> tuple[Interval, ...]:
-    """The segments of a link under the labels that the rules give them.
+def labelled(link: ObservedLink, mapping: LabelMapping) -> tuple[Interval, ...]:
+    """The segments of a link, with the times that are printed, under the labels of the rules.
 
     Args:
         link: The segments.
         mapping: The rules.
-        times: Time of each frame of the capture [s].
 
     Raises:
         UnknownNameError: No rule fits a segment; it lists the names that have rules.
     """
     return tuple(
-        Interval(
-            float(times[each.first]),
-            float(times[each.last]),
-            _label(link.segments, index, mapping),
-        )
+        Interval(each.start_s, each.end_s, _label(link.segments, index, mapping))
         for index, each in enumerate(link.segments)
     )
 

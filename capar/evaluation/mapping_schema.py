@@ -30,3 +30,6 @@ class MappingFile(Entry):
 
     links: Annotated[dict[str, str], key("Our link = the label file's, where they differ.")] = {}
     rule: Annotated[list[MappingRule], key("Rules; the first that fits counts.")] = []
+    others: Annotated[
+        list[str], key("Labels that no rule gives and that may occur: those segments are missed.")
+    ] = []

@@ -11,15 +11,19 @@ F1 is computed; edit scores are averaged over sequences. All scores are percenta
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 THRESHOLDS = (10, 25, 50)
 """Least intersection over union of a right segment [%]."""
 
 MATCH_AT = THRESHOLDS[0]
 """The threshold at which segments count as matched for errors of onset and offset [%]."""
+
+SAME_S = 1e-6
+"""Times that differ by less are one [s]."""
 
 NOTHING = "(nothing)"
 """The name of a time that no predicted segment covers."""
@@ -64,6 +68,34 @@ class Tally:
 
     inserted: Counter[str] = field(default_factory=Counter)
     """Predicted segments without a match, by label."""
+
+    def __add__(self, other: "Tally") -> "Tally":
+        """Both together."""
+        return pooled((self, other))
+
+    def scores(self) -> dict[str, Any]:
+        """The scores that follow from counts: percentages, and errors in milliseconds."""
+        classes = frame_f1(self.confusion)
+        macro = float(np.mean(list(classes.values()))) if classes else float("nan")
+        return {
+            "frames": self.confusion.total(),
+            "segments": {"true": self.true, "predicted": self.predicted},
+            "accuracy": rounded(accuracy(self.confusion)),
+            "macro_f1": rounded(macro),
+            "f1_by_class": {name: rounded(value) for name, value in classes.items()},
+            **{f"f1@{each}": rounded(segment_f1(self, each)) for each in THRESHOLDS},
+            "edit": rounded(float(np.mean(self.edits)) if self.edits else float("nan")),
+            "onset_ms": errors_ms(self.onsets_s),
+            "offset_ms": errors_ms(self.offsets_s),
+            "missed": dict(sorted(self.missed.items())),
+            "inserted": dict(sorted(self.inserted.items())),
+            "confusion": [
+                {"true": one, "predicted": other, "frames": frames}
+                for (one, other), frames in sorted(
+                    self.confusion.items(), key=lambda each: (-each[1], each[0])
+                )
+            ],
+        }
 
 
 def tally(
@@ -130,10 +162,16 @@ def frame_labels(
     """The label at each time; empty where there is none. The last frame closes its interval."""
     names = np.full(len(times), "", dtype=object)
     for each in intervals:
-        names[(times >= each.start_s) & (times < each.end_s)] = each.label
-    if intervals and len(times) and not names[-1] and times[-1] == intervals[-1].end_s:
+        names[within(each, times)] = each.label
+    last = intervals[-1].end_s if intervals else float("nan")
+    if len(times) and not names[-1] and abs(times[-1] - last) <= SAME_S:
         names[-1] = intervals[-1].label
     return tuple(names)
+
+
+def within(interval: Interval, times: Float[np.ndarray, "frames"]) -> Bool[np.ndarray, "frames"]:
+    """Whether each time is in an interval: [start, end), but for what rounding does to them."""
+    return (times >= interval.start_s - SAME_S) & (times < interval.end_s - SAME_S)
 
 
 def matches(
@@ -193,6 +231,30 @@ def segment_f1(counts: Tally, threshold: int) -> float:
     """Segmental F1 at a threshold of ``THRESHOLDS`` [%]; NaN where there are no segments."""
     total = counts.true + counts.predicted
     return 100.0 * 2 * counts.hits[threshold] / total if total else float("nan")
+
+
+def errors_ms(errors_s: Sequence[float]) -> dict[str, Any]:
+    """Median and 95th percentile of the size of errors, and their median with its sign [ms].
+
+    An infinite error is an edge that was not found; a median that is infinite is None.
+    """
+    if not errors_s:
+        return {"matched": 0, "median": None, "p95": None, "bias": None}
+    errors = 1000.0 * np.asarray(errors_s)
+    order = np.percentile(np.abs(errors), [50, 95], method="linear" if np.isfinite(errors).all()
+                          else "lower")  # fmt: skip
+    known = errors[np.isfinite(errors)]
+    return {
+        "matched": len(known),
+        "median": rounded(float(order[0])),
+        "p95": rounded(float(order[1])),
+        "bias": rounded(float(np.median(known)) if known.size else float("nan")),
+    }
+
+
+def rounded(value: float) -> float | None:
+    """Two digits after the point; None where there is no number."""
+    return round(value, 2) if np.isfinite(value) else None
 
 
 def _overlap(one: Interval, other: Interval) -> float:

@@ -1,27 +1,19 @@
-"""Captures observed and compared with their labels, link by link and pooled."""
+"""Segments held against labels of actions: captures observed, link by link and pooled."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
-from capar.evaluation.labels import Labels, in_seconds, read_labels
+from capar.evaluation.comparisons import Channel
+from capar.evaluation.evaluations import Evaluation, Scored, summed
+from capar.evaluation.label_files import read_labels
+from capar.evaluation.labels import Kind, Labels, check_known, check_span, in_seconds
 from capar.evaluation.mapping import LabelMapping, check_names, labelled
-from capar.evaluation.metrics import (
-    MATCH_AT,
-    THRESHOLDS,
-    Interval,
-    Tally,
-    accuracy,
-    frame_f1,
-    pooled,
-    segment_f1,
-    tally,
-)
-from capar.model.errors import UnknownNameError
+from capar.evaluation.metrics import Interval, tally
+from capar.evaluation.plan import Pair, Plan
+from capar.model.capture import Capture
 from capar.model.observation import Observation
 from capar.model.par import UNKNOWN
 from capar.pipelines.observation import observe
@@ -39,77 +31,46 @@ class Case:
     times: Float[np.ndarray, "frames"]
     """Time of each frame of the capture [s]."""
 
-
-@dataclass(frozen=True)
-class Evaluation:
-    """What was counted, by link and over all links."""
-
-    cases: tuple[str, ...]
-    """Names of the captures."""
-
-    links: Mapping[str, Tally]
-    whole: Tally
-    unlabelled: tuple[str, ...]
-    """Links that were observed and bear no labels in any of the files: not counted."""
-
-    notices: tuple[str, ...] = ()
-    """What is odd about the labels."""
+    name: str = ""
+    """What it is called; the capture's name if empty."""
 
 
-def evaluate(
-    pairs: Sequence[tuple[str, Path]],
-    mapping: LabelMapping,
-    *,
-    rules: Profile | str = DEFAULT,
-    frames_of: str = "",
-) -> Evaluation:
-    """Observe captures and compare them with their label files.
-
-    Args:
-        pairs: Captures, each with its label file.
-        mapping: From names of segments to labels.
-        rules: The rule profile to observe with, or its name.
-        frames_of: The capture's file whose frames the labels count, where it has several.
+def score_actions(plan: Plan, base: Profile) -> Evaluation:
+    """Observe captures and compare the names of their segments with labels.
 
     Raises:
         CaparError: A capture, a label file or the mapping has a fault.
     """
-    base = profile(rules) if isinstance(rules, str) else rules
-    cases = [_case(place, path, base, frames_of) for place, path in pairs]
-    check_names(
-        mapping,
+    assert plan.mapping is not None, "a plan of actions has a mapping"
+    read = [(pair, _prepared(pair, plan, plan.mapping)) for pair in plan.pairs]
+    cases = [
+        Case(observe(capture, rules=base), labels, capture.times, pair.name)
+        for pair, (labels, capture) in read
+    ]
+    notices = check_names(
+        plan.mapping,
         names=known_names([each.observation for each in cases], base),
         objects={thing.name for each in cases for thing in each.observation.objects},
         labels={name for each in cases for name in each.labels.names},
     )
-    return compare(cases, mapping)
+    return compare(cases, plan.mapping, groups=plan.groups, notices=notices)
 
 
-def compare(cases: Sequence[Case], mapping: LabelMapping) -> Evaluation:
+def compare(
+    cases: Sequence[Case],
+    mapping: LabelMapping,
+    *,
+    groups: Mapping[str, tuple[str, ...]] | None = None,
+    notices: Sequence[str] = (),
+) -> Evaluation:
     """Compare observations with labels.
 
     Raises:
-        UnknownNameError: Labels are of a link that was not observed, or no rule fits a segment.
+        UnknownNameError: Labels are of a link that was not observed, a label is one that no rule
+            of the mapping gives, or no rule fits a segment.
     """
-    found: dict[str, list[Tally]] = {}
-    observed: set[str] = set()
-    for case in cases:
-        links = {mapping.links.get(each.ee, each.ee): each for each in case.observation.links}
-        observed |= set(links)
-        for name in case.labels.links:
-            if name not in links:
-                raise UnknownNameError("observed link", name, links, where=str(case.labels.path))
-            marks = [Interval(each.start, each.end, each.label) for each in case.labels.of(name)]
-            counts = tally(marks, labelled(links[name], mapping, case.times), case.times)
-            found.setdefault(name, []).append(counts)
-    by_link = {name: pooled(found[name]) for name in sorted(found)}
-    return Evaluation(
-        cases=tuple(each.observation.capture for each in cases),
-        links=by_link,
-        whole=pooled(by_link.values()),
-        unlabelled=tuple(sorted(observed - set(found))),
-        notices=tuple(each for case in cases for each in case.labels.notices),
-    )
+    captures = tuple(_scored(case, mapping) for case in cases)
+    return Evaluation(Kind.ACTIONS, captures, dict(groups or {}), tuple(notices))
 
 
 def known_names(observations: Sequence[Observation], base: Profile | None = None) -> set[str]:
@@ -123,62 +84,53 @@ def known_names(observations: Sequence[Observation], base: Profile | None = None
     return names
 
 
-def scores(counts: Tally) -> dict[str, Any]:
-    """The scores that follow from counts: percentages, and errors in milliseconds."""
-    classes = frame_f1(counts.confusion)
-    return {
-        "frames": counts.confusion.total(),
-        "segments": {"true": counts.true, "predicted": counts.predicted},
-        "accuracy": _rounded(accuracy(counts.confusion)),
-        "macro_f1": _rounded(float(np.mean(list(classes.values()))) if classes else float("nan")),
-        "f1_by_class": {name: _rounded(value) for name, value in classes.items()},
-        **{f"f1@{each}": _rounded(segment_f1(counts, each)) for each in THRESHOLDS},
-        "edit": _rounded(float(np.mean(counts.edits)) if counts.edits else float("nan")),
-        "onset_ms": _errors(counts.onsets_s),
-        "offset_ms": _errors(counts.offsets_s),
-        "missed": dict(sorted(counts.missed.items())),
-        "inserted": dict(sorted(counts.inserted.items())),
-        "confusion": [
-            {"true": one, "predicted": other, "frames": frames}
-            for (one, other), frames in sorted(
-                counts.confusion.items(), key=lambda each: (-each[1], each[0])
-            )
-        ],
-    }
+def read_case_labels(pair: Pair, plan: Plan) -> Labels:
+    """The labels of a capture, in seconds of its clock, with our names of bodies.
 
-
-def report(evaluation: Evaluation) -> dict[str, Any]:
-    """An evaluation as plain values, for JSON."""
-    return {
-        "captures": list(evaluation.cases),
-        "matched_at_percent": MATCH_AT,
-        "links": {name: scores(counts) for name, counts in evaluation.links.items()},
-        "all": scores(evaluation.whole),
-        "unlabelled_links": list(evaluation.unlabelled),
-        "notices": list(evaluation.notices),
-    }
-
-
-def _case(place: str, path: Path, rules: Profile, frames_of: str) -> Case:
-    labels = read_labels(path)
+    Raises:
+        CaparError: The label file has a fault.
+    """
+    assert pair.labels is not None, "a plan without label files reads none"
+    labels = read_labels(pair.labels, plan.kind, contradictions=plan.contradictions)
     if labels.in_frames:
-        labels = in_seconds(labels, frame_times(place, file=frames_of))
-    capture = read_capture(place)
-    return Case(observe(capture, rules=rules), labels, capture.times)
+        labels = in_seconds(labels, frame_times(pair.capture, file=plan.frames_of))
+    return labels.renamed(dict(plan.names))
 
 
-def _errors(errors_s: Sequence[float]) -> dict[str, Any]:
-    """Median and 95th percentile of the size of errors, and their median with its sign [ms]."""
-    if not errors_s:
-        return {"matched": 0, "median": None, "p95": None, "bias": None}
-    errors = 1000.0 * np.asarray(errors_s)
-    return {
-        "matched": len(errors),
-        "median": _rounded(float(np.median(np.abs(errors)))),
-        "p95": _rounded(float(np.percentile(np.abs(errors), 95))),
-        "bias": _rounded(float(np.median(errors))),
-    }
+def _prepared(pair: Pair, plan: Plan, mapping: LabelMapping) -> tuple[Labels, Capture]:
+    """Labels and capture, with every fault of the labels found before anything is observed."""
+    labels = read_case_labels(pair, plan)
+    capture = read_capture(pair.capture)
+    links = [mapping.links.get(each.name, each.name) for each in capture.acting]
+    _check_labels(labels, links, mapping)
+    check_span(labels, capture.times)
+    return labels, capture
 
 
-def _rounded(value: float) -> float | None:
-    return None if np.isnan(value) else round(value, 2)
+def _check_labels(labels: Labels, links: Iterable[str], mapping: LabelMapping) -> None:
+    check_known(labels, "observed link", links, at="link")
+    check_known(labels, "label in the mapping", mapping.labels, at="label")
+
+
+def _scored(case: Case, mapping: LabelMapping) -> Scored:
+    links = {mapping.links.get(each.ee, each.ee): each for each in case.observation.links}
+    _check_labels(case.labels, links, mapping)
+    channels = tuple(
+        Channel(
+            name,
+            true=tuple(Interval(each.start, each.end, each.label) for each in case.labels.of(name)),
+            found=labelled(links[name], mapping),
+            segments=links[name].segments,
+        )
+        for name in case.labels.links
+    )
+    parts = {each.name: tally(each.true, each.found, case.times) for each in channels}
+    return Scored(
+        name=case.name or case.observation.capture,
+        times=case.times,
+        channels=channels,
+        parts=parts,
+        whole=summed(parts.values()),
+        unlabelled=tuple(sorted(set(links) - set(parts))),
+        notices=case.labels.notices,
+    )

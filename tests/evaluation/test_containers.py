@@ -7,8 +7,14 @@ import pytest
 from measured_bodies import box, pick_and_place
 from motion_files import recordings_folder
 
-from capar.evaluation.containers import halved, landings
+from capar.evaluation.container_scores import count_landings
+from capar.evaluation.containers import Landing, halved, landings
+from capar.evaluation.evaluations import report
+from capar.evaluation.kinds import Kind
+from capar.evaluation.plan import Plan, read_plan
+from capar.evaluation.running import evaluate
 from capar.model.capture import ShapeSource
+from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture, takes
 
 SCENES = Path(__file__).parents[2] / "examples" / "boxed_vr" / "scenes.toml"
@@ -70,3 +76,33 @@ def test_objects_without_a_mesh_are_counted_and_left_out(monkeypatch: pytest.Mon
     assert notice.message.startswith("7 of 23 objects have no shape and are left out: ")
     assert sum(each.tag == "mobile" for each in capture.objects) == 16
     assert not [each for each in capture.objects if each.shape is None]
+
+
+def test_landings_are_counted_by_what_is_told_and_what_is_true() -> None:
+    found = [
+        Landing("a", "box", told, true)
+        for told, true, times in (
+            (True, True, 3),
+            (True, False, 1),
+            (False, True, 2),
+            (False, False, 4),
+        )
+        for _ in range(times)
+    ]
+    scores = count_landings(found).scores()
+    assert (scores["objects"], scores["right"], scores["accuracy"]) == (10, 7, 70.0)
+    assert (scores["went_in"], scores["told"]) == (5, 4)
+    assert (scores["told_wrongly"], scores["untold"]) == (1, 2)
+
+
+def test_a_scene_is_scored_by_its_evaluation_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CAPAR_DATA", str(recordings_folder()))
+    plan = read_plan(SCENES.with_name("containers.toml"), takes=["p76_s1"])
+    found = report(evaluate(plan))
+    assert (found["all"]["objects"], found["all"]["right"]) == (12, 12)
+    assert any("have no shape and are left out" in each for each in found["notices"])
+
+
+def test_containers_are_named_in_an_evaluation_file() -> None:
+    with pytest.raises(CaparError, match="containers are named in an evaluation file"):
+        Plan(Kind.CONTAINERS, ())

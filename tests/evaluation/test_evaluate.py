@@ -10,9 +10,10 @@ from observations import drink_from_mug, pick_up_with_both_hands
 from typer.testing import CliRunner
 
 from capar.cli.evaluate import app
+from capar.evaluation.evaluations import report
 from capar.evaluation.labels import Label, Labels
 from capar.evaluation.mapping import LabelMapping, Rule
-from capar.evaluation.scoring import Case, compare, report
+from capar.evaluation.scoring import Case, compare
 from capar.model.errors import CaparError, UnknownNameError
 from capar.model.observation import Observation
 
@@ -107,6 +108,7 @@ def test_a_real_take_is_observed_and_scored(
     monkeypatch.setenv("CAPAR_DATA", str(data))
     mapping = tmp_path / "mapping.toml"
     mapping.write_text(
+        'others = ["hold", "lift", "place", "pour", "retreat", "stir"]\n'
         '[[rule]]\nname = "Reach"\nlabel = "approach"\n[[rule]]\nname = "*"\nlabel = "idle"\n'
     )
     arguments = [f"{place}:take0", str(labels), "--mapping", str(mapping), "--json"]

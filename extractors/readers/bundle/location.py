@@ -66,6 +66,12 @@ def takes(place: str | Path) -> list[str]:
     return list(_takes(data, location))
 
 
+def take_words(place: str | Path) -> dict[str, dict[str, str]]:
+    """What ``{...}`` stands for in each take of a bundle; empty where it has one take only."""
+    data, location = read_toml(find_place(place).file)
+    return _takes(data, location)
+
+
 def open_bundle(place: str | Path) -> "tuple[CaptureFile, str]":
     """A capture.toml with the take's names filled in, validated, and the take.
 

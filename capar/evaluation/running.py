@@ -1,0 +1,33 @@
+"""A plan carried out: captures observed and held against their labels, whatever these are about."""
+
+from capar.evaluation.carry_scores import score_carries
+from capar.evaluation.contact_scores import score_contacts
+from capar.evaluation.container_scores import score_containers
+from capar.evaluation.evaluations import Evaluation
+from capar.evaluation.event_scores import score_events
+from capar.evaluation.labels import Kind
+from capar.evaluation.plan import Plan
+from capar.evaluation.scoring import score_actions
+from capar_rules.engine.profiles import DEFAULT, Profile, profile
+
+SCORERS = {
+    Kind.ACTIONS: score_actions,
+    Kind.CONTACTS: score_contacts,
+    Kind.CARRIES: score_carries,
+    Kind.EVENTS: score_events,
+    Kind.CONTAINERS: score_containers,
+}
+
+
+def evaluate(plan: Plan, *, rules: Profile | str = DEFAULT) -> Evaluation:
+    """Observe the captures of a plan and compare what is printed or stored with their labels.
+
+    Args:
+        plan: Captures, labels, and what the labels are about.
+        rules: The rule profile to observe with, or its name.
+
+    Raises:
+        CaparError: A capture, a label file or the mapping has a fault.
+    """
+    base = profile(rules) if isinstance(rules, str) else rules
+    return SCORERS[plan.kind](plan, base)
