@@ -26,13 +26,27 @@ def simulated(*options: str) -> Iterator[str]:
     """The address of a simulator in a process of its own."""
     command = [sys.executable, "-c", RUN, "simulate", *options, "--json"]
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as child:
+    with subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=environment,
+        preexec_fn=_interruptible,  # noqa: PLW1509
+    ) as child:
         assert child.stdout is not None
         try:
             yield json.loads(child.stdout.readline())["address"]
         finally:
             child.send_signal(signal.SIGINT)
-            assert child.wait(20.0) == 0
+            try:
+                assert child.wait(20.0) == 0
+            finally:
+                child.kill()
+
+
+def _interruptible() -> None:
+    """Let Ctrl-C end the process, also where the tests run in the background of a shell."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def test_drivers_are_listed_with_addresses() -> None:

@@ -25,6 +25,17 @@ def server() -> Iterator[str]:
         yield address
 
 
+@pytest.fixture(params=STORES)
+def burdened(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Actionary]:
+    """An empty Actionary of each kind; a server of its own may go on with what was stopped."""
+    if request.param == "server":
+        with _served() as address, Actionary.open(address) as fresh:
+            yield fresh
+    else:
+        with opened(request.param, tmp_path, request) as fresh:
+            yield fresh
+
+
 @pytest.fixture
 def union_server() -> Iterator[str]:
     """The address of an empty server whose default graph is always the union of the others."""
