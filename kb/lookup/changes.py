@@ -30,7 +30,8 @@ _TYPE = NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#type")
 def facts(store: Store, name: str) -> tuple[Fact, ...]:
     """What was measured in the capture of an observation, in the order of the extractors.
 
-    What moves what is left out: that is told of what was measured. Facts of kinds that an older program measured, and this one does not, are left out.
+    What moves what is left out, as that is derived; so are kinds of facts that an older program
+    measured and this one does not.
     """
     said: dict[str, dict[str, str]] = defaultdict(dict)
     kinds: dict[str, str] = {}

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.skipif(not LABELS.exists(), reason=f"no recording at {L
 
 
 @pytest.mark.xfail(
-    reason="transits that are cut by phases, with borders at true edges, lost macro F1 of both hands"
+    reason="transits cut by phases, with borders at true edges, lost macro F1 of both hands"
 )
 def test_each_hand_agrees_with_its_labels(monkeypatch: pytest.MonkeyPatch) -> None:
     """Takes 0 to 4 were developed on, takes 5 to 9 kept apart."""
