@@ -1,5 +1,6 @@
 """What is measured of bodies that handle and are handled, beside contact and motion."""
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import combinations
 
@@ -12,28 +13,36 @@ from capar.model.facts import (
     Between,
     ClosingSpeed,
     ContactNormal,
+    Displaced,
     Fact,
     Flies,
     Leans,
     Lies,
     Moving,
     Passage,
+    Phase,
+    ReleaseSpeed,
     Resting,
     Reverses,
+    Rides,
     Rolls,
+    Seated,
     Swings,
     Touching,
 )
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
-from extractors.motion.impacts import closing_speed, falls
+from extractors.motion.impacts import closing_speed, falls, release_speed
 from extractors.motion.leaning import leaning
+from extractors.motion.phases import phases, turns_of_height
 from extractors.motion.rest import resting
 from extractors.motion.rolling import rolling
-from extractors.motion.turning_points import reversals, swings
+from extractors.motion.seats import seat
+from extractors.motion.turning_points import swings
 from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between, sides
 from extractors.relations.grips import shifts
+from extractors.relations.loads import rides
 from extractors.relations.places import distances, places
 from extractors.relations.weight_bearing import bearing
 from extractors.sample_frames import boundary_frames
@@ -85,6 +94,7 @@ def handling(
         out += (Resting(name, *each) for each in resting(hand.poses, thresholds))
     for each in mobile:
         out += _motion(things[each.name], seen, upright[each.name], thresholds)
+    out += _seats(things, touches, seen, thresholds)
     out += bearing(capture, bodies, touches, calibration, thresholds)
     borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
     others = (things[each.name] for each in mobile if each.name not in hands)
@@ -101,7 +111,10 @@ def handling(
             touching = (touch.first, touch.last)
             spans = shifts(hands[touch.body], things[touch.other], touching, thresholds)
             out += (Lies(touch.body, SHIFTS, touch.other, *span) for span in spans)
-    out += _contacts({**things, **hands}, touches)
+            left_mps = release_speed(things[touch.other], touch.last)
+            out.append(ReleaseSpeed(touch.body, touch.other, touch.first, round(1000.0 * left_mps)))
+    out += _contacts({**things, **hands}, touches, thresholds)
+    out += _loads(capture, things, seen, thresholds)
     return tuple(out)
 
 
@@ -114,7 +127,15 @@ def _motion(
         for fact in known
         if isinstance(fact, Moving) and fact.object == one.name
     )
-    yield from (Reverses(one.name, frame) for frame in reversals(pose, moves, thresholds))
+    motions = tuple(
+        (fact.first, fact.last)
+        for fact in known
+        if isinstance(fact, Displaced) and fact.object == one.name
+    )
+    found = phases(one, motions, thresholds)
+    yield from (Phase(one.name, each.kind, each.first, each.last) for each in found)
+    turns = turns_of_height(found, one.middles, thresholds)
+    yield from (Reverses(one.name, frame) for frame in turns)
     yield from (Swings(one.name, *span) for span in swings(pose, moves, thresholds))
     length_m = float(one.shape.size.max()) if one.shape else 0.0
     leans = leaning(pose, upright, thresholds, length_m=length_m)
@@ -159,13 +180,58 @@ def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Inte
     )
 
 
-def _contacts(bodies: Mapping[str, BodyGeometry], touches: Iterable[Touching]) -> Iterator[Fact]:
-    for touch in touches:
-        body, other = bodies[touch.body], bodies[touch.other]
-        normal = contact_normal(body, other, touch.first)
-        if normal is not None:
-            yield ContactNormal(
-                touch.body, touch.other, touch.first, round(1000.0 * float(normal[2]))
-            )
-        speed = closing_speed(body, other, touch.first)
-        yield ClosingSpeed(touch.body, touch.other, touch.first, round(1000.0 * speed))
+def _seats(
+    things: Mapping[str, BodyGeometry],
+    touches: Iterable[Touching],
+    known: Iterable[Fact],
+    thresholds: Thresholds,
+) -> Iterator[Fact]:
+    """When each thing is down on what bears it: it comes and goes while one of the two moves.
+
+    On what has no surface of its own nothing is seen to come down: there a contact is its distance.
+    """
+    moves = [each for each in known if isinstance(each, Displaced)]
+    for each in touches:
+        if each.body in things and each.other in things and things[each.other].shape:
+            body, other = things[each.body], things[each.other]
+            normal = contact_normal(body, other, each.first, thresholds)
+            if normal is not None and normal[2] >= thresholds.steep:
+                spans = [(m.first, m.last) for m in moves if m.object in (each.body, each.other)]
+                down = seat(body, other, (each.first, each.last), spans, thresholds)
+                yield Seated(each.body, each.other, *down)
+
+
+def _loads(
+    capture: Capture,
+    things: Mapping[str, BodyGeometry],
+    known: list[Fact],
+    thresholds: Thresholds,
+) -> Iterator[Fact]:
+    """What mobile objects bear in or on them and take along."""
+    mobile = {each.name for each in capture.objects if each.tag is TagType.MOBILE}
+    motions: dict[str, list[Interval]] = defaultdict(list)
+    for fact in known:
+        if isinstance(fact, Moving):
+            motions[fact.object].append((fact.first, fact.last))
+    for fact in known:
+        if isinstance(fact, Touching) and {fact.body, fact.other} <= mobile:
+            load, bearer = things[fact.body], things[fact.other]
+            span = fact.first, fact.last
+            if rides(load, bearer, span, motions[fact.other], thresholds):
+                yield Rides(fact.body, fact.other, fact.first)
+
+
+def _contacts(
+    bodies: Mapping[str, BodyGeometry], touches: Iterable[Touching], thresholds: Thresholds
+) -> Iterator[Fact]:
+    upward: dict[tuple[str, str, int], int] = {}
+    for each in touches:
+        body, other = bodies[each.body], bodies[each.other]
+        swapped = upward.get((each.other, each.body, each.first))
+        if swapped is not None:
+            yield ContactNormal(each.body, each.other, each.first, -swapped)
+        elif (normal := contact_normal(body, other, each.first, thresholds)) is not None:
+            permille = upward[each.body, each.other, each.first] = round(1000.0 * float(normal[2]))
+            yield ContactNormal(each.body, each.other, each.first, permille)
+        speed = closing_speed(body, other, each.first)
+        yield ClosingSpeed(each.body, each.other, each.first, round(1000.0 * speed))

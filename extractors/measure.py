@@ -9,7 +9,7 @@ from typing import Any, cast
 import numpy as np
 from jaxtyping import Float, Int
 
-from capar.model.calibration import Calibration
+from capar.model.calibration import Calibration, Found
 from capar.model.capture import (
     Capture,
     Notice,
@@ -41,14 +41,17 @@ from capar.model.facts import (
 from extractors.bodies.bodies import Bodies, bodies_of
 from extractors.bodies.poses import Poses
 from extractors.calibration import calibrated, check_clock, thresholds_of
+from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
 from extractors.handling_facts import handling
-from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import Floor, moving, rest_poses
+from extractors.motion.motion_edges import motion_edges, onset
+from extractors.motion.object_motion import Floor, RestPose, moving, rest_poses
 from extractors.relations.attention import Attention, attention
+from extractors.relations.company import company
 from extractors.relations.weight_bearing import TRUNK
 from extractors.signals.filters import speed
 from extractors.signals.gaps import long_gaps
+from extractors.signals.intervals import Interval
 from extractors.signals.zero_crossings import horizon_frames, pauses, zero_crossings
 from extractors.thresholds import Thresholds
 
@@ -117,7 +120,9 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
         for name, body in bodies.sensors.items()
     }
     looks = {each.name: attention(capture, each, bodies, limits) for each in _seeing(capture)}
+    moves = tuple(_moving(capture, bodies, calibration, limits))
     touches = contacts(capture, bodies, calibration)
+    touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
     reach = horizon_frames(capture.times, limits)
     facts = [
         *_scene(capture),
@@ -132,13 +137,14 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
             for frame in pauses(tracks[each.name].speed_mps, tracks[each.name].crossings, reach)
         ),
         *_touching(capture, touches),
-        *_moving(capture, bodies, calibration, limits),
+        *moves,
         *(
             LookingAt(sensor, name, *interval)
             for sensor, look in looks.items()
             for name, interval in look.looks
         ),
     ]
+    facts += company(capture, bodies, calibration, limits)
     facts += handling(capture, bodies, facts, calibration, limits)
     own = [each for each in capture.notices if each.code != LOSS]
     notices = (*own, *_notices(capture, calibration, limits))
@@ -226,7 +232,32 @@ def _moving(
             rests = rest_poses(pose, floor, thresholds)
             for interval in moving(pose, rests, floor, thresholds):
                 yield Moving(thing.name, *interval)
-                yield Displaced(thing.name, *motion_edges(pose, interval, rests, thresholds))
+                yield Displaced(thing.name, *_edges(pose, interval, rests, floor, thresholds))
+
+
+def _edges(
+    poses: Poses,
+    interval: Interval,
+    rests: tuple[RestPose, ...],
+    floor: Floor,
+    thresholds: Thresholds,
+) -> Interval:
+    """When a motion that its floor tells began and ended; what is not known from rest stays."""
+    first, last = motion_edges(poses, interval, rests, thresholds)
+    if first < interval[0]:
+        first = onset(first, interval[0], poses, floor, thresholds)
+    if last > interval[1]:
+        last = onset(last, interval[1], poses, floor, thresholds)
+    return first, last
+
+
+def _motions(moves: tuple[Fact, ...]) -> dict[str, list[Interval]]:
+    """When each object moves, by its name."""
+    found: dict[str, list[Interval]] = defaultdict(list)
+    for each in moves:
+        if isinstance(each, Moving):
+            found[each.object].append((each.first, each.last))
+    return found
 
 
 def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:
@@ -252,16 +283,31 @@ def _notices(
 ) -> Iterator[Notice]:
     stated = capture.contact_tolerance_m is not None
     yield notice("contact-tolerance", tolerance_m=calibration.contact_tolerance_m, stated=stated)
-    for pair in capture.pivot_contacts:
-        yield notice("pivot-distance", pair.first, pair.second, distance_m=pair.distance_m)
-    pivots = {name for pair in capture.pivot_contacts for name in (pair.first, pair.second)}
+    yield from _distance_notices(calibration)
+    found = [each for each in calibration.pairs if each.found is not Found.NEVER]
+    known = {name for each in found for name in (each.first, each.second)}
     touching: tuple[Sensor | TagObject, ...] = (*capture.acting, *capture.objects)
     for each in touching:
-        if each.shape is None and each.name not in pivots:
+        if each.shape is None and each.name not in known:
             yield notice("no-shape", each.name)
         elif each.shape is not None and each.shape.source is ShapeSource.STAND_IN:
             yield notice("stand-in-shape", each.name, shape=each.shape.description)
     yield from _pose_notices(capture, thresholds)
+
+
+def _distance_notices(calibration: Calibration) -> Iterator[Notice]:
+    """How bodies without surfaces touch, and where the recording contradicts what is taken."""
+    for pair in calibration.pairs:
+        names, taken = (pair.first, pair.second), pair.touch_m
+        if pair.found is Found.ALL_FACT_KINDS:
+            yield notice("pivot-distance", *names, distance_m=taken)
+        elif pair.found not in (Found.TOLERANCE, Found.NEVER):
+            how = pair.found.value
+            yield notice("touch-estimated", *names, touch_m=taken, found=how, frames=pair.frames)
+        if pair.shown_m is not None:
+            code = "mount-gap" if pair.found is Found.TOLERANCE else "distance-contradicted"
+            values = {"touch_m": taken, "shown_m": pair.shown_m, "frames": pair.frames}
+            yield notice(code, *names, **values)
 
 
 def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:

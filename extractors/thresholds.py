@@ -43,6 +43,10 @@ class Thresholds:
     tolerance_most_m: float = 0.010
     """The largest such tolerance [m]: beyond a centimetre, nearness is no contact."""
 
+    patch_m: float = 0.005
+    """Surfaces that are no further apart than this beyond where they are nearest belong to the
+    patch at which bodies press on each other [m]: the least tolerance, and the depth of skin."""
+
     release_sigmas: float = 3.0
     """Between two frames of contact of noisy bodies it lasts while they are nearer than the
     tolerance and so many deviations of what noise the filter leaves [1], twice the tolerance at
@@ -95,7 +99,17 @@ class Thresholds:
     """An axis moves if its way is at least this share of the largest axis's way [1]."""
 
     reversal_m: float = 0.05
-    """Way up and way down that make a reversal of height [m]: the half of a hand's width."""
+    """Steep way up and steep way down that make a reversal of height [m] (spec 10): the half of a
+    hand's width."""
+
+    bend_rad: float = 0.7854
+    """Slope of a path at which it goes up or down as much as aside [rad]: 45 degrees (spec 10)."""
+
+    flat_rad: float = 0.6109
+    """A steep path becomes level below this slope [rad]: 35 degrees (spec 10)."""
+
+    steep_rad: float = 0.9599
+    """A level path becomes steep above this slope [rad]: 55 degrees (spec 10)."""
 
     swing_m: float = 0.010
     """Least way between turning points of motion to and fro [m]: the floor of motion."""
@@ -117,6 +131,13 @@ class Thresholds:
     """A smaller turn is no rolling [rad]: 45 degrees. The middle of a thing that is tipped over
     its edge is near enough above the edge for 35 degrees that it slips no more than that."""
 
+    blow_s: float = 0.1
+    """A blow is over within this time, and the low-pass blurs it by no more [s]."""
+
+    struck_mps: float = 0.3
+    """A thing that lay, and is as fast within that time, was struck [m/s]: that takes 3 m/s2, twice
+    what a hand gives to what it pushes or takes along."""
+
     fall_share: float = 0.3
     """A body falls freely while its acceleration is within this share of gravity's [1]."""
 
@@ -135,6 +156,10 @@ class Thresholds:
     """A body whose middle is further from its feet than this is supported by something else too, or
     falls [m]: the length of a large foot."""
 
+    ride_share: float = 0.25
+    """What is borne goes along while it shifts on its bearer by no more than this share of the
+    bearer's way [1]: a load slides or rolls a little; what stays behind shifts by the whole."""
+
     level_m: float = 0.03
     """Feet that rest within this height of the lowest rest stand on one level [m]: the sole of a
     foot and the noise of a tracker are that thick."""
@@ -149,8 +174,14 @@ class Thresholds:
     near_m: float = 0.15
     """Bodies whose boxes are nearer than this are beside each other [m]: a hand's length."""
 
+    near_stays_m: float = 0.2
+    """... and they are so until they are further apart than this [m]: a third more."""
+
     inside_share: float = 0.5
     """Share of a body that lies in another's hull, from which on it is inside [1]."""
+
+    inside_stays_share: float = 0.4
+    """... and it is so while at least this share lies there [1]: a fifth less."""
 
     along_rad: float = 0.5236
     """Largest angle between motion along a body and its longest axis [rad]: thirty degrees."""
@@ -159,5 +190,51 @@ class Thresholds:
     """From a place of rest a motion that is known begins at this distance [m]: the tenth part of
     its floor, and still more than trackers of the day make of a thing that lies."""
 
+    onset_s: float = 0.1
+    """At most so long before it is that far a motion began [s]: what takes longer drifts."""
+
     edge_rad: float = 0.00873
     """The same for its orientation [rad]: half a degree."""
+
+    co_motion_window_s: float = 0.4
+    """Bodies move as one if they do for so long [s]: a hand that passes a thing is faster."""
+
+    co_motion_way_m: float = 0.03
+    """Least way of a thing through the world in that window that tells with whom it moves [m]:
+    three floors of motion."""
+
+    co_motion_stray_m: float = 0.010
+    """It is steady in a frame in which it strays no farther than this meanwhile [m]: the floor
+    of motion, which a firm grip keeps to."""
+
+    co_motion_share: float = 0.25
+    """Or no farther than this share of its way through the world [1]: a thing slips and turns in
+    a loose grip, and one that is left behind strays as far as it or the hand goes."""
+
+    co_motion_least: float = 0.2
+    """Who moves as one with a thing for a smaller share of its motion does so by chance [1]."""
+
+    touch_quantile: float = 0.95
+    """Quantile of the distances in frames of evidence that counts as touching [1] (spec 10)."""
+
+    touch_margin_m: float = 0.02
+    """What is added to that quantile [m]: how far fingers open about what they let go (spec 10)."""
+
+    touch_ridge: float = 0.02
+    """Weight of a point's distance from its body's origin, against the misfit, where two points
+    that come together are sought [1]: of bodies that hardly turn against each other they lie
+    midway between the origins, and a misfit of a hundredth of their distance is left."""
+
+    settle_reach_m: float = 0.25
+    """A body known by its origin alone touches nothing whose origin is farther than this [m]: a
+    hand's length and the half of a thing that one hand can hold."""
+
+    settle_nearer_m: float = 0.03
+    """Where a distance settles counts as touching if it is so much shorter than where the bodies
+    rest apart [m]: a hand's thickness."""
+
+    dwell_s: float = 1.0
+    """What is held dwells where its mean over this time stays [s]: two turns of stirring."""
+
+    dwell_m: float = 0.05
+    """Way of that mean within the same time, below which it dwells [m]."""

@@ -135,6 +135,7 @@ class CAPAR(metaclass=Closed):
     ComesToRest: NamedNode
     LeavesRest: NamedNode
     Reverses: NamedNode
+    Levels: NamedNode
     BeginsSwinging: NamedNode
     EndsSwinging: NamedNode
     Tips: NamedNode

@@ -49,6 +49,17 @@ Beside = Annotated[
 ]
 """The Actionary of a command that opens none and only takes its rules."""
 
+Set = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Take another value of the calibration for this run, in metres and seconds; "
+        "touch_m:right_hand,bowl=0.12 is a distance at which two bodies touch. Can be repeated.",
+        show_default=False,
+    ),
+]
+
 Steady = Annotated[
     bool | None,
     typer.Option(

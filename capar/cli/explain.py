@@ -99,12 +99,16 @@ def _print_notices(segments: "Sequence[Segment]", seen: "Explained") -> None:
 
 
 def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bool) -> None:
+    from capar.views.movers import mover_lines
+
     if json:
         print_json([_plain(each, seen) for each in told])
         return
     for each in told:
         typer.echo(_header(each))
         typer.echo(each.summary)
+        for line in mover_lines(seen.observation, each.ee, each.index):
+            typer.echo(line)
         if tree:
             _branch(each.reason.with_sentences(), 0)
 

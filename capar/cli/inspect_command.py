@@ -1,11 +1,17 @@
 """``capar inspect``: what a capture or a motion file holds."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from capar.cli._options import Set
 from capar.cli._output import console, print_json
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from capar.model.capture import Capture, Notice
 
 app = typer.Typer()
 
@@ -26,10 +32,11 @@ def inspect(
         bool,
         typer.Option("--calibration", help="Say what is decided once for the whole capture."),
     ] = False,
+    set_: Set = None,
 ) -> None:
     """Say what a capture holds: streams, rate, gaps, noise, ranges and near pairs."""
     if calibration:
-        _calibration(place, as_json=as_json)
+        _calibration(place, set_ or [], as_json=as_json)
         return
     report = _report(place)
     if as_json:
@@ -38,13 +45,14 @@ def inspect(
         _show(report)
 
 
-def _calibration(place: str, *, as_json: bool) -> None:
+def _calibration(place: str, settings: list[str], *, as_json: bool) -> None:
     from capar.model.json_form import to_json
     from capar.views.calibration import calibration_tables
     from extractors.calibration import calibrate
     from extractors.readers.bundle.capture_toml import read_capture
+    from extractors.set_values import set_values
 
-    known = calibrate(read_capture(place))
+    known = set_values(calibrate(read_capture(place)), settings)
     if as_json:
         typer.echo(to_json(known), nl=False)
         return
@@ -76,10 +84,27 @@ def _of_capture(place: str) -> dict[str, Any]:
         "shapes": {
             name: each.shape.description for name, each in capture.bodies.items() if each.shape
         },
-        "notices": [each.document() for each in capture.notices],
+        "notices": [each.document() for each in (*capture.notices, *_findings(capture))],
         "sources": [{"path": s.path, "format": s.format} for s in capture.sources],
     }
     return head | as_json(surveys, near_pairs(streams))
+
+
+FINDINGS = ("no-mover", "mount-gap", "distance-contradicted")
+"""Notices of measuring that tell of a fault of the recording, or of what was stated of it."""
+
+
+def _findings(capture: "Capture") -> "Iterator[Notice]":
+    """What measuring finds to be wrong: motion without a mover, distances that do not fit."""
+    from capar.pipelines.movers import unmoved_notices
+    from capar_rules.borders.deflicker import steady
+    from capar_rules.movers.movers import movers
+    from extractors.measure import measure
+
+    measured = measure(capture)
+    facts = steady(measured.facts)
+    found = unmoved_notices((*facts, *movers(facts)), capture.times)
+    yield from (each for each in (*measured.notices, *found) if each.code in FINDINGS)
 
 
 def _of_file(path: Path) -> dict[str, Any]:

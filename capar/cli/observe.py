@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._options import Rules, Steady, Wait, rule_base
+from capar.cli._options import Rules, Set, Steady, Wait, rule_base
 from capar.model.errors import FileError
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ def observe(
     ] = None,
     rules: Rules = None,
     steady: Steady = None,
+    set_: Set = None,
     json: Annotated[bool, typer.Option("--json", help="Print the observation as JSON.")] = False,
     script: Annotated[
         bool, typer.Option("--script", help="Print the complex PAR as the thesis's Python script.")
@@ -80,9 +81,11 @@ def observe(
     # A mistake in the capture is reported before these are loaded, which takes longer.
     from capar.pipelines.observation import observe_measured
     from capar_rules.authoring.user_rules import new_rules_folder
+    from extractors.calibration import calibrate
     from extractors.measure import measure
+    from extractors.set_values import set_values
 
-    measurements = measure(trial)
+    measurements = measure(trial, set_values(calibrate(trial), set_) if set_ else None)
     observation = observe_measured(trial, measurements, rules=base, name=name)
     terminal = sys.stdin.isatty() and sys.stderr.isatty()
     choice = on_unknown or (OnUnknown.ASK if terminal and not json else OnUnknown.KEEP)

@@ -6,6 +6,7 @@ measured as the whole would be, as far as the horizons that it states reach.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from enum import StrEnum
 from types import MappingProxyType
 
 from capar.model.errors import UnknownNameError
@@ -52,6 +53,28 @@ class BodyCalibration:
     """Of a FIXED object, the median of its poses, at which it is taken to stand; else None."""
 
 
+class Found(StrEnum):
+    """How the distance at which two bodies touch was found (spec 10)."""
+
+    TOLERANCE = "tolerance"
+    """Both have surfaces, which touch within the tolerance."""
+
+    ALL_FACT_KINDS = "stated"
+    """The capture states it, or the user for this run."""
+
+    CO_MOTION = "co-motion"
+    """From frames in which one travels and is steady in the other's frame."""
+
+    SETTLING = "settling"
+    """From frames in which one rests by the other, nearer than where they rest apart."""
+
+    REST = "rest"
+    """From frames in which one rests on the other and nobody holds it."""
+
+    NEVER = "never"
+    """Nothing in the recording shows that they touch; they are taken not to."""
+
+
 @dataclass(frozen=True, slots=True)
 class PairCalibration:
     """At which distances two bodies begin and cease to touch."""
@@ -59,13 +82,29 @@ class PairCalibration:
     first: str
     second: str
     touch_m: float
-    """Distance up to which they touch [m]: of surfaces, or of origins where ``pivots``."""
+    """Distance up to which they touch [m]: of surfaces, or of points where ``pivots``."""
 
     release_m: float
     """Between two frames of contact they touch while they are nearer than this [m]."""
 
     pivots: bool = False
-    """Whether the distance is that of their origins, as the capture states."""
+    """Whether the distance is that of two points of theirs, not of surfaces."""
+
+    found: Found = Found.TOLERANCE
+    frames: int = 0
+    """From how many frames it was found; zero where it was not."""
+
+    first_point: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """The point of the first body in its own frame [m], where ``pivots``."""
+
+    second_point: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    shown_m: float | None = None
+    """What the recording shows where it contradicts what is taken [m]; else None.
+
+    Of a stated distance, the one that would be estimated. Of two surfaces, the gap at which one
+    steadily carries the other: a mount or a fit is off by so much.
+    """
 
 
 @dataclass(frozen=True, slots=True)

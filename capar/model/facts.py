@@ -20,15 +20,21 @@ from capar.model.handling import Distance as Distance
 from capar.model.handling import Flies as Flies
 from capar.model.handling import Leans as Leans
 from capar.model.handling import Lies as Lies
+from capar.model.handling import MovesWith as MovesWith
 from capar.model.handling import Passage as Passage
+from capar.model.handling import Phase as Phase
 from capar.model.handling import Place as Place
 from capar.model.handling import Posture as Posture
+from capar.model.handling import ReleaseSpeed as ReleaseSpeed
 from capar.model.handling import Resting as Resting
 from capar.model.handling import Reverses as Reverses
+from capar.model.handling import Rides as Rides
 from capar.model.handling import Rolls as Rolls
+from capar.model.handling import Seated as Seated
 from capar.model.handling import SweptAzimuth as SweptAzimuth
 from capar.model.handling import Swings as Swings
 from capar.model.handling import Travelled as Travelled
+from capar.model.handling import Travels as Travels
 from capar.model.scene_facts import ForceTransfer as ForceTransfer
 from capar.model.scene_facts import Frames as Frames
 from capar.model.scene_facts import Gap as Gap
@@ -62,11 +68,28 @@ class FlickerCorrection(Observed):
     taken: str
 
 
+@dataclass(frozen=True, slots=True, order=True)
+class MovedBy(Observed):
+    """What moves an object through a part of its motion, as the rules of movers tell.
+
+    How is ``carried``, ``along``, ``pushed`` (or pulled, or struck), ``through``, ``set_going`` or
+    ``body``; or ``unknown``, with ``beyond_reach``, ``left_behind`` or ``nobody`` for the mover.
+    """
+
+    predicate = "moved_by"
+    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
+    object: str
+    mover: str
+    how: str
+    first: int
+    last: int
+
+
 MEASURED: tuple[type[Observed], ...] = (*kinds_of(scene_facts), *kinds_of(handling))
 """Every kind of fact that extractors state, in the order in which they are written."""
 
-ALL_FACT_KINDS: tuple[type[Observed], ...] = (*MEASURED, FlickerCorrection)
-"""Every kind of fact that an observation rests on: measurements and corrections of flicker."""
+ALL_FACT_KINDS: tuple[type[Observed], ...] = (*MEASURED, FlickerCorrection, MovedBy)
+"""Every kind of fact that an observation rests on: measured, corrected, and what moves what."""
 
 
 def read_fact(text: str) -> Observed:

@@ -8,10 +8,14 @@ from capar.model.scene_facts import Touching
 
 @dataclass(frozen=True, slots=True, order=True)
 class Displaced(Observed):
-    """An object that moves is elsewhere than where it rested, within 1 mm or half a degree."""
+    """An object moves, from when it truly set off until it truly stopped.
+
+    That is where it was last within 1 mm and half a degree of a place of rest, or what noise makes,
+    and the little before that by which a motion from rest grows so far.
+    """
 
     predicate = "displaced"
-    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
+    declaration = Declaration(about="object", span=Span.INTERVAL, border=True, has_sentence=False)
     object: str
     first: int
     last: int
@@ -119,11 +123,25 @@ class ContactNormal(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class Rides(Observed):
+    """A body is borne by another one, in or on it, and goes along when that one moves.
+
+    Stated of the contact that begins at the first frame.
+    """
+
+    predicate = "rides"
+    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    body: str
+    other: str
+    first: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class ClosingSpeed(Observed):
     """How fast two bodies approached each other when they began to touch [mm/s]."""
 
     predicate = "closing"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=False)
+    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
     body: str
     other: str
     first: int
@@ -131,8 +149,56 @@ class ClosingSpeed(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class ReleaseSpeed(Observed):
+    """How fast an object goes when an end-effector's contact with it ends [mm/s].
+
+    Stated of the contact that begins at the first frame.
+    """
+
+    predicate = "released"
+    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    body: str
+    other: str
+    first: int
+    speed: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Seated(Observed):
+    """A body is down on another one that bears it: in a contact, less its coming and going."""
+
+    predicate = "seated"
+    declaration = Declaration(about="body", span=Span.INTERVAL, border=True, has_sentence=False)
+    body: str
+    other: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Phase(Observed):
+    """A part of an object's motion: rising, level or sinking, by its path; turning, or still."""
+
+    predicate = "phase"
+    declaration = Declaration(
+        about="object",
+        span=Span.INTERVAL,
+        border=frozenset({"goes_level"}),
+        has_sentence=False,
+        stretch="goes_{kind}",
+    )
+    object: str
+    kind: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Reverses(Observed):
-    """The height of a moving object has an extremum, with a real way before and after it."""
+    """A moving object that rose begins to sink, or one that sank after that to rise again.
+
+    Both are real ways and steep; the frame lies in the middle between the two.
+    """
 
     predicate = "reverses"
     declaration = Declaration(
@@ -277,3 +343,27 @@ class Passage(Observed):
     other: str
     first: int
     sides: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Travels(Observed):
+    """An object covers more way than a floor of motion in a moment, throughout."""
+
+    predicate = "travels"
+    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
+    object: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class MovesWith(Observed):
+    """A travelling object is steady in another body's frame, so far from touching it [mm]."""
+
+    predicate = "moves_with"
+    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
+    object: str
+    body: str
+    first: int
+    last: int
+    gap: int

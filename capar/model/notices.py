@@ -164,6 +164,60 @@ def _pivot_distance(each: Notice) -> str:
     )
 
 
+EVIDENCE: Mapping[str, str] = {
+    "co-motion": "{frames} frames in which one travels and is steady in the other's frame",
+    "settling": "{frames} frames in which one rests or dwells by the other",
+    "rest": "{frames} frames in which one rests on the other and nobody holds it",
+}
+"""What an estimated distance rests on, by how it was found."""
+
+
+def _touch_estimated(each: Notice) -> str:
+    first, second = each.bodies
+    evidence = EVIDENCE[str(each["found"])].format(frames=each["frames"])
+    return (
+        f"{first!r} and {second!r} count as touching within {1e3 * float(each['touch_m']):.0f} mm "
+        f"of how they were in {evidence}"
+    )
+
+
+def _distance_contradicted(each: Notice) -> str:
+    first, second = each.bodies
+    taken, shown = (1e3 * float(each[name]) for name in ("touch_m", "shown_m"))
+    return (
+        f"{first!r} and {second!r} are stated to touch within {taken:.0f} mm, but {each['frames']} "
+        f"frames of sure contact show {shown:.0f} mm; state that, or leave distance_m out"
+    )
+
+
+def _mount_gap(each: Notice) -> str:
+    first, second = each.bodies
+    gap, taken = (1e3 * float(each[name]) for name in ("shown_m", "touch_m"))
+    return (
+        f"{first!r} carries {second!r} steadily in {each['frames']} frames with a gap of "
+        f"{gap:.0f} mm, but surfaces touch within {taken:.0f} mm: a mount, a mesh or a fit is off"
+    )
+
+
+WHY_UNMOVED: Mapping[str, str] = {
+    "nobody": "nothing that is recorded was near and went with it: is a sensor missing, is the "
+    "unit of a file wrong, or was it tracked wrongly?",
+    "beyond_reach": "something went with it beyond reach: is a mount, a distance or a unit wrong?",
+    "left_behind": "what touched it rested meanwhile: is a distance of contact too large, or a "
+    "sensor missing?",
+}
+"""What would explain that nothing moves an object, by what the rules found."""
+
+
+def _no_mover(each: Notice) -> str:
+    share = 100.0 * float(each["share"])
+    often = "" if each["times"] == 1 else f", the longest of {each['times']} times"
+    return (
+        f"nothing moves {each.bodies[0]!r} in {share:.1f} % of its motion, from {each.start_s:.2f} "
+        f"to {each.end_s:.2f} s{often}; {WHY_UNMOVED[str(each['why'])]}"
+    )
+
+
 def _flicker(each: Notice) -> str:
     return (
         f"{' with '.join(each.bodies)}: {each['length_s']:.2f} s at {each.start_s:.2f} s taken for "
@@ -200,6 +254,14 @@ KINDS: Mapping[str, NoticeKind] = {
     "pivot-distance": NoticeKind(
         _pivot_distance, "pairs that touch by the distance of their origins"
     ),
+    "touch-estimated": NoticeKind(
+        _touch_estimated, "pairs that touch by a distance estimated from the recording"
+    ),
+    "distance-contradicted": NoticeKind(
+        _distance_contradicted, "stated distances that the recording contradicts"
+    ),
+    "mount-gap": NoticeKind(_mount_gap, "bodies carried with a gap"),
+    "no-mover": NoticeKind(_no_mover, "objects that move and nothing moves them"),
     "contact-tolerance": NoticeKind(_contact_tolerance),
     "doubled-stamps": NoticeKind("{samples} samples repeat a stamp; the last of each is kept"),
     "flicker": NoticeKind(_flicker),

@@ -33,8 +33,8 @@ class Border:
 
     ``first``, ``last``; of a contact ``begins``, ``ends``; of a body ``starts_moving``,
     ``stops_moving``, ``turns``, ``comes_to_rest``, ``leaves_rest``, ``reverses``,
-    ``begins_swinging``, ``ends_swinging``, ``tips``, ``rights``, ``begins_looking``,
-    ``ends_looking`` or ``shifts_weight``.
+    ``levels``, ``begins_swinging``, ``ends_swinging``, ``tips``, ``rights``,
+    ``begins_looking``, ``ends_looking`` or ``shifts_weight``.
     """
 
     body: str = ""

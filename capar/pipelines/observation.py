@@ -10,10 +10,12 @@ from capar.model.capture import Capture, Notice, notice
 from capar.model.facts import Fact, FlickerCorrection
 from capar.model.observation import Observation, Segment
 from capar.model.par import ConstraintLocation
+from capar.pipelines.movers import unmoved_notices
 from capar.pipelines.trials import trial_of
 from capar_rules.borders.border_numbers import number_borders
 from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from capar_rules.movers.movers import movers
 from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key, infer
 from capar_rules.pars.primitive_pars import Measured, ipars, upars
@@ -77,6 +79,7 @@ def observe_measured(
     action = name or capture.name
     facts = steady(measurements.facts) if base.steady else measurements.facts
     inference = infer(facts, profile=base)
+    moved = () if base.crossings_only else movers(facts)
     measured = dict(_measured(capture, measurements, inference, limits))
     frames = len(capture.times) - 1
     duration_s = float(capture.times[-1])
@@ -92,7 +95,7 @@ def observe_measured(
         frames=frames + 1,
         objects=tuple(observed_object(each) for each in capture.objects),
         links=inference.links,
-        facts=facts,
+        facts=(*facts, *moved),
         upars=upars(inference, measured, name=action),
         ipars=ipars(inference, measured, agent=agent, name=action),
         complex_par=compose(inference, name=action, frames=frames, duration_s=duration_s),
@@ -105,6 +108,7 @@ def observe_measured(
         notices=(
             *measurements.notices,
             *_doubts(facts, capture.rate_hz),
+            *unmoved_notices((*facts, *moved), capture.times),
             *_violations(inference),
         ),
         joint=inference.joint,

@@ -2,13 +2,13 @@
 
 from typing import TYPE_CHECKING
 
-from capar.model.calibration import BodyCalibration, Calibration
+from capar.model.calibration import BodyCalibration, Calibration, Found, PairCalibration
 
 if TYPE_CHECKING:
     from rich.table import Table
 
 BODY_COLUMNS = ("body", "noise mm", "noise deg", "floor mm", "floor deg", "highest m/s", "held")
-PAIR_COLUMNS = ("pair", "touch mm", "release mm", "of")
+PAIR_COLUMNS = ("pair", "touch mm", "release mm", "of", "found by", "frames", "contradicts")
 _DEGREES = 57.29577951308232
 
 
@@ -24,9 +24,7 @@ def calibration_tables(calibration: Calibration) -> tuple["Table", ...]:
         bodies.add_row(*_body_row(body))
     pairs = Table(*PAIR_COLUMNS)
     for pair in calibration.pairs:
-        kind = "origins" if pair.pivots else "surfaces"
-        names = f"{pair.first} {pair.second}"
-        pairs.add_row(names, _mm(pair.touch_m), _mm(pair.release_m), kind)
+        pairs.add_row(*_pair_row(pair))
     return whole, bodies, pairs
 
 
@@ -47,6 +45,18 @@ def whole_rows(calibration: Calibration) -> tuple[tuple[str, str], ...]:
         ("extrema of speed compared within", f"{horizons.extremum_s:.3f} s"),
         ("margin of a window", f"{horizons.margin_s:.3f} s"),
     )
+
+
+def _pair_row(pair: PairCalibration) -> tuple[str, ...]:
+    """How two bodies touch, how that was found, and what the recording shows against it."""
+    names = f"{pair.first} {pair.second}"
+    if pair.found is Found.NEVER:
+        return names, "-", "-", "-", pair.found.value, "", ""
+    estimated = pair.found not in (Found.ALL_FACT_KINDS, Found.TOLERANCE)
+    kind = ("points" if estimated else "origins") if pair.pivots else "surfaces"
+    shown = "" if pair.shown_m is None else f"{_mm(pair.shown_m)} mm"
+    frames = str(pair.frames) if pair.frames else ""
+    return names, _mm(pair.touch_m), _mm(pair.release_m), kind, pair.found.value, frames, shown
 
 
 def _body_row(body: BodyCalibration) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
 from capar.model.facts import (
+    Displaced,
     Fact,
     Frames,
     Link,
@@ -19,7 +20,7 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
-from capar_rules.borders.motion_borders import Edge, edges
+from capar_rules.borders.motion_borders import Edge, by_pair, edges, landings, true_ends
 from capar_rules.borders.shared_contacts import by_object, overlapping, shared
 from capar_rules.borders.spans import Stretches
 from capar_rules.borders.ticks import CrossingNear as CrossingNear
@@ -56,6 +57,8 @@ class _Scene:
     def __init__(self, facts: Sequence[Fact]) -> None:
         self.links: list[Link] = []
         self.stretches = Stretches(facts)
+        self.seats = by_pair(facts)
+        self.displaced = [each for each in facts if isinstance(each, Displaced)]
         self.frames = Frames(0, 0)
         self.rate = 0.0
         self.touching: dict[str, list[Touching]] = defaultdict(list)
@@ -109,10 +112,11 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
         frames = set(crossings)
     else:
         held = (each for name in reach for each in moves[name])
-        refined = edges(own, held, scene.pauses[ee], rate_hz=scene.rate)
+        refined = edges(own, held, scene.displaced, rate_hz=scene.rate)
         frames = {frame for each in (*own, *others) for frame in (each.first, each.last)}
         frames |= {frame for name in reach for each in moves[name] for frame in _ends(each)}
         frames |= {each.refined for each in refined}
+        frames |= {frame for each in others for frame in true_ends(each, scene.seats)}
         frames |= {
             pause
             for gap in _free(own)
@@ -149,6 +153,7 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
         )
     )
     if not crossings_only:
+        yield from landings(ee, ticks, others, scene.seats)
         yield from scene.stretches.numbered(ee, ticks, reach)
         yield from undisturbed(ee, ticks, scene.rests[ee], own)
         others_too = [scene.by_object[link.ee] for link in scene.links if link.ee != ee]

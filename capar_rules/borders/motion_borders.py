@@ -1,15 +1,15 @@
-"""Refined start and end of a held object's motion: at the pause of the hand that is near.
+"""True start and end of a held object's motion, and of its contact with what bears it, as ticks.
 
-An object counts as moving once it is away from its place by a floor that noise cannot reach; by
-then it has been on its way for a moment. The zero crossing at which the hand starts, or stops,
-tells when.
+An object counts as moving once it is away from its place by a floor that noise cannot reach, and
+as touching another one within a tolerance: those tell that something happened. When it happened
+is measured more finely, and that is where the ticks stand.
 """
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from capar.model.facts import Fact, Moving, Touching
+from capar.model.facts import Displaced, Fact, Moving, Seated, Touching
 from capar_rules.borders.times import in_frames, times
 
 
@@ -35,9 +35,33 @@ class Settles(Fact):
     tick: int
 
 
+@dataclass(frozen=True, slots=True, order=True)
+class Lands(Fact):
+    """The tick at which a body truly comes to touch another one, in the contact since a frame."""
+
+    predicate = "lands"
+    ee: str
+    body: str
+    other: str
+    since: int
+    tick: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Leaves(Fact):
+    """The tick at which it truly leaves it."""
+
+    predicate = "leaves"
+    ee: str
+    body: str
+    other: str
+    since: int
+    tick: int
+
+
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """A frame at which a motion begins or ends, and the frame by the hand instead."""
+    """A frame at which a motion begins or ends by its floor, and when it truly does."""
 
     kind: type[SetsOff] | type[Settles]
     object: str
@@ -46,38 +70,91 @@ class Edge:
 
 
 def edges(
-    own: Sequence[Touching], moving: Iterable[Moving], pauses: Sequence[int], *, rate_hz: float
+    own: Sequence[Touching],
+    moving: Iterable[Moving],
+    displaced: Iterable[Displaced],
+    *,
+    rate_hz: float,
 ) -> tuple[Edge, ...]:
     """The edges of every motion that lie within a contact of the end-effector with the object.
 
     Args:
         own: The end-effector's contacts, in order of time.
         moving: Motions of what it touches.
-        pauses: Frames at which it is slow, ascending.
+        displaced: When those truly began and ended.
         rate_hz: Frames a second [Hz].
     """
     reach = round(in_frames(times().refining_ms, rate_hz))
     contacts: dict[str, list[Touching]] = {}
     for each in own:
         contacts.setdefault(each.other, []).append(each)
+    true: dict[str, list[Displaced]] = {}
+    for edge in displaced:
+        true.setdefault(edge.object, []).append(edge)
     found = []
     for motion in moving:
         held = contacts.get(motion.object, [])
         start, stop = _around(held, motion.first), _around(held, motion.last)
+        within = [each for each in true.get(motion.object, ()) if _meet(each, motion)]
         if start:
-            last = bisect_right(pauses, motion.first) - 1
-            near = last >= 0 and pauses[last] >= max(motion.first - reach, start.first)
-            frame = pauses[last] if near else motion.first
+            frame = min((each.first for each in within), default=motion.first)
+            frame = max(min(frame, motion.first), motion.first - reach, start.first)
             found.append(Edge(SetsOff, motion.object, motion.first, frame))
         if stop:
-            first = bisect_left(pauses, motion.last)
-            near = first < len(pauses) and pauses[first] <= min(motion.last + reach, stop.last)
-            frame = pauses[first] if near else motion.last
+            frame = max((each.last for each in within), default=motion.last)
+            frame = min(max(frame, motion.last), motion.last + reach, stop.last)
             found.append(Edge(Settles, motion.object, motion.last, frame))
     return tuple(found)
+
+
+def _meet(one: Displaced, other: Moving) -> bool:
+    return one.first <= other.last and other.first <= one.last
 
 
 def _around(contacts: Sequence[Touching], frame: int) -> Touching | None:
     """The contact that a frame lies in."""
     index = bisect_right(contacts, frame, key=lambda each: each.first) - 1
     return contacts[index] if index >= 0 and contacts[index].last >= frame else None
+
+
+Seats = dict[tuple[str, str], list[Seated]]
+"""When bodies are down on others, in time, by the two."""
+
+
+def by_pair(facts: Iterable[Fact]) -> Seats:
+    """When bodies are down on others, by the two."""
+    out: Seats = {}
+    for each in facts:
+        if isinstance(each, Seated):
+            out.setdefault((each.body, each.other), []).append(each)
+    return {pair: sorted(seats, key=lambda each: each.first) for pair, seats in out.items()}
+
+
+def true_ends(contact: Touching, seats: Seats) -> tuple[int, int]:
+    """The frames at which a body truly comes down on another one and leaves it.
+
+    Where nothing says so, the first and the last frame of their contact.
+    """
+    own = [
+        each
+        for each in seats.get((contact.body, contact.other), ())
+        if contact.first <= each.first and each.last <= contact.last
+    ]
+    return (own[0].first, own[-1].last) if own else (contact.first, contact.last)
+
+
+def landings(
+    ee: str, ticks: Sequence[int], others: Iterable[Touching], seats: Seats
+) -> Iterator[Fact]:
+    """When what the end-effector handles truly begins and ceases to touch what.
+
+    Args:
+        ee: The end-effector.
+        ticks: Frames of its link's ticks, ascending; the true ends are among them.
+        others: Contacts of what it handles.
+        seats: When bodies are down on others.
+    """
+    for each in others:
+        first, last = true_ends(each, seats)
+        yield Lands(ee, each.body, each.other, each.first, bisect_left(ticks, first))
+        yield Leaves(ee, each.body, each.other, each.first, bisect_left(ticks, last))

@@ -1,22 +1,30 @@
 """Which bodies touch, from which frame to which, at every frame of a capture (thesis 3.2)."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model import geometry
-from capar.model.calibration import Calibration, PairCalibration
+from capar.model.calibration import Calibration, Found, PairCalibration
 from capar.model.capture import Capture, PivotContact, TagType
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import Poses
-from extractors.contact.proximity import Body, body, distance, near
-from extractors.contact.surfaces import surface
+from extractors.contact.proximity import Body, distance, near
+from extractors.contact.screening import screened
+from extractors.contact.touch_distances import (
+    estimated_pair,
+    stated_pair,
+    touchable,
+    with_gaps,
+)
+from extractors.contact.touch_evidence import Evidence
+from extractors.contact.touch_points import TouchPoints
 from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
-from extractors.signals.intervals import Interval, intervals
+from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
 
 
@@ -49,17 +57,29 @@ def pair_distances(
 ) -> Iterator[PairCalibration]:
     """At which distances each pair that is watched begins and ceases to touch.
 
+    Where the capture states none and one of the two has no surface, the recording tells.
+
     Args:
         capture: The trial.
         bodies: Its bodies.
         tolerance_m: Distance up to which surfaces count as touching [m].
         thresholds: How much noise between two frames of contact is allowed for.
     """
+    evidence = Evidence(capture, bodies, thresholds)
+    found = _pair_distances(capture, bodies, tolerance_m, evidence)
+    yield from with_gaps(found, bodies, evidence)
+
+
+def _pair_distances(
+    capture: Capture, bodies: Bodies, tolerance_m: float, evidence: Evidence
+) -> Iterator[PairCalibration]:
+    thresholds = evidence.thresholds
     for first, second in watched(capture, bodies):
         pivot = _pivot(capture, first.name, second.name)
         if pivot is not None:
-            distance_m = pivot.distance_m
-            yield PairCalibration(first.name, second.name, distance_m, distance_m, pivots=True)
+            yield stated_pair(capture, first, second, evidence, pivot.distance_m)
+        elif first.shape is None or second.shape is None:
+            yield estimated_pair(capture, first, second, evidence, tolerance_m)
         elif first.shape is not None and second.shape is not None:
             margin = _margin(first.poses, second.poses, frame_rate(capture.times), thresholds)
             release = tolerance_m + min(margin, tolerance_m)
@@ -78,16 +98,15 @@ def contacts(capture: Capture, bodies: Bodies, calibration: Calibration) -> tupl
         bodies: Its bodies.
         calibration: Distances of contact, and least durations of contacts and interruptions.
     """
-    surfaces = {each: shaped(each) for pair in watched(capture, bodies) for each in pair}
+    surfaces = {each: touchable(each) for pair in watched(capture, bodies) for each in pair}
     found: list[Contact] = []
     for first, second in watched(capture, bodies):
         one, two = surfaces[first], surfaces[second]
-        pivots = _pivot(capture, first.name, second.name) is not None
-        if not pivots and (one is None or two is None):
-            continue
         pair = calibration.pair(first.name, second.name)
-        if one is None or two is None or pair.pivots:
-            apart = _apart(first.poses, second.poses)
+        if pair.found is Found.NEVER:
+            continue
+        if pair.pivots:
+            apart = _apart(pair, first, second)
             touching = np.nan_to_num(apart, nan=np.inf) <= pair.touch_m
         else:
             touching = near(one, two, distance_m=pair.touch_m)
@@ -101,12 +120,34 @@ def contacts(capture: Capture, bodies: Bodies, calibration: Calibration) -> tupl
             dropout_s=calibration.contact_dropout_s,
             minimum_s=calibration.contact_minimum_s,
         ):
-            if one is None or two is None or pair.pivots:
-                gap = float(_apart(first.poses, second.poses)[interval[0]])
+            if pair.pivots:
+                gap = float(_apart(pair, first, second)[interval[0]])
             else:
                 gap = distance(one, two, interval[0])
             found.append(Contact(first.name, second.name, interval, gap))
-    return tuple(found)
+    return tuple(_direct(capture, found, surfaces, calibration))
+
+
+def _direct(
+    capture: Capture,
+    found: list[Contact],
+    surfaces: Mapping[BodyGeometry, Body | None],
+    calibration: Calibration,
+) -> Iterator[Contact]:
+    """The contacts without the stretches in which a mobile object is between the two."""
+    mobile = [each.name for each in capture.objects if each.tag is TagType.MOBILE]
+    bodies = {each.name: shape for each, shape in surfaces.items() if shape is not None}
+    met = [(each.first, each.second, each.interval) for each in found]
+    for contact, parts in zip(found, screened(met, bodies, mobile), strict=True):
+        if not parts:
+            yield contact
+            continue
+        count = len(capture.times)
+        holds = mask([contact.interval], count) & ~mask(list(parts), count)
+        for interval in intervals(
+            holds, capture.times, dropout_s=0.0, minimum_s=calibration.contact_minimum_s
+        ):
+            yield replace(contact, interval=interval)
 
 
 def watched(capture: Capture, bodies: Bodies) -> Iterator[tuple[BodyGeometry, BodyGeometry]]:
@@ -146,13 +187,6 @@ def _margin(first: Poses, second: Poses, rate_hz: float, thresholds: Thresholds)
     return left * float(np.linalg.norm(noisy)) if noisy else 0.0
 
 
-def shaped(each: BodyGeometry) -> Body | None:
-    """The surface of a body at its poses; None if it has no shape."""
-    if each.shape is None:
-        return None
-    return body(surface(each.shape), each.poses.settled, rests=each.poses.rests)
-
-
 def _pivot(capture: Capture, first: str, second: str) -> PivotContact | None:
     for each in capture.pivot_contacts:
         if {each.first, each.second} == {first, second}:
@@ -160,6 +194,9 @@ def _pivot(capture: Capture, first: str, second: str) -> PivotContact | None:
     return None
 
 
-def _apart(first: Poses, second: Poses) -> Float[np.ndarray, "frames"]:
-    """Distance of two bodies' origins [m]; NaN where either is lost."""
-    return np.linalg.norm(first.settled.positions - second.settled.positions, axis=1)
+def _apart(
+    pair: PairCalibration, first: BodyGeometry, second: BodyGeometry
+) -> Float[np.ndarray, "frames"]:
+    """Distance of the points by which two bodies touch [m]; NaN where either is lost."""
+    points = TouchPoints(pair.first_point, pair.second_point)
+    return points.apart(first.poses.settled, second.poses.settled)

@@ -53,6 +53,11 @@ class Surface:
         return bool(self.mesh.is_watertight and self.mesh.is_winding_consistent)
 
     @cached_property
+    def inverted(self) -> bool:
+        """Whether its triangles, which bound a solid, all face inwards."""
+        return bool(self.closed and self.mesh.volume < 0.0)
+
+    @cached_property
     def centre(self) -> Float[np.ndarray, "3"]:
         """Middle of its box [m], in the body's frame."""
         return np.asarray(self.shape.bounds.mean(axis=0))

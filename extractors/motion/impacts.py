@@ -1,9 +1,11 @@
 """Sudden motion: how fast bodies meet, and when one falls freely."""
 
 import numpy as np
+from jaxtyping import Float
 
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.signals.filters import velocity
+from extractors.bodies.poses import rotation_matrices
+from extractors.signals.filters import speed, velocity
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
 
@@ -17,11 +19,18 @@ No threshold: it is the time over which the low-pass filter blurs a blow.
 """
 
 
+LATE_S = 0.03
+"""By how much a filter may let a blow touch later, and over how long a time its slope is taken
+[s]: half of the filter's blur, and a hand's slowing to a soft contact takes much longer."""
+
+
 def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     """How fast two bodies' middles move relative to each other just before a frame [m/s].
 
-    The fastest relative speed in the last twentieth of a second, so that a filter which rounds
-    a blow does not hide it; zero where either is lost or the contact begins the capture.
+    The fastest relative speed of the low-passed motion in the last twentieth of a second or, if
+    more, the steepest slope of their offset as it was recorded, just before: a filter rounds a
+    blow that ends in a halt, and lets it touch later. Zero where either is lost or the
+    contact begins the capture.
     """
     times = body.poses.filled.times
     first = int(np.searchsorted(times, times[frame] - APPROACH_S))
@@ -30,7 +39,39 @@ def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     if frame == 0 or len(offset) < 2 or np.isnan(offset).any():
         return 0.0
     speeds = np.linalg.norm(np.diff(offset, axis=0), axis=1) / np.diff(times[span])
-    return float(speeds.max())
+    latest = int(np.searchsorted(times, times[frame] - LATE_S))
+    begin = int(np.searchsorted(times, times[frame] - 2.0 * LATE_S))
+    span = slice(begin, frame + 1)
+    recorded, clock = recorded_middles(body, span) - recorded_middles(other, span), times[span]
+    width = max(latest - begin, 1) + 1
+    slopes = (
+        _slope(recorded[start : start + width], clock[start : start + width])
+        for start in range(len(recorded) - width + 1)
+    )
+    return max(float(speeds.max()), *slopes)
+
+
+def release_speed(thing: BodyGeometry, frame: int) -> float:
+    """How fast a body's middle goes at a frame [m/s]; zero where it is lost there."""
+    pace = float(speed(thing.middles, thing.poses.smooth.times)[frame])
+    return 0.0 if np.isnan(pace) else pace
+
+
+def recorded_middles(body: BodyGeometry, span: slice) -> Float[np.ndarray, "some 3"]:
+    """The middles of a body's box at some frames [m], not low-passed."""
+    stream = body.poses.filled
+    offset = np.zeros(3) if body.shape is None else body.shape.bounds.mean(axis=0)
+    return np.asarray(
+        stream.positions[span] + rotation_matrices(stream.orientations[span]) @ offset
+    )
+
+
+def _slope(places: Float[np.ndarray, "some 3"], times: Float[np.ndarray, "some"]) -> float:
+    """Speed of a straight motion fitted to places by least squares [m/s]."""
+    if np.isnan(places).any():
+        return 0.0
+    late = times - times.mean()
+    return float(np.linalg.norm(late @ places) / (late @ late))
 
 
 def falls(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:

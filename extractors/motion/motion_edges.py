@@ -23,7 +23,7 @@ def motion_edges(
         rests: Places where it rests, in time.
         thresholds: Least displacement, and deviations of noise that it must exceed.
     """
-    floor = _hair(poses, thresholds)
+    floor = hair(poses, thresholds)
     before = [each for each in rests if each.interval[0] < moved[0]]
     after = [each for each in rests if each.interval[1] > moved[1]]
     stream = poses.smooth
@@ -40,7 +40,32 @@ def motion_edges(
     return first, last
 
 
-def _hair(poses: Poses, thresholds: Thresholds) -> Floor:
+def onset(edge: int, floor: int, poses: Poses, least: Floor, thresholds: Thresholds) -> int:
+    """The frame at which a motion began, or ended, by the frames at which it passed two distances.
+
+    People start and stop smoothly: displacement grows with the cube of time (minimum jerk; Flash
+    and Hogan 1985). With the times at which it was a hair and the floor of motion that gives the
+    beginning; it is no further from the edge than thresholds allow.
+
+    Args:
+        edge: Where it was a hair away from where it rests.
+        floor: Where it was as far away as the floor of motion, later than the edge if it begins.
+        poses: The object's poses.
+        least: The floor of its motion.
+        thresholds: What a hair is, and how far a beginning may be from it.
+    """
+    share = (least.position_m / hair(poses, thresholds).position_m) ** (1.0 / 3.0)
+    if share <= 1.0:
+        return edge
+    rate_hz = frame_rate(poses.filled.times)
+    most = round(thresholds.onset_s * rate_hz)
+    before = min(round(abs(floor - edge) / (share - 1.0)), most)
+    frame = edge - before if edge <= floor else edge + before
+    return min(max(frame, 0), len(poses.filled.times) - 1)
+
+
+def hair(poses: Poses, thresholds: Thresholds) -> Floor:
+    """Displacement that noise does not explain, and at least a hair's width."""
     times = poses.filled.times
     rate_hz = frame_rate(times)
     left = thresholds.motion_sigmas * gains(rate_hz, thresholds)[0]

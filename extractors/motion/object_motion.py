@@ -1,5 +1,6 @@
 """When an object is away from each place where it rests (thesis 4.4.1)."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from weakref import WeakKeyDictionary
@@ -86,8 +87,27 @@ def _rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Res
     for first, last in intervals(calm, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
         if found and last <= found[-1].interval[1]:
             continue
-        found.append(_stay(stream, (first, last), floor))
+        least = max(1, round(thresholds.rest_minimum_s * rate_hz))
+        found += _stays(stream, (first, last), floor, least)
     return tuple(found)
+
+
+def _stays(stream: Stream, seed: Interval, floor: Floor, least: int) -> Iterator[RestPose]:
+    """The place of a slow stretch; of one that creeps beyond the floor of it, one place each.
+
+    Args:
+        stream: The object's poses.
+        seed: The slow stretch.
+        floor: Displacement from a place below which it is still there.
+        least: Fewest frames of a rest [1].
+    """
+    stay = _stay(stream, seed, floor)
+    begin, end = stay.interval
+    if begin - seed[0] >= least:
+        yield from _stays(stream, (seed[0], begin - 1), floor, least)
+    yield stay
+    if seed[1] - end >= least:
+        yield from _stays(stream, (end + 1, seed[1]), floor, least)
 
 
 def moving(
@@ -142,27 +162,36 @@ def slow_frames(
     slow = np.zeros(len(stream.times), dtype=bool)
     for first, last in geometry.runs(~stream.lost):
         part = slice(first, last + 1)
-        speed = _slope(stream.positions[part], half) * rate_hz
+        speed = _pace(stream.positions[part], half) * rate_hz
         # A quaternion changes by half of the angle.
-        turning = 2.0 * _slope(stream.orientations[part], half) * rate_hz
+        turning = 2.0 * _pace(stream.orientations[part], half) * rate_hz
         slow[part] = (speed < max(thresholds.rest_speed_mps, left * noise.position_m)) & (
             turning < max(thresholds.rest_speed_radps, left * noise.orientation_rad)
         )
     return slow
 
 
-def _slope(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.ndarray, "frames"]:
-    """Length of the slope of a straight line fitted to the frames around each, a frame."""
+def _pace(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.ndarray, "frames"]:
+    """Length of that slope, a frame."""
+    return np.asarray(np.linalg.norm(slopes(positions, half), axis=1))
+
+
+def slopes(
+    positions: Float[np.ndarray, "frames axes"], half: int
+) -> Float[np.ndarray, "frames axes"]:
+    """Slope of a straight line fitted to the frames around each, so many on either side, a frame.
+
+    At the ends it is that of the first and the last frame with so many around.
+    """
     count = len(positions)
     half = min(half, (count - 1) // 2)
     if half < 1:
-        return np.zeros(count)
+        return np.zeros(positions.shape)
     weights = np.arange(-half, half + 1) * 3.0 / (half * (half + 1) * (2 * half + 1))
-    slope = correlate1d(positions, weights, axis=0, mode="nearest")
-    length = np.linalg.norm(slope, axis=1)
-    length[:half] = length[half]
-    length[count - half :] = length[count - half - 1]
-    return np.asarray(length)
+    slope = np.asarray(correlate1d(positions, weights, axis=0, mode="nearest"))
+    slope[:half] = slope[half]
+    slope[count - half :] = slope[count - half - 1]
+    return slope
 
 
 def _stay(stream: Stream, seed: Interval, floor: Floor) -> RestPose:

@@ -1,4 +1,4 @@
-"""Where motion turns back: extrema of height, and motion to and fro."""
+"""Where motion turns back, and motion to and fro."""
 
 from collections.abc import Iterator
 
@@ -33,18 +33,6 @@ def turning_points(values: Float[np.ndarray, "frames"], least: float) -> Int[np.
             found += [low] if direction else []
             direction, high = 1, frame
     return np.array(found, dtype=np.int64)
-
-
-def reversals(
-    poses: Poses, moving: tuple[Interval, ...], thresholds: Thresholds
-) -> tuple[int, ...]:
-    """Frames at which the height of a moving body has an extremum after and before a real way."""
-    height = poses.smooth.positions[:, 2]
-    found: list[int] = []
-    for first, last in _known(poses.smooth, moving):
-        turns = turning_points(height[first : last + 1], thresholds.reversal_m)
-        found += [first + int(each) for each in turns]
-    return tuple(found)
 
 
 def swings(

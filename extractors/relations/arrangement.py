@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from capar.model import geometry
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.signals.filters import derivative
 from extractors.thresholds import Thresholds
@@ -40,9 +41,11 @@ class Pair:
 
     @cached_property
     def near(self) -> Holds:
-        """Whether their boxes are within a hand's length."""
+        """Whether their boxes came within a hand's length, and are hardly further apart."""
         with np.errstate(invalid="ignore"):
-            return np.asarray(self.gap <= self.thresholds.near_m)
+            comes = np.asarray(self.gap <= self.thresholds.near_m)
+            stays = np.asarray(self.gap <= self.thresholds.near_stays_m)
+        return lasting(comes, stays)
 
     @property
     def give_m(self) -> float:
@@ -98,8 +101,14 @@ class Pair:
 
 
 def inside(pair: Pair) -> Holds:
-    """At least half of the body lies in the other's hull."""
-    return np.asarray(pair.shares[0] >= pair.thresholds.inside_share)
+    """At least half of the body came to lie in the other's hull, and hardly less does now.
+
+    What lies across an opening is above it: its middle is not below the other's top.
+    """
+    share, limits = pair.shares[0], pair.thresholds
+    held = lasting(share >= limits.inside_share, share >= limits.inside_stays_share)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(held & (pair.body.middles[:, 2] <= pair.other.boxes[1][:, 2]))
 
 
 def dips(pair: Pair) -> Holds:
@@ -181,6 +190,14 @@ def sides(body: BodyGeometry, other: BodyGeometry, frames: Int[np.ndarray, "two"
     first, last = (each / size for each in ends)
     axis = int(np.argmax(np.abs(first - last)))
     return "opposite" if first[axis] * last[axis] < 0.0 else "other"
+
+
+def lasting(comes: Holds, stays: Holds) -> Holds:
+    """What holds from where it clearly does for as long, to both sides, as it still does."""
+    out = comes.copy()
+    for first, last in geometry.runs(comes | stays):
+        out[first : last + 1] = bool(comes[first : last + 1].any())
+    return out
 
 
 ARRANGEMENTS: dict[str, Callable[[Pair], Holds]] = {

@@ -186,5 +186,5 @@ def _heights_at_rest(foot: BodyGeometry, thresholds: Thresholds) -> Float[np.nda
 
 def _bears(foot: BodyGeometry, thing: BodyGeometry, frame: int, thresholds: Thresholds) -> bool:
     """Whether a thing that a foot begins to touch bears it from below."""
-    normal = contact_normal(foot, thing, frame)
+    normal = contact_normal(foot, thing, frame, thresholds)
     return normal is not None and bool(normal[2] >= thresholds.steep)

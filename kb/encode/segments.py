@@ -27,6 +27,7 @@ BORDER_KINDS = {
     "comes_to_rest": CAPAR.ComesToRest,
     "leaves_rest": CAPAR.LeavesRest,
     "reverses": CAPAR.Reverses,
+    "levels": CAPAR.Levels,
     "begins_swinging": CAPAR.BeginsSwinging,
     "ends_swinging": CAPAR.EndsSwinging,
     "tips": CAPAR.Tips,

@@ -126,6 +126,8 @@ def _cases(
     if len(segment.objects) < 2:
         return cases | {"alone"}
     thing, other = segment.objects[:2]
+    if ("with", other, thing) in segment.prepositions:
+        cases.add("tool")
     if before is not None and before.objects[:2] == (thing, other):
         cases.add("there")
     if scene.is_self(other):
@@ -159,6 +161,11 @@ def _clause(
         objects = tuple(sorted(objects))
         places = [f"{{{number}}}" for number in range(1, len(objects) + 1)]
         pattern = pattern.replace("{1}", joined(places))
+    loads = _loads(segment)
+    if loads and "{1}" in pattern:
+        places = [f"{{{len(objects) + number}}}" for number in range(1, len(loads) + 1)]
+        pattern = pattern.replace("{1}", f"{{1}} with {joined(places)}")
+        objects = (*objects, *loads)
     return Clause(
         pattern=pattern,
         objects=objects,
@@ -166,6 +173,15 @@ def _clause(
         start_s=segment.start_s,
         end_s=segment.end_s,
         changes=_changes(segment, book),
+    )
+
+
+def _loads(segment: Segment) -> tuple[str, ...]:
+    """What goes along in or on the object that the segment is about."""
+    return tuple(
+        other
+        for word, body, other in segment.prepositions
+        if word == "with" and body in segment.objects[:1] and other not in segment.objects
     )
 
 

@@ -7,7 +7,7 @@ from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.tables import table
 
 Cases = Collection[str]
-"""What holds of a segment: held, there, on, back, self, alone, turns, tilts."""
+"""What holds of a segment: held, there, tool, on, back, self, alone, turns, tilts."""
 
 USUAL_PREPOSITION = "with"
 """Before the second object of a primitive whose rule file names none."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from pyoxigraph import Literal, NamedNode
 
-from capar.model.facts import ALL_FACT_KINDS, Fact
+from capar.model.facts import ALL_FACT_KINDS, Fact, MovedBy
 from capar.model.par import UNKNOWN
 from kb.encode import encode
 from kb.encode.facts import terms
@@ -30,7 +30,8 @@ _TYPE = NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#type")
 def facts(store: Store, name: str) -> tuple[Fact, ...]:
     """What was measured in the capture of an observation, in the order of the extractors.
 
-    Facts of kinds that an older program measured, and this one does not, are left out.
+    What moves what is left out, as that is derived; so are kinds of facts that an older program
+    measured and this one does not.
     """
     said: dict[str, dict[str, str]] = defaultdict(dict)
     kinds: dict[str, str] = {}
@@ -40,7 +41,7 @@ def facts(store: Store, name: str) -> tuple[Fact, ...]:
         else:
             said[str(fact)][str(key)] = value.value if isinstance(value, Literal) else str(value)
     stated = [_fact(kinds[node], said[node]) for node in said]
-    found = [each for each in stated if each is not None]
+    found = [each for each in stated if each is not None and not isinstance(each, MovedBy)]
     rank: dict[type[Fact], int] = {kind: index for index, kind in enumerate(ALL_FACT_KINDS)}
     return tuple(sorted(found, key=lambda each: (rank[type(each)], each)))
 

@@ -18,6 +18,7 @@ from capar.model.facts import (
     FlickerCorrection,
     Frames,
     Lies,
+    MovedBy,
     Passage,
     Touching,
 )
@@ -106,7 +107,7 @@ def test_explanations_have_a_sentence_for_each_way_to_doubt() -> None:
 
 def test_facts_are_written_in_the_order_of_their_definitions() -> None:
     assert (*kinds_of(scene_facts), *kinds_of(handling)) == MEASURED
-    assert (*MEASURED, FlickerCorrection) == ALL_FACT_KINDS
+    assert (*MEASURED, FlickerCorrection, MovedBy) == ALL_FACT_KINDS
     assert MEASURED[0] is Frames
 
 

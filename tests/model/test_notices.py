@@ -19,6 +19,19 @@ ONE_OF_EACH = {
         "bodies count as touching within 10.0 mm, as the capture states",
     notice("pivot-distance", "hand", "mug", distance_m=0.12):
         "'hand' and 'mug' count as touching while their origins are within 120 mm",
+    notice("touch-estimated", "hand", "mug", touch_m=0.0312, found="co-motion", frames=80):
+        "'hand' and 'mug' count as touching within 31 mm of how they were in 80 frames in which "
+        "one travels and is steady in the other's frame",
+    notice("distance-contradicted", "hand", "mug", touch_m=0.05, shown_m=0.12, frames=80):
+        "'hand' and 'mug' are stated to touch within 50 mm, but 80 frames of sure contact show "
+        "120 mm; state that, or leave distance_m out",
+    notice("mount-gap", "hand", "mug", touch_m=0.005, shown_m=0.0304, frames=80):
+        "'hand' carries 'mug' steadily in 80 frames with a gap of 30 mm, but surfaces touch "
+        "within 5 mm: a mount, a mesh or a fit is off",
+    notice("no-mover", "mug", start_s=1.0, end_s=2.5, share=0.25, times=2, why="nobody"):
+        "nothing moves 'mug' in 25.0 % of its motion, from 1.00 to 2.50 s, the longest of 2 times; "
+        "nothing that is recorded was near and went with it: is a sensor missing, is the unit of "
+        "a file wrong, or was it tracked wrongly?",
     notice("no-shape", "mug"): "'mug' has no shape, so no contact of it is known",
     notice("stand-in-shape", "mug", shape="ball of {radius}"):
         "'mug' is a stand-in: ball of {radius}",

@@ -164,7 +164,7 @@ def clap(performer: Performer, **options: Unpack[Options]) -> Trial:
         Body(name, path, shapes.hand(performer.size), TagType.SELF, f"{name.split('_')[0]}_arm")
         for name, path in paths.items()
     )
-    steps = ("Clap", "Withdraw")
+    steps = ("Clap", "ResumePosture")
     return _trial("clap", performer, bodies, end, {RIGHT: steps, LEFT: steps}, options)
 
 
@@ -188,7 +188,7 @@ def salute(performer: Performer, **options: Unpack[Options]) -> Trial:
         figure.hand_body(performer, RIGHT, hand),
         figure.head_body(head, tag=TagType.SELF),
     )
-    steps = {RIGHT: ("Salute", "TouchOneself", "Withdraw")}
+    steps = {RIGHT: ("Salute", "TouchOneself", "ResumePosture")}
     return _trial("salute", performer, bodies, home + 0.8, steps, options)
 
 

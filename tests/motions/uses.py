@@ -12,7 +12,7 @@ from motions.paths import Still, aimed, pose
 from motions.performers import Performer
 from motions.trials import Body, Options, Trial
 
-TAKE, LEAVE = ("Reach", "Touch"), ("Withdraw",)
+TAKE, LEAVE = ("Reach", "Touch"), ("ResumePosture",)
 UP, DOWN = Leg((0.0, 0.0, 0.25)), Leg((0.0, 0.0, -0.25))
 LIFTED, LOWERED = (*TAKE, "Lift", "Touch"), ("Touch", "Lower", "TouchWith", *LEAVE)
 
@@ -51,7 +51,7 @@ def shake(performer: Performer, **options: Unpack[Options]) -> Trial:
 def wipe(performer: Performer, **options: Unpack[Options]) -> Trial:
     """A block is moved to and fro on the table."""
     legs = (Leg(seconds=2.0, swing=(0.0, 0.10, 0.0)),)
-    return handle(performer, "wipe", legs, (*TAKE, "Wipe", "Touch", *LEAVE), **options)
+    return handle(performer, "wipe", legs, (*TAKE, "Wipe", "TouchWith", *LEAVE), **options)
 
 
 def push(performer: Performer, **options: Unpack[Options]) -> Trial:
@@ -59,7 +59,7 @@ def push(performer: Performer, **options: Unpack[Options]) -> Trial:
     back = aimed(x=(0.0, 0.0, 1.0), z=(-1.0, 0.0, 0.0))
     stage = Stage(shapes.box(*BLOCK), gripped(performer, (-1.0, 0.0, 0.0), back))
     legs = (Leg((0.25, 0.0, 0.0)),)
-    return handle(performer, "push", legs, (*TAKE, "Push", "Touch", *LEAVE), stage, **options)
+    return handle(performer, "push", legs, (*TAKE, "Push", "TouchWith", *LEAVE), stage, **options)
 
 
 def pull(performer: Performer, **options: Unpack[Options]) -> Trial:
@@ -67,20 +67,24 @@ def pull(performer: Performer, **options: Unpack[Options]) -> Trial:
     front = aimed(x=(0.0, 0.0, 1.0), z=(-1.0, 0.0, 0.0))
     stage = Stage(shapes.box(*BLOCK), gripped(performer, (-1.0, 0.0, 0.0), front))
     legs = (Leg((-0.1, 0.0, 0.0)),)
-    return handle(performer, "pull", legs, (*TAKE, "Pull", "Touch", *LEAVE), stage, **options)
+    return handle(performer, "pull", legs, (*TAKE, "Pull", "TouchWith", *LEAVE), stage, **options)
 
 
 def slide(performer: Performer, **options: Unpack[Options]) -> Trial:
     """A palm at a block's side moves it along, neither from behind nor from before."""
     return handle(
-        performer, "slide", (Leg((0.25, 0.0, 0.0)),), (*TAKE, "Slide", "Touch", *LEAVE), **options
+        performer,
+        "slide",
+        (Leg((0.25, 0.0, 0.0)),),
+        (*TAKE, "Slide", "TouchWith", *LEAVE),
+        **options,
     )
 
 
 def turn_on_table(performer: Performer, **options: Unpack[Options]) -> Trial:
     """A block is turned about the vertical where it stands."""
     legs = (Leg(turn=(0.0, 0.0, 1.05)),)
-    return handle(performer, "turn_on_table", legs, (*TAKE, "Turn", "Touch", *LEAVE), **options)
+    return handle(performer, "turn_on_table", legs, (*TAKE, "Turn", "TouchWith", *LEAVE), **options)
 
 
 def pour(performer: Performer, **options: Unpack[Options]) -> Trial:
@@ -108,7 +112,7 @@ def stir(performer: Performer, **options: Unpack[Options]) -> Trial:
     stage = Stage(shapes.box(*ROD), grip, (_bowl(performer, 0.0),), held=True, height_m=0.22)
     into = Leg((0.0, 0.0, -0.2))
     legs = (into, Leg(seconds=2.0, swing=(0.05, 0.0, 0.0)), Leg((0.0, 0.0, 0.2)))
-    steps = ("Touch", "Lower", "Touch", "Stir", "Touch", "Lift", "Touch")
+    steps = ("Touch", "Lower", "Touch", "Stir", "Touch", "Raise", "Touch")
     return handle(performer, "stir", legs, steps, stage, **options)
 
 

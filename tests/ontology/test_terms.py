@@ -21,7 +21,7 @@ from ontology.vocabularies import PREFIXES, RDF, RDFS
 LABEL = NamedNode(RDFS + "label")
 DEFINITION = NamedNode(PREFIXES["skos"] + "definition")
 TYPE = NamedNode(RDF + "type")
-STATED = [each for file in term_files() for each in read(file)]
+ALL_FACT_KINDS = [each for file in term_files() for each in read(file)]
 HERE = Path(ontology.__file__).parent
 README = (HERE / "README.md").read_text("utf-8")
 
@@ -30,7 +30,7 @@ def typed() -> set[str]:
     """Names of the terms that a file says are something."""
     return {
         each.subject.value.removeprefix(BASE)
-        for each in STATED
+        for each in ALL_FACT_KINDS
         if each.predicate == TYPE
         and isinstance(each.subject, NamedNode)
         and each.subject.value.startswith(BASE)
@@ -44,7 +44,7 @@ def test_the_closed_namespace_equals_the_files() -> None:
 def test_every_term_that_a_file_uses_is_stated() -> None:
     used = {
         node.value.removeprefix(BASE)
-        for each in STATED
+        for each in ALL_FACT_KINDS
         for node in (each.subject, each.predicate, each.object)
         if isinstance(node, NamedNode) and node.value.startswith(BASE)
     }
@@ -54,7 +54,7 @@ def test_every_term_that_a_file_uses_is_stated() -> None:
 @pytest.mark.parametrize("predicate", [LABEL, DEFINITION], ids=["label", "definition"])
 def test_every_term_and_every_kind_has_one_of_each(predicate: NamedNode) -> None:
     counts: dict[str, int] = {}
-    for each in STATED:
+    for each in ALL_FACT_KINDS:
         if each.predicate == predicate and isinstance(each.object, Literal):
             assert each.object.value.strip()
             counts[str(each.subject)] = counts.get(str(each.subject), 0) + 1
@@ -114,10 +114,10 @@ def test_every_figure_of_the_thesis_has_rows() -> None:
 
 
 def test_what_may_happen_at_a_border_is_the_same_in_files_shapes_code_and_model() -> None:
-    kinds_of_border = {each.subject for each in STATED if each.object == CAPAR.BorderKind}
+    kinds_of_border = {each.subject for each in ALL_FACT_KINDS if each.object == CAPAR.BorderKind}
     named = {
         each.object.value: each.subject
-        for each in STATED
+        for each in ALL_FACT_KINDS
         if each.predicate == CAPAR.name
         and each.subject in kinds_of_border
         and isinstance(each.object, Literal)
@@ -132,7 +132,7 @@ def test_what_may_happen_at_a_border_is_the_same_in_files_shapes_code_and_model(
 def test_the_kinds_form_a_hierarchy_under_one_root() -> None:
     pairs = [
         (str(each.subject), str(each.object))
-        for each in STATED
+        for each in ALL_FACT_KINDS
         if each.predicate == CAPAR.broaderKind
     ]
     above = closure(pairs)

@@ -58,13 +58,12 @@ def rested_on(known: Known, other: str) -> bool:
 
 
 def no_support(known: Known, other: str) -> bool:
-    """It moves on it, or came to it only after the hand came."""
+    """It was moved since the hand came, or came to it only after the hand came."""
     what = known.segment.objects[0]
     hand = min(each.first for each in known.touching(known.segment.ee, what))
     came_later = any(each.first >= hand for each in known.touching(what, other))
-    first, last = known.segment.first, known.segment.last
-    moves = any(each.first < last and each.last > first for each in known.moving(what))
-    return came_later or moves
+    moved = any(hand <= each.last and each.first < known.segment.last for each in known.moving(what))
+    return came_later or moved
 
 
 FORMS = (

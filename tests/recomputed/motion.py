@@ -5,10 +5,13 @@ from motions.rolling import CAN
 from scipy.spatial.transform import Rotation
 
 from capar.model.facts import Flies, Rolls, Swings, Touching
-from recomputed.known import MERGE_S, NAME, ROUNDED, TIME, Known, near
+from recomputed.known import NAME, ROUNDED, TIME, Known, near
 
 GONE_M, GONE_RAD = 0.009, 0.07
 """What has left its place is further away than this [m], [rad]."""
+
+CREEP_S = 0.3
+"""A motion may begin so long before, and end so long after, the floor of motion tells of it [s]."""
 
 SETTLED_M = 0.015
 """An end-effector that rests sways less than this [m]."""
@@ -56,13 +59,13 @@ def measured(known: Known, what: str, first: str, last: str) -> bool:
 def left_place(known: Known, what: str, at: str, counts: str) -> bool:
     """Where it rested shortly before it is not any more; what counts is that or a bit earlier."""
     early = known.at(at) - known.at(counts)
-    return -ROUNDED <= early <= MERGE_S * known.rate + 1 and _parts(known, what, at, -1)
+    return -ROUNDED <= early <= CREEP_S * known.rate + 1 and _parts(known, what, at, -1)
 
 
 def came_to_place(known: Known, what: str, at: str, counts: str) -> bool:
     """The same backwards."""
     late = known.at(counts) - known.at(at)
-    return -ROUNDED <= late <= MERGE_S * known.rate + 1 and _parts(known, what, at, 1)
+    return -ROUNDED <= late <= CREEP_S * known.rate + 1 and _parts(known, what, at, 1)
 
 
 def _parts(known: Known, what: str, at: str, sign: int) -> bool:

@@ -1,7 +1,10 @@
 """Sentences about blows, and about other end-effectors and agents."""
 
+from itertools import pairwise
+
 import numpy as np
 
+from capar.model.capture import TagType
 from capar.model.facts import Touching
 from recomputed.known import NAME, ROUNDED, Known, covers, name
 
@@ -106,7 +109,58 @@ def tagged(known: Known, what: str, kind: str) -> bool:
     return known.capture.tag_object(name(what)).tag == kind
 
 
+def not_borne(known: Known, what: str, bearer: str) -> bool:
+    """It cannot be taken along, or is not above what would bear it, or does not touch it."""
+    loads = {each.name for each in known.capture.objects if each.tag is TagType.MOBILE}
+    if name(what) not in loads or not known.touching(what, bearer):
+        return True
+    return bool(np.isnan(known.middle(what, known.segment.first)[2])) or any(
+        known.middle(what, frame)[2] < known.middle(bearer, frame)[2]
+        for frame in (known.segment.first, known.segment.last)
+    )
+
+
+def met_at(known: Known, one: str, other: str, mm_s: str) -> bool:
+    """Their middles came together so fast shortly before some contact of the two began."""
+    return any(
+        abs(_pace(known, one, other, each.first) - float(mm_s) / 1000.0)
+        <= 0.3 * float(mm_s) / 1000.0
+        for each in known.touching(one, other)
+    )
+
+
+def _pace(known: Known, one: str, other: str, frame: int) -> float:
+    """The fastest relative motion of two middles in the last 0.06 s before a frame [m/s]."""
+    frames = range(max(frame - round(0.06 * known.rate), 0), frame + 1)
+    ways = [known.middle(one, each) - known.middle(other, each) for each in frames]
+    return max(float(np.linalg.norm(b - a)) * known.rate for a, b in pairwise(ways))
+
+
+def went_at(known: Known, what: str, mm_s: str, one: str) -> bool:
+    """Its middle went so fast as some contact with the other ended."""
+    return any(
+        abs(_speed(known, what, each.last) - float(mm_s) / 1000.0) <= 0.3 * float(mm_s) / 1000.0
+        for each in known.touching(one, what)
+    )
+
+
+def _speed(known: Known, what: str, frame: int) -> float:
+    reach = max(round(0.03 * known.rate), 1)
+    first, last = max(frame - reach, 0), min(frame + reach, len(known.capture.times) - 1)
+    way = known.middle(what, last) - known.middle(what, first)
+    return float(np.linalg.norm(way)) * known.rate / (last - first)
+
+
+def clings(known: Known, what: str, one: str) -> bool:
+    """They touch for longer than a blow does."""
+    return any(each.last - each.first > 0.1 * known.rate for each in known.touching(one, what))
+
+
 FORMS = (
+    (rf"the {NAME} was not borne by the {NAME}", not_borne),
+    (rf"the {NAME} met the {NAME} at (\d+) mm/s", met_at),
+    (rf"the {NAME} went at (\d+) mm/s when the {NAME} let it go", went_at),
+    (rf"the {NAME} stayed with the {NAME}", clings),
     (rf"the {NAME} was met at a high speed", met_fast),
     (rf"the {NAME} had the object by then", another_had),
     (rf"the {NAME} had taken the object by then", another_took),

@@ -161,7 +161,7 @@ def pour_inside() -> Trial:
     stage = Stage(shapes.box(*tumbler), grip, (_bowl(0.0),), held=True, height_m=0.22)
     over, back = Leg(turn=(-0.6, 0.0, 0.0)), Leg(turn=(0.6, 0.0, 0.0))
     legs = (Leg((0.0, 0.0, -0.195)), over, back, Leg((0.0, 0.0, 0.195)))
-    steps = ("Touch", "Lower", "Touch", "Pour", "Touch", "Pour", "Touch", "Lift", "Touch")
+    steps = ("Touch", "Lower", "Touch", "Pour", "Touch", "Pour", "Touch", "Raise", "Touch")
     return handle(motions.WOMAN, "pour_inside", legs, steps, stage)
 
 
@@ -184,7 +184,7 @@ MEANT: dict[str, dict[str, Sequence[str]]] = {
         "head": ("PostureChange", "LookAt", "PostureChange"),
         "right_hand": ("Reach", "Touch", "ResumePosture"),
     },
-    "put_down": {"right_hand": (*uses.LIFTED, "Carry", "Touch", "PutDown", "Touch", "Withdraw")},
+    "put_down": {"right_hand": (*uses.LIFTED, "Carry", "Touch", "PutDown", "Touch", "ResumePosture")},
 }
 """Steps by what the words mean, where the trial's own truth has the published, general ones."""
 

@@ -25,19 +25,20 @@ def under_object(
 ) -> tuple[Pose, str]:
     """The pose of a support whose surface is where an object's lowest corner is at a time.
 
-    A pattern in ``top_at_bottom_of`` stands for every mobile object that has a shape: the surface
-    is then at the median or the lowest of their lowest corners. Without a ``position`` the support
+    A pattern in ``top_at_bottom_of`` stands for every mobile object that has a shape, or for all
+    if none has: the surface is then at the median or the lowest of their lowest corners. What has
+    no shape is a point, its origin. Without a ``position`` the support
     is under the middle of the objects.
 
     Returns:
         The pose, and how it was derived.
 
     Raises:
-        CaparError: No such object, it has no shape, or it is not seen then.
+        CaparError: No such object, the support has no shape, or the object is not seen then.
     """
     resting = _resting(entry, others)
-    if shape is None or any(thing.shape is None for thing in resting):
-        raise entry.error("top_at_bottom_of", "both the support and what rests on it need a shape.")
+    if shape is None:
+        raise entry.error("top_at_bottom_of", "the support needs a shape.")
     found = [_corners(entry, thing) for thing in resting]
     bottoms = np.array([float(corners[:, 2].min()) for corners, _ in found])
     top = float(bottoms.min() if entry.of == "lowest" else np.median(bottoms))
@@ -89,8 +90,8 @@ def _corners(
         raise entry.error(
             "at_s", f"{thing.name} is not seen near {at_s:g} s, but at {seen_s:.2f} s."
         )
-    assert thing.shape is not None
-    return thing.stream.pose(frame).apply(np.array(thing.shape.vertices)), seen_s
+    corners = np.zeros((1, 3)) if thing.shape is None else np.array(thing.shape.vertices)
+    return thing.stream.pose(frame).apply(corners), seen_s
 
 
 def _resting(entry: "ObjectEntry", others: Sequence[TagObject]) -> list[TagObject]:
@@ -102,8 +103,8 @@ def _resting(entry: "ObjectEntry", others: Sequence[TagObject]) -> list[TagObjec
     fitting = named or [
         thing
         for thing in others
-        if thing.tag is TagType.MOBILE and thing.shape and fnmatchcase(thing.name, pattern)
+        if thing.tag is TagType.MOBILE and fnmatchcase(thing.name, pattern)
     ]
     if not fitting:
-        raise entry.error("top_at_bottom_of", f"no mobile object with a shape fits {pattern!r}.")
-    return fitting
+        raise entry.error("top_at_bottom_of", f"no mobile object fits {pattern!r}.")
+    return [thing for thing in fitting if thing.shape] or fitting

@@ -1,0 +1,157 @@
+"""The patch where two surfaces meet: places on either that face the other close by."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.spatial import cKDTree
+
+SPACING_M = 0.0025
+"""How far places on a surface are apart at least [m]: half of what skin gives way."""
+
+MANY_PLACES = 400
+"""So many places on the side of the box in which bodies meet are enough [1]."""
+
+MOST_STEPS = 256
+"""Into so many steps an edge is divided at most [1]: a table of more than a metre more coarsely."""
+
+BOX_DEPTHS = 3.0
+"""Places further from the other body's box than so many depths of a patch are left out [1]."""
+
+LEAST_SHARE = 0.01
+"""Faces that cancel each other to less than this share of the patch's area press nowhere [1]."""
+
+Box = Float[np.ndarray, "2 3"]
+"""Lowest and highest corner [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Places spread over a surface, each with the unit normal and the area that it stands for."""
+
+    points: Float[np.ndarray, "places 3"]
+    normals: Float[np.ndarray, "places 3"]
+    areas: Float[np.ndarray, "places"]
+    outward: bool = True
+    """Whether normals point out of a solid; of an open sheet nobody knows."""
+
+    def of(self, some: Bool[np.ndarray, "places"]) -> "Places":
+        """Some of them."""
+        points, normals, areas = self.points[some], self.normals[some], self.areas[some]
+        return replace(self, points=points, normals=normals, areas=areas)
+
+
+def facing_normal(
+    body: Float[np.ndarray, "triangles 3 3"],
+    other: Float[np.ndarray, "others 3 3"],
+    *,
+    depth_m: float,
+    solid: tuple[bool, bool] = (True, True),
+) -> Float[np.ndarray, "3"] | None:
+    """The mean normal of the patch where two surfaces meet, from the other to the body.
+
+    Each place counts with its area, and as far as it faces the nearest place of the other
+    surface. None where nothing faces, or all sides alike: a peg in its hole.
+
+    Args:
+        body: Triangles [m], outward by their corners' order.
+        other: The same of the other body, in the same frame.
+        depth_m: The patch holds what is no further from the other surface than this beyond the
+            nearest of all [m].
+        solid: Whether either bounds a solid, so that its normals point outward.
+    """
+    wide = BOX_DEPTHS * depth_m * np.array([[-1.0], [1.0]])
+    box = _common(_box(body) + wide, _box(other) + wide)
+    spacing_m = max(SPACING_M, _spacing(box))
+    one = places(body, box, spacing_m=spacing_m, outward=solid[0])
+    two = places(other, box, spacing_m=spacing_m, outward=solid[1])
+    if not len(one.points) or not len(two.points):
+        return None
+    one, two = _patch(one, two, max(depth_m, spacing_m))
+    total = _faced(two, one) - _faced(one, two)
+    length = float(np.linalg.norm(total))
+    area = float(one.areas.sum() + two.areas.sum())
+    return total / length if length > LEAST_SHARE * area else None
+
+
+def places(
+    triangles: Float[np.ndarray, "triangles 3 3"],
+    box: Box,
+    *,
+    spacing_m: float = SPACING_M,
+    outward: bool = True,
+) -> Places:
+    """Places on triangles [m] within a box, spread evenly over each."""
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    some = _opposite_longest(triangles[((low <= box[1]) & (high >= box[0])).all(axis=1)])
+    one, two = some[:, 1] - some[:, 0], some[:, 2] - some[:, 0]
+    normal = np.cross(one, two)
+    length = np.linalg.norm(normal, axis=1)
+    steps = np.stack([_steps(one, spacing_m), _steps(two, spacing_m)], axis=1)
+    found = [(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0))]
+    for along, across in np.unique(steps, axis=0):
+        rows = np.flatnonzero((steps == (along, across)).all(axis=1) & (length > 0.0))
+        u, v = _spread(int(along), int(across))
+        points = some[rows, None, 0] + u[:, None] * one[rows, None] + v[:, None] * two[rows, None]
+        inside = ((points >= box[0]) & (points <= box[1])).all(axis=2)
+        row, _ = np.nonzero(inside)
+        row = rows[row]
+        found.append((points[inside], normal[row] / length[row, None], 0.5 * length[row] / len(u)))
+    points, normals, areas = (np.concatenate(each) for each in zip(*found, strict=True))
+    return Places(points, normals, areas, outward)
+
+
+def _opposite_longest(
+    triangles: Float[np.ndarray, "triangles 3 3"],
+) -> Float[np.ndarray, "triangles 3 3"]:
+    """Each triangle with the corner first that its longest edge does not touch."""
+    sides = np.linalg.norm(np.roll(triangles, -1, axis=1) - triangles, axis=2)
+    order = (sides.argmax(axis=1)[:, None] + np.array([2, 0, 1])) % 3
+    return np.take_along_axis(triangles, order[:, :, None], axis=1)
+
+
+def _steps(edges: Float[np.ndarray, "edges 3"], spacing_m: float) -> np.ndarray:
+    """Into how many steps each edge is divided [1]: a power of two, so that few differ."""
+    ratio = np.linalg.norm(edges, axis=1) / spacing_m
+    return np.clip(2 ** np.ceil(np.log2(np.maximum(ratio, 1.0))), 1, MOST_STEPS).astype(int)
+
+
+def _spread(along: int, across: int) -> tuple[np.ndarray, np.ndarray]:
+    """Shares of two edges at even places of a triangle: the thirds of each cell's two halves."""
+    grid = np.mgrid[0:along, 0:across].reshape(2, -1)
+    both = np.concatenate([grid + 1.0 / 3.0, grid + 2.0 / 3.0], axis=1)
+    u, v = both[0] / along, both[1] / across
+    inside = u + v < 1.0
+    return u[inside], v[inside]
+
+
+def _common(one: Box, two: Box) -> Box:
+    return np.stack([np.maximum(one[0], two[0]), np.minimum(one[1], two[1])])
+
+
+def _spacing(box: Box) -> float:
+    """How far places may be apart so that there are not too many [m]."""
+    sides = np.sort(np.maximum(box[1] - box[0], 0.0))
+    return float(np.sqrt(sides[1] * sides[2] / MANY_PLACES))
+
+
+def _box(triangles: Float[np.ndarray, "triangles 3 3"]) -> Box:
+    return np.stack([triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))])
+
+
+def _patch(one: Places, two: Places, depth_m: float) -> tuple[Places, Places]:
+    """What of either surface is near the other one."""
+    far_one = cKDTree(two.points).query(one.points)[0]
+    far_two = cKDTree(one.points).query(two.points)[0]
+    reach = float(min(far_one.min(), far_two.min())) + depth_m
+    return one.of(far_one <= reach), two.of(far_two <= reach)
+
+
+def _faced(own: Places, others: Places) -> Float[np.ndarray, "3"]:
+    """The sum of a patch's normals by area, as far as each faces the nearest of the others."""
+    if not own.outward:
+        return np.zeros(3)
+    nearest = cKDTree(others.points).query(own.points)[1]
+    faces = -np.einsum("ij,ij->i", own.normals, others.normals[nearest])
+    weights = own.areas * (np.maximum(faces, 0.0) if others.outward else np.abs(faces))
+    return np.asarray(weights @ own.normals)

@@ -1,0 +1,91 @@
+"""What touches only through a third body does not touch: a ball in a bowl and the table below."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from extractors.bodies.poses import rotation_matrices
+from extractors.contact.proximity import Body, nearest
+from extractors.signals.intervals import Interval
+
+ASKED_FRAMES = 5
+"""At how many frames it is asked whether a body is in between [1]; most of them decide."""
+
+
+Meeting = tuple[str, str, Interval]
+"""The names of two bodies that touch, and the frames in which they do."""
+
+
+def screened(
+    meetings: Sequence[Meeting], bodies: Mapping[str, Body], screens: Iterable[str]
+) -> Iterator[tuple[Interval, ...]]:
+    """For each meeting the intervals in which a third body is between the two.
+
+    Bodies touch if their surfaces are within a tolerance, which reaches through a thin wall. A
+    third body is between two if it touches both, and the line that joins their nearest points
+    goes through it. What cuts each other has nothing between.
+
+    Args:
+        meetings: Contacts.
+        bodies: Surfaces with their poses, by name.
+        screens: Names of bodies that may be in between.
+    """
+    touches: dict[str, dict[str, list[Interval]]] = defaultdict(lambda: defaultdict(list))
+    for one, two, span in meetings:
+        touches[one][two].append(span)
+        touches[two][one].append(span)
+    for one, two, span in meetings:
+        common = set(touches[one]) & set(touches[two]) & set(screens) & set(bodies)
+        yield tuple(
+            sorted(
+                part
+                for third in common
+                if one in bodies and two in bodies
+                for part in _common(span, touches[one][third], touches[two][third])
+                if _parted(bodies[one], bodies[two], bodies[third], part)
+            )
+        )
+
+
+def _common(
+    span: Interval, ones: Iterable[Interval], twos: Iterable[Interval]
+) -> Iterator[Interval]:
+    """The frames of an interval that lie in one of either kind as well."""
+    for one in ones:
+        for two in twos:
+            first, last = max(span[0], one[0], two[0]), min(span[1], one[1], two[1])
+            if first <= last:
+                yield first, last
+
+
+def _parted(one: Body, two: Body, third: Body, span: Interval) -> bool:
+    """Whether the third body is between two at most of the frames that are asked about."""
+    frames = np.unique(np.linspace(*span, ASKED_FRAMES).round().astype(int))
+    between = [_between(one, two, third, int(frame)) for frame in frames]
+    return 2 * sum(between) > len(between)
+
+
+def _between(one: Body, two: Body, third: Body, frame: int) -> bool:
+    """Whether the line that joins two bodies' nearest points goes through a third at a frame."""
+    if any(np.isnan(each.positions[frame]).any() for each in (one, two, third)):
+        return False
+    distance, on_one, on_two = nearest(one, two, frame)
+    if distance <= 0.0:
+        return False
+    begin, end = _local(third, one, on_one, frame), _local(third, two, on_two, frame)
+    middle = 0.5 * (begin + end)
+    if third.surface.contains(middle[None])[0]:
+        return True
+    way = (end - begin)[None]
+    places, _, _ = third.surface.mesh.ray.intersects_location(begin[None], way)
+    along = (places - begin) @ way[0] / float(way[0] @ way[0])
+    return bool(((along >= 0.0) & (along <= 1.0)).any())
+
+
+def _local(base: Body, other: Body, point: np.ndarray, frame: int) -> np.ndarray:
+    """A point of the other's frame [m] in the base's."""
+    turn = rotation_matrices(other.orientations[frame][None])[0]
+    back = rotation_matrices(base.orientations[frame][None])[0].T
+    world = turn @ point + other.positions[frame]
+    return np.asarray(back @ (world - base.positions[frame]))

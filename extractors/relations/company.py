@@ -1,0 +1,104 @@
+"""In whose company objects travel: steady in another body's frame, and how far from it."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from capar.model import geometry
+from capar.model.calibration import Calibration, Found
+from capar.model.capture import Capture, Stream, TagType
+from capar.model.errors import UnknownNameError
+from capar.model.facts import MovesWith, Travels
+from extractors.bodies.bodies import Bodies
+from extractors.bodies.body_geometry import BodyGeometry
+from extractors.contact.co_motion import relative, steady_in, travelling
+from extractors.contact.proximity import distance
+from extractors.contact.touch_distances import touchable
+from extractors.contact.touch_points import TouchPoints
+from extractors.signals.intervals import Interval, intervals
+from extractors.thresholds import Thresholds
+
+SAMPLES = 5
+"""In how many frames of a stretch the distance of surfaces is measured; the median counts."""
+
+
+def company(
+    capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
+) -> Iterator[Travels | MovesWith]:
+    """When each mobile object travels, and in whose frame it is steady meanwhile.
+
+    Asked are all sensors and all other mobile objects. A stretch is extended to the frames before
+    and after it in which either is no farther from where it then was in the other's frame than
+    fingers open about what they let go.
+    """
+    mobile = [each.name for each in capture.objects if each.tag is TagType.MOBILE]
+    for name in mobile:
+        thing = bodies.objects[name]
+        travels = travelling(thing.poses.settled, thresholds)
+        if not travels.any():
+            continue
+        for span in _spans(travels, capture, thresholds):
+            yield Travels(name, *span)
+        others = [*bodies.sensors.values(), *(bodies.objects[each] for each in mobile)]
+        for other in others:
+            if other.name == name or other.poses is thing.poses:
+                continue
+            for span in _together(other.poses.settled, thing.poses.settled, capture, thresholds):
+                gap = _gap(other, thing, span, calibration)
+                if np.isfinite(gap):
+                    yield MovesWith(name, other.name, *span, round(1000.0 * gap))
+
+
+def _together(
+    carrier: Stream, thing: Stream, capture: Capture, thresholds: Thresholds
+) -> list[Interval]:
+    frames = steady_in(carrier, thing, thresholds)
+    if not frames.any():
+        return []
+    places = relative(carrier, thing), relative(thing, carrier)
+    out = frames.copy()
+    for first, last in geometry.runs(frames):
+        for edge, step in ((first, -1), (last, 1)):
+            strays = [np.linalg.norm(each - each[edge], axis=1) for each in places]
+            near = np.minimum(*strays) <= thresholds.touch_margin_m
+            frame = edge
+            while 0 <= frame < len(out) and near[frame]:
+                out[frame] = True
+                frame += step
+    return _spans(out, capture, thresholds)
+
+
+def _spans(
+    holds: Bool[np.ndarray, "frames"], capture: Capture, thresholds: Thresholds
+) -> list[Interval]:
+    dropout_s, minimum_s = thresholds.dropout_s, thresholds.contact_minimum_s
+    return intervals(holds, capture.times, dropout_s=dropout_s, minimum_s=minimum_s)
+
+
+def _gap(
+    other: BodyGeometry, thing: BodyGeometry, span: Interval, calibration: Calibration
+) -> float:
+    """How much farther apart than where they touch two bodies are in a stretch [m]."""
+    some = np.unique(np.linspace(*span, SAMPLES).round().astype(int))
+    points, touch_m, pivots = TouchPoints(), 0.0, other.shape is None or thing.shape is None
+    for first, second in ((other.name, thing.name), (thing.name, other.name)):
+        try:
+            pair = calibration.pair(first, second)
+        except UnknownNameError:
+            continue
+        touch_m, pivots = pair.touch_m, pair.pivots
+        if pair.found is Found.NEVER:
+            pivots = True
+        one, two = pair.first_point, pair.second_point
+        points = TouchPoints(one, two) if first == other.name else TouchPoints(two, one)
+        break
+    apart: Float[np.ndarray, "frames"]
+    if pivots:
+        apart = points.apart(other.poses.settled, thing.poses.settled)[some]
+    else:
+        one_body, two_body = touchable(other), touchable(thing)
+        known = [each for each in some if not (other.poses.lost | thing.poses.lost)[each]]
+        apart = np.array([distance(one_body, two_body, int(each)) for each in known])
+    known_m = apart[~np.isnan(apart)]
+    return max(0.0, float(np.median(known_m)) - touch_m) if known_m.size else float("nan")
