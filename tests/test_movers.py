@@ -29,14 +29,7 @@ MADE: dict[str, Callable[[], Capture]] = {
     "handing over": lambda: motions.hand_over().capture,
 }
 RECORDED = (
-    *(f"bimacs_optitrack:take{take}" for take in range(10) if take not in (6, 8)),
-    *(
-        pytest.param(f"bimacs_optitrack:take{take}", marks=pytest.mark.xfail(reason=reason))
-        for take, reason in (
-            (6, "the bowl moves for 0.2 s while the hand is 1 cm beyond reach"),
-            (8, "12 % of the bottle's motion, as it is put down, has no mover"),
-        )
-    ),
+    *(f"bimacs_optitrack:take{take}" for take in range(10)),
     "omomo_intermimic:sub2_woodchair_003",
     "omomo_intermimic:sub2_woodchair_004",
     "omomo_intermimic:sub2_largetable_000",

@@ -17,9 +17,6 @@ EXAMPLE = ROOT / "examples" / "bimacs_optitrack"
 pytestmark = pytest.mark.skipif(not LABELS.exists(), reason=f"no recording at {LABELS}")
 
 
-@pytest.mark.xfail(
-    reason="transits cut by phases, with borders at true edges, lost macro F1 of both hands"
-)
 def test_each_hand_agrees_with_its_labels(monkeypatch: pytest.MonkeyPatch) -> None:
     """Takes 0 to 4 were developed on, takes 5 to 9 kept apart."""
     monkeypatch.setenv("CAPAR_DATA", str(DATA))
