@@ -39,7 +39,7 @@ def _write_draft(files: list[Path], output: Path, *, force: bool) -> None:
     from capar.cli._output import written
     from capar.model.errors import CaparError, FileError
     from extractors.readers.bundle.capture_toml import read_capture
-    from extractors.readers.drafting.draft import TODO, draft
+    from extractors.readers.drafting.draft import EDIT, draft
     from extractors.readers.registry import read_recording
 
     folder = output.is_dir() or output.suffix != ".toml"
@@ -53,7 +53,7 @@ def _write_draft(files: list[Path], output: Path, *, force: bool) -> None:
         draft_file.write_text(text, encoding="utf-8")
     typer.echo(f"wrote {path}")
     for number, line in enumerate(text.splitlines(), 1):
-        if TODO in line:
+        if EDIT in line:
             typer.echo(f"{path}:{number}: look at: {line.strip()}")
     try:
         capture = read_capture(path)

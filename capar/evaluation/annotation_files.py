@@ -89,7 +89,7 @@ def _quietly(path: Path, read: Callable[[], Any], remedy: str) -> Any:
         with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
             warnings.simplefilter("ignore")
             return read()
-    except Exception as error:
+    except Exception as error:  # pympi raises Exception itself, and whatever bytes make of it
         kind = type(error).__name__
         raise FileError(path, f"cannot be read to its end ({kind}: {error}).", remedy) from None
 

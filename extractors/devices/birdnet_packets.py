@@ -4,6 +4,7 @@ import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from typing import Any
 
 from capar.model.errors import DeviceError
 from extractors.devices.bird_formats import FORMATS, BirdFormat
@@ -240,11 +241,11 @@ def unit_bits(*, sensor: bool) -> int:
     return ACCESSIBLE | RUNNING | (SENSOR if sensor else ERC | 0x01)
 
 
-def reply(command: Packet, **changes: object) -> Packet:
+def reply(command: Packet, **changes: Any) -> Packet:
     """The response to a command: its sequence number and address, and the type that answers it."""
     kind = RESPONSES.get(Kind(command.kind), Kind.UNKNOWN) if command.kind in _KINDS else 50
     base = Packet(kind, command.sequence, command.xtype)
-    return replace(base, **changes)  # type: ignore[arg-type]
+    return replace(base, **changes)
 
 
 _BY_CODE = {each.code: each for each in FORMATS.values()}

@@ -3,6 +3,7 @@
 import select
 import threading
 import time
+from abc import ABC, abstractmethod
 from typing import Self
 
 from extractors.devices.motion_source import MotionSource, Poses
@@ -11,7 +12,7 @@ IDLE_S = 0.02
 """Longest wait for anything [s]."""
 
 
-class Simulator:
+class Simulator(ABC):
     """A simulated tracker in a thread of its own, as a context manager.
 
     One has ``_plug`` and ``_unplug``, ``_handles`` (what to listen to), ``_wait_s`` (until
@@ -32,9 +33,9 @@ class Simulator:
         self._thread = threading.Thread(target=self._run, daemon=True)
 
     @property
+    @abstractmethod
     def place(self) -> str:
         """The place in a device address."""
-        raise NotImplementedError
 
     def start(self) -> None:
         """Plug it in, and measure."""
@@ -98,17 +99,22 @@ class Simulator:
     def _remove(self) -> None:
         self._unplug()
 
+    @abstractmethod
     def _plug(self) -> None:
-        raise NotImplementedError
+        """Open what a program connects to."""
 
+    @abstractmethod
     def _unplug(self) -> None:
-        raise NotImplementedError
+        """Close it, as a device that goes away."""
 
+    @abstractmethod
     def _handles(self) -> list[int]:
-        raise NotImplementedError
+        """File descriptors that may have something to attend to."""
 
+    @abstractmethod
     def _attend(self, ready: set[int]) -> None:
-        raise NotImplementedError
+        """Answer what came in at the handles that are ready."""
 
+    @abstractmethod
     def _measure(self, at_s: float) -> None:
-        raise NotImplementedError
+        """Send what is due at this time of the monotonic clock [s]."""

@@ -1,6 +1,7 @@
 """What every live tracker gives: a description, and frames of poses with time stamps."""
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -122,7 +123,7 @@ class Tracker(Protocol):
         """Have the device stop, and let go of it."""
 
 
-class LiveTracker:
+class LiveTracker(ABC):
     """What the drivers share: connecting again, the frames one by one, closing at the end.
 
     A driver has ``_connect``, ``_disconnect`` and ``_read``; the latter raises
@@ -151,9 +152,9 @@ class LiveTracker:
             raise
         self._connected = True
 
+    @abstractmethod
     def describe(self) -> Description:
         """What the device is, and its sensors."""
-        raise NotImplementedError
 
     def poll(self, timeout_s: float) -> list[Frame]:
         """The frames that have come since the last call, after at most a wait [s]."""
@@ -230,14 +231,17 @@ class LiveTracker:
         self._say("connected again")
         return True
 
+    @abstractmethod
     def _connect(self) -> None:
-        raise NotImplementedError
+        """Open the connection and have the device send."""
 
+    @abstractmethod
     def _disconnect(self) -> None:
-        raise NotImplementedError
+        """Close the connection."""
 
-    def _stop(self) -> None:
+    def _stop(self) -> None:  # noqa: B027  # most stop as the connection closes
         """Have the device stop sending, as far as it still listens."""
 
+    @abstractmethod
     def _read(self, timeout_s: float) -> list[Frame]:
-        raise NotImplementedError
+        """The frames that come within a wait [s]."""

@@ -18,7 +18,7 @@ from extractors.readers.name_guesses import (
 from extractors.readers.recording import UNITS, Recording
 from extractors.readers.schema.names import constant_name
 
-TODO = "# EDIT:"
+EDIT = "# EDIT:"
 """What marks a line that a person must look at."""
 
 
@@ -45,7 +45,7 @@ def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
     used: set[str] = set()
     sensors = [each for each in found if limb_of(each.name)]
     if not sensors and found:
-        lines += ["", f"{TODO} no name tells of a hand, head or foot; the first body is taken."]
+        lines += ["", f"{EDIT} no name tells of a hand, head or foot; the first body is taken."]
         sensors = found[:1]
     for each in sensors:
         lines += ["", *_sensor(each, used)]
@@ -84,7 +84,7 @@ def _frame_lines(recordings: Sequence[Recording]) -> list[str]:
 def _unit_lines(person: Standing | None) -> list[str]:
     """The unit, by the height of the person in the file."""
     if person is None:
-        return [f'unit = "m"                      {TODO} {", ".join(UNITS)}, or metres per unit']
+        return [f'unit = "m"                      {EDIT} {", ".join(UNITS)}, or metres per unit']
     evidence = f"# the head is {person.height:.4g} above the feet"
     low, high = HEIGHT_M
     if person.unit:
@@ -95,7 +95,7 @@ def _unit_lines(person: Standing | None) -> list[str]:
         ]
     return [
         f"{evidence}, which is {low:g} to {high:g} m in no usual unit",
-        f"unit = {person.scale_m:.4g}                  {TODO} metres per unit, for an adult",
+        f"unit = {person.scale_m:.4g}                  {EDIT} metres per unit, for an adult",
     ]
 
 
@@ -103,7 +103,7 @@ def _up_lines(person: Standing | None) -> list[str]:
     """The axis that points up, by where head and feet are."""
     if person is None or not person.clear:
         up = person.up if person else "z"
-        return [f'up = "{up}"                        {TODO} the axis that points up: x, y or z']
+        return [f'up = "{up}"                        {EDIT} the axis that points up: x, y or z']
     return [f'up = "{person.up}"                        # from the feet to the head']
 
 
@@ -148,7 +148,7 @@ def _object(found: _Found, used: set[str]) -> list[str]:
         "[[object]]",
         f"name = {_quoted(name)}",
         f"kind = {_quoted(name)}         # its noun",
-        f'tag = "mobile"                  {TODO} self, fixed or mobile',
+        f'tag = "mobile"                  {EDIT} self, fixed or mobile',
         f"file = {_quoted(found.file)}",
         found.key,
         '# shape = { box = [0.1, 0.1, 0.1] }   # or { mesh = "mug.stl", unit = "mm" }',
@@ -158,7 +158,7 @@ def _object(found: _Found, used: set[str]) -> list[str]:
 def _nothing(recordings: Sequence[Recording]) -> list[str]:
     names = ", ".join(name for each in recordings for name in each.names)
     return [
-        f"{TODO} no three markers keep their distances. Say which are one body:",
+        f"{EDIT} no three markers keep their distances. Say which are one body:",
         f"# the files hold: {names}",
         "# [[sensor]]",
         '# name = "right_hand"',

@@ -7,7 +7,7 @@ import pytest
 
 from capar.model.capture import Source
 from extractors.readers.bundle.capture_toml import read_capture
-from extractors.readers.drafting.draft import TODO, draft
+from extractors.readers.drafting.draft import EDIT, draft
 from extractors.readers.name_guesses import standing
 from extractors.readers.recording import Recording, track
 from extractors.readers.registry import read_recording
@@ -48,14 +48,14 @@ def test_the_unit_and_axis_in_which_a_person_stands_are_drafted_with_the_evidenc
     assert f'unit = "{unit}"' in text
     assert f"1.42 m if the unit is {unit}" in text
     assert f'up = "{up}"' in text
-    assert TODO not in text
+    assert EDIT not in text
 
 
 def test_a_scale_that_is_no_unit_is_drafted_as_a_number_to_look_at() -> None:
     text = draft([person(18.0, 1)], Path(), "walk")
     (line,) = [each for each in text.splitlines() if each.startswith("unit = ")]
     assert float(line.split()[2]) == pytest.approx(1.0 / 18.0, rel=0.05)
-    assert TODO in line
+    assert EDIT in line
 
 
 def test_finger_joints_are_no_hands_and_joints_are_no_objects() -> None:
