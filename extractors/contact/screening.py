@@ -66,7 +66,7 @@ def _common(
 
 
 def _parted(meeting: tuple[Body, Body, Body], span: Interval, reach_m: float) -> bool:
-    """Whether the third body of three is between the others at most of the frames that are asked about."""
+    """Whether the third of three bodies is between the others, at most of some frames."""
     frames = np.unique(np.linspace(*span, ASKED_FRAMES).round().astype(int))
     between = [_between(*meeting, int(frame), reach_m) for frame in frames]
     return 2 * sum(between) > len(between)

@@ -51,9 +51,11 @@ def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
 
 
 def _before(times: Float[np.ndarray, "frames"], frame: int, span_s: float) -> int:
-    """The last frame that is so long before another [s], or longer: a slow clock has few."""
-    earlier = int(np.searchsorted(times, times[frame] - span_s + 1e-9, side="right")) - 1
-    return max(earlier, 0)
+    """The frame nearest to so long before another [s]: a slow clock has one, if not within it."""
+    wanted = times[frame] - span_s
+    later = int(np.searchsorted(times, wanted))
+    nearer = later > 0 and wanted - times[later - 1] < times[later] - wanted
+    return later - 1 if nearer else later
 
 
 def release_speed(thing: BodyGeometry, frame: int) -> float:
