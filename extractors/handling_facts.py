@@ -21,12 +21,14 @@ from capar.model.facts import (
     Moving,
     Passage,
     Phase,
+    PressDirection,
     ReleaseSpeed,
     Resting,
     Reverses,
     Rides,
     Rolls,
     Seated,
+    SightNormal,
     Swings,
     Touching,
 )
@@ -41,6 +43,7 @@ from extractors.motion.rolling import rolling
 from extractors.motion.seats import seat
 from extractors.motion.turning_points import swings
 from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between, sides
+from extractors.relations.attention import seeing, sight
 from extractors.relations.grips import shifts
 from extractors.relations.loads import rides
 from extractors.relations.places import distances, places
@@ -113,7 +116,7 @@ def handling(
             out += (Lies(touch.body, SHIFTS, touch.other, *span) for span in spans)
             left_mps = release_speed(things[touch.other], touch.last)
             out.append(ReleaseSpeed(touch.body, touch.other, touch.first, round(1000.0 * left_mps)))
-    out += _contacts({**things, **hands}, touches, thresholds)
+    out += _contacts(capture, bodies, touches, thresholds)
     out += _loads(capture, things, seen, thresholds)
     return tuple(out)
 
@@ -221,17 +224,36 @@ def _loads(
                 yield Rides(fact.body, fact.other, fact.first)
 
 
+def _sides(
+    touch: Touching, normal: Float[np.ndarray, "3"], capture: Capture, bodies: Bodies
+) -> Iterator[Fact]:
+    """On which side an end-effector touches what can be moved, and what looks somewhere."""
+    body, other, first = touch.body, touch.other, touch.first
+    if any(each.name == other and each.tag is TagType.MOBILE for each in capture.objects):
+        x, y = (round(-1000.0 * float(part)) for part in normal[:2])
+        yield PressDirection(body, other, first, x, y)
+    for head in seeing(capture):
+        if head.name == other:
+            along = float(normal @ sight(head, bodies.sensors[other].poses)[1][first])
+            if not np.isnan(along):
+                yield SightNormal(body, other, first, round(1000.0 * along))
+
+
 def _contacts(
-    bodies: Mapping[str, BodyGeometry], touches: Iterable[Touching], thresholds: Thresholds
+    capture: Capture, bodies: Bodies, touches: Iterable[Touching], thresholds: Thresholds
 ) -> Iterator[Fact]:
     upward: dict[tuple[str, str, int], int] = {}
+    acting = {each.name: bodies.sensors[each.name] for each in capture.acting}
+    known = {**bodies.objects, **acting}
     for each in touches:
-        body, other = bodies[each.body], bodies[each.other]
+        body, other = known[each.body], known[each.other]
         swapped = upward.get((each.other, each.body, each.first))
         if swapped is not None:
             yield ContactNormal(each.body, each.other, each.first, -swapped)
         elif (normal := contact_normal(body, other, each.first, thresholds)) is not None:
             permille = upward[each.body, each.other, each.first] = round(1000.0 * float(normal[2]))
             yield ContactNormal(each.body, each.other, each.first, permille)
+            if each.body in acting:
+                yield from _sides(each, normal, capture, bodies)
         speed = closing_speed(body, other, each.first)
         yield ClosingSpeed(each.body, each.other, each.first, round(1000.0 * speed))

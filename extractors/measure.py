@@ -44,11 +44,10 @@ from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
 from extractors.handling_facts import handling
-from extractors.motion.motion_edges import motion_edges, onset
-from extractors.motion.object_motion import Floor, RestPose, moving, rest_poses
-from extractors.relations.attention import Attention, attention
+from extractors.motion.motion_edges import motion_edges
+from extractors.motion.object_motion import Floor, moving, rest_poses
+from extractors.relations.attention import Attention, attention, seeing
 from extractors.relations.company import company
-from extractors.relations.weight_bearing import TRUNK
 from extractors.signals.filters import speed
 from extractors.signals.gaps import long_gaps
 from extractors.signals.intervals import Interval
@@ -119,7 +118,7 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
         name: _track(body.poses, calibration.sensor(name).highest_speed_mps, limits)
         for name, body in bodies.sensors.items()
     }
-    looks = {each.name: attention(capture, each, bodies, limits) for each in _seeing(capture)}
+    looks = {each.name: attention(capture, each, bodies, limits) for each in seeing(capture)}
     moves = tuple(_moving(capture, bodies, calibration, limits))
     touches = contacts(capture, bodies, calibration)
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
@@ -156,19 +155,6 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
 LOSS = "long-gap"
 """The notice of a body that was lost for long: one a body, in place of the reader's one a gap."""
 
-HEAD = "head"
-"""The general type of an end-effector that carries the eyes, whether it attends or acts."""
-
-
-def _seeing(capture: Capture) -> tuple[Sensor, ...]:
-    """Every sensor with a line of sight: heads, and what attends and is no trunk."""
-    attending = {each.name for each in capture.attending if each.end_effector not in TRUNK}
-    return tuple(
-        sensor
-        for sensor in capture.sensors
-        if sensor.name in attending or sensor.end_effector == HEAD
-    )
-
 
 def _track(poses: Poses, highest_mps: float, thresholds: Thresholds) -> Track:
     stream = poses.smooth
@@ -192,7 +178,7 @@ def _scene(capture: Capture) -> Iterator[Fact]:
         yield Tag(each.name, each.tag.value)
     if capture.others:
         own = [thing for thing in capture.objects if thing.tag is TagType.SELF]
-        bodies: tuple[Sensor | TagObject, ...] = (*capture.acting, *_seeing(capture), *own)
+        bodies: tuple[Sensor | TagObject, ...] = (*capture.acting, *seeing(capture), *own)
         for body in bodies:
             yield OfAgent(body.name, capture.agent_of(body))
     if capture.force_transfer:
@@ -232,23 +218,8 @@ def _moving(
             rests = rest_poses(pose, floor, thresholds)
             for interval in moving(pose, rests, floor, thresholds):
                 yield Moving(thing.name, *interval)
-                yield Displaced(thing.name, *_edges(pose, interval, rests, floor, thresholds))
-
-
-def _edges(
-    poses: Poses,
-    interval: Interval,
-    rests: tuple[RestPose, ...],
-    floor: Floor,
-    thresholds: Thresholds,
-) -> Interval:
-    """When a motion that its floor tells began and ended; what is not known from rest stays."""
-    first, last = motion_edges(poses, interval, rests, thresholds)
-    if first < interval[0]:
-        first = onset(first, interval[0], poses, floor, thresholds)
-    if last > interval[1]:
-        last = onset(last, interval[1], poses, floor, thresholds)
-    return first, last
+                edges = motion_edges(pose, interval, rests, floor, thresholds)
+                yield Displaced(thing.name, *edges)
 
 
 def _motions(moves: tuple[Fact, ...]) -> dict[str, list[Interval]]:

@@ -25,12 +25,14 @@ from capar.model.handling import Passage as Passage
 from capar.model.handling import Phase as Phase
 from capar.model.handling import Place as Place
 from capar.model.handling import Posture as Posture
+from capar.model.handling import PressDirection as PressDirection
 from capar.model.handling import ReleaseSpeed as ReleaseSpeed
 from capar.model.handling import Resting as Resting
 from capar.model.handling import Reverses as Reverses
 from capar.model.handling import Rides as Rides
 from capar.model.handling import Rolls as Rolls
 from capar.model.handling import Seated as Seated
+from capar.model.handling import SightNormal as SightNormal
 from capar.model.handling import SweptAzimuth as SweptAzimuth
 from capar.model.handling import Swings as Swings
 from capar.model.handling import Travelled as Travelled

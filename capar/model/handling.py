@@ -123,6 +123,37 @@ class ContactNormal(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class PressDirection(Observed):
+    """Which way an end-effector presses aside on an object: x and y of the unit vector [1/1000].
+
+    That is the normal of the contact, from the end-effector to the object, in the world.
+    """
+
+    predicate = "presses"
+    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    body: str
+    other: str
+    first: int
+    x: int
+    y: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class SightNormal(Observed):
+    """How far the normal of a contact with a head points where the head looks [1/1000].
+
+    1000 where the face is touched from before it, 0 at the temples, -1000 at the back.
+    """
+
+    predicate = "sighted"
+    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    body: str
+    other: str
+    first: int
+    permille: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Rides(Observed):
     """A body is borne by another one, in or on it, and goes along when that one moves.
 

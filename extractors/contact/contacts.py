@@ -138,7 +138,9 @@ def _direct(
     mobile = [each.name for each in capture.objects if each.tag is TagType.MOBILE]
     bodies = {each.name: shape for each, shape in surfaces.items() if shape is not None}
     met = [(each.first, each.second, each.interval) for each in found]
-    for contact, parts in zip(found, screened(met, bodies, mobile), strict=True):
+    reach_m = calibration.contact_tolerance_m
+    hidden = screened(met, bodies, mobile, reach_m=reach_m)
+    for contact, parts in zip(found, hidden, strict=True):
         if not parts:
             yield contact
             continue

@@ -18,18 +18,24 @@ Meeting = tuple[str, str, Interval]
 
 
 def screened(
-    meetings: Sequence[Meeting], bodies: Mapping[str, Body], screens: Iterable[str]
+    meetings: Sequence[Meeting],
+    bodies: Mapping[str, Body],
+    screens: Iterable[str],
+    *,
+    reach_m: float,
 ) -> Iterator[tuple[Interval, ...]]:
     """For each meeting the intervals in which a third body is between the two.
 
     Bodies touch if their surfaces are within a tolerance, which reaches through a thin wall. A
     third body is between two if it touches both, and the line that joins their nearest points
-    goes through it. What cuts each other has nothing between.
+    goes through it. The line is made longer at both ends, by as much as surfaces that touch may
+    seem to cut each other. What cuts each other has nothing between.
 
     Args:
         meetings: Contacts.
         bodies: Surfaces with their poses, by name.
         screens: Names of bodies that may be in between.
+        reach_m: By how much the line is made longer at either end [m].
     """
     touches: dict[str, dict[str, list[Interval]]] = defaultdict(lambda: defaultdict(list))
     for one, two, span in meetings:
@@ -43,7 +49,7 @@ def screened(
                 for third in common
                 if one in bodies and two in bodies
                 for part in _common(span, touches[one][third], touches[two][third])
-                if _parted(bodies[one], bodies[two], bodies[third], part)
+                if _parted((bodies[one], bodies[two], bodies[third]), part, reach_m)
             )
         )
 
@@ -59,14 +65,14 @@ def _common(
                 yield first, last
 
 
-def _parted(one: Body, two: Body, third: Body, span: Interval) -> bool:
-    """Whether the third body is between two at most of the frames that are asked about."""
+def _parted(meeting: tuple[Body, Body, Body], span: Interval, reach_m: float) -> bool:
+    """Whether the third of three bodies is between the others, at most of some frames."""
     frames = np.unique(np.linspace(*span, ASKED_FRAMES).round().astype(int))
-    between = [_between(one, two, third, int(frame)) for frame in frames]
+    between = [_between(*meeting, int(frame), reach_m) for frame in frames]
     return 2 * sum(between) > len(between)
 
 
-def _between(one: Body, two: Body, third: Body, frame: int) -> bool:
+def _between(one: Body, two: Body, third: Body, frame: int, reach_m: float) -> bool:
     """Whether the line that joins two bodies' nearest points goes through a third at a frame."""
     if any(np.isnan(each.positions[frame]).any() for each in (one, two, third)):
         return False
@@ -77,6 +83,8 @@ def _between(one: Body, two: Body, third: Body, frame: int) -> bool:
     middle = 0.5 * (begin + end)
     if third.surface.contains(middle[None])[0]:
         return True
+    beyond = reach_m / distance * (end - begin)
+    begin, end = begin - beyond, end + beyond
     way = (end - begin)[None]
     places, _, _ = third.surface.mesh.ray.intersects_location(begin[None], way)
     along = (places - begin) @ way[0] / float(way[0] @ way[0])

@@ -33,14 +33,13 @@ def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     contact begins the capture.
     """
     times = body.poses.filled.times
-    first = int(np.searchsorted(times, times[frame] - APPROACH_S))
+    first = _before(times, frame, APPROACH_S)
     span = slice(first, frame + 1)
     offset = body.middles[span] - other.middles[span]
     if frame == 0 or len(offset) < 2 or np.isnan(offset).any():
         return 0.0
     speeds = np.linalg.norm(np.diff(offset, axis=0), axis=1) / np.diff(times[span])
-    latest = int(np.searchsorted(times, times[frame] - LATE_S))
-    begin = int(np.searchsorted(times, times[frame] - 2.0 * LATE_S))
+    latest, begin = _before(times, frame, LATE_S), _before(times, frame, 2.0 * LATE_S)
     span = slice(begin, frame + 1)
     recorded, clock = recorded_middles(body, span) - recorded_middles(other, span), times[span]
     width = max(latest - begin, 1) + 1
@@ -49,6 +48,14 @@ def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
         for start in range(len(recorded) - width + 1)
     )
     return max(float(speeds.max()), *slopes)
+
+
+def _before(times: Float[np.ndarray, "frames"], frame: int, span_s: float) -> int:
+    """The frame nearest to so long before another [s]: a slow clock has one, if not within it."""
+    wanted = times[frame] - span_s
+    later = int(np.searchsorted(times, wanted))
+    nearer = later > 0 and wanted - times[later - 1] < times[later] - wanted
+    return later - 1 if nearer else later
 
 
 def release_speed(thing: BodyGeometry, frame: int) -> float:

@@ -1,5 +1,9 @@
 """When a motion truly begins and ends, within the floor that separates motion from rest."""
 
+import numpy as np
+from jaxtyping import Float, Int
+
+from capar.model import geometry
 from extractors.bodies.poses import Poses
 from extractors.motion.object_motion import Floor, RestPose, rests_at
 from extractors.signals.clock import frame_rate
@@ -7,61 +11,113 @@ from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, first_where, last_where
 from extractors.thresholds import Thresholds
 
+GROWN = 8.0
+"""How many times as far as it can first be seen a motion is looked at again [1].
+
+No threshold: as displacement grows with the cube of time, that is twice as long after it began.
+"""
+
 
 def motion_edges(
-    poses: Poses, moved: Interval, rests: tuple[RestPose, ...], thresholds: Thresholds
+    poses: Poses, moved: Interval, rests: tuple[RestPose, ...], floor: Floor, thresholds: Thresholds
 ) -> Interval:
     """The interval of a motion, from when the object left one place to when it was at another.
 
     A motion is recognised by a displacement that no handling without it makes; once recognised, it
     began when the object was last where it had rested, and ended when it first was where it
-    rests afterwards: within what noise alone makes, and at least a hair's width.
+    rests afterwards: within what noise alone makes, and at least a hair's width. What passed
+    before it was that far is added (``onset``).
 
     Args:
         poses: The object's poses.
         moved: Frames in which it is beyond the floor of motion.
         rests: Places where it rests, in time.
+        floor: The floor of its motion.
         thresholds: Least displacement, and deviations of noise that it must exceed.
     """
-    floor = hair(poses, thresholds)
     before = [each for each in rests if each.interval[0] < moved[0]]
     after = [each for each in rests if each.interval[1] > moved[1]]
-    stream = poses.smooth
     first, last = moved
     if before:
-        stay = before[-1]
-        there = last_where(lambda frames: rests_at(stream, frames, stay, floor), first - 1)
-        first = stay.interval[0] if there is None else there + 1
+        first = _left(poses, before[-1], moved, floor, thresholds)
     if after:
-        come = after[0]
-        count = len(stream.times)
-        there = first_where(lambda frames: rests_at(stream, frames, come, floor), last + 1, count)
-        last = come.interval[1] if there is None else there - 1
+        last = _arrived(poses, after[0], moved, floor, thresholds)
     return first, last
 
 
-def onset(edge: int, floor: int, poses: Poses, least: Floor, thresholds: Thresholds) -> int:
-    """The frame at which a motion began, or ended, by the frames at which it passed two distances.
+def _left(
+    poses: Poses, stay: RestPose, moved: Interval, floor: Floor, thresholds: Thresholds
+) -> int:
+    """When an object left a place."""
+    near, stream = hair(poses, thresholds), poses.smooth
+    there = last_where(lambda frames: rests_at(stream, frames, stay, near), moved[0] - 1)
+    edge = stay.interval[0] if there is None else there + 1
+    frames = np.arange(edge, max(moved[1], edge) + 1)
+    return max(edge - onset(growth(poses, frames, stay, near), poses, floor, thresholds), 0)
+
+
+def _arrived(
+    poses: Poses, stay: RestPose, moved: Interval, floor: Floor, thresholds: Thresholds
+) -> int:
+    """When an object was at a place to stay."""
+    near, stream = hair(poses, thresholds), poses.smooth
+    count = len(stream.times)
+    there = first_where(lambda frames: rests_at(stream, frames, stay, near), moved[1] + 1, count)
+    edge = stay.interval[1] if there is None else there - 1
+    frames = np.arange(edge, min(moved[0], edge) - 1, -1)
+    later = onset(growth(poses, frames, stay, near), poses, floor, thresholds)
+    return min(edge + later, count - 1)
+
+
+def growth(
+    poses: Poses, frames: Int[np.ndarray, "some"], stay: RestPose, unit: Floor
+) -> Float[np.ndarray, "some"]:
+    """How far an object is from a place, or turned, in units of a displacement [1]; NaN if lost."""
+    stream = poses.smooth
+    distance = np.linalg.norm(stream.positions[frames] - stay.position, axis=1)
+    angle = geometry.angle_between(stream.orientations[frames], stay.orientation[None])
+    return np.asarray(np.maximum(distance / unit.position_m, angle / unit.rotation_rad))
+
+
+def onset(
+    grows: Float[np.ndarray, "some"], poses: Poses, floor: Floor, thresholds: Thresholds
+) -> int:
+    """How many frames a motion had lasted when it was first seen, by how it grew from then on.
 
     People start and stop smoothly: displacement grows with the cube of time (minimum jerk; Flash
-    and Hogan 1985). With the times at which it was a hair and the floor of motion that gives the
-    beginning; it is no further from the edge than thresholds allow.
+    and Hogan 1985). From the times at which it was a hair and well beyond the beginning follows.
 
     Args:
-        edge: Where it was a hair away from where it rests.
-        floor: Where it was as far away as the floor of motion, later than the edge if it begins.
+        grows: Displacement in hairs [1], frame by frame, from where it is a hair on.
         poses: The object's poses.
-        least: The floor of its motion.
-        thresholds: What a hair is, and how far a beginning may be from it.
+        floor: The floor of its motion, as far as which it is followed at least.
+        thresholds: What a hair is, and how long it takes at most to go so far.
     """
-    share = (least.position_m / hair(poses, thresholds).position_m) ** (1.0 / 3.0)
-    if share <= 1.0:
-        return edge
-    rate_hz = frame_rate(poses.filled.times)
-    most = round(thresholds.onset_s * rate_hz)
-    before = min(round(abs(floor - edge) / (share - 1.0)), most)
-    frame = edge - before if edge <= floor else edge + before
-    return min(max(frame, 0), len(poses.filled.times) - 1)
+    near = hair(poses, thresholds)
+    reach = min(floor.position_m / near.position_m, floor.rotation_rad / near.rotation_rad)
+    return before_seen(grows, max(reach, GROWN), longest(poses, near, thresholds))
+
+
+def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> int:
+    """How many frames before it is 1 a displacement that grows with the cube of time was none.
+
+    Args:
+        grows: The displacement, from where it is about 1 on.
+        reach: How large it should have grown for this to be told [1]; less if it never is.
+        most: The answer at most.
+    """
+    if np.isnan(grows).all():
+        return 0
+    large = np.flatnonzero(grows >= reach)
+    far = int(large[0]) if large.size else int(np.nanargmax(grows))
+    begin, end = np.cbrt(max(float(grows[0]), 0.0)), np.cbrt(float(grows[far]))
+    return min(round(far * begin / (end - begin)), most) if end > begin else 0
+
+
+def longest(poses: Poses, near: Floor, thresholds: Thresholds) -> int:
+    """How many frames a motion lasts at most until it is seen: longer where noise hides more."""
+    share = float(np.cbrt(near.position_m / thresholds.edge_m))
+    return round(thresholds.onset_s * share * frame_rate(poses.filled.times))
 
 
 def hair(poses: Poses, thresholds: Thresholds) -> Floor:

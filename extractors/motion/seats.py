@@ -6,10 +6,12 @@ import numpy as np
 from jaxtyping import Float
 
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.motion.motion_edges import hair
-from extractors.signals.clock import frame_rate
+from extractors.motion.motion_edges import GROWN, before_seen, hair, longest
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
+
+REACHES = 3
+"""How far beyond a contact a height is followed, in the longest times until it is seen [1]."""
 
 
 def seat(
@@ -34,23 +36,29 @@ def seat(
         thresholds: What a hair is.
     """
     first, last = contact
-    span = slice(first, last + 1)
-    height = body.boxes[0][span, 2] - other.middles[span, 2]
-    least = hair(body.poses, thresholds).position_m
-    most = round(thresholds.onset_s * frame_rate(body.poses.filled.times))
-    begin = first + _settled(height, least, most)
-    end = last - _settled(height[::-1], least, most)
+    height = body.boxes[0][:, 2] - other.middles[:, 2]
+    near = hair(body.poses, thresholds)
+    most = longest(body.poses, near, thresholds)
+    least = near.position_m
+    begin = first + _settled(height[first : last + 1], height[:first][::-1], least, most)
+    end = last - _settled(height[first : last + 1][::-1], height[last + 1 :], least, most)
     coming = max((m[1] for m in motions if m[0] <= first <= m[1]), default=first)
     going = min((m[0] for m in motions if m[0] <= last <= m[1]), default=last)
     return min(begin, coming), max(end, going)
 
 
-def _settled(height: Float[np.ndarray, "frames"], least: float, most: int) -> int:
+def _settled(
+    height: Float[np.ndarray, "frames"],
+    outside: Float[np.ndarray, "others"],
+    least: float,
+    most: int,
+) -> int:
     """How many frames pass before it is down, from the first on; none where it was lost.
 
     People stop smoothly: the height over what bears it shrinks with the cube of time (minimum jerk;
     Flash and Hogan 1985), so it comes down later than it passes a hair's width, by at most so many
-    frames.
+    frames. Where noise makes a hair as wide as the tolerance of contact, the height is followed
+    beyond the contact.
     """
     if np.isnan(height).any():
         return 0
@@ -60,6 +68,6 @@ def _settled(height: Float[np.ndarray, "frames"], least: float, most: int) -> in
     down = np.flatnonzero(height[:end] <= lowest[end - 1] + least)[0]
     level = float(np.median(height[down:end]))
     passed = int(np.flatnonzero(height[:end] <= level + least)[0])
-    share = np.cbrt(max(float(height[0]) - level, 0.0) / least)
-    later = min(round(passed / (share - 1.0)), most) if share > 1.0 else 0
+    way = np.concatenate([height[: passed + 1][::-1], outside[: REACHES * most]])
+    later = before_seen((way - level) / least, GROWN, most)
     return min(passed + later, end - 1)

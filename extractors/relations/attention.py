@@ -9,14 +9,28 @@ from capar.model.capture import Capture, Sensor
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.poses import Poses, rotation_matrices
 from extractors.contact.surfaces import Surface, surface
+from extractors.relations.weight_bearing import TRUNK
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
+
+HEAD = "head"
+"""The general type of an end-effector that carries the eyes, whether it attends or acts."""
 
 NOTHING = -1
 """Stands for an object where none is looked at."""
 
 BEHIND_M = 1e-6
 """A ray begins this far from the eye [m], so that it does not meet what it starts on."""
+
+
+def seeing(capture: Capture) -> tuple[Sensor, ...]:
+    """Every sensor with a line of sight: heads, and what attends and is no trunk."""
+    attending = {each.name for each in capture.attending if each.end_effector not in TRUNK}
+    return tuple(
+        sensor
+        for sensor in capture.sensors
+        if sensor.name in attending or sensor.end_effector == HEAD
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +65,7 @@ def attention(
         bodies: Its bodies.
         thresholds: Least durations of a look and of its interruptions.
     """
-    origins, rays = _sight(sensor, bodies.sensors[sensor.name].poses)
+    origins, rays = sight(sensor, bodies.sensors[sensor.name].poses)
     names = sorted(each.name for each in capture.objects if each.shape and each.name != sensor.name)
     seen = np.full(len(origins), NOTHING)
     nearest = np.full(len(origins), np.inf)
@@ -88,7 +102,7 @@ def _looks(
     )
 
 
-def _sight(
+def sight(
     sensor: Sensor, poses: Poses
 ) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
     """The eye's place [m] and the direction of sight [1] at each frame, in the world."""

@@ -124,7 +124,8 @@ def _within(known: Known, what: str, points: np.ndarray, other: str, frame: int)
 
 
 def went_ahead(known: Known) -> bool:
-    return _cosine(known) > 0.65
+    """Away from the end-effector's middle, or from where that is nearest to its surface."""
+    return _cosine(known) > 0.65 or (_cosine(known) > 0.0 and _pressing(known) > 0.65)
 
 
 def went_after(known: Known) -> bool:
@@ -135,6 +136,15 @@ def _cosine(known: Known) -> float:
     """Between the level way from the end-effector to the object and the object's own way."""
     what, first = known.segment.objects[0], known.segment.first
     ahead = (known.middle(what, first) - known.middle(known.segment.ee, first))[:2]
+    goes = known.way(what)[:2]
+    lengths = np.linalg.norm(ahead) * np.linalg.norm(goes)
+    return float(ahead @ goes / lengths) if lengths else 0.0
+
+
+def _pressing(known: Known) -> float:
+    """The same with the way from the end-effector to the nearest place of the object."""
+    what, first = known.segment.objects[0], known.segment.first
+    ahead = known.nearest_way(known.segment.ee, what, first)[:2]
     goes = known.way(what)[:2]
     lengths = np.linalg.norm(ahead) * np.linalg.norm(goes)
     return float(ahead @ goes / lengths) if lengths else 0.0

@@ -6,6 +6,7 @@ from typing import TypeVar
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from trimesh.triangles import closest_point
 
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject
 from capar.model.facts import Fact, LookingAt, Moving, Resting, Touching, ZeroCrossing
@@ -103,6 +104,15 @@ class Known:
         """Where the corners of its surface are in the world [m]."""
         corners = self.turn(what, frame).apply(np.array(self.shape(what).vertices))
         return corners + self.stream(what).positions[frame]
+
+    def nearest_way(self, one: str, other: str, frame: int) -> np.ndarray:
+        """From a body's middle to the nearest place of another's surface, in the world [m]."""
+        shape, middle = self.shape(other), self.middle(one, frame)
+        turn, place = self.turn(other, frame), self.stream(other).positions[frame]
+        triangles = np.array(shape.vertices)[np.array(shape.faces)]
+        own = np.tile(turn.inv().apply(middle - place), (len(triangles), 1))
+        ways = closest_point(triangles, own) - own
+        return np.asarray(turn.apply(min(ways, key=lambda way: float(way @ way))))
 
     def way(self, what: str) -> np.ndarray:
         """How far its middle is displaced from border to border [m]."""

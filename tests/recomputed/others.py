@@ -6,7 +6,7 @@ import numpy as np
 
 from capar.model.capture import TagType
 from capar.model.facts import Touching
-from recomputed.known import NAME, ROUNDED, Known, covers, name
+from recomputed.known import NAME, ROUNDED, TIME, Known, covers, name
 
 BLOW_MPS = 1.0
 """Whoever means to touch has slowed down to less than this [m/s]."""
@@ -129,6 +129,39 @@ def met_at(known: Known, one: str, other: str, mm_s: str) -> bool:
     )
 
 
+def pressed(known: Known, one: str, other: str, x: str, y: str, at: str) -> bool:
+    """From its middle the other's surface is nearest in about that direction."""
+    frame = known.frame(at)
+    found = known.nearest_way(one, other, frame)
+    return bool(found[:2] @ np.array([float(x), float(y)]) >= 650.0 * np.linalg.norm(found))
+
+
+def met_sideways(known: Known, one: str, other: str, permille: str) -> bool:
+    """From its middle the head is nearest in a direction that makes that angle with its sight."""
+    (head,) = [each for each in known.capture.sensors if each.name == name(other)]
+    frames = [each.first for each in known.touching(one, other)]
+    return any(
+        abs(_against_sight(known, one, other, frame, np.array(head.gaze)) - float(permille) / 1000)
+        <= 0.35
+        for frame in frames
+    )
+
+
+def met_aside(known: Known, other: str) -> bool:
+    """Neither its sight, nor the vertical, nor their contraries lead to where it is met."""
+    one, frame = known.segment.ee, known.segment.last
+    way = known.nearest_way(one, other, frame)
+    (head,) = [each for each in known.capture.sensors if each.name == name(other)]
+    along = _against_sight(known, one, other, frame, np.array(head.gaze))
+    return abs(along) < 0.75 and abs(float(way[2])) < 0.75 * float(np.linalg.norm(way))
+
+
+def _against_sight(known: Known, one: str, other: str, frame: int, gaze: np.ndarray) -> float:
+    way = known.nearest_way(one, other, frame)
+    ray = known.turn(other, frame).apply(gaze)
+    return -float(way @ ray / np.linalg.norm(way) / np.linalg.norm(ray))
+
+
 def _pace(known: Known, one: str, other: str, frame: int) -> float:
     """The fastest relative motion of two middles in the last 0.06 s before a frame [m/s]."""
     frames = range(max(frame - round(0.06 * known.rate), 0), frame + 1)
@@ -159,6 +192,17 @@ def clings(known: Known, what: str, one: str) -> bool:
 FORMS = (
     (rf"the {NAME} was not borne by the {NAME}", not_borne),
     (rf"the {NAME} met the {NAME} at (\d+) mm/s", met_at),
+    (
+        rf"the {NAME} pressed on the {NAME} along \((-?\d+), (-?\d+), level\) thousandths,"
+        rf" at {TIME}",
+        pressed,
+    ),
+    (
+        rf"the {NAME} met the {NAME} from a side that points (-?\d+) thousandths"
+        r" along its line of sight",
+        met_sideways,
+    ),
+    (rf"the {NAME} was met at its side, neither before, nor behind, nor above", met_aside),
     (rf"the {NAME} went at (\d+) mm/s when the {NAME} let it go", went_at),
     (rf"the {NAME} stayed with the {NAME}", clings),
     (rf"the {NAME} was met at a high speed", met_fast),
