@@ -233,13 +233,13 @@ def _motions(moves: tuple[Fact, ...]) -> dict[str, list[Interval]]:
 
 def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:
     """Facts by kind, then by value, each once."""
-    groups: dict[type[Fact], set[Fact]] = defaultdict(set)
+    groups: dict[type[Fact], list[Fact]] = defaultdict(list)
     for fact in facts:
-        groups[type(fact)].add(fact)
+        groups[type(fact)].append(fact)
     return tuple(
         fact
         for kind in MEASURED
-        for fact in sorted(groups.get(kind, ()), key=_values(cast(Any, kind)))
+        for fact in sorted(set(groups.pop(kind, ())), key=_values(cast(Any, kind)))
     )
 
 

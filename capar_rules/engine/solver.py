@@ -1,10 +1,11 @@
 """The solver: rule files and facts in, the atoms that are shown out, and nothing left unsaid."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from hashlib import sha256
 from importlib import resources
+from itertools import islice
 from pathlib import Path
 
 import clingo
@@ -12,6 +13,9 @@ import clingo
 from capar.model.errors import RuleError
 from capar.model.facts import Fact, program
 from capar.model.names import NAME
+
+BLOCK_FACTS = 4096
+"""How many facts are given to the solver as one text [1]."""
 
 Term = int | str | tuple["Term", ...]
 """A value of the rules: a number, a name or text, or a compound as (functor, arguments...)."""
@@ -47,7 +51,7 @@ def solve(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     Raises:
         RuleError: The solver has a remark of any kind, or there is no answer, or more than one.
     """
-    return _answer(_grounded(files, _text(facts), "--models=2"))
+    return _answer(_grounded(files, _texts(facts), "--models=2"))
 
 
 def best(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
@@ -59,7 +63,7 @@ def best(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     Raises:
         RuleError: The solver has a remark of any kind, or there is no answer.
     """
-    control = _grounded(files, _text(facts), "--opt-strategy=usc,stratify")
+    control = _grounded(files, _texts(facts), "--opt-strategy=usc,stratify")
     found: list[Answer] = []
     control.solve(on_model=lambda model: found.append(_shown(model)))
     if not found:
@@ -67,8 +71,14 @@ def best(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     return found[-1]
 
 
-def _text(facts: str | Iterable[Fact]) -> str:
-    return facts if isinstance(facts, str) else program(tuple(facts))
+def _texts(facts: str | Iterable[Fact]) -> Iterator[str]:
+    """The facts as programs of so many at a time: one text of them all takes more than they do."""
+    if isinstance(facts, str):
+        yield facts
+        return
+    waiting = iter(facts)
+    while block := tuple(islice(waiting, BLOCK_FACTS)):
+        yield program(block)
 
 
 def text_of(term: Term) -> str:
@@ -106,7 +116,7 @@ def _includes(text: str) -> list[str]:
 _CONTRADICTION = "the rules contradict each other over these facts: they have no answer"
 
 
-def _grounded(files: Iterable[Path], text: str, option: str) -> clingo.Control:
+def _grounded(files: Iterable[Path], texts: Iterable[str], option: str) -> clingo.Control:
     messages: list[str] = []
 
     def note(code: clingo.MessageCode, message: str) -> None:
@@ -118,7 +128,8 @@ def _grounded(files: Iterable[Path], text: str, option: str) -> clingo.Control:
     try:
         for path in files:
             control.load(str(path))
-        control.add("base", [], text)
+        for text in texts:
+            control.add("base", [], text)
         control.ground([("base", [])])
     except RuntimeError as error:
         raise RuleError("\n".join(messages) or str(error)) from None

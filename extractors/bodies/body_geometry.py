@@ -89,14 +89,18 @@ class BodyGeometry:
 
     @cached_property
     def boxes(self) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
-        """Lowest and highest corner of its box along the world's axes at each frame [m]."""
-        low, high = self.middles.copy(), self.middles.copy()
-        for block in [slice(None)] if self.poses.rests else blocks(len(low)):
-            frames = slice(0, 1) if self.poses.rests else block
-            spread = self.turns_at(frames) @ self.corners.T
+        """Lowest and highest corner of its box along the world's axes at each frame [m].
+
+        Those of a body that rests are one row, repeated without memory of its own.
+        """
+        middles = self.middles[:1] if self.poses.rests else self.middles
+        low, high = middles.copy(), middles.copy()
+        for block in blocks(len(low)):
+            spread = self.turns_at(block) @ self.corners.T
             low[block] += spread.min(axis=2)
             high[block] += spread.max(axis=2)
-        return low, high
+        shape = self.middles.shape
+        return np.broadcast_to(low, shape), np.broadcast_to(high, shape)
 
 
 def geometry_of(
@@ -109,7 +113,7 @@ def geometry_of(
 def blocks(count: int) -> Iterator[slice]:
     """So many things in few at a time, for what takes much memory for each."""
     for first in range(0, count, BLOCK):
-        yield slice(first, first + BLOCK)
+        yield slice(first, min(first + BLOCK, count))
 
 
 def _directions() -> Float[np.ndarray, "directions 3"]:

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from capar.model.capture import Stream
+from extractors.bodies.body_geometry import blocks
 from extractors.bodies.poses import rotation_matrices
 from extractors.contact.surfaces import Surface
 from extractors.contact.sweep import sweep
@@ -42,8 +43,13 @@ class Body:
 
 def body(surface: Surface, stream: Stream, *, rests: bool) -> Body:
     """A surface that follows a stream."""
-    centres = stream.positions + rotation_matrices(stream.orientations) @ surface.centre
-    return Body(surface, stream.positions, stream.orientations, centres, rests)
+    frames = len(stream.positions)
+    centres = np.empty((1 if rests else frames, 3))
+    for block in blocks(len(centres)):
+        turns = rotation_matrices(stream.orientations[block])
+        centres[block] = stream.positions[block] + turns @ surface.centre
+    everywhere = np.broadcast_to(centres, (frames, 3))
+    return Body(surface, stream.positions, stream.orientations, everywhere, rests)
 
 
 def at_frame(surface: Surface, stream: Stream, frame: int) -> Body:
@@ -69,10 +75,9 @@ def near(first: Body, second: Body, *, distance_m: float) -> Bool[np.ndarray, "f
     if found.size:
         turns, places = _relative(simple, other, found)
         inside = _nested(simple.surface, other.surface, turns, places)
-        rest = np.flatnonzero(~inside)
-        inside[rest] = sweep(
-            simple.surface, other.surface, turns[rest], places[rest], distance_m=distance_m
-        )
+        if inside.any():
+            turns, places = turns[~inside], places[~inside]
+        inside[~inside] = sweep(simple.surface, other.surface, turns, places, distance_m=distance_m)
         out[found] = inside
     if frames == 1:
         out[:] = out[0]
@@ -127,9 +132,14 @@ def _relative(
     first: Body, second: Body, frames: Int[np.ndarray, "some"]
 ) -> tuple[Float[np.ndarray, "some 3 3"], Float[np.ndarray, "some 3"]]:
     """``T_first_second`` at some frames: rotation matrices and places [m]."""
-    back = np.swapaxes(first.turns_at(frames), 1, 2)
-    offset = second.positions[frames] - first.positions[frames]
-    return back @ second.turns_at(frames), (back @ offset[..., None])[..., 0]
+    turns, places = np.empty((len(frames), 3, 3)), np.empty((len(frames), 3))
+    for block in blocks(len(frames)):
+        some = frames[block]
+        back = np.swapaxes(first.turns_at(some), 1, 2)
+        offset = second.positions[some] - first.positions[some]
+        turns[block] = back @ second.turns_at(some)
+        places[block] = (back @ offset[..., None])[..., 0]
+    return turns, places
 
 
 def _candidates(
@@ -140,13 +150,22 @@ def _candidates(
     offset = second.centres[:frames] - first.centres[:frames]
     found = np.flatnonzero(np.einsum("ij,ij->i", offset, offset) <= reach * reach)
     for box, ball, sign in ((first, second, 1.0), (second, first, -1.0)):
-        if not found.size:
-            break
-        local = (np.swapaxes(box.turns_at(found), 1, 2) @ (sign * offset[found])[..., None])[..., 0]
-        outside = np.maximum(np.abs(local) - 0.5 * box.surface.shape.size, 0.0)
         limit = ball.surface.radius + distance_m
-        found = found[np.einsum("ij,ij->i", outside, outside) <= limit * limit]
+        meets = np.zeros(len(found), dtype=bool)
+        for block in blocks(len(found)):
+            outside = _outside(box, found[block], sign * offset[found[block]])
+            meets[block] = np.einsum("ij,ij->i", outside, outside) <= limit * limit
+        found = found[meets]
     return found
+
+
+def _outside(
+    box: Body, frames: Int[np.ndarray, "some"], offset: Float[np.ndarray, "some 3"]
+) -> Float[np.ndarray, "some 3"]:
+    """How far places, given from the middle of a body's box, lie outside it along its axes [m]."""
+    back = np.swapaxes(box.turns_at(frames), 1, 2)
+    local = (back @ offset[..., None])[..., 0]
+    return np.asarray(np.maximum(np.abs(local) - 0.5 * box.surface.shape.size, 0.0))
 
 
 def _nested(

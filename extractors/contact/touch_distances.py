@@ -11,8 +11,8 @@ from capar.model.calibration import Found, PairCalibration
 from capar.model.capture import Capture, Shape, ShapeSource, TagType
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.contact.proximity import Body, body, distance
-from extractors.contact.surfaces import surface
+from extractors.contact.proximity import Body, at_frame, body, distance
+from extractors.contact.surfaces import Surface, surface
 from extractors.contact.touch_evidence import HAND, Evidence
 from extractors.contact.touch_points import TouchPoints, touch_points
 from extractors.thresholds import Thresholds
@@ -164,8 +164,16 @@ def _surface_distances(
 
 def touchable(each: BodyGeometry) -> Body:
     """The surface of a body at its poses; of one without a shape, a speck at its origin."""
-    shape = _SPECK if each.shape is None else each.shape
-    return body(surface(shape), each.poses.settled, rests=each.poses.rests)
+    return body(_surface(each), each.poses.settled, rests=each.poses.rests)
+
+
+def touchable_at(each: BodyGeometry, frame: int) -> Body:
+    """The same at one frame, which is its frame 0."""
+    return at_frame(_surface(each), each.poses.settled, frame)
+
+
+def _surface(each: BodyGeometry) -> Surface:
+    return surface(_SPECK if each.shape is None else each.shape)
 
 
 def _speck() -> Shape:

@@ -14,9 +14,15 @@ from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.co_motion import relative, steady_in, travelling
 from extractors.contact.proximity import distance
-from extractors.contact.touch_distances import touchable
+from extractors.contact.touch_distances import touchable_at
 from extractors.contact.touch_points import TouchPoints
-from extractors.signals.intervals import Interval, intervals
+from extractors.signals.intervals import (
+    FramePredicate,
+    Interval,
+    first_where,
+    intervals,
+    last_where,
+)
 from extractors.thresholds import Thresholds
 
 SAMPLES = 5
@@ -59,14 +65,25 @@ def _together(
     places = relative(carrier, thing), relative(thing, carrier)
     out = frames.copy()
     for first, last in geometry.runs(frames):
-        for edge, step in ((first, -1), (last, 1)):
-            strays = [np.linalg.norm(each - each[edge], axis=1) for each in places]
-            near = np.minimum(*strays) <= thresholds.touch_margin_m
-            frame = edge
-            while 0 <= frame < len(out) and near[frame]:
-                out[frame] = True
-                frame += step
+        before = last_where(_strays(places, first, thresholds.touch_margin_m), first)
+        after = first_where(_strays(places, last, thresholds.touch_margin_m), last, len(out))
+        out[0 if before is None else before + 1 : first] = True
+        out[last:after] = True
     return _spans(out, capture, thresholds)
+
+
+def _strays(
+    places: tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]],
+    edge: int,
+    margin_m: float,
+) -> FramePredicate:
+    """Whether both of two bodies have left their places at a frame, each in the other's frame."""
+
+    def strays(some: slice) -> Bool[np.ndarray, "some"]:
+        ways = [np.linalg.norm(each[some] - each[edge], axis=1) for each in places]
+        return ~np.asarray(np.minimum(*ways) <= margin_m)
+
+    return strays
 
 
 def _spans(
@@ -97,8 +114,13 @@ def _gap(
     if pivots:
         apart = points.apart(other.poses.settled, thing.poses.settled)[some]
     else:
-        one_body, two_body = touchable(other), touchable(thing)
-        known = [each for each in some if not (other.poses.lost | thing.poses.lost)[each]]
-        apart = np.array([distance(one_body, two_body, int(each)) for each in known])
+        lost = other.poses.lost[some] | thing.poses.lost[some]
+        known = map(int, some[~lost])
+        apart = np.array([_surfaces_apart(other, thing, frame) for frame in known])
     known_m = apart[~np.isnan(apart)]
     return max(0.0, float(np.median(known_m)) - touch_m) if known_m.size else float("nan")
+
+
+def _surfaces_apart(one: BodyGeometry, other: BodyGeometry, frame: int) -> float:
+    """Distance of two bodies' surfaces at a frame [m]."""
+    return distance(touchable_at(one, frame), touchable_at(other, frame), 0)
