@@ -16,9 +16,11 @@ from capar.model.facts import (
     Displaced,
     Fact,
     Flies,
+    Guided,
     Leans,
     Lies,
     Moving,
+    Opening,
     Passage,
     Phase,
     ReleaseSpeed,
@@ -33,6 +35,7 @@ from capar.model.facts import (
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
+from extractors.motion.guides import Guide, turns_on_guide
 from extractors.motion.impacts import closing_speed, falls, release_speed
 from extractors.motion.leaning import leaning
 from extractors.motion.phases import phases, turns_of_height
@@ -65,6 +68,7 @@ def handling(
     known: Iterable[Fact],
     calibration: Calibration,
     thresholds: Thresholds,
+    guides: Mapping[str, Guide],
 ) -> tuple[Fact, ...]:
     """Rest, turning points, leaning, falls, arrangements and places of handled bodies.
 
@@ -76,6 +80,7 @@ def handling(
         known: Contacts and motions, as facts.
         calibration: What was decided for the whole recording.
         thresholds: What the measurements decide by.
+        guides: The hinge or rail of each object that moves on one.
     """
     seen = list(known)
     touches = [each for each in seen if isinstance(each, Touching)]
@@ -93,7 +98,8 @@ def handling(
     for name, hand in hands.items():
         out += (Resting(name, *each) for each in resting(hand.poses, thresholds))
     for each in mobile:
-        out += _motion(things[each.name], seen, upright[each.name], thresholds)
+        guide = guides.get(each.name)
+        out += _motion(things[each.name], seen, upright[each.name], thresholds, guide)
     out += _seats(things, touches, seen, thresholds)
     out += bearing(capture, bodies, touches, calibration, thresholds)
     borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
@@ -101,6 +107,7 @@ def handling(
     for one in (*hands.values(), *others):
         frames = tuple(borders.get(one.name, ()))
         out += places(one, upright[one.name], frames)
+        out += _openings(one.name, guides, frames)
         for other in things.values():
             if other.name != one.name:
                 out += distances(one, other, frames)
@@ -119,7 +126,11 @@ def handling(
 
 
 def _motion(
-    one: BodyGeometry, known: list[Fact], upright: Float[np.ndarray, "3"], thresholds: Thresholds
+    one: BodyGeometry,
+    known: list[Fact],
+    upright: Float[np.ndarray, "3"],
+    thresholds: Thresholds,
+    guide: Guide | None,
 ) -> Iterator[Fact]:
     pose = one.poses
     moves = tuple(
@@ -134,7 +145,11 @@ def _motion(
     )
     found = phases(one, motions, thresholds)
     yield from (Phase(one.name, each.kind, each.first, each.last) for each in found)
-    turns = turns_of_height(found, one.middles, thresholds)
+    if guide is None:
+        turns = turns_of_height(found, one.middles, thresholds)
+    else:
+        turns = turns_on_guide(guide, motions, thresholds)
+        yield Guided(one.name, guide.fit.kind, guide.base)
     yield from (Reverses(one.name, frame) for frame in turns)
     yield from (Swings(one.name, *span) for span in swings(pose, moves, thresholds))
     length_m = float(one.shape.size.max()) if one.shape else 0.0
@@ -142,6 +157,15 @@ def _motion(
     yield from (Leans(one.name, *span) for span in leans)
     yield from (Flies(one.name, *span) for span in falls(one, thresholds))
     yield from (Rolls(one.name, *span) for span in rolling(one, thresholds))
+
+
+def _openings(name: str, guides: Mapping[str, Guide], frames: tuple[int, ...]) -> Iterator[Fact]:
+    """How far a body on a guide is from its closed place at some frames; lost ones are left out."""
+    if name in guides:
+        opening = guides[name].opening
+        for frame in frames:
+            if not np.isnan(opening[frame]):
+                yield Opening(name, frame, round(1000.0 * float(opening[frame])))
 
 
 def _arranged(
