@@ -35,7 +35,6 @@ from capar.model.facts import (
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
-from extractors.motion.guides import Guide, turns_on_guide
 from extractors.motion.impacts import closing_speed, falls, release_speed
 from extractors.motion.leaning import leaning
 from extractors.motion.phases import phases, turns_of_height
@@ -45,6 +44,7 @@ from extractors.motion.seats import seat
 from extractors.motion.turning_points import swings
 from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between, sides
 from extractors.relations.grips import shifts
+from extractors.relations.guides import Guide, turns_on_guide
 from extractors.relations.loads import rides
 from extractors.relations.places import distances, places
 from extractors.relations.weight_bearing import bearing

@@ -44,11 +44,11 @@ from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
 from extractors.handling_facts import handling
-from extractors.motion.guides import Guide, guide_of
 from extractors.motion.motion_edges import motion_edges, onset
 from extractors.motion.object_motion import Floor, RestPose, moving, rest_poses
 from extractors.relations.attention import Attention, attention
 from extractors.relations.company import company
+from extractors.relations.guides import Guide, guide_of
 from extractors.relations.weight_bearing import TRUNK
 from extractors.signals.filters import speed
 from extractors.signals.gaps import long_gaps

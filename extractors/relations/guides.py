@@ -26,7 +26,8 @@ from jaxtyping import Float
 from capar.model import geometry
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.motion.guide_fitting import HINGE, GuideFit, fit_hinge, fit_rail
-from extractors.motion.guide_places import (
+from extractors.motion.object_motion import Floor
+from extractors.relations.guide_places import (
     confined,
     covers_a_hollow,
     flush_share,
@@ -35,7 +36,6 @@ from extractors.motion.guide_places import (
     hinge_near,
     inside_share,
 )
-from extractors.motion.object_motion import Floor
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
 
