@@ -17,7 +17,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.model.capture import Shape, TagType
 from motions import figure, shapes
 from motions.handled import HAND, HOME_S, PAUSE_S, REACH_S, REST_S
-from motions.paths import Move, Moves, Path, Riding, Still, Vector, aimed, minimum_jerk, pose
+from motions.paths import Moves, Riding, Still, Vector, aimed, minimum_jerk, pose
 from motions.performers import Performer
 from motions.trials import Body, Options, Sampling, Script, Trial, Truth, record
 
@@ -230,3 +230,61 @@ def _course(
         now, here = end + PAUSE_S * each.pause, each.to
     path = Guided(furniture.closed, furniture.axis, furniture.hinge, tuple(found))
     return path, now if strokes[-1].pause else now + PAUSE_S
+
+
+TAKE, LEAVE = ("Reach", "Touch"), ("ResumePosture",)
+
+
+def open_and_close_drawer(performer: Performer, **options: Unpack[Options]) -> Trial:
+    """A drawer is drawn, held, and pushed shut."""
+    steps = (*TAKE, "Open", "TouchWith", "Close", "TouchWith", *LEAVE)
+    return work(performer, drawer(performer), (Stroke(0.22), Stroke(0.0)), steps, **options)
+
+
+def open_and_close_drawer_at_once(performer: Performer, **options: Unpack[Options]) -> Trial:
+    """A drawer is drawn and pushed shut without a pause."""
+    steps = (*TAKE, "Open", "Close", "TouchWith", *LEAVE)
+    strokes = (Stroke(0.22, pause=False), Stroke(0.0))
+    return work(performer, drawer(performer), strokes, steps, **options)
+
+
+def open_loaded_drawer(performer: Performer, **options: Unpack[Options]) -> Trial:
+    """A drawer with a block in it is drawn: the block goes along."""
+    furniture = drawer(performer)
+    steps = (*TAKE, "Open", "TouchWith", *LEAVE)
+    inside = pose((0.05, 0.05, WALL))
+    path, _ = _course(performer, furniture, (Stroke(0.2),), REACH_S * performer.pace + PAUSE_S, 0.0)
+    load = Riding(Still(pose((0.0, 0.0, 0.0))), path, inside, 0.0)
+    block = Body("block", load, shapes.box(0.05, 0.05, 0.08), TagType.MOBILE, mass_kg=0.2)
+    return work(performer, furniture, (Stroke(0.2),), steps, others=(block,), **options)
+
+
+def half_close_drawer(performer: Performer, **options: Unpack[Options]) -> Trial:
+    """A drawer is pushed in half the way, held, and then shut."""
+    steps = (*TAKE, "Push", "TouchWith", "Close", "TouchWith", *LEAVE)
+    strokes = (Stroke(0.1), Stroke(0.0))
+    return work(performer, drawer(performer), strokes, steps, begin=0.25, **options)
+
+
+def open_and_close_door(performer: Performer, **options: Unpack[Options]) -> Trial:
+    """A cabinet's door is opened by its knob, held, and shut."""
+    steps = (*TAKE, "Open", "TouchWith", "Close", "TouchWith", *LEAVE)
+    return work(performer, door(performer), (Stroke(1.2), Stroke(0.0)), steps, **options)
+
+
+def open_door_farther(performer: Performer, **options: Unpack[Options]) -> Trial:
+    """A cabinet's door is opened a little, held, and opened farther."""
+    steps = (*TAKE, "Open", "TouchWith", "Open", "TouchWith", *LEAVE)
+    return work(performer, door(performer), (Stroke(0.5), Stroke(1.3)), steps, **options)
+
+
+def open_and_close_lid(performer: Performer, **options: Unpack[Options]) -> Trial:
+    """A chest's lid is opened at its front edge, held, and closed."""
+    steps = (*TAKE, "Open", "TouchWith", "Close", "TouchWith", *LEAVE)
+    return work(performer, lid(performer), (Stroke(1.4), Stroke(0.0)), steps, **options)
+
+
+DOORS: tuple[Callable[..., Trial], ...] = (
+    open_and_close_drawer, open_and_close_drawer_at_once, open_loaded_drawer, half_close_drawer,
+    open_and_close_door, open_door_farther, open_and_close_lid,
+)  # fmt: skip
