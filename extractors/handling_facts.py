@@ -16,9 +16,11 @@ from capar.model.facts import (
     Displaced,
     Fact,
     Flies,
+    Guided,
     Leans,
     Lies,
     Moving,
+    Opening,
     Passage,
     Phase,
     PressDirection,
@@ -45,6 +47,7 @@ from extractors.motion.turning_points import swings
 from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between, sides
 from extractors.relations.attention import seeing, sight
 from extractors.relations.grips import shifts
+from extractors.relations.guides import Guide, turns_on_guide
 from extractors.relations.loads import rides
 from extractors.relations.places import distances, places
 from extractors.relations.weight_bearing import bearing
@@ -68,6 +71,7 @@ def handling(
     known: Iterable[Fact],
     calibration: Calibration,
     thresholds: Thresholds,
+    guides: Mapping[str, Guide],
 ) -> tuple[Fact, ...]:
     """Rest, turning points, leaning, falls, arrangements and places of handled bodies.
 
@@ -79,6 +83,7 @@ def handling(
         known: Contacts and motions, as facts.
         calibration: What was decided for the whole recording.
         thresholds: What the measurements decide by.
+        guides: The hinge or rail of each object that moves on one.
     """
     seen = list(known)
     touches = [each for each in seen if isinstance(each, Touching)]
@@ -96,7 +101,8 @@ def handling(
     for name, hand in hands.items():
         out += (Resting(name, *each) for each in resting(hand.poses, thresholds))
     for each in mobile:
-        out += _motion(things[each.name], seen, upright[each.name], thresholds)
+        guide = guides.get(each.name)
+        out += _motion(things[each.name], seen, upright[each.name], thresholds, guide)
     out += _seats(things, touches, seen, thresholds)
     out += bearing(capture, bodies, touches, calibration, thresholds)
     borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
@@ -104,6 +110,7 @@ def handling(
     for one in (*hands.values(), *others):
         frames = tuple(borders.get(one.name, ()))
         out += places(one, upright[one.name], frames)
+        out += _openings(one.name, guides, frames)
         for other in things.values():
             if other.name != one.name:
                 out += distances(one, other, frames)
@@ -122,7 +129,11 @@ def handling(
 
 
 def _motion(
-    one: BodyGeometry, known: list[Fact], upright: Float[np.ndarray, "3"], thresholds: Thresholds
+    one: BodyGeometry,
+    known: list[Fact],
+    upright: Float[np.ndarray, "3"],
+    thresholds: Thresholds,
+    guide: Guide | None,
 ) -> Iterator[Fact]:
     pose = one.poses
     moves = tuple(
@@ -137,7 +148,11 @@ def _motion(
     )
     found = phases(one, motions, thresholds)
     yield from (Phase(one.name, each.kind, each.first, each.last) for each in found)
-    turns = turns_of_height(found, one.middles, thresholds)
+    if guide is None:
+        turns = turns_of_height(found, one.middles, thresholds)
+    else:
+        turns = turns_on_guide(guide, motions, thresholds)
+        yield Guided(one.name, guide.fit.kind, guide.base)
     yield from (Reverses(one.name, frame) for frame in turns)
     yield from (Swings(one.name, *span) for span in swings(pose, moves, thresholds))
     length_m = float(one.shape.size.max()) if one.shape else 0.0
@@ -145,6 +160,15 @@ def _motion(
     yield from (Leans(one.name, *span) for span in leans)
     yield from (Flies(one.name, *span) for span in falls(one, thresholds))
     yield from (Rolls(one.name, *span) for span in rolling(one, thresholds))
+
+
+def _openings(name: str, guides: Mapping[str, Guide], frames: tuple[int, ...]) -> Iterator[Fact]:
+    """How far a body on a guide is from its closed place at some frames; lost ones are left out."""
+    if name in guides:
+        opening = guides[name].opening
+        for frame in frames:
+            if not np.isnan(opening[frame]):
+                yield Opening(name, frame, round(1000.0 * float(opening[frame])))
 
 
 def _arranged(

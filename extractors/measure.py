@@ -48,6 +48,7 @@ from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.relations.attention import Attention, attention, seeing
 from extractors.relations.company import company
+from extractors.relations.guides import Guide, guide_of
 from extractors.signals.filters import speed
 from extractors.signals.gaps import long_gaps
 from extractors.signals.intervals import Interval
@@ -90,6 +91,8 @@ class Measurements:
     """By sensor that attends, and by head that acts."""
 
     bodies: Bodies
+    guides: Mapping[str, Guide]
+    """The hinge or rail of each object that moves on one, by object."""
 
 
 def measure(capture: Capture, calibration: Calibration | None = None) -> Measurements:
@@ -144,11 +147,12 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
         ),
     ]
     facts += company(capture, bodies, calibration, limits)
-    facts += handling(capture, bodies, facts, calibration, limits)
+    guides = dict(_guides(capture, bodies, calibration, limits))
+    facts += handling(capture, bodies, facts, calibration, limits, guides)
     own = [each for each in capture.notices if each.code != LOSS]
     notices = (*own, *_notices(capture, calibration, limits))
     return Measurements(
-        _ordered(facts), notices, calibration, tracks, looks, bodies.without_caches()
+        _ordered(facts), notices, calibration, tracks, looks, bodies.without_caches(), guides
     )
 
 
@@ -191,6 +195,20 @@ def _intended(rank: int, purpose: Purpose) -> Intended:
     return Intended(
         rank, purpose.action or ANY, purpose.object or ANY, purpose.goal or ANY, purpose.purpose
     )
+
+
+def _guides(
+    capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
+) -> Iterator[tuple[str, Guide]]:
+    """The hinge or rail of each mobile object that moves on one throughout."""
+    fixed = [bodies.objects[each.name] for each in capture.objects if each.tag is TagType.FIXED]
+    for thing in capture.objects:
+        if thing.tag is TagType.MOBILE:
+            known = calibration.tag_object(thing.name)
+            floor = Floor(known.motion_floor_m, known.motion_floor_rad)
+            guide = guide_of(bodies.objects[thing.name], fixed, floor, thresholds)
+            if guide is not None:
+                yield thing.name, guide
 
 
 def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:

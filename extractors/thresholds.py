@@ -238,3 +238,31 @@ class Thresholds:
 
     dwell_m: float = 0.05
     """Way of that mean within the same time, below which it dwells [m]."""
+
+    guide_floors: float = 3.0
+    """A hinge or a rail is sought for what turns or goes by so many floors of its motion [1]:
+    15 degrees or 3 cm, as for co-motion; in less any line fits."""
+
+    hinge_edge_share: float = 0.1
+    """A hinge is in the outer tenth of the breadth of what turns about it, or beyond [1]: what is
+    turned on the spot turns about its middle."""
+
+    hinge_near_m: float = 0.05
+    """... no farther than this from it, and from the body that bears it [m]: the breadth of a
+    hinge's leaf. As near to the edge of that body, a lid's hinge is at its edge."""
+
+    flush_m: float = 0.03
+    """A closed lid or door is so near to what it closes, all over [m]: seals, stops and the height
+    of a rim are that thick."""
+
+    closed_share: float = 0.75
+    """Share of a lid or door that is flush, or of a drawer or door that is inside, where it is
+    closed [1]: fronts, handles and overlaps stand out by the other quarter."""
+
+    withdrawn_share: float = 0.05
+    """What is open is less inside by at least this share [1]: a drawer of 60 cm that is drawn by
+    the least range of a rail, 3 cm."""
+
+    rail_play_m: float = 0.03
+    """What guides a drawer is so near on both sides of it [m]; what is pushed onto a shelf has room
+    for a hand there, and nothing keeps it on its line."""

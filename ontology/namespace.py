@@ -165,10 +165,15 @@ class CAPAR(metaclass=Closed):
     # constraints.ttl
     Constraint: NamedNode
     ConstraintLocation: NamedNode
+    Guide: NamedNode
     constraint: NamedNode
     collidingFirst: NamedNode
     collidingSecond: NamedNode
     location: NamedNode
+    guide: NamedNode
+    guideKind: NamedNode
+    opened: NamedNode
+    residual: NamedNode
     ofSegment: NamedNode
     goal: NamedNode
     seen: NamedNode

@@ -18,9 +18,11 @@ from capar.model.handling import ContactNormal as ContactNormal
 from capar.model.handling import Displaced as Displaced
 from capar.model.handling import Distance as Distance
 from capar.model.handling import Flies as Flies
+from capar.model.handling import Guided as Guided
 from capar.model.handling import Leans as Leans
 from capar.model.handling import Lies as Lies
 from capar.model.handling import MovesWith as MovesWith
+from capar.model.handling import Opening as Opening
 from capar.model.handling import Passage as Passage
 from capar.model.handling import Phase as Phase
 from capar.model.handling import Place as Place

@@ -225,10 +225,39 @@ class Phase(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class Guided(Observed):
+    """An object moves on one hinge or one rail of a fixed one, throughout the recording.
+
+    The kind is ``hinge`` or ``rail``; the base is the fixed object, by which it can be closed.
+    """
+
+    predicate = "guided"
+    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=True)
+    object: str
+    kind: str
+    base: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Opening(Observed):
+    """How far an object on a guide is from its closed place at a frame.
+
+    In millimetres on a rail, in milliradians on a hinge.
+    """
+
+    predicate = "opening"
+    declaration = Declaration(about="object", span=Span.INSTANT, border=False, has_sentence=False)
+    object: str
+    frame: int
+    amount: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Reverses(Observed):
     """A moving object that rose begins to sink, or one that sank after that to rise again.
 
-    Both are real ways and steep; the frame lies in the middle between the two.
+    Both are real ways and steep; the frame lies in the middle between the two. What is on a hinge
+    or a rail turns back on that instead.
     """
 
     predicate = "reverses"

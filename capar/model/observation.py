@@ -12,6 +12,7 @@ from capar.model.par import (
     ComplexPar,
     ConstraintLocation,
     FeatureSet,
+    GuideLocation,
     Ipar,
     Style,
     Upar,
@@ -190,6 +191,9 @@ class Observation:
 
     calibration: Calibration | None = None
     """What was decided once for the whole recording; None where it was not kept."""
+
+    guides: tuple[GuideLocation, ...] = ()
+    """The hinges and rails on which objects move, by object."""
 
     @property
     def segments(self) -> tuple[Segment, ...]:

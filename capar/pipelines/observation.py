@@ -9,7 +9,7 @@ from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Notice, notice
 from capar.model.facts import Fact, FlickerCorrection
 from capar.model.observation import Observation, Segment
-from capar.model.par import ConstraintLocation
+from capar.model.par import ConstraintLocation, GuideLocation
 from capar.pipelines.movers import unmoved_notices
 from capar.pipelines.trials import trial_of
 from capar_rules.borders.border_numbers import number_borders
@@ -23,6 +23,7 @@ from extractors.bodies.observed_objects import observed_object
 from extractors.calibration import calibrate as calibration_of
 from extractors.calibration import thresholds_of
 from extractors.measure import Measurements, measure
+from extractors.relations.guide_locations import guide_location
 from extractors.segments.locations import constraint_location
 from extractors.segments.motion_kinds import moved_path
 from extractors.segments.styles import style
@@ -114,6 +115,7 @@ def observe_measured(
         joint=inference.joint,
         others=capture.others,
         calibration=measurements.calibration,
+        guides=() if base.crossings_only else tuple(_guides(measurements)),
     )
 
 
@@ -163,6 +165,13 @@ def _locations(
                 dominant=segment.objects[first] if first >= 0 else "",
                 goal=segment.objects[second],
             )
+
+
+def _guides(measurements: Measurements) -> Iterable[GuideLocation]:
+    """The hinge or the rail of each object that moves on one (spec 10)."""
+    objects = measurements.bodies.objects
+    for name, guide in sorted(measurements.guides.items()):
+        yield guide_location(objects[name], objects[guide.base], guide)
 
 
 def _violations(inference: Inference) -> Iterable[Notice]:

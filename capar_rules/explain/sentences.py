@@ -118,6 +118,8 @@ class _Value:
     def __format__(self, form: str) -> str:
         if form == "frame":
             return self.clock.at(int(self.text))
+        if form == "milli":
+            return f"{int(self.text) / 1000.0:.2f}"
         if form == "tick":
             return self.clock.at(self.clock.frames[self.beside[0]][int(self.text)])
         told = self._of_segment(form)

@@ -81,6 +81,32 @@ def _location(
     )
 
 
+def guides(
+    out: Statements, observation: "Observation", objects: dict[str, NamedNode]
+) -> list[NamedNode]:
+    """Every hinge and rail, with the kinds of objects that it is kept with (spec 10)."""
+    kinds = {each.name: kind_of(each) for each in observation.objects}
+    return [
+        out.add(
+            names.part(out.about, "guide", each.object),
+            (CAPAR.Guide,),
+            {
+                CAPAR.guideKind: each.kind,
+                CAPAR.dominant: objects[each.object],
+                CAPAR.dominantKind: kind(out, kinds[each.object]),
+                CAPAR.goal: objects[each.base],
+                CAPAR.goalKind: kind(out, kinds[each.base]),
+                CAPAR.eeNlt: literals.nlt(each.object_nlt),
+                CAPAR.goalNlt: literals.nlt(each.base_nlt),
+                CAPAR.opened: each.opened,
+                CAPAR.residual: each.residual_m,
+                GENERATED: out.about,
+            },
+        )
+        for each in observation.guides
+    ]
+
+
 def styles(
     out: Statements, observation: "Observation", agents: dict[str, NamedNode]
 ) -> list[NamedNode]:

@@ -60,6 +60,7 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
         CAPAR.jointAction: joint.joint_actions(out, observation, objects),
         CAPAR.fact: facts.facts(out, observation.facts, capture),
         CAPAR.location: measures.locations(out, observation, agents, objects),
+        CAPAR.guide: measures.guides(out, observation, objects),
         CAPAR.style: measures.styles(out, observation, agents),
         CAPAR.notice: _notices(out, observation),
     }

@@ -1,0 +1,35 @@
+"""Doors, lids and drawers are opened and closed; what merely moves in a line is not."""
+
+from collections.abc import Callable
+
+import motions
+import pytest
+from motions.doors import DOORS, door, drawer, lid, open_and_close_door, open_and_close_drawer
+from motions.doors import open_loaded_drawer, open_and_close_lid
+from motions.uses import USES
+
+from capar.model.facts import Guided
+from capar.pipelines.observation import observe
+
+Act = Callable[..., motions.Trial]
+
+RECORDED = {
+    "exactly": {},
+    "at 60 Hz with noise": {"rate_hz": 60.0, "noise_m": 0.001, "noise_rad": 0.005, "seed": 1},
+    "at 240 Hz with noise": {"rate_hz": 240.0, "noise_m": 0.0005, "noise_rad": 0.002, "seed": 2},
+}
+NOISY = RECORDED["at 60 Hz with noise"]
+
+
+@pytest.mark.parametrize("options", RECORDED.values(), ids=RECORDED)
+@pytest.mark.parametrize("performer", motions.PERFORMERS, ids=lambda each: each.name)
+@pytest.mark.parametrize("act", DOORS, ids=lambda each: each.__name__)
+def test_the_steps_are_those_that_were_performed(
+    act: Act, performer: motions.Performer, options: dict[str, float]
+) -> None:
+    trial = act(performer, **options)
+    found = {
+        each.ee: tuple(one.name for one in each.segments if one.name != "Rest")
+        for each in observe(trial.capture).links
+    }
+    assert found == trial.truth.steps["extended"]
