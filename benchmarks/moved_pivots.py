@@ -1,7 +1,7 @@
 """Names of cooking takes as another rig would have recorded them: the pivot of each body elsewhere.
 
-Run by hand: ``python benchmarks/moved_pivots.py [--draws 5] [--centimetres 3] [--json]``. In each draw
-the pivot of every recorded body is moved by a random offset of one length that is fixed to the
+Run by hand: ``python benchmarks/moved_pivots.py [--draws 5] [--centimetres 3] [--json]``. In each
+draw the pivot of every recorded body is moved by a random offset of one length that is fixed to the
 body, and all ten takes are observed and scored as ``capar evaluate`` does
 (examples/bimacs_optitrack/evaluation.toml); the recorded pivots stand beside them as draw 0. The
 recordings are found through the environment variable CAPAR_DATA; without it nothing is done.
