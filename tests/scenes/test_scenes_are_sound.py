@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from capar.model.capture import TagType
-from scenes.hands import SCENES, Scene
+from scenes.hands import SCENES as HANDS
+from scenes.hands import Scene
 from scenes.hands.clearance import Placed, gap, moving
 from scenes.hands.performer import Hand
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
+from scenes.objects import SCENES as OBJECTS
 from scenes.score import judged
 
 NAMES = frozenset(
@@ -54,9 +56,22 @@ NAMES = frozenset(
         "Kick",
         "LetGo",
         "HitAway",
+        "HitWith",
+        "Open",
+        "Close",
+        "Cut",
+        "PushWith",
     }
 )
 """The vocabulary of hands."""
+
+BATTERIES = {"hands": HANDS, "objects": OBJECTS}
+"""Every battery by its name."""
+
+SCENES = {
+    f"{battery}-{name}": scene for battery, each in BATTERIES.items() for name, scene in each.items()
+}
+"""The scenes of all batteries."""
 
 HELD_M = 0.003
 """A hand is no further from what it touches [m]."""
@@ -98,10 +113,11 @@ def pairs(stage: Stage) -> Iterator[tuple[Hand | Thing, Hand | Thing]]:
             yield first, second
 
 
-def test_there_are_enough_scenes_and_few_alternatives() -> None:
+@pytest.mark.parametrize("battery", BATTERIES.values(), ids=BATTERIES)
+def test_there_are_enough_scenes_and_few_alternatives(battery: dict[str, Scene]) -> None:
     """At least sixty scenes, and an alternative for at most one unit in ten."""
-    units = [unit for scene in SCENES.values() for unit in scene.stage().expectation(100.0).units]
-    assert len(SCENES) >= 60
+    units = [unit for scene in battery.values() for unit in scene.stage().expectation(100.0).units]
+    assert len(battery) >= 60
     assert sum(bool(unit.alternative) for unit in units) <= len(units) / 10
 
 

@@ -1,0 +1,10 @@
+"""Scenes of containers, furniture and tools: each gives a capture and what every hand did in it."""
+
+from scenes.objects import (  # noqa: F401
+    scenes_containers,
+    scenes_doors,
+    scenes_drawers,
+    scenes_lids,
+    scenes_loads,
+)
+from scenes.objects.registry import SCENES as SCENES
