@@ -4,7 +4,10 @@ from scenes.objects import (  # noqa: F401
     scenes_containers,
     scenes_doors,
     scenes_drawers,
+    scenes_heights,
+    scenes_instruments,
     scenes_lids,
     scenes_loads,
+    scenes_pouring,
 )
 from scenes.objects.registry import SCENES as SCENES

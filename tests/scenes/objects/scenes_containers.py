@@ -1,10 +1,13 @@
 """Scenes in which things are put into, taken out of, stacked in and stood beside containers."""
 
+import numpy as np
+
 from scenes.hands import shapes
+from scenes.hands.performer import GRAVITY
 from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, fetch, finish
 from scenes.hands.stage import Stage
-from scenes.objects.handling import home_again, paused, travel
+from scenes.objects.handling import AHEAD, home_again, paused, travel
 from scenes.objects.registry import scene
 from scenes.objects.things_at_hand import apple, bowl, can, crate, toy
 
@@ -205,3 +208,24 @@ def apple_into_a_steadied_bowl(s: Stage) -> None:
     left.reach(dish, "+y", 0.8, up=0.7)
     left.hold(right.clock - 1.1 - left.clock, dish)
     home_again(left, 0.8)
+
+
+@scene
+def bag_thrown_into_a_crate(s: Stage) -> None:
+    """A bean bag on the palm is thrown into a crate at the far end of the table."""
+    performer(s, yaw_deg=-25)
+    s.table(depth=1.2)
+    crate(s, (0.8, -0.25))
+    bag = s.put("bag", shapes.box(0.07, 0.07, 0.03, "bag"), (0.2, -0.25, s.height + 0.15))
+    right = s.right()
+    right.begin_at(bag, "-z", up=0.0, fingers=AHEAD)
+    right.home = right.body.first
+    right.take(bag)
+    right.hold(0.6, bag)
+    swing, velocity = 0.4, (0.9, 0.0, 1.4)
+    height = 0.15 - 0.008 + velocity[2] * swing / 2.0
+    flight = (velocity[2] + np.sqrt(velocity[2] ** 2 + 2.0 * GRAVITY * height)) / GRAVITY
+    right.throw(bag, velocity, swing, float(flight))
+    right.fly(right.home, 0.9)
+    right.step("ResumePosture", bag)
+    right.idle(0.2)

@@ -164,7 +164,7 @@ def can_out_of_a_chest(s: Stage) -> None:
     s.table()
     trunk = chest(s, (0.75, 0.0, s.height), width=0.6, height=0.12)
     side = pillar(s, "stool", (0.7, -0.7, 0.6), (0.3, 0.3), "stool")
-    tin = can(s, (0.7, -0.12, s.height + 0.014))
+    tin = can(s, (0.7, -0.12, s.height + 0.014), height=0.1)
     left, right = s.left(shapes.gripping_hand(0.04, 0.04)), s.right()
     left.idle(0.2)
     seize(left, trunk.leaf, trunk.grip, 0.9, hold=0.3)
