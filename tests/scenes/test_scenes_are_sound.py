@@ -69,7 +69,9 @@ BATTERIES = {"hands": HANDS, "objects": OBJECTS}
 """Every battery by its name."""
 
 SCENES = {
-    f"{battery}-{name}": scene for battery, each in BATTERIES.items() for name, scene in each.items()
+    f"{battery}-{name}": scene
+    for battery, each in BATTERIES.items()
+    for name, scene in each.items()
 }
 """The scenes of all batteries."""
 

@@ -8,6 +8,10 @@ from scenes.objects import (  # noqa: F401
     scenes_instruments,
     scenes_lids,
     scenes_loads,
+    scenes_passing,
     scenes_pouring,
+    scenes_quiet,
+    scenes_several,
+    scenes_surface,
 )
 from scenes.objects.registry import SCENES as SCENES

@@ -169,9 +169,7 @@ def off_a_stack(s: Stage) -> None:
     left = s.left()
     left.idle(0.1)
     fetch(left, upper, "+y", 0.7, 0.8, 0.0)
-    left.lift_carry_lower(
-        upper, table, up=0.1, by=(0.05, -0.3), down=0.16, times=(0.45, 0.65, 0.5)
-    )
+    left.lift_carry_lower(upper, table, up=0.1, by=(0.05, -0.3), down=0.16, times=(0.45, 0.65, 0.5))
     finish(left, upper, table, 0.3, 0.7)
 
 

@@ -72,17 +72,17 @@ def up_onto_a_shelf(s: Stage) -> None:
 
 @scene
 def flat_over_a_gap(s: Stage) -> None:
-    """A mug goes from one table to another of the same height, three centimetres over both."""
+    """A can goes from one table to another of the same height, three centimetres over both."""
     performer(s, height=0.8, yaw_deg=155)
     s.table(width=0.7)
     side = pillar(s, "side_table", (0.55, 0.75, 0.8), (0.5, 0.5), "side_table")
-    mug = cup(s, (0.5, 0.25))
+    tin = can(s, (0.5, 0.25))
     left = s.left()
     left.idle(0.2)
-    fetch(left, mug, "+y", 0.8, 0.6, 0.3)
+    fetch(left, tin, "+z", 0.8, 1.0, 0.3)
     left.hop(0.03, (0.0, 0.42, 0.0), 0.9)
-    left.step("MoveObjTo", mug, side)
-    finish(left, mug, side, 0.4, 0.9)
+    left.step("MoveObjTo", tin, side)
+    finish(left, tin, side, 0.4, 0.9)
     left.alternative = other_names(left, MoveObjTo="PutDown")
 
 
@@ -115,7 +115,7 @@ def up_and_down_past_a_rim(s: Stage) -> None:
     """A block hops over a low wall: up and down more than aside."""
     performer(s, yaw_deg=265)
     table, cube = s.table(), toy(s, (0.5, -0.15))
-    s.put("partition", shapes.box(0.3, 0.01, 0.1, "partition"), (0.5, -0.08), tag="fixed")
+    s.put("partition", shapes.box(0.3, 0.01, 0.08, "partition"), (0.5, -0.08), tag="fixed")
     right = s.right(claw())
     right.idle(0.2)
     fetch(right, cube, "+z", 0.9, 1.0, 0.3)

@@ -249,8 +249,8 @@ def puck_struck_with_a_stick(s: Stage) -> None:
     performer(s, yaw_deg=-100)
     s.contact_minimum_s = 0.0
     s.table()
-    puck = toy(s, (0.7, -0.05), "puck", 0.06)
-    tool = s.put("stick", forms.stick(), (0.42, -0.05 - 0.042 - 0.25, s.height + 0.03))
+    puck = toy(s, (0.7, -0.05), "puck", 0.1)
+    tool = s.put("stick", forms.stick(), (0.42, -0.05 - 0.062 - 0.25, s.height + 0.065))
     right = s.right()
     begin_with(right, tool, END)
     right.hold(0.5, tool)

@@ -90,7 +90,9 @@ def carton_with_cans(s: Stage) -> None:
     """Both hands carry a carton with two cans from the table to a higher side table."""
     performer(s, height=0.78, yaw_deg=-170)
     s.table(width=0.7)
-    side = s.put("side_table", shapes.box(0.5, 0.5, 0.92, "side_table"), (0.5, 0.75, 0.0), tag="fixed")
+    side = s.put(
+        "side_table", shapes.box(0.5, 0.5, 0.92, "side_table"), (0.5, 0.75, 0.0), tag="fixed"
+    )
     carton = s.put("carton", shapes.carton(0.22, 0.28, 0.14), (0.5, 0.1))
     tins = [
         can(s, (0.5, y, s.height + 0.006), name, 0.11)
@@ -101,9 +103,7 @@ def carton_with_cans(s: Stage) -> None:
     since = len(right.steps)
     left.join(carton)
     right.take(carton, *tins)
-    right.lift_carry_lower(
-        carton, side, up=0.28, by=(0.0, 0.62), down=0.14, times=(0.8, 1.3, 1.0)
-    )
+    right.lift_carry_lower(carton, side, up=0.28, by=(0.1, 0.62), down=0.14, times=(0.8, 1.3, 1.0))
     right.hold(0.4, carton, side)
     left.part(right, since)
     both_leave(hands, 1.1)

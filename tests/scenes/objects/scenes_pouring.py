@@ -15,7 +15,7 @@ RIGHT_SIDE = Grip((0.0, -0.045, 0.07), (0.0, -1.0, 0.0), AHEAD)
 
 def raised_bowl(s: Stage) -> Thing:
     """A bowl on a fixed block, its rim twenty centimetres over the table."""
-    s.put("block", shapes.box(0.2, 0.2, 0.14, "block"), (0.55, 0.15), tag="fixed")
+    s.put("block", shapes.box(0.12, 0.12, 0.14, "block"), (0.55, 0.15), tag="fixed")
     return s.put("bowl", shapes.vessel(0.09, 0.06, "bowl"), (0.55, 0.15, s.height + 0.14))
 
 
