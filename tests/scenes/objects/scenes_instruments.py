@@ -1,4 +1,4 @@
-"""Scenes in which a held thing acts on another: hammer, knife, spoon, cloth, broom, stick, ladle."""
+"""Scenes in which a held tool acts on a thing: hammer, knife, spoon, cloth, broom, ladle."""
 
 import numpy as np
 

@@ -87,7 +87,7 @@ def empty_basket(s: Stage) -> None:
 
 @scene
 def carton_with_cans(s: Stage) -> None:
-    """Both hands carry a carton with two cans from the table to a higher side table."""
+    """Both hands carry a carton with two cans from the table to a higher side table and stay."""
     performer(s, height=0.78, yaw_deg=-170)
     s.table(width=0.7)
     side = s.put(
@@ -104,9 +104,8 @@ def carton_with_cans(s: Stage) -> None:
     left.join(carton)
     right.take(carton, *tins)
     right.lift_carry_lower(carton, side, up=0.28, by=(0.1, 0.62), down=0.14, times=(0.8, 1.3, 1.0))
-    right.hold(0.4, carton, side)
+    right.hold(0.8, carton, side)
     left.part(right, since)
-    both_leave(hands, 1.1)
 
 
 @scene

@@ -8,7 +8,6 @@ from scenes.hands.things import Thing
 from scenes.objects import forms
 from scenes.objects.handling import travel
 from scenes.objects.registry import scene
-from scenes.objects.things_at_hand import bowl
 
 
 def handed(giver: Hand, taker: Hand, thing: Thing, *, far: float) -> None:
@@ -30,19 +29,19 @@ def handed(giver: Hand, taker: Hand, thing: Thing, *, far: float) -> None:
 
 
 @scene
-def ball_passed_and_put_into_a_bowl(s: Stage) -> None:
-    """The right hand gives a ball to the left hand, which lowers it into a bowl."""
+def ball_passed_and_put_on_a_box(s: Stage) -> None:
+    """The right hand gives a ball to the left hand, which lowers it onto a box."""
     performer(s, yaw_deg=35)
     s.table()
-    dish = bowl(s, (0.45, -0.02))
+    box = s.put("box", shapes.box(0.14, 0.14, 0.1), (0.45, -0.02))
     ball = s.put("ball", shapes.ball(0.06), (0.45, -0.3, s.height + 0.28))
     right, left = s.right(), s.left()
     right.begin_at(ball, "-y", up=0.5, fingers=(1.0, 0.0, 0.0))
     right.take(ball)
     right.hold(0.5, ball)
     handed(right, left, ball, far=0.28)
-    travel(left, "Lower", (0.0, 0.0, -0.215), 0.9, ball, dish)
-    left.hold(right.clock - left.clock, ball, dish)
+    travel(left, "Lower", (0.0, 0.0, -0.12), 0.7, ball, box)
+    left.hold(0.6, ball, box)
 
 
 @scene

@@ -1,4 +1,4 @@
-"""Scenes in which nothing is moved: furniture touched or leant on, passing near, above and inside."""
+"""Scenes in which nothing is moved: furniture is touched or leant on, hands pass near things."""
 
 from scenes.hands import shapes
 from scenes.hands.scene import performer

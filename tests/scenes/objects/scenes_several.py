@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from scenes.hands import shapes
-from scenes.hands.performer import EASE, Hand
+from scenes.hands.performer import EASE, PRESS, Hand
 from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw
 from scenes.hands.stage import Stage
@@ -32,7 +32,7 @@ def hold_both(hand: Hand, duration: float, *things: Thing) -> None:
 def slim_cup(s: Stage, name: str, x: float, y: float, z: float) -> Thing:
     """A slim cup on the table or so far over it [m]."""
     form = shapes.vessel(RADIUS_M, 0.1, "cup")
-    return s.put(name, form, (x, y, s.height + z), yaw_deg=9.0)
+    return s.put(name, form, (x, y, s.height + z))
 
 
 @scene
@@ -42,7 +42,7 @@ def second_cup_taken(s: Stage) -> None:
     s.table()
     gap = 0.25
     first = slim_cup(s, "first_cup", 0.45, -0.2 - gap, 0.03)
-    second = slim_cup(s, "second_cup", 0.45 + FINGERS_M - PALM_M, -0.2, 0.0)
+    second = slim_cup(s, "second_cup", 0.45 + FINGERS_M - PALM_M, -0.2 - PRESS, 0.0)
     right = s.right()
     right.begin_at(first, "-y", up=0.6, fingers=AHEAD, aside=(-PALM_M, 0.0, 0.0))
     right.take(first)
@@ -66,7 +66,7 @@ def two_cups_lifted_at_once(s: Stage) -> None:
     performer(s, height=0.85, yaw_deg=110, size=1.0)
     s.table()
     first = slim_cup(s, "first_cup", 0.45, 0.15, 0.0)
-    second = slim_cup(s, "second_cup", 0.45 + FINGERS_M - PALM_M, 0.15, 0.0)
+    second = slim_cup(s, "second_cup", 0.45 + FINGERS_M - PALM_M, 0.15 + PRESS, 0.0)
     left = s.left()
     left.idle(0.2)
     left.reach(first, "+y", 0.9, up=0.6, aside=(-PALM_M, 0.0, 0.0), others=(second,))
