@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenes.hands.shapes import Form, block, disc, ring, vessel
+from scenes.hands.shapes import Form, block, disc, vessel
 
 HANDLE_M = 0.06
 """How far a handle stands out [m]."""
@@ -170,8 +170,3 @@ def frame(width: float, height: float, thickness: float = 0.03) -> Form:
             block((-x, -y, height), (x, y, height + 0.03)),
         ),
     )
-
-
-def sheath(kind: str, low: float, high: float, radius: float, wall: float) -> Form:
-    """A round wall without a floor: a hoop around its origin."""
-    return Form(kind, tuple(ring(radius - wall, radius, low, high)))

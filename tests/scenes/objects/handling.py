@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from scenes.hands.paths import Vector, about, facing, pose
 from scenes.hands.performer import EASE, PRESS, Hand
@@ -108,14 +107,3 @@ def home_again(hand: Hand, duration: float) -> None:
     """Let go, go home and stay for a moment."""
     hand.leave(duration)
     hand.idle(0.2)
-
-
-def level(place: Vector, fingers: Vector = AHEAD) -> np.ndarray:
-    """The pose of a palm that faces up."""
-    return pose(place, facing(UP, fingers))
-
-
-def tipped(axis: Vector, angle_deg: float) -> Rotation:
-    """A rotation about an axis of the stage by an angle [degrees]."""
-    along = np.asarray(axis, dtype=float)
-    return Rotation.from_rotvec(np.radians(angle_deg) * along / np.linalg.norm(along))

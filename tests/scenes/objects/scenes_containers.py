@@ -7,6 +7,7 @@ from scenes.hands.performer import GRAVITY
 from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, fetch, finish
 from scenes.hands.stage import Stage
+from scenes.objects import forms
 from scenes.objects.handling import AHEAD, home_again, paused, travel
 from scenes.objects.registry import scene
 from scenes.objects.things_at_hand import apple, bowl, can, crate, toy
@@ -206,6 +207,33 @@ def apple_into_a_steadied_bowl(s: Stage) -> None:
     left.reach(dish, "+y", 0.8, up=0.7)
     left.hold(right.clock - 1.1 - left.clock, dish)
     home_again(left, 0.8)
+
+
+@scene
+def can_onto_a_tray(s: Stage) -> None:
+    """The left hand takes a can from the table and stands it on a tray, slowly."""
+    performer(s, height=0.64, yaw_deg=-15, size=0.94, agent="old_woman")
+    s.table()
+    tray, tin = s.put("tray", shapes.tray(0.3, 0.36), (0.55, -0.2)), can(s, (0.48, 0.3))
+    left = s.left()
+    left.idle(0.2)
+    fetch(left, tin, "+z", 1.4, 1.0, 0.8)
+    left.lift_carry_lower(tin, tray, up=0.18, by=(0.05, -0.45), down=0.172, times=(1.4, 1.8, 1.4))
+    finish(left, tin, tray, 0.8, 1.4)
+
+
+@scene
+def apple_out_of_a_pot_and_beside_it(s: Stage) -> None:
+    """An apple is taken out of a pot and put on the table close to it, in one sweep."""
+    performer(s, yaw_deg=50)
+    table = s.table()
+    s.put("pot", forms.pot(0.13, 0.09), (0.6, 0.1))
+    fruit = apple(s, (0.6, 0.1, s.height + 0.006))
+    right = s.right(claw())
+    right.idle(0.2)
+    fetch(right, fruit, "+z", 1.0, 1.0, 0.0)
+    right.lift_carry_lower(fruit, table, up=0.2, by=(-0.05, -0.28), down=0.206)
+    finish(right, fruit, table, 0.3, 1.0)
 
 
 @scene

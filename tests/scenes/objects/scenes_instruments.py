@@ -33,9 +33,8 @@ def held_hammer(s: Stage, hand: Hand) -> Thing:
     return tool
 
 
-def strike(hand: Hand, tool: Thing, nail: Thing, *, up: float, down: float, hold: float) -> None:
-    """Raise a hammer, bring it down on a nail at more than a metre a second, and stay."""
-    travel(hand, "Raise", (0.0, 0.0, up), 0.7, tool)
+def strike(hand: Hand, tool: Thing, nail: Thing, *, down: float, hold: float) -> None:
+    """Bring a hammer down on a nail at more than a metre a second, and stay."""
     hand.move((0.0, 0.0, -down), 0.35, arrive=1.1)
     hand.step("HitWith", tool, nail)
     hand.hold(hold, tool, nail)
@@ -49,7 +48,8 @@ def nail_hit_once(s: Stage) -> None:
     nail, right = board_and_nail(s), s.right()
     tool = held_hammer(s, right)
     right.hold(0.5, tool)
-    strike(right, tool, nail, up=0.17, down=0.2, hold=0.8)
+    travel(right, "Raise", (0.0, 0.0, 0.17), 0.7, tool)
+    strike(right, tool, nail, down=0.2, hold=0.8)
 
 
 @scene
@@ -60,8 +60,10 @@ def nail_hit_twice(s: Stage) -> None:
     nail, left = board_and_nail(s), s.left()
     tool = held_hammer(s, left)
     left.hold(0.6, tool)
-    strike(left, tool, nail, up=0.17, down=0.2, hold=0.5)
-    strike(left, tool, nail, up=0.2, down=0.2, hold=0.6)
+    travel(left, "Raise", (0.0, 0.0, 0.17), 0.7, tool)
+    strike(left, tool, nail, down=0.2, hold=0.5)
+    travel(left, "Lift", (0.0, 0.0, 0.2), 0.7, tool)
+    strike(left, tool, nail, down=0.2, hold=0.6)
 
 
 @scene
@@ -112,7 +114,7 @@ def loaf_cut_quickly(s: Stage) -> None:
     travel(left, "Lower", (0.0, 0.0, -0.15), 0.6, knife, loaf)
     left.swing((0.04, 0.0, 0.0), 2.0, 5)
     left.step("Cut", knife, loaf)
-    travel(left, "Raise", (0.0, 0.0, 0.18), 0.7, knife)
+    travel(left, "Lift", (0.0, 0.0, 0.18), 0.7, knife)
     left.hold(0.5, knife)
 
 
