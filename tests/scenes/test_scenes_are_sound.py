@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 
 from capar.model.capture import TagType
-from scenes.hands import SCENES as HANDS
-from scenes.hands import Scene
+from scenes.batteries import BATTERIES, SCENES
 from scenes.hands.clearance import Placed, gap, moving
 from scenes.hands.performer import Hand
+from scenes.hands.scene import Scene
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
-from scenes.objects import SCENES as OBJECTS
 from scenes.score import judged
 
 NAMES = frozenset(
@@ -64,16 +63,6 @@ NAMES = frozenset(
     }
 )
 """The vocabulary of hands."""
-
-BATTERIES = {"hands": HANDS, "objects": OBJECTS}
-"""Every battery by its name."""
-
-SCENES = {
-    f"{battery}-{name}": scene
-    for battery, each in BATTERIES.items()
-    for name, scene in each.items()
-}
-"""The scenes of all batteries."""
 
 HELD_M = 0.003
 """A hand is no further from what it touches [m]."""

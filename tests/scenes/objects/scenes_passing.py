@@ -41,7 +41,7 @@ def ball_passed_and_put_on_a_box(s: Stage) -> None:
     right.hold(0.5, ball)
     handed(right, left, ball, far=0.28)
     travel(left, "Lower", (0.0, 0.0, -0.12), 0.7, ball, box)
-    left.hold(0.6, ball, box)
+    left.hold(0.4, ball, box)
 
 
 @scene
@@ -56,5 +56,5 @@ def ball_passed_through_a_frame(s: Stage) -> None:
     left.take(ball)
     left.hold(0.5, ball)
     handed(left, right, ball, far=0.3)
-    travel(right, "Carry", (0.0, -0.25, 0.0), 0.9, ball)
-    right.hold(left.clock - right.clock + 0.3, ball)
+    travel(right, "Carry", (0.0, -0.2, 0.0), 0.6, ball)
+    right.hold(left.clock - right.clock, ball)

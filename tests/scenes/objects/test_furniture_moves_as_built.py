@@ -118,6 +118,6 @@ def test_a_grip_goes_with_its_thing(out: float, up: float) -> None:
     chest = cabinet(stage, (0.7, 0.1, 0.75), out=out)
     pose = Grip((0.0, 0.0, up), NEAR, UP).on(chest.drawer, 0.0)
     place = chest.drawer.body.first[:3, 3]
-    assert np.allclose(pose[:3, 3], place + (PRESS, 0.0, up))
+    assert np.allclose(pose[:3, 3] - place, (PRESS, 0.0, up))
     assert np.allclose(pose[:3, 0], (1.0, 0.0, 0.0))
     assert np.allclose(pose[:3, 1], (0.0, 0.0, 1.0))
