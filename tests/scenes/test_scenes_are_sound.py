@@ -97,7 +97,8 @@ def touching(hand: Hand, thing: Thing, time: float, margin: float = 0.0) -> bool
 
 def pairs(stage: Stage) -> Iterator[tuple[Hand | Thing, Hand | Thing]]:
     """All pairs of bodies of which one can move."""
-    bodies = [*stage.hands, *(each for each in stage.things if each.tag is TagType.MOBILE)]
+    bodies: list[Hand | Thing] = [*stage.hands]
+    bodies.extend(each for each in stage.things if each.tag is TagType.MOBILE)
     rest = [each for each in stage.things if each.tag is not TagType.MOBILE]
     for index, first in enumerate(bodies):
         for second in [*bodies[index + 1 :], *rest]:
@@ -180,7 +181,8 @@ def test_nothing_goes_through_anything(scene: Scene) -> None:
     """No two bodies overlap by more than a pressed hand does."""
     stage = scene.stage()
     for time in moments(stage, 0.33):
-        placed = {each.name: Placed.at(each, time) for each in (*stage.hands, *stage.things)}
+        bodies: list[Hand | Thing] = [*stage.hands, *stage.things]
+        placed = {each.name: Placed.at(each, time) for each in bodies}
         for first, second in pairs(stage):
             deep = -gap(placed[first.name], placed[second.name])
             assert deep <= DEEP_M, (first.name, second.name, time)

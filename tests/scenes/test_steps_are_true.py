@@ -68,11 +68,11 @@ def apart(first: Hand | Thing, second: Thing, time: float) -> float:
 
 def rides(thing: Thing, load: Thing, step: Step) -> bool:
     """Whether two things move as one during a step."""
-    between = [
+    before, after = (
         np.linalg.inv(thing.body.at(time)) @ load.body.at(time)
         for time in (step.start_s, step.end_s)
-    ]
-    return bool(np.allclose(*between, atol=1e-6))
+    )
+    return bool(np.allclose(before, after, atol=1e-6))
 
 
 @each_scene

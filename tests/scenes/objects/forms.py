@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenes.hands.shapes import Form, block, disc, vessel
+from scenes.hands.shapes import Form, block, carton, disc, vessel
 
 HANDLE_M = 0.06
 """How far a handle stands out [m]."""
@@ -38,17 +38,7 @@ def jug(radius: float = 0.045, height: float = 0.16) -> Form:
 
 def open_box(length: float, width: float, height: float, kind: str, wall: float = 0.008) -> Form:
     """A floor and four walls, standing on the origin: a crate, a chest."""
-    x, y = length / 2.0, width / 2.0
-    return Form(
-        kind,
-        (
-            block((-x, -y, 0.0), (x, y, wall)),
-            block((-x, -y, 0.0), (-x + wall, y, height)),
-            block((x - wall, -y, 0.0), (x, y, height)),
-            block((-x, -y, 0.0), (x, -y + wall, height)),
-            block((-x, y - wall, 0.0), (x, y, height)),
-        ),
-    )
+    return Form(kind, carton(length, width, height, wall).parts)
 
 
 def basket(length: float, width: float, height: float, arch: float) -> Form:
@@ -78,18 +68,11 @@ def cabinet(depth: float, width: float, height: float, kind: str = "cabinet") ->
 
 def drawer(depth: float, width: float, height: float) -> Form:
     """A drawer with an upright handle plate; its front is at x = 0, its lower side at z = 0."""
-    y, wall = width / 2.0, 0.008
-    return Form(
-        "drawer",
-        (
-            block((0.0, -y, 0.0), (depth, y, wall)),
-            block((0.0, -y, 0.0), (wall, y, height)),
-            block((depth - wall, -y, 0.0), (depth, y, height)),
-            block((0.0, -y, 0.0), (depth, -y + wall, height)),
-            block((0.0, y - wall, 0.0), (depth, y, height)),
-            block((-HANDLE_M, -0.004, 0.2 * height), (0.0, 0.004, 0.8 * height)),
-        ),
-    )
+    handle = block((-HANDLE_M, -0.004, 0.2 * height), (0.0, 0.004, 0.8 * height))
+    parts = [each.copy() for each in open_box(depth, width, height, "drawer").parts]
+    for part in parts:
+        part.apply_translation((depth / 2.0, 0.0, 0.0))
+    return Form("drawer", (*parts, handle))
 
 
 def door(width: float, height: float, way: float) -> Form:
