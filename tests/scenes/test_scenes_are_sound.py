@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from capar.model.capture import TagType
-from scenes.hands import SCENES, Scene
+from scenes.batteries import BATTERIES, SCENES
 from scenes.hands.clearance import Placed, gap, moving
 from scenes.hands.performer import Hand
+from scenes.hands.scene import Scene
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 from scenes.score import judged
@@ -54,6 +55,11 @@ NAMES = frozenset(
         "Kick",
         "LetGo",
         "HitAway",
+        "HitWith",
+        "Open",
+        "Close",
+        "Cut",
+        "PushWith",
     }
 )
 """The vocabulary of hands."""
@@ -91,17 +97,19 @@ def touching(hand: Hand, thing: Thing, time: float, margin: float = 0.0) -> bool
 
 def pairs(stage: Stage) -> Iterator[tuple[Hand | Thing, Hand | Thing]]:
     """All pairs of bodies of which one can move."""
-    bodies = [*stage.hands, *(each for each in stage.things if each.tag is TagType.MOBILE)]
+    bodies: list[Hand | Thing] = [*stage.hands]
+    bodies.extend(each for each in stage.things if each.tag is TagType.MOBILE)
     rest = [each for each in stage.things if each.tag is not TagType.MOBILE]
     for index, first in enumerate(bodies):
         for second in [*bodies[index + 1 :], *rest]:
             yield first, second
 
 
-def test_there_are_enough_scenes_and_few_alternatives() -> None:
+@pytest.mark.parametrize("battery", BATTERIES.values(), ids=BATTERIES)
+def test_there_are_enough_scenes_and_few_alternatives(battery: dict[str, Scene]) -> None:
     """At least sixty scenes, and an alternative for at most one unit in ten."""
-    units = [unit for scene in SCENES.values() for unit in scene.stage().expectation(100.0).units]
-    assert len(SCENES) >= 60
+    units = [unit for scene in battery.values() for unit in scene.stage().expectation(100.0).units]
+    assert len(battery) >= 60
     assert sum(bool(unit.alternative) for unit in units) <= len(units) / 10
 
 
@@ -173,7 +181,8 @@ def test_nothing_goes_through_anything(scene: Scene) -> None:
     """No two bodies overlap by more than a pressed hand does."""
     stage = scene.stage()
     for time in moments(stage, 0.33):
-        placed = {each.name: Placed.at(each, time) for each in (*stage.hands, *stage.things)}
+        bodies: list[Hand | Thing] = [*stage.hands, *stage.things]
+        placed = {each.name: Placed.at(each, time) for each in bodies}
         for first, second in pairs(stage):
             deep = -gap(placed[first.name], placed[second.name])
             assert deep <= DEEP_M, (first.name, second.name, time)

@@ -37,10 +37,19 @@ SCENES: dict[str, Scene] = {}
 
 def scene(write: Callable[[Stage], None]) -> Scene:
     """Enter a function that writes a scene into the list; its docstring is the story."""
+    return entered(write, SCENES)
+
+
+def entered(write: Callable[[Stage], None], scenes: dict[str, Scene]) -> Scene:
+    """Enter a function that writes a scene into a battery's list.
+
+    Raises:
+        ValueError: The battery has a scene of that name already.
+    """
     made = Scene(write.__name__, write.__doc__ or "", write)
-    if made.name in SCENES:
+    if made.name in scenes:
         raise ValueError(f"two scenes are called {made.name}")
-    SCENES[made.name] = made
+    scenes[made.name] = made
     return made
 
 
