@@ -78,7 +78,7 @@ def test_what_goes_up_and_down_turns_back_in_the_middle_of_its_flat_top(
     rate_hz: float, noise_m: float, seed: int, aside_m: float
 ) -> None:
     thing = body(arc(rate_hz, up_m=0.25, aside_m=aside_m), rate_hz, noise_m=noise_m, seed=seed)
-    (turn,) = turns_of_height(found_in(thing, rate_hz), thing.middles, LIMITS)
+    (turn,) = turns_of_height(found_in(thing, rate_hz), thing.middles, (), LIMITS)
     assert turn / rate_hz == pytest.approx(1.3, abs=0.05)
 
 
@@ -88,7 +88,7 @@ def test_a_flat_arc_is_level_and_turns_back_nowhere(
     rate_hz: float, noise_m: float, seed: int, up_m: float
 ) -> None:
     thing = body(arc(rate_hz, up_m=up_m, aside_m=0.6), rate_hz, noise_m=noise_m, seed=seed)
-    assert turns_of_height(found_in(thing, rate_hz), thing.middles, LIMITS) == ()
+    assert turns_of_height(found_in(thing, rate_hz), thing.middles, (), LIMITS) == ()
 
 
 @settings(max_examples=40)
@@ -108,7 +108,7 @@ def test_what_sinks_and_rises_again_turns_back_only_after_it_had_risen() -> None
     high = arc(rate_hz, up_m=0.25, aside_m=0.0)
     low = high * np.array([1.0, 1.0, -1.0])
     thing = body(low, rate_hz)
-    assert turns_of_height(found_in(thing, rate_hz), thing.middles, LIMITS) == ()
+    assert turns_of_height(found_in(thing, rate_hz), thing.middles, (), LIMITS) == ()
 
 
 @settings(max_examples=40)
