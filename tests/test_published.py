@@ -1,6 +1,7 @@
 """The published results of the thesis come out of motion, whoever performs, however recorded."""
 
 from collections.abc import Callable
+from functools import cache
 from itertools import pairwise
 
 import motions
@@ -53,6 +54,14 @@ NAMES = st.from_regex(r"[a-z][A-Za-z0-9_]{0,9}", fullmatch=True)
 PROFILES = ("thesis", "extended")
 
 
+@cache
+def observed(
+    action: Callable[..., motions.Trial], performer: motions.Performer, rules: str
+) -> Observation:
+    """What is observed of an action without noise, for all that is compared with it."""
+    return observe(action(performer).capture, rules=rules)
+
+
 def seven(segment: Segment) -> str:
     """What the thesis calls the segment: its name, or the nearest general one of the seven."""
     return next((each for each in (segment.name, *segment.general) if each in SEVEN), segment.name)
@@ -100,7 +109,7 @@ def test_the_shares_of_the_published_drink_come_out() -> None:
 @pytest.mark.parametrize("action", ACTIONS, ids=lambda each: each.__name__)
 def test_shares_of_every_link_sum_to_one(action: Callable[..., motions.Trial], rules: str) -> None:
     for performer in motions.PERFORMERS:
-        par = observe(action(performer).capture, rules=rules).complex_par
+        par = observed(action, performer, rules).complex_par
         last = par.common.share if par.common else 0.0
         for link in par.links:
             assert sum(each.share for each in link.steps) + last == pytest.approx(1.0, abs=1e-12)
@@ -111,7 +120,7 @@ def test_shares_of_every_link_sum_to_one(action: Callable[..., motions.Trial], r
 def test_every_performer_does_the_same_action(
     action: Callable[..., motions.Trial], rules: str
 ) -> None:
-    observations = [observe(action(each).capture, rules=rules) for each in motions.PERFORMERS]
+    observations = [observed(action, each, rules) for each in motions.PERFORMERS]
     assert len({each.complex_par.signature for each in observations}) == 1
 
 
@@ -120,7 +129,7 @@ def test_each_row_of_the_feature_table_comes_from_a_capture(
     action: Callable[..., motions.Trial],
 ) -> None:
     for performer in motions.PERFORMERS:
-        observation = observe(action(performer).capture, rules="thesis")
+        observation = observed(action, performer, "thesis")
         rows = {
             (
                 each.name,
@@ -157,11 +166,11 @@ def test_neither_noise_nor_rate_changes_the_par(
     seed: int,
 ) -> None:
     """Noise goes from none to 3 mm and 1 degree."""
-    clean = action(performer)
+    first = observed(action, performer, rules)
     noisy = action(
         performer, rate_hz=rate_hz, noise_m=0.003 * noise, noise_rad=np.radians(noise), seed=seed
     )
-    first, second = (observe(each.capture, rules=rules) for each in (clean, noisy))
+    second = observe(noisy.capture, rules=rules)
     assert steps(second) == steps(first)
     assert second.complex_par.signature == first.complex_par.signature
 
@@ -192,7 +201,7 @@ def test_names_heading_and_order_do_not_change_the_par(
         mapping = {each: name for each, name in mapping.items() if each not in kept}
         other = motions.renamed(other, mapping)
     other = motions.reordered(other, seed)
-    first, second = (observe(each, rules=rules) for each in (capture, other))
+    first, second = observed(action, performer, rules), observe(other, rules=rules)
     assert steps(second) == steps(first)
     links = {each.ee: each for each in second.links}
     for link in first.links:

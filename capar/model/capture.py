@@ -112,6 +112,8 @@ class Capture:
                 raise CaptureError(
                     f"{body.name!r} is on another clock than {self.sensors[0].name!r}"
                 )
+            # Equal clocks need the memory of one.
+            object.__setattr__(body.stream, "times", self.times)
         for pair in self.pivot_contacts:
             for name in (pair.first, pair.second):
                 if name not in self.bodies:

@@ -8,6 +8,7 @@ from capar import __version__
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Notice, notice
 from capar.model.facts import Fact, FlickerCorrection
+from capar.model.freed_memory import return_freed_memory
 from capar.model.observation import Observation, Segment
 from capar.model.par import ConstraintLocation, GuideLocation
 from capar.pipelines.movers import unmoved_notices
@@ -135,7 +136,9 @@ def facts_program(
 
 
 def _measurements(capture: Capture, thresholds: Thresholds | None) -> Measurements:
-    return measure(capture, calibration_of(capture, thresholds) if thresholds else None)
+    found = measure(capture, calibration_of(capture, thresholds) if thresholds else None)
+    return_freed_memory()
+    return found
 
 
 def _segments(inference: Inference) -> Iterable[Segment]:

@@ -1,6 +1,7 @@
 """``capar explain`` as a person uses it: text, JSON, a picture, and why not."""
 
 import json
+from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -16,6 +17,12 @@ DEMO = str(Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug")
 THESIS = ["--profile", "thesis"]
 
 
+@cache
+def read(*arguments: str) -> str:
+    """What the command answers of the demo, asked once; for what neither writes nor is patched."""
+    return answered(*arguments)
+
+
 def answered(*arguments: str) -> str:
     result = CliRunner().invoke(app, ["explain", DEMO, *arguments])
     assert result.exit_code == 0, result.output
@@ -23,7 +30,7 @@ def answered(*arguments: str) -> str:
 
 
 def test_every_segment_is_told_in_one_sentence():
-    lines = answered(*THESIS).splitlines()
+    lines = read(*THESIS).splitlines()
     assert len(lines) == 12
     assert lines[3].startswith(
         "MoveObjTo, because the right hand touched the mug at 1.70 s and 2.38 s, the mug moved "
@@ -32,7 +39,7 @@ def test_every_segment_is_told_in_one_sentence():
 
 
 def test_a_summary_leads_with_the_name_s_own_conditions_and_tells_no_mere_border():
-    told = {each["index"]: each["summary"] for each in json.loads(answered("--json"))}
+    told = {each["index"]: each["summary"] for each in json.loads(read("--json"))}
     assert told[1].startswith("Reach, because the right hand touched the mug at 1.69 s")
     assert "table" not in told[1]
     assert "rested" not in told[1]
@@ -41,14 +48,14 @@ def test_a_summary_leads_with_the_name_s_own_conditions_and_tells_no_mere_border
 
 
 def test_one_segment_is_told_as_a_tree_down_to_its_frames():
-    text = answered("right_hand/1", *THESIS)
+    text = read("right_hand/1", *THESIS)
     assert "- it is MoveObjTo  [frames 176 to 246]  (naming.lp:" in text
     assert "- contact of the mug with the head was measured from" in text
     assert "[frames 243 to 268]" in text
 
 
 def test_json_has_the_whole_tree_with_every_atom():
-    (told,) = json.loads(answered("right_hand/1", "--json", *THESIS))
+    (told,) = json.loads(read("right_hand/1", "--json", *THESIS))
     assert told["name"] == "MoveObjTo"
     atoms = []
     waiting = [told["reason"]]
@@ -102,7 +109,7 @@ def test_why_not_without_a_segment_asks_of_each_that_has_another_name():
 
 
 def test_json_gives_the_index_of_the_segment_that_an_atom_names_by_its_tick():
-    (told,) = json.loads(answered("right_hand/1", "--json", *THESIS))
+    (told,) = json.loads(read("right_hand/1", "--json", *THESIS))
     assert told["reason"]["atom"].startswith("named(seg(right_hand,3)")
     assert told["reason"]["segments"] == ["right_hand/1"]
 
@@ -125,14 +132,15 @@ def test_an_end_effector_alone_means_all_of_its_segments_in_order(monkeypatch):
     monkeypatch.setattr(
         "extractors.readers.bundle.capture_toml.read_capture", lambda place: capture
     )
-    both = [each["ee"] for each in json.loads(answered("--json"))]
-    told = json.loads(answered("left_hand", "--json"))
+    both = [each["ee"] for each in json.loads(answered("--json", *THESIS))]
+    told = json.loads(answered("left_hand", "--json", *THESIS))
     assert {"left_hand", "right_hand"} == set(both)
     assert [each["ee"] for each in told] == ["left_hand"] * both.count("left_hand")
     assert [each["index"] for each in told] == list(range(len(told)))
-    headers = [each for each in answered("left_hand").splitlines() if each.startswith("left_hand/")]
+    lines = answered("left_hand", *THESIS).splitlines()
+    headers = [each for each in lines if each.startswith("left_hand/")]
     assert len(headers) == len(told) > 2
-    asked = answered("left_hand", "--why-not", told[1]["name"]).splitlines()
+    asked = answered("left_hand", "--why-not", told[1]["name"], *THESIS).splitlines()
     named = [each for each in asked if each.startswith("left_hand/")]
     assert len(named) == sum(each["name"] != told[1]["name"] for each in told)
 
