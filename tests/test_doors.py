@@ -4,11 +4,10 @@ from collections.abc import Callable
 
 import motions
 import pytest
-from motions.doors import DOORS, door, drawer, lid, open_and_close_door, open_and_close_drawer
-from motions.doors import open_loaded_drawer, open_and_close_lid
-from motions.uses import USES
+from motions.doors import (
+    DOORS,
+)
 
-from capar.model.facts import Guided
 from capar.pipelines.observation import observe
 
 Act = Callable[..., motions.Trial]

@@ -184,7 +184,9 @@ MEANT: dict[str, dict[str, Sequence[str]]] = {
         "head": ("PostureChange", "LookAt", "PostureChange"),
         "right_hand": ("Reach", "Touch", "ResumePosture"),
     },
-    "put_down": {"right_hand": (*uses.LIFTED, "Carry", "Touch", "PutDown", "Touch", "ResumePosture")},
+    "put_down": {
+        "right_hand": (*uses.LIFTED, "Carry", "Touch", "PutDown", "Touch", "ResumePosture")
+    },
 }
 """Steps by what the words mean, where the trial's own truth has the published, general ones."""
 
