@@ -35,6 +35,12 @@ TRUE_OF_ANY_SEGMENT = {
     r"the ([\w ]+?) belongs to ([\w ]+?)": "it is said of the whole capture",
     r"the ([\w ]+?) and the ([\w ]+?) are of different agents": "it is said of the whole capture",
     r"the ([\w ]+?) is (mobile|fixed|self)": "it is said of the whole capture",
+    r"the ([\w ]+?) went along one rail in the ([\w ]+?) throughout the recording": (
+        "it is said of the whole capture"
+    ),
+    r"the ([\w ]+?) turned about one hinge on the ([\w ]+?) throughout the recording": (
+        "it is said of the whole capture"
+    ),
     r"the ([\w ]+?) was not borne by the ([\w ]+?)": "no story has a load",
     r"the ([\w ]+?) stayed with the ([\w ]+?)": "it is said of a whole contact",
 }

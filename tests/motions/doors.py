@@ -30,6 +30,9 @@ WIDE, DEEP, HIGH, WALL = 0.50, 0.40, 0.30, 0.02
 GAP = 0.003
 """Between what moves and what it closes [m]."""
 
+TURN = 12.0
+"""How hard it turns back where it is not held in between [ways / duration^2]."""
+
 AHEAD_M = 0.55
 """How far the furniture's front is before the person [m]."""
 
@@ -54,13 +57,19 @@ class Guided:
     """A point of the hinge in the world [m]; None for a rail."""
 
     strokes: tuple[tuple[float, float, float, float], ...]
-    """When each begins and ends [s], and from where to where it leads [rad] or [m]."""
+    """When each begins and ends [s], and from where to where it leads [rad] or [m].
+
+    Where one ends as the next begins, the thing turns back without coming to rest in between.
+    """
 
     def course(self, times: Float[np.ndarray, "frames"]) -> Float[np.ndarray, "frames"]:
         """How far it is open at each time [rad] or [m]."""
         out = np.full(len(times), self.strokes[0][2])
+        starts, ends = ({each[side] for each in self.strokes} for side in (0, 1))
         for start, end, begin, goal in self.strokes:
-            share = minimum_jerk((times - start) / (end - start))
+            tau = (times - start) / (end - start)
+            launch, halt = TURN * (start in ends), TURN * (end in starts)
+            share = minimum_jerk(tau, launch=launch, halt=halt)
             out = np.where(times >= start, begin + (goal - begin) * share, out)
         return out
 

@@ -3,13 +3,14 @@
 import re
 from collections.abc import Callable
 
-from recomputed import arrangement, contacts, doubts, looks_and_feet, motion, naming, others
+from recomputed import arrangement, contacts, doors, doubts, looks_and_feet, motion, naming, others
 from recomputed.known import Known as Known
 from recomputed.stories import STORIES as STORIES
 from recomputed.stories import told as told
 
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     *doubts.FORMS,
+    *doors.FORMS,
     *contacts.FORMS,
     *motion.FORMS,
     *arrangement.FORMS,
