@@ -148,10 +148,17 @@ def _patch(one: Places, two: Places, depth_m: float) -> tuple[Places, Places]:
 
 
 def _faced(own: Places, others: Places) -> Float[np.ndarray, "3"]:
-    """The sum of a patch's normals by area, as far as each faces the nearest of the others."""
+    """The sum of a patch's normals by area, as far as each faces the nearest of the others.
+
+    Of an open sheet nobody knows which side is out: there what faces it looks towards it.
+    """
     if not own.outward:
         return np.zeros(3)
     nearest = cKDTree(others.points).query(own.points)[1]
     faces = -np.einsum("ij,ij->i", own.normals, others.normals[nearest])
-    weights = own.areas * (np.maximum(faces, 0.0) if others.outward else np.abs(faces))
-    return np.asarray(weights @ own.normals)
+    if others.outward:
+        faces = np.maximum(faces, 0.0)
+    else:
+        ahead = np.einsum("ij,ij->i", own.normals, others.points[nearest] - own.points)
+        faces = np.where(ahead >= -SPACING_M, np.abs(faces), 0.0)
+    return np.asarray((own.areas * faces) @ own.normals)

@@ -59,8 +59,13 @@ def _goes_along(
 
 
 def _contains(bearer: BodyGeometry, load: BodyGeometry, frame: int) -> bool:
-    """Whether the middle of a load is within the convex outline of its bearer."""
-    if bearer.planes is None:
+    """Whether the middle of a load is within the convex outline of its bearer, which is larger."""
+    if bearer.planes is None or _size(load) >= _size(bearer):
         return False
     point = bearer.turn(frame).T @ (load.middles[frame] - bearer.middles[frame])
     return bool((bearer.planes[:, :3] @ point + bearer.planes[:, 3] <= 0.0).all())
+
+
+def _size(body: BodyGeometry) -> float:
+    """The volume of the box around a body [m3]; 0 without a shape."""
+    return float(np.prod(body.shape.size)) if body.shape else 0.0
