@@ -42,7 +42,7 @@ def test_a_description_says_what_was_opened_and_closed() -> None:
 
 def test_the_actionary_keeps_the_hinge_with_its_range_and_residual() -> None:
     out = encode(observe(open_and_close_door(motions.TALL_MAN).capture))
-    assert not violations(out.quads())
-    text = "\n".join(map(str, out.quads()))
+    assert not violations(out.quads)
+    text = "\n".join(map(str, out.quads))
     for term in (CAPAR.Guide, CAPAR.guideKind, CAPAR.opened, CAPAR.residual):
         assert str(term) in text
