@@ -6,7 +6,7 @@ from recomputed.known import NAME, TIME, Known
 
 NUMBER = r"(\d+\.\d\d)"
 SLACK = 0.03
-"""How far what is told may be off [m] or [rad]: a border stands within a few frames of its truth."""
+"""How far what is told may be off [m] or [rad]: a border is within a few frames of its truth."""
 
 SHUT_M, SHUT_RAD = 0.01, 0.09
 """What is nearer to its closed place than this is shut [m], [rad]."""
