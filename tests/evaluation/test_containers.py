@@ -13,7 +13,7 @@ from capar.evaluation.evaluations import report
 from capar.evaluation.kinds import Kind
 from capar.evaluation.plan import Plan, read_plan
 from capar.evaluation.running import evaluate
-from capar.model.capture import ShapeSource
+from capar.model.capture import Capture, ShapeSource
 from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture, takes
 
@@ -37,21 +37,23 @@ def test_what_stands_on_a_table_went_into_nothing() -> None:
     ]
 
 
-@pytest.mark.parametrize(("take", "goes", "stays"), [("p78_s1", 10, 0), ("p76_s1", 10, 2)])
 def test_groceries_go_into_the_box_where_they_are_found_in_the_end(
-    take: str, goes: int, stays: int, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """In the second scene one lies in the box from the beginning, and one ends above its rim."""
     monkeypatch.setenv("CAPAR_DATA", str(recordings_folder()))
+    found = landings(_with_assumed_carton("p78_s1"), ["carton"])
+    assert sum(each.true for each in found) == 10
+    assert all(each.reported and each.true for each in found)
+
+
+def _with_assumed_carton(take: str) -> Capture:
+    """A scene, whose box was not recorded and is derived from what lies in it."""
     capture = read_capture(f"{SCENES}:{take}")
     carton = capture.tag_object("carton")
     assert carton.shape is not None
     assert carton.shape.source is ShapeSource.ASSUMED
     assert "the lowest point of the lowest of" in carton.assumed
-    found = landings(capture, ["carton"])
-    assert sum(each.true for each in found) == goes
-    assert sum(not each.true for each in found) == stays
-    assert all(each.reported == each.true for each in found)
+    return capture
 
 
 def test_what_is_put_into_one_half_of_the_box_is_not_put_into_the_other(
@@ -96,10 +98,13 @@ def test_landings_are_counted_by_what_is_told_and_what_is_true() -> None:
 
 
 def test_a_scene_is_scored_by_its_evaluation_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One object lies in the box from the beginning, and one ends above its rim."""
     monkeypatch.setenv("CAPAR_DATA", str(recordings_folder()))
+    _with_assumed_carton("p76_s1")
     plan = read_plan(SCENES.with_name("containers.toml"), takes=["p76_s1"])
     found = report(evaluate(plan))
     assert (found["all"]["objects"], found["all"]["right"]) == (12, 12)
+    assert (found["all"]["went_in"], found["all"]["told"]) == (10, 10)
     assert any("have no shape and are left out" in each for each in found["notices"])
 
 

@@ -145,3 +145,8 @@ def test_a_shape_that_is_none_is_refused(vertices: np.ndarray, faces: np.ndarray
 def test_a_shape_has_the_size_of_its_box() -> None:
     corners = np.array([[0.0, 0.0, 0.0], [0.2, 0.0, 0.1], [0.0, 0.3, 0.0]])
     assert Shape(corners, np.array([[0, 1, 2]])).size == pytest.approx([0.2, 0.3, 0.1])
+
+
+def test_the_streams_of_a_capture_keep_one_clock_in_memory() -> None:
+    bodies = Capture("trial", (sensor(),), (mug(),))
+    assert all(each.stream.times is bodies.times for each in (*bodies.sensors, *bodies.objects))
