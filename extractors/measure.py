@@ -288,7 +288,7 @@ def _distance_notices(calibration: Calibration) -> Iterator[Notice]:
     """How bodies without surfaces touch, and where the recording contradicts what is taken."""
     for pair in calibration.pairs:
         names, taken = (pair.first, pair.second), pair.touch_m
-        if pair.found is Found.ALL_FACT_KINDS:
+        if pair.found is Found.STATED:
             yield notice("pivot-distance", *names, distance_m=taken)
         elif pair.found not in (Found.TOLERANCE, Found.NEVER):
             how = pair.found.value

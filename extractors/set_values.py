@@ -68,7 +68,7 @@ def _touch(known: Calibration, of: str, value: float) -> Calibration:
             return pair
         pivots = pair.pivots or pair.found is Found.NEVER
         return PairCalibration(
-            pair.first, pair.second, value, value, pivots=pivots, found=Found.ALL_FACT_KINDS
+            pair.first, pair.second, value, value, pivots=pivots, found=Found.STATED
         )
 
     return replace(known, pairs=tuple(map(stated, known.pairs)))

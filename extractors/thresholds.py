@@ -193,6 +193,11 @@ class Thresholds:
     onset_s: float = 0.1
     """At most so long before it is that far a motion began [s]: what takes longer drifts."""
 
+    creep_s: float = 0.6
+    """At most so long before it is beyond its floor a motion begins, and ends after it [s]: at the
+    slowest at which people move things on purpose, 2 cm/s, half a second and the time to get
+    there; what takes longer drifts, as what is held still does."""
+
     edge_rad: float = 0.00873
     """The same for its orientation [rad]: half a degree."""
 

@@ -59,7 +59,7 @@ class Found(StrEnum):
     TOLERANCE = "tolerance"
     """Both have surfaces, which touch within the tolerance."""
 
-    ALL_FACT_KINDS = "stated"
+    STATED = "stated"
     """The capture states it, or the user for this run."""
 
     CO_MOTION = "co-motion"

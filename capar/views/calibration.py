@@ -52,7 +52,7 @@ def _pair_row(pair: PairCalibration) -> tuple[str, ...]:
     names = f"{pair.first} {pair.second}"
     if pair.found is Found.NEVER:
         return names, "-", "-", "-", pair.found.value, "", ""
-    estimated = pair.found not in (Found.ALL_FACT_KINDS, Found.TOLERANCE)
+    estimated = pair.found not in (Found.STATED, Found.TOLERANCE)
     kind = ("points" if estimated else "origins") if pair.pivots else "surfaces"
     shown = "" if pair.shown_m is None else f"{_mm(pair.shown_m)} mm"
     frames = str(pair.frames) if pair.frames else ""

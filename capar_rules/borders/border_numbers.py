@@ -112,7 +112,7 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
         frames = set(crossings)
     else:
         held = (each for name in reach for each in moves[name])
-        refined = edges(own, held, scene.displaced, rate_hz=scene.rate)
+        refined = edges(own, held, scene.displaced)
         frames = {frame for each in (*own, *others) for frame in (each.first, each.last)}
         frames |= {frame for name in reach for each in moves[name] for frame in _ends(each)}
         frames |= {each.refined for each in refined}

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from capar.model.facts import Displaced, Fact, Moving, Seated, Touching
-from capar_rules.borders.times import in_frames, times
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -73,8 +72,6 @@ def edges(
     own: Sequence[Touching],
     moving: Iterable[Moving],
     displaced: Iterable[Displaced],
-    *,
-    rate_hz: float,
 ) -> tuple[Edge, ...]:
     """The edges of every motion that lie within a contact of the end-effector with the object.
 
@@ -82,9 +79,7 @@ def edges(
         own: The end-effector's contacts, in order of time.
         moving: Motions of what it touches.
         displaced: When those truly began and ended.
-        rate_hz: Frames a second [Hz].
     """
-    reach = round(in_frames(times().refining_ms, rate_hz))
     contacts: dict[str, list[Touching]] = {}
     for each in own:
         contacts.setdefault(each.other, []).append(each)
@@ -98,11 +93,11 @@ def edges(
         within = [each for each in true.get(motion.object, ()) if _meet(each, motion)]
         if start:
             frame = min((each.first for each in within), default=motion.first)
-            frame = max(min(frame, motion.first), motion.first - reach, start.first)
+            frame = max(min(frame, motion.first), start.first)
             found.append(Edge(SetsOff, motion.object, motion.first, frame))
         if stop:
             frame = max((each.last for each in within), default=motion.last)
-            frame = min(max(frame, motion.last), motion.last + reach, stop.last)
+            frame = min(max(frame, motion.last), stop.last)
             found.append(Edge(Settles, motion.object, motion.last, frame))
     return tuple(found)
 

@@ -15,7 +15,6 @@ class Times:
     """Durations [ms]; what each means stands beside its value in ``thresholds.lp``."""
 
     merge_ms: int
-    refining_ms: int
     margin_ms: int
     confirming_ms: int
     settled_ms: int

@@ -3,7 +3,7 @@
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 from capar.model.facts import (
@@ -13,7 +13,6 @@ from capar.model.facts import (
     Link,
     MovedBy,
     MovesWith,
-    Moving,
     Observed,
     RateMhz,
     Resting,
@@ -23,7 +22,6 @@ from capar.model.facts import (
     Touching,
     Travels,
 )
-from capar_rules.borders.times import in_frames, times
 from capar_rules.engine.solver import rule_file, solve
 
 RULES = "movers/movers.lp"
@@ -70,7 +68,6 @@ def movers(facts: Sequence[Fact]) -> tuple[MovedBy, ...]:
     Raises:
         RuleError: The rules have a fault.
     """
-    facts = tuple(_beyond_drift(facts))
     parts = numbered_parts(facts)
     if not parts:
         return ()
@@ -84,28 +81,6 @@ def movers(facts: Sequence[Fact]) -> tuple[MovedBy, ...]:
     for part, thing, why in answer.of("unmoved"):
         found[str(thing), str(why), "unknown"].append(_int(part))
     return tuple(sorted(_joined(found, parts)))
-
-
-def _beyond_drift(facts: Sequence[Fact]) -> Iterator[Fact]:
-    """The facts, where what takes longer to the floor of motion than handling does is no motion.
-
-    A body that passes the floor was already displaced for a while; what lasts longer drifts, as
-    trackers do, and nothing moves it.
-    """
-    rates = [each.rate for each in facts if isinstance(each, RateMhz)]
-    reach = round(in_frames(times().refining_ms, rates[0] / 1000.0)) if rates else 0
-    passed: dict[str, list[Moving]] = defaultdict(list)
-    for each in facts:
-        if isinstance(each, Moving):
-            passed[each.object].append(each)
-    for each in facts:
-        if isinstance(each, Displaced):
-            own = [m for m in passed[each.object] if m.last >= each.first and m.first <= each.last]
-            first = min((m.first for m in own), default=each.first) - reach
-            last = max((m.last for m in own), default=each.last) + reach
-            yield replace(each, first=max(each.first, first), last=min(each.last, last))
-        else:
-            yield each
 
 
 def numbered_parts(facts: Iterable[Fact]) -> tuple[Part, ...]:

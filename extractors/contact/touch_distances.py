@@ -64,7 +64,7 @@ def stated_pair(
     than that by twice the margin of an estimate.
     """
     taken = PairCalibration(
-        first.name, second.name, distance_m, distance_m, pivots=True, found=Found.ALL_FACT_KINDS
+        first.name, second.name, distance_m, distance_m, pivots=True, found=Found.STATED
     )
     limits = evidence.thresholds
     for _, frames in _witnesses(capture, first.name, second.name, evidence):

@@ -131,9 +131,10 @@ def _axis_and_angles(
     base = rotations[0]
     for _ in range(ROUNDS):
         moved = geometry.continuous(geometry.quaternions(rotations * base.inv()))
-        axis = _main_direction(moved[:, 1:])
-        if axis is None:
+        found = _main_direction(moved[:, 1:])
+        if found is None:
             return None
+        axis = found
         angles = np.unwrap(2.0 * np.arctan2(moved[:, 1:] @ axis, moved[:, 0]))
         back = geometry.rotations(_about(axis, -angles)) * rotations
         base = back.mean()

@@ -26,7 +26,8 @@ def motion_edges(
     A motion is recognised by a displacement that no handling without it makes; once recognised, it
     began when the object was last where it had rested, and ended when it first was where it
     rests afterwards: within what noise alone makes, and at least a hair's width. What passed
-    before it was that far is added (``onset``).
+    before it was that far is added (``onset``). What takes longer to the floor than motion at the
+    slowest does, drifts until then.
 
     Args:
         poses: The object's poses.
@@ -42,7 +43,8 @@ def motion_edges(
         first = _left(poses, before[-1], moved, floor, thresholds)
     if after:
         last = _arrived(poses, after[0], moved, floor, thresholds)
-    return first, last
+    creeps = round(thresholds.creep_s * frame_rate(poses.filled.times))
+    return max(first, moved[0] - creeps), min(last, moved[1] + creeps)
 
 
 def _left(

@@ -71,7 +71,6 @@ def test_borders_that_could_merge_may_not_be_cut_apart() -> None:
     with pytest.raises(RuleError, match="merge_ms <= settled_ms"):
         Times(
             merge_ms=250,
-            refining_ms=150,
             margin_ms=1000,
             confirming_ms=100,
             settled_ms=200,

@@ -116,7 +116,7 @@ def test_a_stated_distance_holds_and_a_notice_tells_both_numbers_where_it_is_wro
     pivots = (PivotContact("right_hand", "thing", stated_m),)
     measured = measure(replace(capture, pivot_contacts=pivots))
     pair = measured.calibration.pair("right_hand", "thing")
-    assert (pair.found, pair.touch_m) == (Found.ALL_FACT_KINDS, stated_m)
+    assert (pair.found, pair.touch_m) == (Found.STATED, stated_m)
     told = [each for each in measured.notices if each.code == "distance-contradicted"]
     assert bool(told) is contradicted
     for each in told:
@@ -143,7 +143,7 @@ def test_one_value_is_set_for_a_run_and_no_other() -> None:
     plain = known()
     changed = set_values(plain, ["touch_m:thing,right_hand=0.12"])
     pair = changed.pair("right_hand", "thing")
-    assert (pair.touch_m, pair.found) == (0.12, Found.ALL_FACT_KINDS)
+    assert (pair.touch_m, pair.found) == (0.12, Found.STATED)
     others = [each for each in changed.pairs if each is not pair]
     assert others == [
         each for each in plain.pairs if each.first != "right_hand" or each.second != "thing"

@@ -62,7 +62,9 @@ def no_support(known: Known, other: str) -> bool:
     what = known.segment.objects[0]
     hand = min(each.first for each in known.touching(known.segment.ee, what))
     came_later = any(each.first >= hand for each in known.touching(what, other))
-    moved = any(hand <= each.last and each.first < known.segment.last for each in known.moving(what))
+    moved = any(
+        hand <= each.last and each.first < known.segment.last for each in known.moving(what)
+    )
     return came_later or moved
 
 
