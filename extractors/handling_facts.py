@@ -100,11 +100,10 @@ def handling(
     out: list[Fact] = []
     for name, hand in hands.items():
         out += (Resting(name, *each) for each in resting(hand.poses, thresholds))
-    seats = list(_seats(things, touches, seen, thresholds))
     for each in mobile:
         guide = guides.get(each.name)
-        out += _motion(things[each.name], [*seen, *seats], upright[each.name], thresholds, guide)
-    out += seats
+        out += _motion(things[each.name], seen, upright[each.name], thresholds, guide)
+    out += _seats(things, touches, seen, thresholds)
     out += bearing(capture, bodies, touches, calibration, thresholds)
     borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
     others = (things[each.name] for each in mobile if each.name not in hands)
@@ -150,8 +149,8 @@ def _motion(
     found = phases(one, motions, thresholds)
     yield from (Phase(one.name, each.kind, each.first, each.last) for each in found)
     if guide is None:
-        down = [(s.first, s.last) for s in known if isinstance(s, Seated) and s.body == one.name]
-        turns = turns_of_height(found, one.middles, down, thresholds)
+        met = [each.first for each in known if isinstance(each, Touching) and each.body == one.name]
+        turns = turns_of_height(found, one.middles, met, thresholds)
     else:
         turns = turns_on_guide(guide, motions, thresholds)
         yield Guided(one.name, guide.fit.kind, guide.base)

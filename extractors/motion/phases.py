@@ -58,47 +58,38 @@ def phases(
 def turns_of_height(
     found: tuple[Phase, ...],
     middles: Float[np.ndarray, "frames 3"],
-    down: Collection[Interval],
+    met: Collection[int],
     thresholds: Thresholds,
 ) -> tuple[int, ...]:
     """Frames at which a body that rose steeply by a real way begins to sink by one.
 
     They lie in the middle of the longest level part between the two, or, where there is none, in
     the middle between the end of the rise and the beginning of the sink. A pause in the air changes
-    nothing, but that where nothing else lies between it needs no turn beside it. A sink that such a
-    frame begins ends at the next one, if the body then rises again.
+    nothing, but that where nothing else lies between it needs no turn beside it; where the body
+    comes to touch another in between, its way has ended there. A sink that such a frame begins ends
+    at the next one, if the body then rises again.
 
     Args:
         found: Phases, in time; a motion's follow each other without a gap.
         middles: Places of the body [m].
-        down: When the body is down on something, as closed intervals of frames.
+        met: Frames at which it begins to touch another body that does not move it.
         thresholds: The least way up or down.
     """
     frames: list[int] = []
     before: Phase | None = None
     after_top = False
     between: list[Phase] = []
-    previous: Phase | None = None
     for each in found:
-        if previous is not None and _lay(previous, each, down):
-            before, after_top, between = None, False, []
-        previous = each
         if abs(_rise(each, middles)) < thresholds.reversal_m or each.kind not in (RISING, SINKING):
             between.append(each)
             continue
+        if before is not None and any(before.first < frame < each.first for frame in met):
+            before, after_top = None, False
         if before is not None and before.kind != each.kind and (before.kind == RISING or after_top):
             frames += _turn(before, between, each, middles)
             after_top = True
         before, between = each, []
     return tuple(frames)
-
-
-def _lay(before: Phase, after: Phase, down: Collection[Interval]) -> bool:
-    """Whether it was down on something between two phases of which the second sets off anew."""
-    pause = before.last, after.first
-    return before.last != after.first and any(
-        first <= pause[1] and pause[0] <= last for first, last in down
-    )
 
 
 def _turn(
