@@ -10,6 +10,8 @@ falls, rolling, and how bodies are arranged. It does not hold for these:
   places of rest that hold at the beginning of a window, handed over from the window before.
 * ``Reverses`` and ``Swings``: both are sought within a motion from its beginning, so they need
   what ``Moving`` needs.
+* ``Guided``, ``Opening`` and what turns back on a guide: a hinge or rail is fitted to every motion
+  of the recording. It would take the guide as part of the calibration.
 * ``Place``, ``Posture``, ``Distance``, ``Travelled`` and ``SweptAzimuth``: their frames are
   those of the facts above; and ways and angles are summed up from the first frame. It would take
   sums per segment instead.
