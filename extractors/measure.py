@@ -9,16 +9,14 @@ from typing import Any, cast
 import numpy as np
 from jaxtyping import Float, Int
 
-from capar.model.calibration import Calibration, Found
+from capar.model.calibration import Calibration
 from capar.model.capture import (
     Capture,
     Notice,
     Purpose,
     Sensor,
-    ShapeSource,
     TagObject,
     TagType,
-    notice,
 )
 from capar.model.facts import (
     MEASURED,
@@ -44,13 +42,13 @@ from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
 from extractors.handling_facts import handling
+from extractors.measurement_notices import LOSS, notices_of
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.relations.attention import Attention, attention, seeing
 from extractors.relations.company import company
 from extractors.relations.guides import Guide, guide_of
 from extractors.signals.filters import speed
-from extractors.signals.gaps import long_gaps
 from extractors.signals.intervals import Interval
 from extractors.signals.zero_crossings import horizon_frames, pauses, zero_crossings
 from extractors.thresholds import Thresholds
@@ -150,14 +148,10 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
     guides = dict(_guides(capture, bodies, calibration, limits))
     facts += handling(capture, bodies, facts, calibration, limits, guides)
     own = [each for each in capture.notices if each.code != LOSS]
-    notices = (*own, *_notices(capture, calibration, limits))
+    notices = (*own, *notices_of(capture, calibration, limits))
     return Measurements(
         _ordered(facts), notices, calibration, tracks, looks, bodies.without_caches(), guides
     )
-
-
-LOSS = "long-gap"
-"""The notice of a body that was lost for long: one a body, in place of the reader's one a gap."""
 
 
 def _track(poses: Poses, highest_mps: float, thresholds: Thresholds) -> Track:
@@ -265,59 +259,3 @@ def _values(kind: Any) -> Callable[[Fact], Any]:
     """What facts of a kind are sorted by: their arguments, read without rebuilding the fact."""
     names = [each.name for each in fields(kind)]
     return attrgetter(*names) if names else str
-
-
-def _notices(
-    capture: Capture, calibration: Calibration, thresholds: Thresholds
-) -> Iterator[Notice]:
-    stated = capture.contact_tolerance_m is not None
-    yield notice("contact-tolerance", tolerance_m=calibration.contact_tolerance_m, stated=stated)
-    yield from _distance_notices(calibration)
-    found = [each for each in calibration.pairs if each.found is not Found.NEVER]
-    known = {name for each in found for name in (each.first, each.second)}
-    touching: tuple[Sensor | TagObject, ...] = (*capture.acting, *capture.objects)
-    for each in touching:
-        if each.shape is None and each.name not in known:
-            yield notice("no-shape", each.name)
-        elif each.shape is not None and each.shape.source is ShapeSource.STAND_IN:
-            yield notice("stand-in-shape", each.name, shape=each.shape.description)
-    yield from _pose_notices(capture, thresholds)
-
-
-def _distance_notices(calibration: Calibration) -> Iterator[Notice]:
-    """How bodies without surfaces touch, and where the recording contradicts what is taken."""
-    for pair in calibration.pairs:
-        names, taken = (pair.first, pair.second), pair.touch_m
-        if pair.found is Found.STATED:
-            yield notice("pivot-distance", *names, distance_m=taken)
-        elif pair.found not in (Found.TOLERANCE, Found.NEVER):
-            how = pair.found.value
-            yield notice("touch-estimated", *names, touch_m=taken, found=how, frames=pair.frames)
-        if pair.shown_m is not None:
-            code = "mount-gap" if pair.found is Found.TOLERANCE else "distance-contradicted"
-            values = {"touch_m": taken, "shown_m": pair.shown_m, "frames": pair.frames}
-            yield notice(code, *names, **values)
-
-
-def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
-    everything: tuple[Sensor | TagObject, ...] = (*capture.sensors, *capture.objects)
-    for each in everything:
-        if isinstance(each, TagObject) and each.assumed:
-            yield notice("assumed-support", each.name, assumed=each.assumed)
-        lost = [
-            (first, last)
-            for first, last in long_gaps(each.stream, gap_s=thresholds.gap_s)
-            if last - first + 1 >= thresholds.gap_s * capture.rate_hz
-        ]
-        if lost:
-            fixed = isinstance(each, TagObject) and each.tag is TagType.FIXED
-            yield _loss(each.name, lost, capture, fixed=fixed)
-
-
-def _loss(name: str, lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> Notice:
-    """How often a body was lost for long, and when at most; without times if it was throughout."""
-    first, last = max(lost, key=lambda gap: gap[1] - gap[0])
-    if last - first + 1 == len(capture.times):
-        return notice(LOSS, name, times=len(lost), fixed=fixed)
-    start_s, end_s = float(capture.times[first]), float(capture.times[last])
-    return notice(LOSS, name, start_s=start_s, end_s=end_s, times=len(lost), fixed=fixed)

@@ -1,0 +1,75 @@
+"""Notices of what was measured with reservations: tolerances, stand-ins, supports, losses."""
+
+from collections.abc import Iterator
+
+from capar.model.calibration import Calibration, Found
+from capar.model.capture import Capture, Sensor, ShapeSource, TagObject, TagType
+from capar.model.notices import Notice, notice
+from extractors.signals.gaps import long_gaps
+from extractors.thresholds import Thresholds
+
+LOSS = "long-gap"
+"""The notice of a body that was lost for long: one a body, in place of the reader's one a gap."""
+
+
+def notices_of(
+    capture: Capture, calibration: Calibration, thresholds: Thresholds
+) -> Iterator[Notice]:
+    """What a reader of facts should know: how bodies touch, what is assumed, and what was lost.
+
+    Args:
+        capture: The trial.
+        calibration: What was decided for the whole recording.
+        thresholds: How long a gap is that counts.
+    """
+    stated = capture.contact_tolerance_m is not None
+    yield notice("contact-tolerance", tolerance_m=calibration.contact_tolerance_m, stated=stated)
+    yield from _distance_notices(calibration)
+    found = [each for each in calibration.pairs if each.found is not Found.NEVER]
+    known = {name for each in found for name in (each.first, each.second)}
+    touching: tuple[Sensor | TagObject, ...] = (*capture.acting, *capture.objects)
+    for each in touching:
+        if each.shape is None and each.name not in known:
+            yield notice("no-shape", each.name)
+        elif each.shape is not None and each.shape.source is ShapeSource.STAND_IN:
+            yield notice("stand-in-shape", each.name, shape=each.shape.description)
+    yield from _pose_notices(capture, thresholds)
+
+
+def _distance_notices(calibration: Calibration) -> Iterator[Notice]:
+    """How bodies without surfaces touch, and where the recording contradicts what is taken."""
+    for pair in calibration.pairs:
+        names, taken = (pair.first, pair.second), pair.touch_m
+        if pair.found is Found.STATED:
+            yield notice("pivot-distance", *names, distance_m=taken)
+        elif pair.found not in (Found.TOLERANCE, Found.NEVER):
+            how = pair.found.value
+            yield notice("touch-estimated", *names, touch_m=taken, found=how, frames=pair.frames)
+        if pair.shown_m is not None:
+            code = "mount-gap" if pair.found is Found.TOLERANCE else "distance-contradicted"
+            values = {"touch_m": taken, "shown_m": pair.shown_m, "frames": pair.frames}
+            yield notice(code, *names, **values)
+
+
+def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
+    everything: tuple[Sensor | TagObject, ...] = (*capture.sensors, *capture.objects)
+    for each in everything:
+        if isinstance(each, TagObject) and each.assumed:
+            yield notice("assumed-support", each.name, assumed=each.assumed)
+        lost = [
+            (first, last)
+            for first, last in long_gaps(each.stream, gap_s=thresholds.gap_s)
+            if last - first + 1 >= thresholds.gap_s * capture.rate_hz
+        ]
+        if lost:
+            fixed = isinstance(each, TagObject) and each.tag is TagType.FIXED
+            yield _loss(each.name, lost, capture, fixed=fixed)
+
+
+def _loss(name: str, lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> Notice:
+    """How often a body was lost for long, and when at most; without times if it was throughout."""
+    first, last = max(lost, key=lambda gap: gap[1] - gap[0])
+    if last - first + 1 == len(capture.times):
+        return notice(LOSS, name, times=len(lost), fixed=fixed)
+    start_s, end_s = float(capture.times[first]), float(capture.times[last])
+    return notice(LOSS, name, start_s=start_s, end_s=end_s, times=len(lost), fixed=fixed)
