@@ -132,15 +132,15 @@ def test_an_end_effector_alone_means_all_of_its_segments_in_order(monkeypatch):
     monkeypatch.setattr(
         "extractors.readers.bundle.capture_toml.read_capture", lambda place: capture
     )
-    both = [each["ee"] for each in json.loads(answered("--json", *THESIS))]
-    told = json.loads(answered("left_hand", "--json", *THESIS))
+    both = [each["ee"] for each in json.loads(answered("--json"))]
+    told = json.loads(answered("left_hand", "--json"))
     assert {"left_hand", "right_hand"} == set(both)
     assert [each["ee"] for each in told] == ["left_hand"] * both.count("left_hand")
     assert [each["index"] for each in told] == list(range(len(told)))
-    lines = answered("left_hand", *THESIS).splitlines()
+    lines = answered("left_hand").splitlines()
     headers = [each for each in lines if each.startswith("left_hand/")]
     assert len(headers) == len(told) > 2
-    asked = answered("left_hand", "--why-not", told[1]["name"], *THESIS).splitlines()
+    asked = answered("left_hand", "--why-not", told[1]["name"]).splitlines()
     named = [each for each in asked if each.startswith("left_hand/")]
     assert len(named) == sum(each["name"] != told[1]["name"] for each in told)
 
