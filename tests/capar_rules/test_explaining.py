@@ -24,6 +24,7 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "event", 6, "levels"): "no story has a transit of three phases; the scenes have",
     ("", "rides", 3, ""): "no story has a load; the scenes and tests/extractors/test_loads.py have",
     ("", "borne_along", 3, ""): "no story has a load",
+    ("", "presses", 5, ""): "no story has two palms beside each other on one side; the scenes have",
     ("", "strikes_with", 2, ""): "no story has a tool; tests/kb/language/test_instruments.py has",
     ("", "pushes_with", 2, ""): "no story has a tool",
     ("", "sends_off", 2, ""): "no story strikes away what a hand does not hold; the scenes do",
@@ -81,15 +82,15 @@ def test_no_recomputation_accepts_whatever_it_is_given() -> None:
 
 
 def altered(known: Known, sentence: str) -> Iterator[tuple[Known, str]]:
-    """The sentence of the capture's other segments, with its times moved, and with other speeds."""
+    """The sentence of the capture's other segments, with its times moved, with other numbers."""
     for each in told_beside(known):
         yield each, sentence
     for shift in (-1.0, -0.4, 0.4, 0.7, 1.5):
         moved = later(sentence, shift)
         if moved != sentence:
             yield known, moved
-    if speed := re.search(r"(\d+) mm/s", sentence):
-        yield known, sentence.replace(speed[0], f"{2 * int(speed[1]) + 100} mm/s")
+    if told := re.search(r"(-?\d+) (mm/s|thousandths)", sentence):
+        yield known, sentence.replace(told[0], f"{2 * abs(int(told[1])) + 100} {told[2]}")
     if "level" in sentence:
         yield known, re.sub(r"level \d", "level 4", sentence)
 
