@@ -90,7 +90,7 @@ def altered(known: Known, sentence: str) -> Iterator[tuple[Known, str]]:
         if moved != sentence:
             yield known, moved
     if told := re.search(r"(-?\d+) (mm/s|thousandths)", sentence):
-        yield known, sentence.replace(told[0], f"{2 * abs(int(told[1])) + 100} {told[2]}")
+        yield known, sentence.replace(told[0], f"{2 * abs(int(told[1])) + 900} {told[2]}")
     if "level" in sentence:
         yield known, re.sub(r"level \d", "level 4", sentence)
 
