@@ -77,7 +77,7 @@ def scores(plan: Plan, draw: int, length_m: float) -> dict[str, dict[str, float]
 def lines(found: list[dict[str, dict[str, float]]]) -> Iterator[str]:
     """A line for each group and hand: recorded, and each draw."""
     for key in found[0]:
-        values = "  ".join("/".join(f"{each[key][name]:.1f}" for name in SCORES) for each in found)
+        values = "  ".join("/".join(f"{draw[key][name]:.1f}" for name in SCORES) for draw in found)
         yield f"{key:45} {values}"
 
 

@@ -86,27 +86,27 @@ def handling(
         guides: The hinge or rail of each object that moves on one.
     """
     seen = list(known)
-    touches = [each for each in seen if isinstance(each, Touching)]
-    acting = [each.name for each in capture.acting]
-    held = {each.other for each in touches if each.body in acting}
-    hands = {each.name: bodies.sensors[each.name] for each in capture.acting}
+    touches = [fact for fact in seen if isinstance(fact, Touching)]
+    acting = [sensor.name for sensor in capture.acting]
+    held = {touch.other for touch in touches if touch.body in acting}
+    hands = {sensor.name: bodies.sensors[sensor.name] for sensor in capture.acting}
     things = bodies.objects
     mobile = [
         thing for thing in capture.objects if thing.tag is TagType.MOBILE and thing.name in held
     ]
-    mobiles = {each.name for each in mobile}
+    mobiles = {body.name for body in mobile}
     upright = {thing.name: np.array(thing.upright) for thing in calibration.objects}
     upright |= {sensor.name: np.array(sensor.upright) for sensor in calibration.sensors}
     out: list[Fact] = []
     for name, hand in hands.items():
-        out += (Resting(name, *each) for each in resting(hand.poses, thresholds))
-    for each in mobile:
-        guide = guides.get(each.name)
-        out += _motion(things[each.name], seen, upright[each.name], thresholds, guide)
+        out += (Resting(name, *rest) for rest in resting(hand.poses, thresholds))
+    for body in mobile:
+        guide = guides.get(body.name)
+        out += _motion(things[body.name], seen, upright[body.name], thresholds, guide)
     out += _seats(things, touches, seen, thresholds)
     out += bearing(capture, bodies, touches, calibration, thresholds)
     borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
-    others = (things[each.name] for each in mobile if each.name not in hands)
+    others = (things[body.name] for body in mobile if body.name not in hands)
     for one in (*hands.values(), *others):
         frames = tuple(borders.get(one.name, ()))
         out += places(one, upright[one.name], frames)
@@ -115,7 +115,7 @@ def handling(
             if other.name != one.name:
                 out += distances(one, other, frames)
                 out += _arranged(one, other, touches, thresholds)
-        out += _between(one, [each for each in things.values() if each is not one], thresholds)
+        out += _between(one, [other for other in things.values() if other is not one], thresholds)
     for touch in touches:
         if touch.body in hands and touch.other in mobiles and touch.body != touch.other:
             touching = (touch.first, touch.last)
@@ -147,9 +147,9 @@ def _motion(
         if isinstance(fact, Displaced) and fact.object == one.name
     )
     found = phases(one, motions, thresholds)
-    yield from (Phase(one.name, each.kind, each.first, each.last) for each in found)
+    yield from (Phase(one.name, phase.kind, phase.first, phase.last) for phase in found)
     if guide is None:
-        met = [each.first for each in known if isinstance(each, Touching) and each.body == one.name]
+        met = [fact.first for fact in known if isinstance(fact, Touching) and fact.body == one.name]
         turns = turns_of_height(found, one.middles, met, thresholds)
     else:
         turns = turns_on_guide(guide, motions, thresholds)
@@ -194,7 +194,7 @@ def _arranged(
 def _between(
     one: BodyGeometry, others: list[BodyGeometry], thresholds: Thresholds
 ) -> Iterator[Fact]:
-    for first, second in combinations(sorted(others, key=lambda each: each.name), 2):
+    for first, second in combinations(sorted(others, key=lambda body: body.name), 2):
         for span in _spans(between(one, first, second), one, thresholds):
             yield Between(one.name, first.name, second.name, *span)
 
@@ -218,15 +218,15 @@ def _seats(
 
     On what has no surface of its own nothing is seen to come down: there a contact is its distance.
     """
-    moves = [each for each in known if isinstance(each, Displaced)]
-    for each in touches:
-        if each.body in things and each.other in things and things[each.other].shape:
-            body, other = things[each.body], things[each.other]
-            normal = contact_normal(body, other, each.first, thresholds)
+    moves = [fact for fact in known if isinstance(fact, Displaced)]
+    for touch in touches:
+        if touch.body in things and touch.other in things and things[touch.other].shape:
+            body, other = things[touch.body], things[touch.other]
+            normal = contact_normal(body, other, touch.first, thresholds)
             if normal is not None and normal[2] >= thresholds.steep:
-                spans = [(m.first, m.last) for m in moves if m.object in (each.body, each.other)]
-                down = seat(body, other, (each.first, each.last), spans, thresholds)
-                yield Seated(each.body, each.other, *down)
+                spans = [(m.first, m.last) for m in moves if m.object in (touch.body, touch.other)]
+                down = seat(body, other, (touch.first, touch.last), spans, thresholds)
+                yield Seated(touch.body, touch.other, *down)
 
 
 def _loads(
@@ -236,7 +236,7 @@ def _loads(
     thresholds: Thresholds,
 ) -> Iterator[Fact]:
     """What mobile objects bear in or on them and take along."""
-    mobile = {each.name for each in capture.objects if each.tag is TagType.MOBILE}
+    mobile = {body.name for body in capture.objects if body.tag is TagType.MOBILE}
     motions: dict[str, list[Interval]] = defaultdict(list)
     for fact in known:
         if isinstance(fact, Moving):
@@ -254,7 +254,7 @@ def _sides(
 ) -> Iterator[Fact]:
     """On which side an end-effector touches what can be moved, and what looks somewhere."""
     body, other, first = touch.body, touch.other, touch.first
-    if any(each.name == other and each.tag is TagType.MOBILE for each in capture.objects):
+    if any(body.name == other and body.tag is TagType.MOBILE for body in capture.objects):
         x, y = (round(-1000.0 * float(part)) for part in normal[:2])
         yield PressDirection(body, other, first, x, y)
     for head in seeing(capture):
@@ -268,17 +268,19 @@ def _contacts(
     capture: Capture, bodies: Bodies, touches: Iterable[Touching], thresholds: Thresholds
 ) -> Iterator[Fact]:
     upward: dict[tuple[str, str, int], int] = {}
-    acting = {each.name: bodies.sensors[each.name] for each in capture.acting}
+    acting = {sensor.name: bodies.sensors[sensor.name] for sensor in capture.acting}
     known = {**bodies.objects, **acting}
-    for each in touches:
-        body, other = known[each.body], known[each.other]
-        swapped = upward.get((each.other, each.body, each.first))
+    for touch in touches:
+        body, other = known[touch.body], known[touch.other]
+        swapped = upward.get((touch.other, touch.body, touch.first))
         if swapped is not None:
-            yield ContactNormal(each.body, each.other, each.first, -swapped)
-        elif (normal := contact_normal(body, other, each.first, thresholds)) is not None:
-            permille = upward[each.body, each.other, each.first] = round(1000.0 * float(normal[2]))
-            yield ContactNormal(each.body, each.other, each.first, permille)
-            if each.body in acting:
-                yield from _sides(each, normal, capture, bodies)
-        speed = closing_speed(body, other, each.first)
-        yield ClosingSpeed(each.body, each.other, each.first, round(1000.0 * speed))
+            yield ContactNormal(touch.body, touch.other, touch.first, -swapped)
+        elif (normal := contact_normal(body, other, touch.first, thresholds)) is not None:
+            permille = upward[touch.body, touch.other, touch.first] = round(
+                1000.0 * float(normal[2])
+            )
+            yield ContactNormal(touch.body, touch.other, touch.first, permille)
+            if touch.body in acting:
+                yield from _sides(touch, normal, capture, bodies)
+        speed = closing_speed(body, other, touch.first)
+        yield ClosingSpeed(touch.body, touch.other, touch.first, round(1000.0 * speed))

@@ -119,7 +119,7 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
         name: _track(body.poses, calibration.sensor(name).highest_speed_mps, limits)
         for name, body in bodies.sensors.items()
     }
-    looks = {each.name: attention(capture, each, bodies, limits) for each in seeing(capture)}
+    looks = {sensor.name: attention(capture, sensor, bodies, limits) for sensor in seeing(capture)}
     moves = tuple(_moving(capture, bodies, calibration, limits))
     touches = contacts(capture, bodies, calibration)
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
@@ -127,14 +127,14 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
     facts = [
         *_scene(capture),
         *(
-            ZeroCrossing(each.name, int(frame))
-            for each in capture.acting
-            for frame in tracks[each.name].crossings
+            ZeroCrossing(sensor.name, int(frame))
+            for sensor in capture.acting
+            for frame in tracks[sensor.name].crossings
         ),
         *(
-            Pause(each.name, int(frame))
-            for each in capture.acting
-            for frame in pauses(tracks[each.name].speed_mps, tracks[each.name].crossings, reach)
+            Pause(sensor.name, int(frame))
+            for sensor in capture.acting
+            for frame in pauses(tracks[sensor.name].speed_mps, tracks[sensor.name].crossings, reach)
         ),
         *_touching(capture, touches),
         *moves,
@@ -147,7 +147,7 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
     facts += company(capture, bodies, calibration, limits)
     guides = dict(_guides(capture, bodies, calibration, limits))
     facts += handling(capture, bodies, facts, calibration, limits, guides)
-    own = [each for each in capture.notices if each.code != LOSS]
+    own = [notice for notice in capture.notices if notice.code != LOSS]
     notices = (*own, *notices_of(capture, calibration, limits))
     return Measurements(
         _ordered(facts), notices, calibration, tracks, looks, bodies.without_caches(), guides
@@ -172,8 +172,8 @@ def _scene(capture: Capture) -> Iterator[Fact]:
     yield RateMhz(round(1000.0 * capture.rate_hz))
     for sensor in capture.acting:
         yield Link(sensor.name, sensor.end_effector, sensor.side)
-    for each in capture.objects:
-        yield Tag(each.name, each.tag.value)
+    for thing in capture.objects:
+        yield Tag(thing.name, thing.tag.value)
     if capture.others:
         own = [thing for thing in capture.objects if thing.tag is TagType.SELF]
         bodies: tuple[Sensor | TagObject, ...] = (*capture.acting, *seeing(capture), *own)
@@ -195,7 +195,7 @@ def _guides(
     capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
 ) -> Iterator[tuple[str, Guide]]:
     """The hinge or rail of each mobile object that moves on one throughout."""
-    fixed = [bodies.objects[each.name] for each in capture.objects if each.tag is TagType.FIXED]
+    fixed = [bodies.objects[body.name] for body in capture.objects if body.tag is TagType.FIXED]
     for thing in capture.objects:
         if thing.tag is TagType.MOBILE:
             known = calibration.tag_object(thing.name)
@@ -208,7 +208,7 @@ def _guides(
 def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
     """Each contact; of two mobile objects either may be the dominant one: stated both ways."""
     mobile = {thing.name for thing in capture.objects if thing.tag is TagType.MOBILE}
-    acting = {each.name for each in capture.acting}
+    acting = {sensor.name for sensor in capture.acting}
     for touch in touches:
         orders = [(touch.first, touch.second)]
         if touch.first in mobile - acting and touch.second in mobile - acting:
@@ -237,9 +237,9 @@ def _moving(
 def _motions(moves: tuple[Fact, ...]) -> dict[str, list[Interval]]:
     """When each object moves, by its name."""
     found: dict[str, list[Interval]] = defaultdict(list)
-    for each in moves:
-        if isinstance(each, Moving):
-            found[each.object].append((each.first, each.last))
+    for fact in moves:
+        if isinstance(fact, Moving):
+            found[fact.object].append((fact.first, fact.last))
     return found
 
 
@@ -257,5 +257,5 @@ def _ordered(facts: list[Fact]) -> tuple[Fact, ...]:
 
 def _values(kind: Any) -> Callable[[Fact], Any]:
     """What facts of a kind are sorted by: their arguments, read without rebuilding the fact."""
-    names = [each.name for each in fields(kind)]
+    names = [field.name for field in fields(kind)]
     return attrgetter(*names) if names else str

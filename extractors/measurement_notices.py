@@ -25,14 +25,14 @@ def notices_of(
     stated = capture.contact_tolerance_m is not None
     yield notice("contact-tolerance", tolerance_m=calibration.contact_tolerance_m, stated=stated)
     yield from _distance_notices(calibration)
-    found = [each for each in calibration.pairs if each.found is not Found.NEVER]
-    known = {name for each in found for name in (each.first, each.second)}
+    found = [pair for pair in calibration.pairs if pair.found is not Found.NEVER]
+    known = {name for pair in found for name in (pair.first, pair.second)}
     touching: tuple[Sensor | TagObject, ...] = (*capture.acting, *capture.objects)
-    for each in touching:
-        if each.shape is None and each.name not in known:
-            yield notice("no-shape", each.name)
-        elif each.shape is not None and each.shape.source is ShapeSource.STAND_IN:
-            yield notice("stand-in-shape", each.name, shape=each.shape.description)
+    for body in touching:
+        if body.shape is None and body.name not in known:
+            yield notice("no-shape", body.name)
+        elif body.shape is not None and body.shape.source is ShapeSource.STAND_IN:
+            yield notice("stand-in-shape", body.name, shape=body.shape.description)
     yield from _pose_notices(capture, thresholds)
 
 
@@ -53,17 +53,17 @@ def _distance_notices(calibration: Calibration) -> Iterator[Notice]:
 
 def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
     everything: tuple[Sensor | TagObject, ...] = (*capture.sensors, *capture.objects)
-    for each in everything:
-        if isinstance(each, TagObject) and each.assumed:
-            yield notice("assumed-support", each.name, assumed=each.assumed)
+    for body in everything:
+        if isinstance(body, TagObject) and body.assumed:
+            yield notice("assumed-support", body.name, assumed=body.assumed)
         lost = [
             (first, last)
-            for first, last in long_gaps(each.stream, gap_s=thresholds.gap_s)
+            for first, last in long_gaps(body.stream, gap_s=thresholds.gap_s)
             if last - first + 1 >= thresholds.gap_s * capture.rate_hz
         ]
         if lost:
-            fixed = isinstance(each, TagObject) and each.tag is TagType.FIXED
-            yield _loss(each.name, lost, capture, fixed=fixed)
+            fixed = isinstance(body, TagObject) and body.tag is TagType.FIXED
+            yield _loss(body.name, lost, capture, fixed=fixed)
 
 
 def _loss(name: str, lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> Notice:

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from capar.model.par import ConstraintLocation, FeatureSet, Style
+from capar.model.locations import ConstraintLocation
+from capar.model.par import FeatureSet, Style
 
 
 @dataclass(frozen=True, slots=True, order=True)

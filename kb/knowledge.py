@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable
 
+from capar.model.locations import ConstraintLocation
 from capar.model.par import (
     ComplexPar,
     Condition,
-    ConstraintLocation,
     FeatureSet,
     Ipar,
     Style,

@@ -16,6 +16,7 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
+from capar.model.locations import ConstraintLocation
 from capar.model.observation import (
     Border,
     JointAction,
@@ -30,7 +31,6 @@ from capar.model.par import (
     ComplexPar,
     Condition,
     Constraint,
-    ConstraintLocation,
     CoreSemantics,
     FeatureSet,
     Ipar,

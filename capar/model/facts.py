@@ -4,41 +4,41 @@ from dataclasses import dataclass
 
 import clingo
 
-from capar.model import handling, scene_facts
+from capar.model import arrangement_facts, contact_facts, motion_facts, scene_facts
+from capar.model.arrangement_facts import Bears as Bears
+from capar.model.arrangement_facts import Between as Between
+from capar.model.arrangement_facts import Lies as Lies
+from capar.model.arrangement_facts import MovesWith as MovesWith
+from capar.model.arrangement_facts import Passage as Passage
 from capar.model.atoms import LARGEST as LARGEST
 from capar.model.atoms import Fact as Fact
 from capar.model.atoms import program as program
+from capar.model.contact_facts import ClosingSpeed as ClosingSpeed
+from capar.model.contact_facts import ContactNormal as ContactNormal
+from capar.model.contact_facts import PressDirection as PressDirection
+from capar.model.contact_facts import ReleaseSpeed as ReleaseSpeed
+from capar.model.contact_facts import Rides as Rides
+from capar.model.contact_facts import Seated as Seated
+from capar.model.contact_facts import SightNormal as SightNormal
 from capar.model.declarations import Declaration, Span, kinds_of
 from capar.model.declarations import Observed as Observed
 from capar.model.errors import FactError
-from capar.model.handling import Bears as Bears
-from capar.model.handling import Between as Between
-from capar.model.handling import ClosingSpeed as ClosingSpeed
-from capar.model.handling import ContactNormal as ContactNormal
-from capar.model.handling import Displaced as Displaced
-from capar.model.handling import Distance as Distance
-from capar.model.handling import Flies as Flies
-from capar.model.handling import Guided as Guided
-from capar.model.handling import Leans as Leans
-from capar.model.handling import Lies as Lies
-from capar.model.handling import MovesWith as MovesWith
-from capar.model.handling import Opening as Opening
-from capar.model.handling import Passage as Passage
-from capar.model.handling import Phase as Phase
-from capar.model.handling import Place as Place
-from capar.model.handling import Posture as Posture
-from capar.model.handling import PressDirection as PressDirection
-from capar.model.handling import ReleaseSpeed as ReleaseSpeed
-from capar.model.handling import Resting as Resting
-from capar.model.handling import Reverses as Reverses
-from capar.model.handling import Rides as Rides
-from capar.model.handling import Rolls as Rolls
-from capar.model.handling import Seated as Seated
-from capar.model.handling import SightNormal as SightNormal
-from capar.model.handling import SweptAzimuth as SweptAzimuth
-from capar.model.handling import Swings as Swings
-from capar.model.handling import Travelled as Travelled
-from capar.model.handling import Travels as Travels
+from capar.model.motion_facts import Displaced as Displaced
+from capar.model.motion_facts import Distance as Distance
+from capar.model.motion_facts import Flies as Flies
+from capar.model.motion_facts import Guided as Guided
+from capar.model.motion_facts import Leans as Leans
+from capar.model.motion_facts import Opening as Opening
+from capar.model.motion_facts import Phase as Phase
+from capar.model.motion_facts import Place as Place
+from capar.model.motion_facts import Posture as Posture
+from capar.model.motion_facts import Resting as Resting
+from capar.model.motion_facts import Reverses as Reverses
+from capar.model.motion_facts import Rolls as Rolls
+from capar.model.motion_facts import SweptAzimuth as SweptAzimuth
+from capar.model.motion_facts import Swings as Swings
+from capar.model.motion_facts import Travelled as Travelled
+from capar.model.motion_facts import Travels as Travels
 from capar.model.scene_facts import ForceTransfer as ForceTransfer
 from capar.model.scene_facts import Frames as Frames
 from capar.model.scene_facts import Gap as Gap
@@ -89,7 +89,12 @@ class MovedBy(Observed):
     last: int
 
 
-MEASURED: tuple[type[Observed], ...] = (*kinds_of(scene_facts), *kinds_of(handling))
+MEASURED: tuple[type[Observed], ...] = (
+    *kinds_of(scene_facts),
+    *kinds_of(motion_facts),
+    *kinds_of(contact_facts),
+    *kinds_of(arrangement_facts),
+)
 """Every kind of fact that extractors state, in the order in which they are written."""
 
 ALL_FACT_KINDS: tuple[type[Observed], ...] = (*MEASURED, FlickerCorrection, MovedBy)

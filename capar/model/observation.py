@@ -7,12 +7,11 @@ from capar.model.calibration import Calibration
 from capar.model.capture import Agent, Notice, Source
 from capar.model.display import display
 from capar.model.facts import Fact
+from capar.model.locations import ConstraintLocation, GuideLocation
 from capar.model.par import (
     UNKNOWN,
     ComplexPar,
-    ConstraintLocation,
     FeatureSet,
-    GuideLocation,
     Ipar,
     Style,
     Upar,

@@ -8,8 +8,8 @@ from capar import __version__
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Notice, notice
 from capar.model.facts import Fact, FlickerCorrection
+from capar.model.locations import ConstraintLocation, GuideLocation
 from capar.model.observation import Observation, Segment
-from capar.model.par import ConstraintLocation, GuideLocation
 from capar.pipelines.freed_memory import return_freed_memory
 from capar.pipelines.movers import unmoved_notices
 from capar.pipelines.trials import trial_of

@@ -79,25 +79,32 @@ def turns_of_height(
     before: Phase | None = None
     after_top = False
     between: list[Phase] = []
-    for each in found:
-        if abs(_rise(each, middles)) < thresholds.reversal_m or each.kind not in (RISING, SINKING):
-            between.append(each)
+    for phase in found:
+        if abs(_rise(phase, middles)) < thresholds.reversal_m or phase.kind not in (
+            RISING,
+            SINKING,
+        ):
+            between.append(phase)
             continue
-        if before is not None and any(before.first < frame < each.first for frame in met):
+        if before is not None and any(before.first < frame < phase.first for frame in met):
             before, after_top = None, False
-        if before is not None and before.kind != each.kind and (before.kind == RISING or after_top):
-            frames += _turn(before, between, each, middles)
+        if (
+            before is not None
+            and before.kind != phase.kind
+            and (before.kind == RISING or after_top)
+        ):
+            frames += _turn(before, between, phase, middles)
             after_top = True
-        before, between = each, []
+        before, between = phase, []
     return tuple(frames)
 
 
 def _turn(
     rise: Phase, between: Sequence[Phase], sink: Phase, middles: Float[np.ndarray, "frames 3"]
 ) -> list[int]:
-    level = [each for each in between if each.kind == LEVEL]
+    level = [phase for phase in between if phase.kind == LEVEL]
     if level:
-        longest = max(level, key=lambda each: _way(each, middles))
+        longest = max(level, key=lambda phase: _way(phase, middles))
         return [(longest.first + longest.last) // 2]
     parts = [rise, *between, sink]
     if any(one.last != other.first for one, other in pairwise(parts)):
@@ -119,7 +126,7 @@ def _parts(body: BodyGeometry, span: slice, rate_hz: float, thresholds: Threshol
         turning = bool((turn * rate_hz >= thresholds.rest_speed_radps).any())
         return [Phase(TURNING if turning else STILL, span.start, span.stop - 1)]
     heading = _headings(way, slow, thresholds)
-    kinds = np.array([HEADINGS[int(each)] for each in heading], dtype=object)
+    kinds = np.array([HEADINGS[int(index)] for index in heading], dtype=object)
     still = turn * rate_hz < thresholds.rest_speed_radps
     least = round(thresholds.rest_minimum_s * rate_hz)
     for first, last in geometry.runs(slow):
@@ -165,7 +172,7 @@ def _joined(
     """The same without phases that lead nowhere: the shortest first, half to either neighbour."""
     out = list(parts)
     while len(out) > 1:
-        ways = [_way(each, middles) for each in out]
+        ways = [_way(phase, middles) for phase in out]
         place = int(np.argmin(ways))
         if ways[place] >= thresholds.motion_floor_m:
             break

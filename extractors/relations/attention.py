@@ -25,7 +25,7 @@ BEHIND_M = 1e-6
 
 def seeing(capture: Capture) -> tuple[Sensor, ...]:
     """Every sensor with a line of sight: heads, and what attends and is no trunk."""
-    attending = {each.name for each in capture.attending if each.end_effector not in TRUNK}
+    attending = {sensor.name for sensor in capture.attending if sensor.end_effector not in TRUNK}
     return tuple(
         sensor
         for sensor in capture.sensors
@@ -66,7 +66,7 @@ def attention(
         thresholds: Least durations of a look and of its interruptions.
     """
     origins, rays = sight(sensor, bodies.sensors[sensor.name].poses)
-    names = sorted(each.name for each in capture.objects if each.shape and each.name != sensor.name)
+    names = sorted(body.name for body in capture.objects if body.shape and body.name != sensor.name)
     seen = np.full(len(origins), NOTHING)
     nearest = np.full(len(origins), np.inf)
     for index, name in enumerate(names):

@@ -38,7 +38,7 @@ def company(
     and after it in which either is no farther from where it then was in the other's frame than
     fingers open about what they let go.
     """
-    mobile = [each.name for each in capture.objects if each.tag is TagType.MOBILE]
+    mobile = [body.name for body in capture.objects if body.tag is TagType.MOBILE]
     for name in mobile:
         thing = bodies.objects[name]
         travels = travelling(thing.poses.settled, thresholds)
@@ -46,7 +46,7 @@ def company(
             continue
         for span in _spans(travels, capture, thresholds):
             yield Travels(name, *span)
-        others = [*bodies.sensors.values(), *(bodies.objects[each] for each in mobile)]
+        others = [*bodies.sensors.values(), *(bodies.objects[name] for name in mobile)]
         for other in others:
             if other.name == name or other.poses is thing.poses:
                 continue
@@ -80,7 +80,7 @@ def _strays(
     """Whether both of two bodies have left their places at a frame, each in the other's frame."""
 
     def strays(some: slice) -> Bool[np.ndarray, "some"]:
-        ways = [np.linalg.norm(each[some] - each[edge], axis=1) for each in places]
+        ways = [np.linalg.norm(place[some] - place[edge], axis=1) for place in places]
         return ~np.asarray(np.minimum(*ways) <= margin_m)
 
     return strays

@@ -121,7 +121,8 @@ def confined(
     if np.linalg.norm(side) < thresholds.steep:
         one = np.cross(axis, [1.0, 0.0, 0.0])
         return any(
-            _kept(body, base, each, frame, thresholds) for each in (one, np.cross(axis, one))
+            _kept(body, base, direction, frame, thresholds)
+            for direction in (one, np.cross(axis, one))
         )
     return _kept(body, base, side, frame, thresholds)
 

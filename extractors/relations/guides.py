@@ -185,7 +185,7 @@ def turns_on_guide(
         way = guide.way_m[first : last + 1]
         known = np.flatnonzero(~np.isnan(way))
         turns = _extrema(way[known], thresholds.reversal_m)
-        found += [first + _middle(way, int(known[each]), thresholds) for each in turns]
+        found += [first + _middle(way, int(known[turn]), thresholds) for turn in turns]
     return tuple(found)
 
 

@@ -7,9 +7,9 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.capture import Capture, TagObject
+from capar.model.locations import ConstraintLocation
 from capar.model.nlt import Nlt, local_point, normalised, relative_orientation
 from capar.model.observation import Segment
-from capar.model.par import ConstraintLocation
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.proximity import at_frame, nearest

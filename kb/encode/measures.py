@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING
 
 from pyoxigraph import NamedNode
 
-from capar.model.par import ConstraintLocation, Style
+from capar.model.locations import ConstraintLocation
+from capar.model.par import Style
 from kb.encode.scene import GENERATED, kind, kind_of
 from kb.encode.segments import action, segment_node
 from kb.store import literals, names

@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 
 from pyoxigraph import Literal, NamedNode
 
-from capar.model.par import ConstraintLocation, Nlt
+from capar.model.locations import ConstraintLocation
+from capar.model.par import Nlt
 from kb.findings import FoundLocation
 from kb.lookup import kinds
 from kb.store import names

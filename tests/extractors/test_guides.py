@@ -1,5 +1,7 @@
 """A hinge or a rail is recovered from poses, and what moves by chance as on one has none."""
 
+from collections.abc import Callable
+
 import motions
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from motions.doors import (
     open_and_close_lid,
 )
 from motions.paths import minimum_jerk
+from motions.trials import Trial
 from motions.uses import USES
 from scipy.spatial.transform import Rotation
 
@@ -149,13 +152,15 @@ def test_what_slides_turns_or_tips_on_a_table_is_on_no_guide() -> None:
 
 
 @pytest.mark.parametrize("act", [*USES, motions.drink_from_mug], ids=lambda each: each.__name__)
-def test_nothing_that_hands_use_has_a_guide(act) -> None:  # type: ignore[no-untyped-def]
+def test_nothing_that_hands_use_has_a_guide(act: Callable[..., Trial]) -> None:
     assert not measure(act(motions.WOMAN).capture).guides
 
 
 @pytest.mark.parametrize("noise_m", [0.0, 0.001])
 @pytest.mark.parametrize("act", [open_and_close_drawer, open_and_close_door, open_and_close_lid])
-def test_the_axis_is_kept_with_range_and_residual(act, noise_m: float) -> None:  # type: ignore[no-untyped-def]
+def test_the_axis_is_kept_with_range_and_residual(
+    act: Callable[..., Trial], noise_m: float
+) -> None:
     trial = act(motions.WOMAN, noise_m=noise_m, noise_rad=5.0 * noise_m)
     (guide,) = observe(trial.capture).guides
     wanted = {"drawer": ("rail", 0.22), "door": ("hinge", 1.2), "lid": ("hinge", 1.4)}

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from measured_bodies import eased, pick_and_place
 
 from capar.model.capture import Capture
+from capar.model.locations import ConstraintLocation
 from capar.model.observation import Segment
-from capar.model.par import ConstraintLocation, FeatureSet
+from capar.model.par import FeatureSet
 from extractors.measure import measure
 from extractors.segments.locations import constraint_location
 from extractors.segments.styles import STEPS, path_style, velocity_style

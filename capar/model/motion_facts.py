@@ -1,9 +1,8 @@
-"""Facts about what is handled: its places and turns, and how bodies lie to each other."""
+"""Facts about how bodies move: places, turns, phases, and guides that hold them."""
 
 from dataclasses import dataclass
 
 from capar.model.declarations import Declaration, Observed, Span
-from capar.model.scene_facts import Touching
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -105,105 +104,6 @@ class SweptAzimuth(Observed):
     other: str
     frame: int
     milliradians: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class ContactNormal(Observed):
-    """How far the normal of a contact points up, from the other to the body [1/1000].
-
-    Stated at the contact's first frame; 1000 where the body lies on the other.
-    """
-
-    predicate = "upward"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=False)
-    body: str
-    other: str
-    first: int
-    permille: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class PressDirection(Observed):
-    """Which way an end-effector presses aside on an object: x and y of the unit vector [1/1000].
-
-    That is the normal of the contact, from the end-effector to the object, in the world.
-    """
-
-    predicate = "presses"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
-    body: str
-    other: str
-    first: int
-    x: int
-    y: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class SightNormal(Observed):
-    """How far the normal of a contact with a head points where the head looks [1/1000].
-
-    1000 where the face is touched from before it, 0 at the temples, -1000 at the back.
-    """
-
-    predicate = "sighted"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
-    body: str
-    other: str
-    first: int
-    permille: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Rides(Observed):
-    """A body is borne by another one, in or on it, and goes along when that one moves.
-
-    Stated of the contact that begins at the first frame.
-    """
-
-    predicate = "rides"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
-    body: str
-    other: str
-    first: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class ClosingSpeed(Observed):
-    """How fast two bodies approached each other when they began to touch [mm/s]."""
-
-    predicate = "closing"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
-    body: str
-    other: str
-    first: int
-    speed: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class ReleaseSpeed(Observed):
-    """How fast an object goes when an end-effector's contact with it ends [mm/s].
-
-    Stated of the contact that begins at the first frame.
-    """
-
-    predicate = "released"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
-    body: str
-    other: str
-    first: int
-    speed: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Seated(Observed):
-    """A body is down on another one that bears it: in a contact, less its coming and going."""
-
-    predicate = "seated"
-    declaration = Declaration(about="body", span=Span.INTERVAL, border=True, has_sentence=False)
-    body: str
-    other: str
-    first: int
-    last: int
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -321,91 +221,6 @@ class Rolls(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Bears(Observed):
-    """A foot that is down bears the whole weight of the body, part of it, or none."""
-
-    predicate = "bears"
-    declaration = Declaration(
-        about="foot",
-        span=Span.INTERVAL,
-        border=frozenset({"bears_whole", "bears_none"}),
-        has_sentence=True,
-        stretch="bears_{share}",
-    )
-    foot: str
-    share: str
-    first: int
-    last: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Lies(Observed):
-    """How a body lies to another.
-
-    It is inside it, or dips into it with one end; it is above, below, beside or along it, or
-    merely near. An end-effector that touches it ``shifts`` from one place on it to another.
-    """
-
-    predicate = "lies"
-    declaration = Declaration(
-        about="body",
-        span=Span.INTERVAL,
-        border=False,
-        has_sentence=False,
-        stretch="{how}",
-        others=("other",),
-    )
-    body: str
-    how: str
-    other: str
-    first: int
-    last: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Between(Observed):
-    """A body's middle is between two others, from the first to the last frame."""
-
-    predicate = "between"
-    declaration = Declaration(
-        about="body",
-        span=Span.INTERVAL,
-        border=False,
-        has_sentence=False,
-        stretch="between",
-        others=("one", "other"),
-    )
-    body: str
-    one: str
-    other: str
-    first: int
-    last: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Passage(Observed):
-    """A stretch of being inside or above another ends at another side than it began.
-
-    The first frame names the stretch; the sides are opposite or merely other ones.
-    """
-
-    predicate = "passage"
-    declaration = Declaration(
-        about="body",
-        span=Lies,
-        border=False,
-        has_sentence=False,
-        stretch="{how}_{sides}",
-        others=("other",),
-    )
-    body: str
-    how: str
-    other: str
-    first: int
-    sides: str
-
-
-@dataclass(frozen=True, slots=True, order=True)
 class Travels(Observed):
     """An object covers more way than a floor of motion in a moment, throughout."""
 
@@ -414,16 +229,3 @@ class Travels(Observed):
     object: str
     first: int
     last: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class MovesWith(Observed):
-    """A travelling object is steady in another body's frame, so far from touching it [mm]."""
-
-    predicate = "moves_with"
-    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
-    object: str
-    body: str
-    first: int
-    last: int
-    gap: int
