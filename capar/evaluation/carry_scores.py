@@ -12,7 +12,7 @@ from capar.evaluation.carry_captures import carry_captures
 from capar.evaluation.comparisons import Channel
 from capar.evaluation.evaluations import Evaluation, Scored, summed
 from capar.evaluation.labels import Kind, Label, Labels, check_known, check_span
-from capar.evaluation.metrics import Interval, errors_ms, rounded
+from capar.evaluation.metrics import SAME_S, Interval, errors_ms, rounded
 from capar.evaluation.plan import Pair, Plan
 from capar.evaluation.plan_schema import CarryOptions
 from capar.evaluation.scoring import read_case_labels
@@ -70,12 +70,8 @@ class CarryCounts:
         }
 
     def _shares(self, carries: Sequence[CarryEnds]) -> dict[str, Any]:
-        near = np.array(
-            [
-                [abs(each.start_error_s) <= self.within_s, abs(each.end_error_s) <= self.within_s]
-                for each in carries
-            ]
-        ).reshape(-1, 2)
+        errors_s = [(each.start_error_s, each.end_error_s) for each in carries]
+        near = np.abs(np.array(errors_s).reshape(-1, 2)) <= self.within_s + SAME_S
         shares = (near[:, 0], near[:, 1], near.all(axis=1))
         names = ("start", "end", "both")
         return {

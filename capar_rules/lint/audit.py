@@ -1,7 +1,7 @@
 """Audit of a rule base over every possible segment: uncovered, ambiguous and shadowed cases."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -95,8 +95,18 @@ def given_in_audit() -> frozenset[Signature]:
     }
 
 
-def evaluate(rules: Sequence[Statement], asked: Iterable[Signature]) -> frozenset[Atom]:
+def evaluate(
+    rules: Sequence[Statement],
+    asked: Iterable[Signature],
+    *,
+    limbs: Container[str] | None = None,
+) -> frozenset[Atom]:
     """What rules derive in some possible segment; a call of the solver holds many at a time.
+
+    Args:
+        rules: A rule base.
+        asked: The predicates that are wanted.
+        limbs: Ask only the worlds of these end-effectors; each world has one of its own.
 
     Raises:
         RuleError: The rules have an error.
@@ -108,8 +118,10 @@ def evaluate(rules: Sequence[Statement], asked: Iterable[Signature]) -> frozense
     stated = heads_of(_own("space.lp")) - heads_of(words)
     kept = towards([*base, *words, *questions], asked, given=stated)
     program = "\n".join(each.text for each in kept)
+    texts = [text for limb, text in _worlds().items() if limbs is None or limb in limbs]
     found: set[Atom] = set()
-    for facts in _worlds():
+    for at in range(0, len(texts), BATCH):
+        facts = "\n".join(texts[at : at + BATCH])
         found |= brave(f"{program}\n{facts}\n{{ force_transfer }}.", asked)
     return frozenset(found)
 
@@ -133,15 +145,15 @@ def physics() -> tuple[Statement, ...]:
 
 
 @cache
-def _worlds() -> tuple[str, ...]:
-    """Every world as facts about an end-effector of its own, in batches."""
+def _worlds() -> Mapping[str, str]:
+    """Every world as facts about an end-effector of its own, by its name."""
     rules = (*_own("space.lp"), *_own("physical.lp"))
     fixed = "\n".join(each.text for each in rules if not each.body and each.head_kind == "atom")
-    texts = []
+    texts = {}
     for number, atoms in enumerate(worlds("\n".join(each.text for each in rules))):
         own = " ".join(f"{each}." for each in atoms)
-        texts.append(_LIMB.sub(f"limb{number}", f"{own} {fixed}"))
-    return tuple("\n".join(texts[at : at + BATCH]) for at in range(0, len(texts), BATCH))
+        texts[f"limb{number}"] = _LIMB.sub(f"limb{number}", f"{own} {fixed}")
+    return texts
 
 
 BATCH = 30

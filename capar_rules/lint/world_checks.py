@@ -21,6 +21,7 @@ from capar_rules.lint.text_checks import Known
 from capar_rules.lint.word_places import STRING
 
 FIRED, IDLE, HELD = ("fired", 1), ("idle", 1), ("held", 3)
+FITTED, POSSIBLE, FEATURE_ROW = ("fitted", 1), ("possible", 4), ("feature_row", 6)
 
 MOST_RIVALS = 5
 """How many rivals an ambiguity lists."""
@@ -86,10 +87,24 @@ def world_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
         if rule not in judged:
             words = ", ".join(f"{name}/{arity}" for name, arity in _beyond(rule, own, base))
             yield _not_judged(rule, f"{words}, which the worlds of the audit do not contain")
-    asked = (*ASKED, FIRED, IDLE, HELD, ("feature_row", 6))
-    atoms = evaluate([*base.rules, *own, *_probes(judged)], asked)
+    atoms, limbs = _fitted(own, base, _probes(judged))
     yield from _firing(judged, atoms, lambda number: _missing(number, judged, own, base, atoms))
-    yield from _clashes(own, summarise(atoms))
+    yield from _clashes(own, _named(own, base, limbs))
+
+
+def _fitted(
+    own: Sequence[Statement], base: Known, probes: Iterable[Statement] = ()
+) -> tuple[frozenset[Answered], frozenset[str]]:
+    """Which rules fire, and the end-effectors in whose worlds a primitive of one's own fits."""
+    marks = "".join(f'fitted(Hand) :- fits(seg(Hand,_), "{name}").\n' for name in _primitives(own))
+    rules = [*base.rules, *own, *probes, *parse_text(marks)]
+    atoms = evaluate(rules, (FIRED, IDLE, HELD, POSSIBLE, FITTED))
+    return atoms, frozenset(str(row[0]) for name, row in atoms if name == "fitted")
+
+
+def _named(own: Sequence[Statement], base: Known, limbs: frozenset[str]) -> Audit:
+    """The audit of the worlds in which a primitive of one's own fits: it clashes in no other."""
+    return summarise(evaluate([*base.rules, *own], (*ASKED, FEATURE_ROW), limbs=limbs))
 
 
 def _not_judged(rule: Statement, what: str) -> Finding:
@@ -179,7 +194,7 @@ def _firing(
 
 def rivals(name: str, own: Sequence[Statement], base: Known) -> tuple[str, ...]:
     """The primitives that are ambiguous with one of a file's, most shared feature sets first."""
-    return _rivals(name, summarise(evaluate([*base.rules, *own], ASKED)))
+    return _rivals(name, _named(own, base, _fitted(own, base)[1]))
 
 
 def _rivals(name: str, audit: Audit) -> tuple[str, ...]:
@@ -193,13 +208,7 @@ def _rivals(name: str, audit: Audit) -> tuple[str, ...]:
 
 
 def _clashes(own: Sequence[Statement], audit: Audit) -> Iterator[Finding]:
-    places = {
-        split_arguments(head.text)[0].strip('"'): head.place
-        for each in own
-        for head in each.heads
-        if head.signature == ("primitive", 1)
-    }
-    for name, place in places.items():
+    for name, place in _primitives(own).items():
         others = _rivals(name, audit)
         if others:
             pairs = [each for each in audit.ambiguous if name in (each.first, each.second)]
@@ -219,6 +228,16 @@ def _clashes(own: Sequence[Statement], audit: Audit) -> Iterator[Finding]:
                 place, "shadowed", f"{name} never names a segment: others are always more "
                 "specific.", "Remove what specialises it, or add a case of its own.",
             )  # fmt: skip
+
+
+def _primitives(own: Sequence[Statement]) -> dict[str, Place]:
+    """The names of a file's primitives, and where they are declared."""
+    return {
+        split_arguments(head.text)[0].strip('"'): head.place
+        for each in own
+        for head in each.heads
+        if head.signature == ("primitive", 1)
+    }
 
 
 def _beyond(rule: Statement, own: Sequence[Statement], base: Known) -> tuple[Signature, ...]:

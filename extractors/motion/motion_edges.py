@@ -18,6 +18,13 @@ No threshold: as displacement grows with the cube of time, that is twice as long
 """
 
 
+POWERS = (1.0, 3.0)
+"""With which power of time a displacement grows [1]: at once, by a steady push, smoothly."""
+
+LEAST = 0.01
+"""A displacement is taken for at least this [1], since less is noise."""
+
+
 def motion_edges(
     poses: Poses, moved: Interval, rests: tuple[RestPose, ...], floor: Floor, thresholds: Thresholds
 ) -> Interval:
@@ -87,7 +94,8 @@ def onset(
     """How many frames a motion had lasted when it was first seen, by how it grew from then on.
 
     People start and stop smoothly: displacement grows with the cube of time (minimum jerk; Flash
-    and Hogan 1985). From the times at which it was a hair and well beyond the beginning follows.
+    and Hogan 1985). What is struck, or was in motion when its recording began, sets off at once.
+    From the times at which it was a hair and well beyond the beginning follows.
 
     Args:
         grows: Displacement in hairs [1], frame by frame, from where it is a hair on.
@@ -101,7 +109,10 @@ def onset(
 
 
 def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> int:
-    """How many frames before it is 1 a displacement that grows with the cube of time was none.
+    """How many frames before it is 1 a displacement that grows with a power of time was none.
+
+    The power is the one of ``POWERS`` that agrees best with when it was half as large, in powers
+    of ten, as in the end.
 
     Args:
         grows: The displacement, from where it is about 1 on.
@@ -112,8 +123,22 @@ def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> in
         return 0
     large = np.flatnonzero(grows >= reach)
     far = int(large[0]) if large.size else int(np.nanargmax(grows))
-    begin, end = np.cbrt(max(float(grows[0]), 0.0)), np.cbrt(float(grows[far]))
-    return min(round(far * begin / (end - begin)), most) if end > begin else 0
+    begin, end = max(float(grows[0]), LEAST), float(grows[far])
+    if end <= begin:
+        return 0
+    middle = float(np.sqrt(begin * end))
+    half = int(np.flatnonzero(grows[: far + 1] >= middle)[0])
+    tries = [
+        (_lasted(begin, end, far, power), _lasted(begin, middle, half, power)) for power in POWERS
+    ]
+    whole, _ = min(tries, key=lambda both: abs(1.0 - both[1] / both[0]))
+    return min(round(whole), most)
+
+
+def _lasted(begin: float, end: float, frames: int, power: float) -> float:
+    """How many frames it took to ``begin`` if it then takes so many to ``end``."""
+    first, last = begin ** (1.0 / power), end ** (1.0 / power)
+    return frames * first / (last - first)
 
 
 def longest(poses: Poses, near: Floor, thresholds: Thresholds) -> int:
