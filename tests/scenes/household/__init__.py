@@ -1,0 +1,8 @@
+"""Scenes of a household: containers, furniture and tools, and what every hand did with them."""
+
+from scenes.household import (  # noqa: F401
+    scenes_covers,
+    scenes_rails,
+    scenes_vessels,
+)
+from scenes.household.registry import SCENES as SCENES
