@@ -73,7 +73,7 @@ def lid_off_plum_out_lid_on(s: Stage) -> None:
     table = s.table()
     pot = s.put("pot", forms.pot(0.13, 0.08), (0.56, 0.05))
     lid = s.put("lid", forms.round_lid(0.132), (0.56, 0.05, s.height + 0.08))
-    fruit = plum(s, (0.54, 0.0, s.height + 0.006))
+    fruit = plum(s, (0.55, 0.04, s.height + 0.006))
     left, right = s.left(), s.right(claw())
     left.idle(0.2)
     fetch(left, lid, "+z", 1.0, 1.0, 0.3)
@@ -83,7 +83,7 @@ def lid_off_plum_out_lid_on(s: Stage) -> None:
     opened = left.clock
     right.rest(opened - 0.5)
     fetch(right, fruit, "+z", 1.1, 1.0, 0.0)
-    right.lift_carry_lower(fruit, table, up=0.2, by=(-0.06, -0.38), down=0.206)
+    right.lift_carry_lower(fruit, table, up=0.2, by=(-0.07, -0.42), down=0.206)
     right.hold(0.3, fruit, table)
     right.leave(0.9)
     left.hold(right.clock - opened - 0.6, lid)
@@ -162,12 +162,11 @@ def trunk_shut_with_the_palm_on_top(s: Stage) -> None:
 
 @scene
 def trunk_opened_by_one_hand_and_shut_by_the_other(s: Stage) -> None:
-    """The right hand opens a lid and keeps hold; the left hand takes its edge and shuts it later."""
+    """The right hand opens a lid and keeps hold; the left hand takes its lip and shuts it later."""
     performer(s, height=0.45, yaw_deg=66, size=1.02)
     s.table()
     trunk = chest(s, (0.72, 0.0, s.height), depth=0.3, width=0.5, height=0.22)
-    trunk.hinge.opened(trunk.leaf, 0.0)
-    right, left = s.right(narrow()), s.left()
+    right, left = s.right(narrow()), s.left(narrow())
     right.idle(0.2)
     seize(right, trunk.leaf, trunk.grip, 0.9, hold=0.3)
     trunk.hinge.turn(right, 55.0, 1.2)
@@ -175,7 +174,7 @@ def trunk_opened_by_one_hand_and_shut_by_the_other(s: Stage) -> None:
     right.hold(0.6, trunk.leaf, trunk.body)
     right.leave(0.9)
     left.rest(right.clock - 0.3)
-    seize(left, trunk.leaf, trunk.face, 1.2, hold=0.3)
+    seize(left, trunk.leaf, trunk.grip, 1.2, hold=0.3)
     trunk.hinge.turn(left, -55.0, 1.2)
     left.step("Close", trunk.leaf, trunk.body)
     left.hold(0.5, trunk.leaf, trunk.body)

@@ -96,7 +96,7 @@ def drawer_opened_by_one_hand_and_shut_by_the_other(s: Stage) -> None:
     stay(left, rail, 0.3)
     left.leave(0.9)
     right.rest(left.clock)
-    seize(right, rail.part, Grip((0.0, -0.15, 0.07), NEAR, UP), 0.9, hold=0.3)
+    seize(right, rail.part, Grip((0.0, -0.15, 0.08), NEAR, LEFTWARD), 0.9, hold=0.3)
     draw(right, rail, -0.24, 0.9)
     stay(right, rail, 0.3)
     home_again(right, 0.9)
@@ -117,7 +117,7 @@ def heavy_drawer_pushed_shut_with_the_palm(s: Stage) -> None:
     ]
     right = s.right()
     right.idle(0.2)
-    seize(right, rail.part, Grip((0.0, -0.1, 0.08), NEAR, UP), 1.3, hold=0.5)
+    seize(right, rail.part, Grip((0.0, -0.15, 0.08), NEAR, LEFTWARD), 1.3, hold=0.5)
     right.take_along(rail.part, *tins)
     draw(right, rail, -0.13, 1.8)
     stay(right, rail, 1.4)
@@ -233,7 +233,7 @@ def sliding_door_shut_by_the_palm_at_its_edge(s: Stage) -> None:
     rail.part.body.first[1, 3] += 0.26
     left = s.left()
     left.idle(0.2)
-    palm = Grip((-0.052, 0.004, 0.19), LEFTWARD, UP)
+    palm = Grip((-0.066, 0.004, 0.19), LEFTWARD, UP)
     seize(left, rail.part, palm, 1.0, hold=0.3)
     for by in (0.12, 0.14):
         travel(left, "Close", (0.0, -by, 0.0), 0.7, rail.part, rail.body)
