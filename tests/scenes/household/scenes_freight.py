@@ -51,7 +51,7 @@ def tray_with_glasses_pushed_by_one_palm(s: Stage) -> None:
 
 @scene
 def carton_with_a_ball_up_to_a_shelf(s: Stage) -> None:
-    """Both hands lift a carton with a ball, bring it over a shelf and set it down there."""
+    """Both hands lift a carton with a ball, bring it over a shelf, set it down and stay."""
     performer(s, height=0.66, yaw_deg=83, size=1.07, agent="tall_woman")
     s.table()
     board = shelf(s, (0.72, 0.3, s.height + 0.28), size=(0.4, 0.5))
@@ -63,9 +63,8 @@ def carton_with_a_ball_up_to_a_shelf(s: Stage) -> None:
     left.join(carton)
     right.take(carton, ball)
     paused(right, carton, board, up=0.4, by=(0.27, 0.5), down=0.12, holds=(0.4, 0.4))
-    right.hold(0.5, carton, board)
+    right.hold(0.9, carton, board)
     left.part(right, since)
-    both_leave(hands, 1.1)
 
 
 @scene
@@ -73,7 +72,7 @@ def loaded_crate_stacked_on_another(s: Stage) -> None:
     """A crate with two jars in it is put on top of an empty one in a single sweep."""
     performer(s, height=0.5, yaw_deg=-46, size=1.04)
     s.table()
-    low = s.put("empty_crate", forms.open_box(0.3, 0.3, 0.14, "crate", 0.014), (0.6, 0.3))
+    low = s.put("empty_crate", forms.open_box(0.3, 0.3, 0.14, "crate", 0.014), (0.76, 0.3))
     high = s.put("full_crate", forms.open_box(0.3, 0.3, 0.14, "crate", 0.014), (0.55, -0.28))
     jars = [
         jar(s, (0.55 + x, -0.28, s.height + 0.014), name, 0.12)
@@ -84,7 +83,7 @@ def loaded_crate_stacked_on_another(s: Stage) -> None:
     since = len(right.steps)
     left.join(high)
     right.take(high, *jars)
-    right.lift_carry_lower(high, low, up=0.3, by=(0.05, 0.58), down=0.16, times=(1.0, 1.4, 0.9))
+    right.lift_carry_lower(high, low, up=0.3, by=(0.21, 0.58), down=0.16, times=(1.0, 1.4, 0.9))
     right.hold(0.4, high, low)
     left.part(right, since)
     both_leave(hands, 1.0)
@@ -119,7 +118,7 @@ def pan_with_its_lid(s: Stage) -> None:
     since = len(right.steps)
     left.join(pan)
     right.take(pan, lid)
-    right.lift_carry_lower(pan, hob, up=0.26, by=(0.05, 0.74), down=0.12, times=(0.9, 1.4, 0.9))
+    right.lift_carry_lower(pan, hob, up=0.26, by=(0.05, 0.74), down=0.14, times=(0.9, 1.4, 0.9))
     right.hold(0.6, pan, hob)
     left.part(right, since)
 

@@ -143,7 +143,7 @@ def dough_pushed_with_a_scraper_at_once(s: Stage) -> None:
     s.table()
     dough = s.put("dough", shapes.box(0.12, 0.14, 0.06, "dough"), (0.62, -0.08))
     right = s.right()
-    tool = s.put("scraper", wares.scraper(), (0.56 - 0.28 - 0.14, -0.08, s.height + 0.045))
+    tool = s.put("scraper", wares.scraper(), (0.56 - 0.28 - 0.14, -0.08, s.height + 0.07))
     begin_with(right, tool, HAFT)
     right.hold(0.4, tool)
     right.move((0.1402, 0.0, 0.0), 0.7, arrive=0.3)

@@ -192,7 +192,7 @@ def plum_into_a_bowl_on_the_other_palm(s: Stage) -> None:
     """The left palm bears a bowl in the air throughout; the right hand puts a plum into it."""
     performer(s, height=0.68, yaw_deg=-8, size=0.98)
     s.table()
-    dish = s.put("bowl", shapes.vessel(0.1, 0.06, "bowl", 0.012), (0.5, 0.2, s.height + 0.15))
+    dish = s.put("bowl", shapes.vessel(0.12, 0.06, "bowl", 0.012), (0.5, 0.2, s.height + 0.15))
     fruit = plum(s, (0.5, -0.28))
     left, right = s.left(), s.right(claw())
     left.begin_at(dish, "-z", up=0.0, fingers=AHEAD)

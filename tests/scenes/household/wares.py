@@ -67,7 +67,7 @@ def rake(length: float = 0.4) -> Form:
 def scraper(length: float = 0.28) -> Form:
     """A scraper: a shaft along x from its origin, and an upright cross board at the far end."""
     shaft = block((0.0, -0.012, -0.012), (length, 0.012, 0.012))
-    return Form("scraper", (shaft, block((length - 0.01, -0.06, -0.03), (length, 0.06, 0.03))))
+    return Form("scraper", (shaft, block((length - 0.01, -0.06, -0.055), (length, 0.06, 0.03))))
 
 
 def brush() -> Form:
