@@ -106,8 +106,8 @@ def oven(s: Stage, at: Vector, *, width: float = 0.44, height: float = 0.34) -> 
     half = width / 2.0
     panel = block((-0.008, -half, 0.004), (0.006, half, height))
     bar = block(
-        (-0.008 - forms.HANDLE_M, -0.06, height - 0.044),
-        (-0.008, 0.06, height - 0.036),
+        (-0.008 - forms.HANDLE_M, -0.04, height - 0.044),
+        (-0.008, 0.04, height - 0.036),
     )
     leaf = s.put("door", Form("door", (panel, bar, *_barrel(0.4 * width).parts)), axis)
     return Cupboard(
@@ -115,7 +115,7 @@ def oven(s: Stage, at: Vector, *, width: float = 0.44, height: float = 0.34) -> 
         leaf,
         Hinge(axis, (0.0, 1.0, 0.0), -1.0),
         Grip((-0.008 - forms.HANDLE_M, 0.0, height - 0.04), NEAR, UP),
-        Grip((-0.008, 0.1, 0.6 * height), NEAR, UP),
+        Grip((-0.008, 0.13, 0.6 * height), NEAR, UP),
     )
 
 
@@ -126,9 +126,7 @@ def flap_cupboard(s: Stage, at: Vector, *, width: float = 0.5, height: float = 0
     axis = (x - forms.HINGE_M + SINK, y, z + height)
     half = width / 2.0
     panel = block((-0.008, -half, -height), (0.006, half, -0.004))
-    lip = block(
-        (-0.008 - forms.HANDLE_M, -0.06, -height + 0.03), (-0.008, 0.06, -height + 0.038)
-    )
+    lip = block((-0.008 - forms.HANDLE_M, -0.06, -height + 0.03), (-0.008, 0.06, -height + 0.038))
     leaf = s.put("flap", Form("flap", (panel, lip, *_barrel(0.4 * width).parts)), axis)
     return Cupboard(
         body,

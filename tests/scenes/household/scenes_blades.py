@@ -54,7 +54,7 @@ def cheese_cut_aslant(s: Stage) -> None:
 
 @scene
 def bread_cut_twice_and_steadied(s: Stage) -> None:
-    """The left hand keeps a bread in its place; the right hand saws, pauses, saws on and goes up."""
+    """The left hand steadies a bread; the right hand saws, pauses, saws on and goes up."""
     performer(s, height=0.84, yaw_deg=146, size=1.03)
     s.table()
     bread = s.put("bread", shapes.box(0.12, 0.3, 0.11, "bread"), (0.66, 0.05))
@@ -149,7 +149,7 @@ def cup_stirred_to_and_fro(s: Stage) -> None:
 
 @scene
 def bowl_on_the_palm_stirred(s: Stage) -> None:
-    """A bowl lies on the left palm in the air; the right hand stirs it round and lifts the spoon."""
+    """A bowl lies on the left palm in the air; the right hand stirs in it and lifts the spoon."""
     performer(s, height=0.7, yaw_deg=76, size=1.04)
     s.table()
     dish = s.put("bowl", shapes.vessel(0.1, 0.07, "bowl", 0.012), (0.5, 0.1, s.height + 0.2))

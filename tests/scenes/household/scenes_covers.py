@@ -162,7 +162,7 @@ def trunk_shut_with_the_palm_on_top(s: Stage) -> None:
 
 @scene
 def trunk_opened_by_one_hand_and_shut_by_the_other(s: Stage) -> None:
-    """The right hand opens a lid and keeps hold; the left hand takes its lip and shuts it later."""
+    """The right hand opens a lid, which stays so; the left hand takes its lip and shuts it."""
     performer(s, height=0.45, yaw_deg=66, size=1.02)
     s.table()
     trunk = chest(s, (0.72, 0.0, s.height), depth=0.3, width=0.5, height=0.22)

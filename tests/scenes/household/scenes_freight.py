@@ -15,7 +15,7 @@ from scenes.objects.things_at_hand import pillar, shelf
 
 @scene
 def basket_with_a_bottle(s: Stage) -> None:
-    """A basket with a bottle and a plum is lifted by its arch, carried to the right and stood down."""
+    """A basket with a bottle and a plum is carried to the right by its arch and stood down."""
     performer(s, height=0.56, yaw_deg=19, size=1.01)
     table = s.table()
     pannier = s.put("basket", forms.basket(0.3, 0.28, 0.12, 0.34), (0.52, 0.3))
@@ -91,7 +91,7 @@ def loaded_crate_stacked_on_another(s: Stage) -> None:
 
 @scene
 def tray_on_one_palm(s: Stage) -> None:
-    """A tray with a glass lies on the raised palm; it is carried to the left, and on after a stop."""
+    """A tray with a glass lies on the palm; it is carried to the left, and on after a stop."""
     performer(s, height=0.72, yaw_deg=105)
     s.table()
     tray = s.put("tray", shapes.box(0.3, 0.3, 0.014, "tray"), (0.42, -0.35, s.height + 0.3))

@@ -37,9 +37,7 @@ def two_jars(s: Stage, x: float, y: float, sign: float) -> tuple[Thing, Thing]:
 
 def meet_both(hand: Hand, first: Thing, second: Thing, side: str, duration: float) -> float:
     """Reach two jars at once; gives the time of contact [s]."""
-    hand.reach(
-        first, side, duration, up=0.6, aside=(-PALM_M, 0.0, 0.0), others=(second,)
-    )
+    hand.reach(first, side, duration, up=0.6, aside=(-PALM_M, 0.0, 0.0), others=(second,))
     return hand.clock
 
 
@@ -109,19 +107,18 @@ def first_of_two_jars_let_go_first(s: Stage) -> None:
     right.let_go()
     right.held.append(keep)
     right.touched, right.since = second, since
-    travel(right, "Lift", (0.0, -0.14, 0.24), 1.0, second)
+    travel(right, "Lift", (0.0, -0.2, 0.3), 0.9, second)
     right.hold(0.8, second)
 
 
 @scene
 def second_jar_taken_on_the_way(s: Stage) -> None:
-    """A jar is lifted, held and carried on to another, which is taken too; both are raised high."""
+    """A jar is lifted, held and carried on to another, which is taken too; both are lifted."""
     performer(s, height=0.75, yaw_deg=-71, size=1.02)
     s.table()
     gap = 0.22
     near = slim_jar(s, "white_jar", (0.46, 0.35))
-    s.put("block", shapes.box(0.1, 0.1, 0.1, "block"), (0.46 + APART_M, 0.35 - gap),
-                tag="fixed")
+    s.put("block", shapes.box(0.1, 0.1, 0.1, "block"), (0.46 + APART_M, 0.35 - gap), tag="fixed")
     far = slim_jar(s, "green_jar", (0.46 + APART_M, 0.35 - gap + PRESS, s.height + 0.1))
     left = s.left()
     left.idle(0.2)
@@ -177,12 +174,12 @@ def block_taken_off_the_other_palm(s: Stage) -> None:
 
 @scene
 def cube_stacked_on_a_block_on_the_other_palm(s: Stage) -> None:
-    """The right hand takes a cube from the table and puts it on the block that the left palm bears."""
+    """The right hand takes a cube and puts it on the block that the left palm bears."""
     performer(s, height=0.67, yaw_deg=-26, size=1.01)
     s.table()
     left, right = s.left(), s.right(claw())
     block = on_the_palm(s, left, "block", 0.06)
-    cube = s.put("cube", shapes.box(0.05, 0.05, 0.05, "cube"), (0.48, -0.25))
+    cube = s.put("cube", shapes.box(0.05, 0.05, 0.06, "cube"), (0.48, -0.25))
     right.idle(0.2)
     right.reach(cube, "+z", 0.9, up=1.0, fingers=LEFTWARD)
     right.hold(0.3, cube)
@@ -195,7 +192,7 @@ def cube_stacked_on_a_block_on_the_other_palm(s: Stage) -> None:
 
 @scene
 def two_blocks_brought_to_a_shelf_on_the_palm(s: Stage) -> None:
-    """Two blocks on the right palm are carried ahead; the left hand takes the far one to a shelf."""
+    """Two blocks are carried ahead on the right palm; the left hand takes one to a shelf."""
     performer(s, height=0.64, yaw_deg=171)
     s.table()
     board = shelf(s, (0.6, 0.42, s.height + 0.1), size=(0.3, 0.3))

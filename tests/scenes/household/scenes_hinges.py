@@ -1,4 +1,4 @@
-"""Scenes with doors and flaps about hinges at the side, below and above: ovens, gates, cupboards."""
+"""Scenes with doors, gates and flaps about hinges at the side, below and above."""
 
 from scenes.hands import shapes
 from scenes.hands.scene import performer
@@ -175,7 +175,7 @@ def beside_a_door_that_another_hand_opens(s: Stage) -> None:
 
 
 @scene
-def jar_stood_before_a_door_and_door_left_alone(s: Stage) -> None:
+def tin_pushed_up_to_a_shut_door(s: Stage) -> None:
     """A tin is pushed over the table until it meets a shut door, which does not move."""
     performer(s, height=0.75, yaw_deg=-38)
     s.table()

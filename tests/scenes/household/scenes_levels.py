@@ -35,7 +35,7 @@ def vase_down_from_a_high_shelf(s: Stage) -> None:
     table = s.table()
     shelf(s, (0.78, -0.1, 1.25), size=(0.3, 0.6))
     vase = jar(s, (0.72, -0.1, 1.25), "vase", 0.2)
-    right = s.right(home=(0.15, -0.3, 0.95))
+    right = s.right(home=(0.2, -0.42, 1.3))
     right.idle(0.2)
     fetch(right, vase, "-y", 1.2, 0.5, 0.6)
     travel(right, "Lift", (0.0, 0.0, 0.08), 0.7, vase)
@@ -48,20 +48,28 @@ def vase_down_from_a_high_shelf(s: Stage) -> None:
 
 @scene
 def box_up_from_the_floor(s: Stage) -> None:
-    """Both hands lift a box off the floor, bring it over a low table and set it down."""
+    """Both hands lift a box off the floor, bring it over a low table, set it down and stay."""
     performer(s, height=0.45, yaw_deg=-122, size=1.02)
     floor(s)
-    table = s.put("low_table", shapes.box(0.5, 0.6, 0.45, "table"), (0.62, 0.5, 0.0), tag="fixed")
+    table = s.put("low_table", shapes.box(0.5, 0.6, 0.45, "table"), (0.62, 0.7, 0.0), tag="fixed")
     box = tin_box(s, (0.45, -0.25, 0.0), "box", (0.24, 0.28, 0.22))
-    hands = both_reach(s, box, 1.0, 0.7, 0.4)
+    hands = both_reach(s, box, 1.4, 0.7, 0.4)
     right, left = hands
     since = len(right.steps)
     left.join(box)
     right.take(box)
-    right.lift_carry_lower(box, table, up=0.6, by=(0.17, 0.75), down=0.15, times=(1.2, 1.5, 0.8))
-    right.hold(0.5, box, table)
+    paused(
+        right,
+        box,
+        table,
+        up=0.6,
+        by=(0.17, 0.95),
+        down=0.15,
+        holds=(0.4, 0.0),
+        times=(1.3, 1.6, 0.8),
+    )
+    right.hold(0.7, box, table)
     left.part(right, since)
-    both_leave(hands, 1.0)
 
 
 @scene
@@ -98,8 +106,8 @@ def bottle_up_and_down_in_the_air(s: Stage) -> None:
 
 
 @scene
-def glass_moved_at_a_steady_height_over_two_stools(s: Stage) -> None:
-    """A glass goes from one stool to another, six and a half centimetres over both, fast."""
+def glass_moved_low_from_stool_to_stool(s: Stage) -> None:
+    """A glass goes from one stool to another, ten centimetres over both, fast."""
     performer(s, height=0.6, yaw_deg=133)
     pillar(s, "near_stool", (0.45, -0.4, 0.55), (0.34, 0.34), "stool")
     far = pillar(s, "far_stool", (0.6, 0.3, 0.55), (0.34, 0.34), "stool")
@@ -107,7 +115,7 @@ def glass_moved_at_a_steady_height_over_two_stools(s: Stage) -> None:
     right = s.right()
     right.idle(0.15)
     fetch(right, ware, "-y", 0.8, 0.65, 0.0)
-    right.lift_carry_lower(ware, far, up=0.065, by=(0.15, 0.7), down=0.065, times=(0.5, 1.25, 0.5))
+    right.lift_carry_lower(ware, far, up=0.1, by=(0.15, 0.7), down=0.1, times=(0.55, 1.3, 0.55))
     home_again(right, 0.9)
 
 
@@ -129,7 +137,7 @@ def jar_held_and_stood_on_a_stool_and_taken_again(s: Stage) -> None:
 
 @scene
 def block_from_the_floor_by_a_child(s: Stage) -> None:
-    """A child takes a block from the floor with the left hand and puts it on a low bench, quickly."""
+    """A child quickly takes a block from the floor and puts it on a low bench."""
     performer(s, height=0.32, yaw_deg=92, size=0.76, agent="child", offset=(-0.7, 1.1))
     floor(s)
     bench = pillar(s, "bench", (0.45, -0.2, 0.3), (0.3, 0.3), "bench")
@@ -177,7 +185,7 @@ def jar_carried_in_three_legs_with_a_long_stop(s: Stage) -> None:
 
 @scene
 def tin_swung_high_and_far(s: Stage) -> None:
-    """The left hand swings a tin over a wall of books in a high arc, at more than a metre a second."""
+    """The left hand swings a tin over a wall of books in a high arc, and fast."""
     performer(s, height=0.82, yaw_deg=-77, size=1.07, agent="tall_man")
     table = s.table()
     s.put("books", shapes.box(0.24, 0.12, 0.22, "books"), (0.5, 0.0), tag="fixed")
@@ -186,7 +194,7 @@ def tin_swung_high_and_far(s: Stage) -> None:
     left.idle(0.15)
     fetch(left, tin, "+z", 0.8, 1.0, 0.0)
     left.lift_carry_lower(tin, table, up=0.42, by=(0.0, -0.7), down=0.42, times=(0.75, 1.1, 0.8))
-    finish(left, tin, table, 0.3, 1.0)
+    left.hold(0.7, tin, table)
 
 
 @scene
@@ -209,7 +217,7 @@ def box_lowered_to_the_floor(s: Stage) -> None:
 
 @scene
 def jar_from_a_low_board_to_a_high_one(s: Stage) -> None:
-    """A jar goes from a stool up to a shelf beside it with two pauses, and down by a hand's breadth."""
+    """A jar is lifted off a stool, carried over a shelf and lowered there, with two pauses."""
     performer(s, height=0.7, yaw_deg=-100, size=1.03)
     pillar(s, "stool", (0.5, -0.4, 0.6), (0.36, 0.36), "stool")
     board = shelf(s, (0.62, 0.2, 1.0), size=(0.36, 0.4))
@@ -217,6 +225,14 @@ def jar_from_a_low_board_to_a_high_one(s: Stage) -> None:
     right = s.right()
     right.idle(0.2)
     fetch(right, tin, "-y", 1.0, 0.6, 0.4)
-    paused(right, tin, board, up=0.49, by=(0.1, 0.6), down=0.09, holds=(0.5, 0.5),
-           times=(1.3, 1.3, 0.6))
+    paused(
+        right,
+        tin,
+        board,
+        up=0.49,
+        by=(0.1, 0.6),
+        down=0.09,
+        holds=(0.5, 0.5),
+        times=(1.3, 1.3, 0.6),
+    )
     finish(right, tin, board, 0.5, 1.2)

@@ -1,6 +1,9 @@
-"""Scenes in which a thing is pushed, pulled, slid or turned where it stands, up to what is in its way."""
+"""Scenes in which a thing is pushed, pulled, slid, turned or rolled, up to what is in its way."""
+
+import numpy as np
 
 from scenes.hands import shapes
+from scenes.hands.paths import about, min_jerk
 from scenes.hands.scene import performer
 from scenes.hands.scenes_two_hands import both_leave
 from scenes.hands.stage import Stage
@@ -53,7 +56,7 @@ def tin_pushed_sideways_to_a_partition(s: Stage) -> None:
 
 @scene
 def box_pushed_slowly_until_it_meets_a_pot(s: Stage) -> None:
-    """A box is pushed slowly over the table until it touches a heavy pot, which stays in its place."""
+    """A box is pushed slowly over the table until it touches a pot, which stays in its place."""
     performer(s, height=0.83, yaw_deg=147, size=0.96, agent="old_man")
     s.table()
     pot = s.put("pot", forms.pot(0.12, 0.16), (0.88, -0.05))
@@ -74,7 +77,8 @@ def chair_pulled_over_the_floor(s: Stage) -> None:
     ground = floor(s)
     seat = [shapes.block((0.02, -0.2, 0.4), (0.4, 0.2, 0.44))]
     legs = [
-        shapes.block((x, y, 0.0), (x + 0.04, y + 0.04, 0.4)) for x in (0.02, 0.36)
+        shapes.block((x, y, 0.0), (x + 0.04, y + 0.04, 0.4))
+        for x in (0.02, 0.36)
         for y in (-0.2, 0.16)
     ]
     back = [shapes.block((0.0, y - 0.004, 0.42), (0.06, y + 0.004, 0.95)) for y in (-0.15, 0.15)]
@@ -96,7 +100,7 @@ def chair_pulled_over_the_floor(s: Stage) -> None:
 
 @scene
 def pot_with_a_lid_turned(s: Stage) -> None:
-    """The right palm on a pot's side turns it by fifty degrees on the table; its lid turns along."""
+    """The right palm on a pot's side turns it by fifty degrees; its lid turns along."""
     performer(s, height=0.76, yaw_deg=85)
     table = s.table()
     pot = s.put("pot", forms.pot(0.1, 0.14), (0.52, -0.05))
@@ -162,6 +166,34 @@ def bucket_pushed_over_the_floor_at_once(s: Stage) -> None:
     travel(right, "Push", (0.4, 0.0, 0.0), 1.0, pail, ground)
     right.hold(0.6, pail, ground)
     home_again(right, 0.9)
+
+
+@scene
+def tube_rolled_near(s: Stage) -> None:
+    """A tube that lies across the table rolls near under the left palm, which goes twice as far."""
+    performer(s, height=0.73, yaw_deg=-146, size=1.02)
+    radius, far, duration = 0.065, 0.09, 1.0
+    table = s.table()
+    lying = shapes.disc(radius, -0.12, 0.12, 96).copy()
+    lying.apply_transform([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+    tube = s.put("tube", shapes.Form("tube", (lying,)), (0.65, 0.15, s.height + radius))
+    left = s.left()
+    left.idle(0.2)
+    left.reach(tube, "+z", 0.9, up=1.0, along=-0.05)
+    left.hold(0.4, tube)
+    base, start = tube.body.at(left.clock), left.clock
+
+    def rolled(since: np.ndarray) -> np.ndarray:
+        way = -far * min_jerk(since / duration)
+        out = about(base[:3, 3], (0.0, 1.0, 0.0), way / radius) @ base
+        out[:, 0, 3] += way
+        return out
+
+    tube.body.play(start, start + duration, rolled)
+    tube.free.append((start, start + duration))
+    left.move((-2.0 * far, 0.0, 0.0), duration)
+    left.step("Roll", tube, table)
+    left.hold(0.7, tube, table)
 
 
 @scene

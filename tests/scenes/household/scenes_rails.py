@@ -26,9 +26,7 @@ def two_handled(rail: Rail) -> Form:
     """A drawer's form with a second and a third handle near its ends."""
     *parts, handle = rail.part.form.parts
     low, high = handle.bounds
-    ends = [
-        block((low[0], y - 0.004, low[2]), (high[0], y + 0.004, high[2])) for y in (-0.2, 0.2)
-    ]
+    ends = [block((low[0], y - 0.004, low[2]), (high[0], y + 0.004, high[2])) for y in (-0.2, 0.2)]
     return Form("drawer", (*parts, *ends))
 
 
@@ -141,7 +139,7 @@ def tin_out_of_a_drawer_and_drawer_shut(s: Stage) -> None:
     draw(left, rail, 0.22, 1.0)
     opened = left.clock
     right.rest(opened - 0.4)
-    right.reach(tin, "+z", 1.0, up=1.0, fingers=LEFTWARD)
+    right.reach(tin, "+z", 1.0, up=1.0, fingers=LEFTWARD, when=opened)
     right.hold(0.4, tin)
     left.held.pop().end = right.clock
     right.take(tin)
@@ -156,7 +154,7 @@ def tin_out_of_a_drawer_and_drawer_shut(s: Stage) -> None:
 
 
 @scene
-def plum_dropped_off_in_a_drawer(s: Stage) -> None:
+def plum_laid_in_an_open_drawer(s: Stage) -> None:
     """A plum is laid in a drawer that stands open, which nobody moves."""
     performer(s, height=0.77, yaw_deg=-4, size=1.05)
     s.table()
@@ -226,7 +224,7 @@ def sliding_door_opened_and_shut(s: Stage) -> None:
 
 @scene
 def sliding_door_shut_by_the_palm_at_its_edge(s: Stage) -> None:
-    """A door that stands open is slid shut a little at a time, with the palm on its handle's side."""
+    """A door is slid shut in two stages, with the palm at its handle's side."""
     performer(s, height=0.6, yaw_deg=-100, size=0.98)
     s.table()
     rail = sliding_cupboard(s, (0.68, -0.02, s.height + 0.05), way=1.0)

@@ -1,15 +1,24 @@
-"""Scenes in which furniture is only touched or leant on, and hands pass near, over and into things."""
+"""Scenes in which furniture is touched or leant on, and hands pass near, over and into things."""
 
 from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, fetch, finish
 from scenes.hands.stage import Stage
 from scenes.household import wares
-from scenes.household.furnishing import dresser, sliding_cupboard
+from scenes.household.furnishing import dresser, oven, sliding_cupboard
 from scenes.household.registry import scene
-from scenes.household.scenes_covers import narrow
 from scenes.household.wares import plum
 from scenes.objects import forms
-from scenes.objects.handling import AHEAD, UP, home_again, paused, seize, travel
+from scenes.objects.handling import (
+    AHEAD,
+    NEAR,
+    RIGHTWARD,
+    UP,
+    Grip,
+    home_again,
+    paused,
+    seize,
+    travel,
+)
 from scenes.objects.things_at_hand import pillar, shelf, wall
 
 
@@ -89,8 +98,9 @@ def palm_on_a_rack_and_on_a_wall(s: Stage) -> None:
     """The palm lies on a rack's side for a second, goes home, rests, and lies on the wall."""
     performer(s, height=0.76, yaw_deg=-22)
     behind = wall(s, 0.95)
-    rack = s.put("rack", wares.open_shelves(0.24, 0.4, (0.3, 0.7, 1.1)), (0.55, 0.35, 0.0),
-                 tag="fixed")
+    rack = s.put(
+        "rack", wares.open_shelves(0.24, 0.4, (0.3, 0.7, 1.1)), (0.55, 0.35, 0.0), tag="fixed"
+    )
     right = s.right()
     right.idle(0.2)
     right.reach(rack, "-y", 1.0, up=0.75)
@@ -103,19 +113,33 @@ def palm_on_a_rack_and_on_a_wall(s: Stage) -> None:
 
 
 @scene
-def dresser_touched_and_handle_held(s: Stage) -> None:
-    """The left palm lies on a dresser; after a rest the hand holds a drawer's handle for a while."""
+def dresser_touched_and_then_its_drawer(s: Stage) -> None:
+    """The left palm lies on a dresser, and after a rest on the front of its shut lower drawer."""
     performer(s, height=0.62, yaw_deg=90, size=1.02)
     s.table()
-    low, _ = dresser(s, (0.64, 0.1, s.height + 0.012), heights=(0.13, 0.11))
-    left = s.left(narrow())
+    low, _ = dresser(s, (0.64, 0.1, s.height + 0.012), heights=(0.18, 0.1), width=0.5)
+    left = s.left()
     left.idle(0.2)
     left.reach(low.body, "+z", 1.1, up=1.0, aside=(-0.06, 0.0, 0.0))
     left.hold(0.7, low.body)
     left.leave(1.0)
     left.rest(0.6)
-    seize(left, low.part, low.grip, 1.0, hold=1.1, take=False)
+    front = Grip((0.0, 0.15, 0.09), NEAR, RIGHTWARD)
+    seize(left, low.part, front, 1.0, hold=1.1, take=False)
     home_again(left, 0.9)
+
+
+@scene
+def oven_touched_and_hand_drawn_back(s: Stage) -> None:
+    """The right palm lies on an oven's shut door for half a second and withdraws to a new place."""
+    performer(s, height=0.75, yaw_deg=-7, size=1.06)
+    pillar(s, "plinth", (0.94, 0.0, 0.45), (0.5, 0.5), "plinth")
+    stove = oven(s, (0.72, -0.1, 0.462))
+    right = s.right()
+    right.idle(0.2)
+    seize(right, stove.leaf, stove.face, 1.1, hold=0.5, take=False)
+    right.leave(0.9, to=(0.35, 0.1, s.height + 0.35), name="Withdraw")
+    right.idle(0.2)
 
 
 @scene
@@ -155,7 +179,7 @@ def pot_kept_in_the_air_over_the_hob(s: Stage) -> None:
 
 @scene
 def above_a_box_that_the_other_hand_lifts(s: Stage) -> None:
-    """The right hand lifts a box by its side; the left hand rests far over it and touches nothing."""
+    """The right hand lifts a box by its side; the left hand rests far over it in the air."""
     performer(s, height=0.6, yaw_deg=-62)
     table = s.table()
     box = s.put("box", forms.open_box(0.14, 0.14, 0.16, "box"), (0.5, -0.05))
@@ -172,7 +196,7 @@ def shelf_felt_from_below_and_above(s: Stage) -> None:
     """The left palm lies under a shelf, and after a rest before it on top of it."""
     performer(s, height=0.65, yaw_deg=177, size=1.03)
     board = shelf(s, (0.6, 0.15, 1.05), size=(0.36, 0.5))
-    left = s.left(home=(0.12, 0.3, 0.95))
+    left = s.left(home=(0.1, 0.3, 1.05))
     left.idle(0.2)
     left.reach(board, "-z", 1.0, up=0.0)
     left.hold(0.6, board)

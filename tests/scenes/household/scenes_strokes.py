@@ -32,7 +32,7 @@ def strike(hand: Hand, tool: Thing, target: Thing, by: tuple[float, float, float
 
 @scene
 def peg_hit_three_times(s: Stage) -> None:
-    """A mallet is raised over a peg and comes down three times, a quarter of a second on it each."""
+    """A mallet is raised over a peg and comes down three times, with short stops on it."""
     performer(s, height=0.7, yaw_deg=17, size=1.03, agent="carpenter")
     s.table()
     right, peg = s.right(), peg_in_a_board(s, (0.72, -0.12))
@@ -65,7 +65,7 @@ def gong_struck_with_a_mallet(s: Stage) -> None:
 
 @scene
 def mallet_taken_from_a_bench_and_used(s: Stage) -> None:
-    """A mallet is lifted off a bench, carried over a peg, held, brought down hard and kept there."""
+    """A mallet is lifted off a bench, carried over a peg, held, and brought down hard."""
     performer(s, height=0.68, yaw_deg=95, size=1.05)
     s.table()
     bench = s.put("bench", shapes.box(0.2, 0.1, 0.1, "bench"), (0.6, 0.2), tag="fixed")
@@ -87,8 +87,9 @@ def drum_touched_and_then_hit(s: Stage) -> None:
     """An upright stick is let down gently on a drum, taken up again, and brought down hard."""
     performer(s, height=0.62, yaw_deg=-55, size=0.98)
     s.table()
-    drum = s.put("drum", shapes.Form("drum", (shapes.disc(0.15, 0.0, 0.18),)), (0.6, -0.05),
-                 tag="fixed")
+    drum = s.put(
+        "drum", shapes.Form("drum", (shapes.disc(0.15, 0.0, 0.18),)), (0.6, -0.05), tag="fixed"
+    )
     stick = s.put("stick", shapes.rod(0.3, 0.009, "stick"), (0.6, -0.05, s.height + 0.18 + 0.2))
     right = s.right(shapes.gripping_hand(0.05, 0.04))
     right.begin_at(stick, "+z", up=1.0, fingers=AHEAD)
@@ -192,25 +193,25 @@ def shelf_brushed_twice(s: Stage) -> None:
 
 
 @scene
-def plate_wiped_while_it_is_held(s: Stage) -> None:
-    """The left hand holds a plate on the table; the right hand wipes it with a sponge, and lifts."""
+def block_wiped_while_it_is_held(s: Stage) -> None:
+    """The left hand holds a chopping block; the right hand wipes it with a sponge, and lifts."""
     performer(s, height=0.74, yaw_deg=-91, size=0.96)
     s.table()
-    plate = s.put("plate", shapes.box(0.26, 0.26, 0.09, "plate"), (0.52, 0.02))
+    block = s.put("chopping_block", shapes.box(0.26, 0.26, 0.09, "block"), (0.52, 0.02))
     sponge = s.put("sponge", shapes.box(0.12, 0.08, 0.035, "sponge"), (0.5, -0.32))
     right, left = s.right(), s.left()
     left.idle(0.2)
-    left.reach(plate, "+y", 0.8, up=0.55)
+    left.reach(block, "+y", 0.8, up=0.55)
     right.idle(0.2)
     fetch(right, sponge, "+z", 0.9, 1.0, 0.3)
-    right.lift_carry_lower(sponge, plate, up=0.22, by=(0.02, 0.33), down=0.13)
-    right.hold(0.4, sponge, plate)
+    right.lift_carry_lower(sponge, block, up=0.22, by=(0.02, 0.33), down=0.13)
+    right.hold(0.4, sponge, block)
     right.circle(0.05, 1.2, 5)
-    right.step("Wipe", sponge, plate)
-    right.hold(0.4, sponge, plate)
+    right.step("Wipe", sponge, block)
+    right.hold(0.4, sponge, block)
     travel(right, "Lift", (0.0, 0.0, 0.15), 0.8, sponge)
     right.hold(0.5, sponge)
-    left.hold(right.clock - left.clock, plate)
+    left.hold(right.clock - left.clock, block)
 
 
 @scene

@@ -8,12 +8,12 @@ from scenes.household import wares
 from scenes.household.registry import scene
 from scenes.household.wares import glass, jar
 from scenes.objects import forms
-from scenes.objects.handling import AHEAD, begin_with, Grip, travel
+from scenes.objects.handling import AHEAD, Grip, begin_with, travel
 
 
 @scene
 def jug_into_two_glasses(s: Stage) -> None:
-    """A jug is lifted, tipped over a first glass, carried on, tipped over a second, and put down."""
+    """A jug is tipped over a first glass, carried on, tipped over a second, and put down."""
     performer(s, height=0.72, yaw_deg=-36)
     table, jug = s.table(), s.put("jug", forms.jug(0.05, 0.18), (0.45, -0.28))
     for name, x in (("near_glass", 0.45), ("far_glass", 0.75)):
@@ -73,7 +73,7 @@ def bucket_tipped_over_a_basin_by_both(s: Stage) -> None:
 
 
 @scene
-def cup_emptied_quickly_and_stood_down(s: Stage) -> None:
+def cup_emptied_quickly_over_a_bowl(s: Stage) -> None:
     """A cup is carried from the table over a bowl, tipped at once and back, and held."""
     performer(s, height=0.67, yaw_deg=3, size=0.94)
     s.table()
@@ -93,7 +93,7 @@ def cup_emptied_quickly_and_stood_down(s: Stage) -> None:
 
 @scene
 def shaker_shaken_above_a_pan(s: Stage) -> None:
-    """A shaker is taken from the table, carried above a pan, shaken up and down, and brought back."""
+    """A shaker is carried above a pan, shaken up and down, and brought back."""
     performer(s, height=0.78, yaw_deg=-155)
     table = s.table()
     s.put("pan", forms.pot(0.13, 0.08), (0.6, 0.12))

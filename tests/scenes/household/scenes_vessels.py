@@ -25,7 +25,13 @@ def plum_from_a_bucket_to_a_basin(s: Stage) -> None:
     right.idle(0.25)
     fetch(right, fruit, "+z", 1.3, 1.0, 0.5)
     paused(
-        right, fruit, basin, up=0.26, by=(0.12, 0.5), down=0.26, holds=(0.0, 0.8),
+        right,
+        fruit,
+        basin,
+        up=0.26,
+        by=(0.12, 0.5),
+        down=0.26,
+        holds=(0.0, 0.8),
         times=(1.3, 1.7, 1.4),
     )
     finish(right, fruit, basin, 0.5, 1.3)
@@ -100,7 +106,9 @@ def tower_taken_down_and_built_again(s: Stage) -> None:
     performer(s, yaw_deg=101, size=1.02)
     table = s.table()
     lower = s.put("white_cube", shapes.box(0.08, 0.08, 0.08, "cube"), (0.55, -0.2))
-    upper = s.put("black_cube", shapes.box(0.075, 0.075, 0.075, "cube"), (0.55, -0.2, s.height + 0.08))
+    upper = s.put(
+        "black_cube", shapes.box(0.075, 0.075, 0.075, "cube"), (0.55, -0.2, s.height + 0.08)
+    )
     right = s.right(claw())
     right.idle(0.2)
     fetch(right, upper, "+z", 0.9, 1.0, 0.3)
@@ -115,7 +123,7 @@ def tower_taken_down_and_built_again(s: Stage) -> None:
 
 @scene
 def bowl_with_a_plum_out_of_a_box(s: Stage) -> None:
-    """A bowl with a plum in it is lifted out of a low box by its rim's side; the plum rides along."""
+    """A bowl is lifted out of a low box by its side; a plum rides along in it."""
     performer(s, height=0.73, yaw_deg=-28)
     table = s.table()
     s.put("box", forms.open_box(0.42, 0.42, 0.05, "box"), (0.58, 0.18))
@@ -150,7 +158,7 @@ def pan_set_in_a_sink(s: Stage) -> None:
 
 @scene
 def jar_beside_a_bucket_after_a_stop_above_it(s: Stage) -> None:
-    """A jar is held over a bucket for a second and a half, and then stood on the table behind it."""
+    """A jar is held over a bucket for a second and a half, then stood on the table behind it."""
     performer(s, height=0.7, yaw_deg=-118)
     table = s.table()
     wares.bucket(s, (0.5, 0.0), height=0.16)
@@ -169,8 +177,8 @@ def jar_beside_a_bucket_after_a_stop_above_it(s: Stage) -> None:
 
 
 @scene
-def jar_out_of_a_rack_and_into_a_box(s: Stage) -> None:
-    """A jar is drawn out over a rack's edge, held before it, and sunk into a box on a stool."""
+def jar_off_a_rack_and_into_a_box(s: Stage) -> None:
+    """A jar is lifted off a rack's upper board, held, and sunk into a box on a stool."""
     performer(s, height=0.75, yaw_deg=175)
     s.put("rack", wares.open_shelves(0.24, 0.6, (0.45, 0.9)), (0.55, 0.1, 0.0), tag="fixed")
     pillar(s, "stool", (0.4, -0.6, 0.42), (0.36, 0.36), "stool")
@@ -232,6 +240,14 @@ def tin_from_one_box_to_another_on_a_shelf(s: Stage) -> None:
     right = s.right()
     right.idle(0.2)
     fetch(right, tin, "+z", 0.9, 1.0, 0.3)
-    paused(right, tin, high, up=0.48, by=(0.2, 0.52), down=0.18, holds=(0.4, 0.4),
-           times=(1.1, 1.1, 0.8))
+    paused(
+        right,
+        tin,
+        high,
+        up=0.48,
+        by=(0.2, 0.52),
+        down=0.18,
+        holds=(0.4, 0.4),
+        times=(1.1, 1.1, 0.8),
+    )
     finish(right, tin, high, 0.4, 1.2)

@@ -103,9 +103,7 @@ def bucket(s: Stage, at: Vector, height: float = 0.2, name: str = "bucket") -> T
 def stewpan() -> Form:
     """A pan with two lugs that a palm can lie on at either side."""
     y = 0.12
-    lugs = [
-        block((-0.04, low, 0.09), (0.04, low + 0.03, 0.105)) for low in (-y - 0.03, y)
-    ]
+    lugs = [block((-0.04, low, 0.09), (0.04, low + 0.03, 0.105)) for low in (-y - 0.03, y)]
     return Form("pan", (*vessel(0.121, 0.11, "pan", 0.006).parts, *lugs))
 
 
