@@ -145,7 +145,7 @@ def three_books_between_two_palms(s: Stage) -> None:
 
 
 @scene
-def board_with_a_loaf_slid_near(s: Stage) -> None:
+def board_with_a_loaf_slid_aside(s: Stage) -> None:
     """A palm on a board with a loaf at its other end slides both to the left, and stays."""
     performer(s, height=0.88, yaw_deg=57, size=1.06)
     table = s.table()

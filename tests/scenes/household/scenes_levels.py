@@ -151,7 +151,7 @@ def block_from_the_floor_by_a_child(s: Stage) -> None:
 
 @scene
 def tin_up_a_step(s: Stage) -> None:
-    """A tin goes up from the table onto a step in one flat arc that hardly sinks at its end."""
+    """A tin goes up from the table onto a step in one motion that hardly sinks at its end."""
     performer(s, height=0.74, yaw_deg=-150)
     s.table()
     step = s.put("step", shapes.box(0.3, 0.4, 0.15, "step"), (0.6, 0.2, s.height), tag="fixed")

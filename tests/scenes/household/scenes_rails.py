@@ -173,7 +173,7 @@ def plum_laid_in_an_open_drawer(s: Stage) -> None:
 
 @scene
 def wide_drawer_opened_with_both_hands(s: Stage) -> None:
-    """Both hands hook their fingers behind the ends of a wide drawer's front and draw it out."""
+    """Both hands take the two handles of a wide drawer and draw it out."""
     performer(s, height=0.6, yaw_deg=71)
     s.table()
     (rail,) = dresser(s, (0.66, 0.0, s.height + 0.012), heights=(0.15,), width=0.6)

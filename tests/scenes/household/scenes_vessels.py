@@ -84,8 +84,8 @@ def book_between_two_books(s: Stage) -> None:
 
 
 @scene
-def spoon_into_a_jar(s: Stage) -> None:
-    """A long spoon that is held in the air is stood in a tall glass and let go of."""
+def spoon_into_a_holder(s: Stage) -> None:
+    """A long spoon that is held in the air is stood in a tall holder and let go of."""
     performer(s, height=0.77, yaw_deg=-160)
     s.table()
     pot = s.put("holder", shapes.vessel(0.03, 0.16, "holder", 0.004), (0.55, 0.1))
@@ -214,7 +214,7 @@ def plum_into_a_bowl_on_the_other_palm(s: Stage) -> None:
 
 @scene
 def plum_out_of_a_basin_into_a_dish(s: Stage) -> None:
-    """The left hand takes a plum out of a low basin and puts it into a dish, without any pause."""
+    """The left hand takes a plum out of a basin and puts it into a dish, without any pause."""
     performer(s, height=0.52, yaw_deg=84, size=0.8, agent="child", offset=(2.0, -0.4))
     s.table()
     wares.basin(s, (0.48, 0.25))

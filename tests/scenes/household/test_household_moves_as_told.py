@@ -82,7 +82,9 @@ def test_open_leads_away_from_the_closed_place_and_close_back(scene: Scene) -> N
         poses = {time: part.body.at(time) for step in steps for time in (step.start_s, step.end_s)}
         shut = poses[steps[0].start_s] if steps[0].name == "Open" else poses[steps[-1].end_s]
 
-        def openness(time: float, shut: np.ndarray = shut, poses: dict = poses) -> float:
+        def openness(
+            time: float, shut: np.ndarray = shut, poses: dict[float, np.ndarray] = poses
+        ) -> float:
             moved = np.linalg.inv(shut) @ poses[time]
             turned = Rotation.from_matrix(moved[:3, :3]).magnitude()
             return float(np.linalg.norm(moved[:3, 3]) + turned)
@@ -113,7 +115,8 @@ def test_lift_begins_in_contact_and_raise_in_the_air(scene: Scene) -> None:
     stage = scene.stage()
     for hand, step, _ in acted(stage, "Lift", "Raise"):
         held = [each for each in stage.things if each.name in step.objects]
-        bearers = [each for each in (*stage.things, *stage.hands) if each not in (*held, hand)]
+        bodies: list[Hand | Thing] = [*stage.things, *stage.hands]
+        bearers = [each for each in bodies if each not in (*held, hand)]
         carried = [
             each for each in bearers if isinstance(each, Thing) and rides(held[0], each, step)
         ]
