@@ -2,9 +2,14 @@
 
 from scenes.hands import SCENES as HANDS
 from scenes.hands.scene import Scene
+from scenes.household import SCENES as HOUSEHOLD
 from scenes.objects import SCENES as OBJECTS
 
-BATTERIES: dict[str, dict[str, Scene]] = {"hands": HANDS, "objects": OBJECTS}
+BATTERIES: dict[str, dict[str, Scene]] = {
+    "hands": HANDS,
+    "objects": OBJECTS,
+    "household": HOUSEHOLD,
+}
 """Every battery by its name."""
 
 SCENES = {
