@@ -62,7 +62,7 @@ def blows(
 def _held(
     known: Iterable[Contact], acting: Collection[str], around: Interval, moving: Collection[str]
 ) -> tuple[str, ...]:
-    """What may strike beside end-effectors: of the things that move, those touched all that time."""
+    """What may strike beside end-effectors: things that move and are touched all that time."""
     found = {
         each.second
         for each in known
@@ -143,10 +143,8 @@ def blow(
         return None
     first, last = _around(one, frame, thresholds)
     part = slice(first, last + 1)
-    first_body, second_body = (
-        body(surface(each.shape), _cut(each.poses.filled, part), rests=False)
-        for each in (one, other)
-    )
+    first_body = body(surface(one.shape), _cut(one.poses.filled, part), rests=False)
+    second_body = body(surface(other.shape), _cut(other.poses.filled, part), rests=False)
     found = geometry.runs(near(first_body, second_body, distance_m=distance_m))
     if not len(found):
         return None

@@ -9,7 +9,7 @@ SLACK = 0.03
 """How far what is told may be off [m] or [rad]: a border is within a few frames of its truth."""
 
 SHUT_M, SHUT_RAD = 0.01, 0.09
-"""What changes less in its distance from the closed place is no more and no less open [m], [rad]."""
+"""By less than this nothing is more or less open than it was [m], [rad]."""
 
 STRAIGHT_M, TURNED_RAD = 0.001, 0.01
 """How far streams without noise are off a line [m] or an orientation [rad] at most."""
