@@ -20,6 +20,7 @@ from capar.model.handling import Distance as Distance
 from capar.model.handling import Flies as Flies
 from capar.model.handling import Guided as Guided
 from capar.model.handling import Leans as Leans
+from capar.model.handling import Lengthwise as Lengthwise
 from capar.model.handling import Lies as Lies
 from capar.model.handling import MovesWith as MovesWith
 from capar.model.handling import Opening as Opening
@@ -34,7 +35,9 @@ from capar.model.handling import Reverses as Reverses
 from capar.model.handling import Rides as Rides
 from capar.model.handling import Rolls as Rolls
 from capar.model.handling import Seated as Seated
+from capar.model.handling import Shapeless as Shapeless
 from capar.model.handling import SightNormal as SightNormal
+from capar.model.handling import Solid as Solid
 from capar.model.handling import SweptAzimuth as SweptAzimuth
 from capar.model.handling import Swings as Swings
 from capar.model.handling import Travelled as Travelled

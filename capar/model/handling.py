@@ -282,6 +282,43 @@ class Swings(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class Lengthwise(Observed):
+    """A long, thin body moves to and fro along its own length, from the first to the last frame."""
+
+    predicate = "lengthwise"
+    declaration = Declaration(
+        about="body", span=Span.INTERVAL, border=True, has_sentence=True, stretch="lengthwise"
+    )
+    body: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Solid(Observed):
+    """An object's surface leaves no room inside its convex hull: nothing can be in it.
+
+    It is measured of what moves to and fro and of what that touches.
+    """
+
+    predicate = "solid"
+    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=True)
+    object: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Shapeless(Observed):
+    """An object's shape is not known, so what is in it, or what it is in, is not known either.
+
+    It is measured of what moves to and fro and of what that touches.
+    """
+
+    predicate = "shapeless"
+    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=True)
+    object: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Leans(Observed):
     """An object's upright axis is far from the vertical, from the first to the last frame."""
 
