@@ -302,7 +302,7 @@ class Solid(Observed):
     """
 
     predicate = "solid"
-    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=True)
+    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=False)
     object: str
 
 
@@ -314,7 +314,7 @@ class Shapeless(Observed):
     """
 
     predicate = "shapeless"
-    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=True)
+    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=False)
     object: str
 
 
