@@ -18,6 +18,7 @@ from capar.model.facts import (
     Flies,
     Guided,
     Leans,
+    Lengthwise,
     Lies,
     Moving,
     Opening,
@@ -39,6 +40,7 @@ from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
 from extractors.motion.impacts import closing_speed, falls, release_speed
 from extractors.motion.leaning import leaning
+from extractors.motion.lengthwise import lengthwise
 from extractors.motion.phases import phases, turns_of_height
 from extractors.motion.rest import resting
 from extractors.motion.rolling import rolling
@@ -50,6 +52,7 @@ from extractors.relations.grips import shifts
 from extractors.relations.guides import Guide, turns_on_guide
 from extractors.relations.loads import rides
 from extractors.relations.places import distances, places
+from extractors.relations.rooms import rooms
 from extractors.relations.weight_bearing import bearing
 from extractors.sample_frames import boundary_frames
 from extractors.signals.intervals import Interval, intervals
@@ -123,6 +126,7 @@ def handling(
             out += (Lies(touch.body, SHIFTS, touch.other, *span) for span in spans)
             left_mps = release_speed(things[touch.other], touch.last)
             out.append(ReleaseSpeed(touch.body, touch.other, touch.first, round(1000.0 * left_mps)))
+    out += rooms(things, touches, tuple(out), thresholds)
     out += _contacts(capture, bodies, touches, thresholds)
     out += _loads(capture, things, seen, thresholds)
     return tuple(out)
@@ -155,7 +159,9 @@ def _motion(
         turns = turns_on_guide(guide, motions, thresholds)
         yield Guided(one.name, guide.fit.kind, guide.base)
     yield from (Reverses(one.name, frame) for frame in turns)
-    yield from (Swings(one.name, *span) for span in swings(pose, moves, thresholds))
+    swinging = swings(pose, moves, thresholds)
+    yield from (Swings(one.name, *span) for span in swinging)
+    yield from (Lengthwise(one.name, *span) for span in lengthwise(one, swinging, thresholds))
     length_m = float(one.shape.size.max()) if one.shape else 0.0
     leans = leaning(pose, upright, thresholds, length_m=length_m)
     yield from (Leans(one.name, *span) for span in leans)

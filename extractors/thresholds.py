@@ -117,6 +117,18 @@ class Thresholds:
     swing_s: float = 0.5
     """Longest time between them [s]: people stir, shake and wipe at one turn a second or more."""
 
+    slender_ratio: float = 3.0
+    """A body is long and thin if it is so many times as long as wide [1]: a knife is six times, a
+    whisk or a wide saw four times, a cloth or a sponge less than twice."""
+
+    lengthwise_share: float = 0.7071
+    """A body goes along its length if that is this share of its path [1]: the cosine of 45 degrees.
+    One that goes in circles has two thirds."""
+
+    pocket_share: float = 0.1
+    """Nothing fits in a body whose convex hull is nowhere further from its surface than this share
+    of its size [1]: of a cup or a bowl it is a third, of a plate a tenth."""
+
     swing_turns: int = 4
     """Fewest turning points of motion to and fro [1]: two whole periods less one half."""
 

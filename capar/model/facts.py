@@ -28,6 +28,7 @@ from capar.model.motion_facts import Distance as Distance
 from capar.model.motion_facts import Flies as Flies
 from capar.model.motion_facts import Guided as Guided
 from capar.model.motion_facts import Leans as Leans
+from capar.model.motion_facts import Lengthwise as Lengthwise
 from capar.model.motion_facts import Opening as Opening
 from capar.model.motion_facts import Phase as Phase
 from capar.model.motion_facts import Place as Place
@@ -49,6 +50,8 @@ from capar.model.scene_facts import Moving as Moving
 from capar.model.scene_facts import OfAgent as OfAgent
 from capar.model.scene_facts import Pause as Pause
 from capar.model.scene_facts import RateMhz as RateMhz
+from capar.model.scene_facts import Shapeless as Shapeless
+from capar.model.scene_facts import Solid as Solid
 from capar.model.scene_facts import Tag as Tag
 from capar.model.scene_facts import Touching as Touching
 from capar.model.scene_facts import ZeroCrossing as ZeroCrossing

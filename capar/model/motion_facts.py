@@ -182,6 +182,19 @@ class Swings(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class Lengthwise(Observed):
+    """A long, thin body moves to and fro along its own length, from the first to the last frame."""
+
+    predicate = "lengthwise"
+    declaration = Declaration(
+        about="body", span=Span.INTERVAL, border=True, has_sentence=True, stretch="lengthwise"
+    )
+    body: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Leans(Observed):
     """An object's upright axis is far from the vertical, from the first to the last frame."""
 

@@ -204,3 +204,27 @@ class Intended(Observed):
     object: str
     goal: str
     purpose: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Solid(Observed):
+    """An object's surface leaves no room inside its convex hull: nothing can be in it.
+
+    It is measured of what moves to and fro and of what that touches.
+    """
+
+    predicate = "solid"
+    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=False)
+    object: str
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Shapeless(Observed):
+    """An object's shape is not known, so what is in it, or what it is in, is not known either.
+
+    It is measured of what moves to and fro and of what that touches.
+    """
+
+    predicate = "shapeless"
+    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=False)
+    object: str

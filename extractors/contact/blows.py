@@ -1,6 +1,6 @@
 """Blows: contacts too short to outlast the filter, told by what they set going."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -28,32 +28,64 @@ def blows(
     motions: Motions,
     thresholds: Thresholds,
 ) -> Iterator[Contact]:
-    """Contacts of end-effectors with things that they set going, beside those already known.
+    """Contacts of end-effectors, and of what they hold, with things that they set going.
 
     Args:
         capture: The trial.
         bodies: Its bodies.
         calibration: Distances of contact.
-        known: Contacts; what an end-effector touches as it begins to move was not struck.
+        known: Contacts; what is touched by a possible striker as it begins to move was not struck.
         motions: When each object moves.
         thresholds: How fast what is struck is, and how soon.
     """
     acting = [each.name for each in capture.acting]
-    touched = [each for each in known if each.first in acting]
+    touches = tuple(known)
     for name, spans in motions.items():
         thing = bodies.objects[name]
-        own = [each.interval for each in touched if each.second == name]
         for frame in set_going(thing, spans, thresholds):
             around = _around(thing, frame, thresholds)
-            if any(first <= around[1] and last >= around[0] for first, last in own):
+            held = _held(touches, acting, around, set(motions) - {name})
+            if _touched(touches, name, {*acting, *held}, around):
                 continue
-            for hand in acting:
-                pair = None if hand == name else calibration.pair(hand, name)
-                if pair is None or pair.pivots:
+            pairs = [(each, name) for each in acting if each != name]
+            pairs += [(min(each, name), max(each, name)) for each in held]
+            for first, second in pairs:
+                pair = calibration.pair(first, second)
+                if pair.pivots:
                     continue
-                met = blow(bodies.sensors[hand], thing, frame, pair.touch_m, thresholds)
+                one = bodies.sensors[first] if first in acting else bodies.objects[first]
+                met = blow(one, bodies.objects[second], frame, pair.touch_m, thresholds)
                 if met is not None:
-                    yield Contact(hand, name, met, 0.0)
+                    yield Contact(first, second, met, 0.0)
+
+
+def _held(
+    known: Iterable[Contact], acting: Collection[str], around: Interval, moving: Collection[str]
+) -> tuple[str, ...]:
+    """What may strike beside end-effectors: things that move and are touched all that time."""
+    found = {
+        each.second
+        for each in known
+        if each.first in acting
+        and each.second not in acting
+        and each.second in moving
+        and each.interval[0] <= around[0]
+        and around[1] <= each.interval[1]
+    }
+    return tuple(sorted(found))
+
+
+def _touched(
+    known: Iterable[Contact], name: str, strikers: Collection[str], around: Interval
+) -> bool:
+    """Whether one of the strikers is known to touch the thing about then."""
+    return any(
+        name in (each.first, each.second)
+        and (each.first in strikers or each.second in strikers)
+        and each.interval[0] <= around[1]
+        and around[0] <= each.interval[1]
+        for each in known
+    )
 
 
 def _around(thing: BodyGeometry, frame: int, thresholds: Thresholds) -> Interval:
@@ -90,30 +122,30 @@ def set_going(
 
 
 def blow(
-    hand: BodyGeometry, thing: BodyGeometry, frame: int, distance_m: float, thresholds: Thresholds
+    one: BodyGeometry, other: BodyGeometry, frame: int, distance_m: float, thresholds: Thresholds
 ) -> Interval | None:
-    """When a hand met a thing that is set going at a frame, by their poses as recorded.
+    """When two bodies met of which one is set going at a frame, by their poses as recorded.
 
-    A low-pass that is longer than the contact takes hand and thing apart; what was recorded has
+    A low-pass that is longer than the contact takes the two apart; what was recorded has
     the noise of one frame instead, for which the tolerance of contact is meant.
 
     Args:
-        hand: The end-effector.
-        thing: The thing.
-        frame: When it was seen to move first.
+        one: What strikes, or is struck.
+        other: The other of the two.
+        frame: When the one that is struck was seen to move first.
         distance_m: Distance up to which the two touch [m].
         thresholds: How long before and after they may have met.
 
     Returns:
         The stretch of contact nearest to the frame; None if there is none.
     """
-    if hand.shape is None or thing.shape is None:
+    if one.shape is None or other.shape is None:
         return None
-    first, last = _around(thing, frame, thresholds)
+    first, last = _around(one, frame, thresholds)
     part = slice(first, last + 1)
-    one = body(surface(hand.shape), _cut(hand.poses.filled, part), rests=False)
-    two = body(surface(thing.shape), _cut(thing.poses.filled, part), rests=False)
-    found = geometry.runs(near(one, two, distance_m=distance_m))
+    first_body = body(surface(one.shape), _cut(one.poses.filled, part), rests=False)
+    second_body = body(surface(other.shape), _cut(other.poses.filled, part), rests=False)
+    found = geometry.runs(near(first_body, second_body, distance_m=distance_m))
     if not len(found):
         return None
     begin, end = min(found, key=lambda each: (abs(first + each[0] - frame), each[0]))

@@ -54,13 +54,15 @@ class Pair:
 
     @cached_property
     def shares(self) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
-        """Shares of the body's points in the other's convex hull, and of its corners well inside.
+        """Shares of the body's points in the other's convex hull, and of those well inside.
 
-        The points are its outermost ones, those halfway to its middle, and its middle; well inside
-        is deeper than bodies that touch cut each other.
+        The points are its outermost ones, those halfway to its middle, and its middle. Well inside
+        is deeper than bodies that touch cut each other; for this those a quarter of the way count
+        beside the outermost, as these touch the bottom of what the body stands in.
         """
         corners = self.body.corners
-        points = np.concatenate([corners, 0.5 * corners, np.zeros((1, 3))])
+        points = np.concatenate([corners, 0.5 * corners, np.zeros((1, 3)), 0.75 * corners])
+        count = 2 * len(corners) + 1
         within, deep = np.zeros(len(self.body.middles)), np.zeros(len(self.body.middles))
         planes = self.other.planes
         with np.errstate(invalid="ignore"):
@@ -70,8 +72,9 @@ class Pair:
             for start in range(0, len(frames), length):
                 some = frames[start : start + length]
                 height = self._heights(points, planes, some)
-                within[some] = (height <= 0.0).mean(axis=1)
-                deep[some] = (height[:, : len(corners)] <= -self.give_m).mean(axis=1)
+                within[some] = (height[:, :count] <= 0.0).mean(axis=1)
+                ends = np.concatenate([height[:, : len(corners)], height[:, count:]], axis=1)
+                deep[some] = (ends <= -self.give_m).mean(axis=1)
         return within, deep
 
     def _heights(

@@ -5,9 +5,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from measured_bodies import box, stream
 
-from capar.model.capture import Sensor, TagObject, TagType
+from capar.model.capture import Capture, Sensor, TagObject, TagType
+from capar.model.facts import Touching
 from extractors.bodies.body_geometry import BodyGeometry, geometry_of
 from extractors.contact.blows import blow, set_going
+from extractors.measure import measure
 from extractors.motion.impacts import closing_speed, release_speed
 from extractors.relations.arrangement import lasting
 from extractors.thresholds import Thresholds
@@ -53,6 +55,47 @@ def test_a_block_that_is_struck_away_was_met_when_it_set_off(
     assert found is not None
     assert found[0] <= met + 1
     assert found[1] >= met - 1
+
+
+def swung_stick(aside_m: float, rate_hz: float, seed: int) -> Capture:
+    """A stick in a hand comes at a puck at a metre a second, past it by so far, and halts."""
+    palm, puck, _ = struck(1.0, 0.8, rate_hz, seed)
+    times = palm.poses.filled.times
+    way = np.zeros((len(times), 3))
+    way[:, 0] = np.minimum(times - 1.0, 0.0) - 0.06
+    way[:, 1] = aside_m
+    held = way + np.array([-0.2, 0.0, 0.0])
+    sensor = Sensor(
+        "palm", "hand", "right", "right_arm", stream(held, rate_hz=rate_hz), box(0.02, 0.1, 0.1)
+    )
+    length = box(0.38, 0.02, 0.02)
+    moved = way + np.array([-0.18, 0.0, 0.0])
+    stick = TagObject("stick", TagType.MOBILE, stream(moved, rate_hz=rate_hz), length)
+    thing = TagObject("puck", TagType.MOBILE, puck.poses.filled, box(0.1, 0.1, 0.1))
+    return Capture("swung stick", (sensor,), (stick, thing))
+
+
+@given(st.sampled_from([100.0, 240.0]), st.integers(0, 1000))
+@settings(max_examples=6, deadline=None)
+def test_a_held_stick_met_the_puck_that_it_sends_off(rate_hz: float, seed: int) -> None:
+    capture = swung_stick(0.0, rate_hz, seed)
+    met = [
+        each
+        for each in measure(capture).facts
+        if isinstance(each, Touching) and (each.body, each.other) == ("stick", "puck")
+    ]
+    assert any(each.first - 2 <= round(rate_hz) <= each.last + 2 for each in met)
+
+
+@given(st.floats(0.08, 0.3), st.integers(0, 1000))
+@settings(max_examples=4, deadline=None)
+def test_a_held_stick_that_passes_beside_the_puck_did_not_meet_it(
+    aside_m: float, seed: int
+) -> None:
+    facts = measure(swung_stick(aside_m, 100.0, seed)).facts
+    pairs = [{each.body, each.other} for each in facts if isinstance(each, Touching)]
+    assert {"palm", "stick"} in pairs
+    assert {"stick", "puck"} not in pairs
 
 
 @given(st.floats(0.05, 0.4), st.floats(0.8, 2.0))

@@ -269,8 +269,8 @@ def open_loaded_drawer(performer: Performer, **options: Unpack[Options]) -> Tria
 
 
 def half_close_drawer(performer: Performer, **options: Unpack[Options]) -> Trial:
-    """A drawer is pushed in half the way, held, and then shut."""
-    steps = (*TAKE, "Push", "TouchWith", "Close", "TouchWith", *LEAVE)
+    """A drawer is pushed in half the way, held, and then shut: it is closed in two stages."""
+    steps = (*TAKE, "Close", "TouchWith", "Close", "TouchWith", *LEAVE)
     strokes = (Stroke(0.1), Stroke(0.0))
     return work(performer, drawer(performer), strokes, steps, begin=0.25, **options)
 

@@ -17,6 +17,7 @@ UP, DOWN = Leg((0.0, 0.0, 0.25)), Leg((0.0, 0.0, -0.25))
 LIFTED, LOWERED = (*TAKE, "Lift", "Touch"), ("Touch", "Lower", "TouchWith", *LEAVE)
 
 ROD = (0.016, 0.016, 0.30)
+BLADE = (0.40, 0.012, 0.04)
 
 
 def _bowl(performer: Performer, ahead_m: float) -> Body:
@@ -116,6 +117,19 @@ def stir(performer: Performer, **options: Unpack[Options]) -> Trial:
     return handle(performer, "stir", legs, steps, stage, **options)
 
 
+def cut(performer: Performer, **options: Unpack[Options]) -> Trial:
+    """A blade is lowered on a loaf, drawn to and fro along its length on it, and raised again."""
+    out = BLADE[1] / 2 - figure.GRIP_DEPTH + figure.thickness(performer)
+    grip = pose((-0.15, -out, 0.02), beside(performer).rotation)
+    at = place(performer).translation + np.array([0.13, 0.0, 0.0])
+    loaf = Body("loaf", Still(pose(at)), shapes.box(0.08, 0.2, 0.1), TagType.MOBILE, mass_kg=0.5)
+    stage = Stage(shapes.box(*BLADE), grip, (loaf,), held=True, height_m=0.3)
+    strokes = Leg(seconds=2.0, swing=(0.04, 0.0, 0.0))
+    legs = (Leg((0.0, 0.0, -0.2)), strokes, Leg((0.0, 0.0, 0.2)))
+    steps = ("Touch", "Lower", "TouchWith", "Cut", "TouchWith", "Lift", "Touch")
+    return handle(performer, "cut", legs, steps, stage, **options)
+
+
 USES: tuple[Callable[..., Trial], ...] = (
-    carry, tilt, turn, shake, wipe, push, pull, slide, turn_on_table, pour, stir,
+    carry, tilt, turn, shake, wipe, push, pull, slide, turn_on_table, pour, stir, cut,
 )  # fmt: skip

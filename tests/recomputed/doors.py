@@ -9,7 +9,7 @@ SLACK = 0.03
 """How far what is told may be off [m] or [rad]: a border is within a few frames of its truth."""
 
 SHUT_M, SHUT_RAD = 0.01, 0.09
-"""What is nearer to its closed place than this is shut [m], [rad]."""
+"""By less than this nothing is more or less open than it was [m], [rad]."""
 
 STRAIGHT_M, TURNED_RAD = 0.001, 0.01
 """How far streams without noise are off a line [m] or an orientation [rad] at most."""
@@ -45,8 +45,8 @@ def opened(known: Known, what: str) -> bool:
 
 def closed(known: Known, what: str) -> bool:
     first, last = known.segment.first, known.segment.last
-    shut = gone(known, what, last) < SHUT_M and turned(known, what, last) < SHUT_RAD
-    return shut and gone(known, what, first) > SHUT_M
+    nearer = gone(known, what, first) - gone(known, what, last) >= SHUT_M
+    return nearer or turned(known, what, first) - turned(known, what, last) >= SHUT_RAD
 
 
 def on_a_rail(known: Known, what: str, base: str) -> bool:
@@ -83,7 +83,7 @@ FORMS = (
     (rf"the {NAME} slid on its rail from {NUMBER} m to {NUMBER} m open", slid),
     (rf"the {NAME} turned on its hinge from {NUMBER} rad to {NUMBER} rad open", swung),
     (rf"the {NAME} was more open at the end", opened),
-    (rf"the {NAME} came to its closed place", closed),
+    (rf"the {NAME} was less open at the end", closed),
     (rf"the {NAME} went along one rail in the {NAME} throughout the recording", on_a_rail),
     (rf"the {NAME} turned about one hinge on the {NAME} throughout the recording", on_a_hinge),
     (rf"the ({'|'.join(('drawer', 'door', 'lid'))}) turned back at {TIME}", turned_back_on_guide),

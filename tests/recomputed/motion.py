@@ -4,7 +4,7 @@ import numpy as np
 from motions.rolling import CAN
 from scipy.spatial.transform import Rotation
 
-from capar.model.facts import Flies, Rolls, Swings, Touching
+from capar.model.facts import Flies, Lengthwise, Rolls, Swings, Touching
 from recomputed.known import NAME, ROUNDED, TIME, Known, near
 
 GONE_M, GONE_RAD = 0.009, 0.07
@@ -163,6 +163,31 @@ def measured_swings(known: Known, what: str, first: str, last: str) -> bool:
     return found and to_and_fro(known, what, known.frame(first), known.frame(last))
 
 
+def went_lengthwise(known: Known, what: str) -> bool:
+    """More of its path is along its longest side than the cosine of 45 degrees takes."""
+    span = slice(known.segment.first, known.segment.last + 1)
+    (thing,) = [each for each in known.capture.objects if each.name == what.replace(" ", "_")]
+    assert thing.shape is not None
+    sizes = np.sort(thing.shape.size)
+    side = np.eye(3)[int(np.argmax(thing.shape.size))]
+    steps = np.diff(known.stream(what).positions[span], axis=0)
+    axes = np.array(
+        [known.turn(what, each).apply(side) for each in range(span.start, span.stop - 1)]
+    )
+    along = np.abs((steps * axes).sum(axis=1)).sum() / np.linalg.norm(steps, axis=1).sum()
+    return bool(sizes[2] > 3.0 * sizes[1] and along > 0.7)
+
+
+def measured_lengthwise(known: Known, what: str, first: str, last: str) -> bool:
+    found = any(
+        each.body == what.replace(" ", "_")
+        and near(each.first, known.at(first))
+        and near(each.last, known.at(last))
+        for each in known.of(Lengthwise)
+    )
+    return found and went_lengthwise(known, what)
+
+
 def rolled(known: Known, what: str) -> bool:
     """The can's turn about its axis is its way over its radius."""
     ends = [known.segment.first, known.segment.last]
@@ -220,6 +245,11 @@ FORMS = (
     (rf"rest of the {NAME} was measured from {TIME} to {TIME}", measured_rest),
     (rf"the {NAME} turned as it went, without slipping", rolled),
     (rf"the {NAME} was moved to and fro", swung),
+    (rf"the {NAME}, long and thin, went along its own length", went_lengthwise),
+    (
+        rf"lengthwise motion of the {NAME} was measured from {TIME} to {TIME}",
+        measured_lengthwise,
+    ),
     (rf"the {NAME} had left its place by {TIME}, which counts from {TIME} on", left_place),
     (rf"the {NAME} had come to its place by {TIME}, which counts from {TIME} on", came_to_place),
     (rf"the {NAME} rested and touched nothing from {TIME} to {TIME}", rested_free),

@@ -55,11 +55,9 @@ NAMES = frozenset(
         "Kick",
         "LetGo",
         "HitAway",
-        "HitWith",
         "Open",
         "Close",
         "Cut",
-        "PushWith",
     }
 )
 """The vocabulary of hands."""

@@ -36,7 +36,7 @@ def held_hammer(s: Stage, hand: Hand) -> Thing:
 def strike(hand: Hand, tool: Thing, nail: Thing, *, down: float, hold: float) -> None:
     """Bring a hammer down on a nail at more than a metre a second, and stay."""
     hand.move((0.0, 0.0, -down), 0.35, arrive=1.1)
-    hand.step("HitWith", tool, nail)
+    hand.step("Hit", tool, nail)
     hand.hold(hold, tool, nail)
 
 
@@ -210,7 +210,7 @@ def block_pushed_with_a_stick(s: Stage) -> None:
     right.step("MoveObjTo", tool, block)
     right.take_along(tool, block)
     right.move((0.18, 0.0, 0.0), 1.0, depart=0.25)
-    right.step("PushWith", tool, block)
+    right.step("Push", tool, block)
     right.hold(0.7, tool, block)
 
 
@@ -241,7 +241,7 @@ def block_swept_with_a_broom(s: Stage) -> None:
     travel(right, "MoveObjTo", (0.19, 0.0, 0.0), 0.9, tool, block)
     right.hold(0.4, tool, block)
     right.take_along(tool, block)
-    travel(right, "PushWith", (0.3, 0.0, 0.0), 1.2, tool, block)
+    travel(right, "Push", (0.3, 0.0, 0.0), 1.2, tool, block)
     right.hold(0.5, tool, block)
 
 
@@ -257,7 +257,7 @@ def puck_struck_with_a_stick(s: Stage) -> None:
     begin_with(right, tool, END)
     right.hold(0.5, tool)
     right.move((0.0, 0.25, 0.0), 0.4, arrive=1.1)
-    right.step("HitWith", tool, puck)
+    right.step("Hit", tool, puck)
     speed, start = 0.9, right.clock
 
     def slide(since: np.ndarray) -> np.ndarray:
