@@ -1,11 +1,13 @@
 """The checker process: reads requests, checks rule files within limits, writes messages.
 
-Input: one request a line, as JSON. Output: one JSON value a line: a string is the file that is
-checked next, an object is a finding, ``null`` ends the answer to a request. A file that exceeds a
-limit or crashes the parser ends the process; ``checking.py`` starts another for the requests left.
+Input: one request a line, as JSON, with the folder that its paths start from. Output: one JSON
+value a line: a string is the file that is checked next, an object is a finding, ``null`` ends the
+answer to a request. A file that exceeds a limit or crashes the parser ends the process;
+``checker_client.py`` starts another for the next.
 """
 
 import json
+import os
 import resource
 import sys
 import time
@@ -30,12 +32,13 @@ OUT_OF_MEMORY = 3
 
 
 def serve(lines: Iterable[str]) -> None:
-    """Answer requests on standard output, in order."""
-    requests = [Request.from_json(json.loads(line)) for line in lines]
-    for name in {request.profile for request in requests}:
-        base_of(name)
-    _limit_memory()
-    for request in requests:
+    """Answer requests on standard output, each as it comes."""
+    for line in lines:
+        asked = json.loads(line)
+        os.chdir(asked["folder"])
+        request = Request.from_json(asked["request"])
+        base_of(request.profile)
+        _limit_memory()
         _limit_time()
         try:
             answer(request)
@@ -85,4 +88,4 @@ def _virtual_bytes() -> int:
 
 
 if __name__ == "__main__":
-    serve(sys.stdin.read().splitlines())
+    serve(sys.stdin)

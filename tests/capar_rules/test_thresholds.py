@@ -11,7 +11,7 @@ from capar.model.errors import RuleError
 from capar_rules.borders.times import Times, in_frames, times
 from capar_rules.engine.solver import rule_file
 
-PROCESS_LIMITS = {"lint/checker_process.py", "lint/checking.py"}
+PROCESS_LIMITS = {"lint/checker_process.py", "lint/checker_client.py"}
 """How long a process that checks untrusted rules may run: no time of a capture."""
 
 MODULES = sorted(
