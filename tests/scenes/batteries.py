@@ -1,5 +1,7 @@
 """All batteries of scenes, and all their scenes."""
 
+import os
+
 from scenes.hands import SCENES as HANDS
 from scenes.hands.scene import Scene
 from scenes.household import SCENES as HOUSEHOLD
@@ -18,3 +20,12 @@ SCENES = {
     for name, scene in scenes.items()
 }
 """The scenes of all batteries, each under its battery's name and its own."""
+
+EVERY = 1 if os.environ.get("CAPAR_SCENES") == "all" else 16
+"""Of the scenes, which do not change any more, tests of their soundness take one in so many.
+
+`CAPAR_SCENES=all pytest tests/scenes` takes each, as whoever writes a scene or a builder does.
+"""
+
+SOME = dict(list(SCENES.items())[::EVERY])
+"""The scenes that are looked at for soundness."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from scenes.batteries import SCENES
+from scenes.batteries import SOME
 from scenes.hands.clearance import Placed, gap
 from scenes.hands.expectation import Step
 from scenes.hands.performer import Hand
@@ -34,7 +34,7 @@ OFF_M = 0.005
 RATE_HZ = 100.0
 """How finely motion is looked at."""
 
-each_scene = pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+each_scene = pytest.mark.parametrize("scene", SOME.values(), ids=SOME)
 
 
 def steps(stage: Stage) -> Iterator[tuple[Hand, Step]]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from scenes.batteries import SOME
 from scenes.hands.clearance import Placed, gap
 from scenes.hands.expectation import Step
 from scenes.hands.performer import Hand
@@ -21,7 +22,8 @@ RISE_M = 0.05
 LEVEL_M = 0.1
 """Between them it goes so far aside (spec 10) [m]."""
 
-each_scene = pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+OWN = {name: scene for name, scene in SOME.items() if name.startswith("household-")}
+each_scene = pytest.mark.parametrize("scene", OWN.values(), ids=OWN)
 
 
 def acted(stage: Stage, *names: str) -> Iterator[tuple[Hand, Step, Thing]]:
