@@ -36,7 +36,12 @@ FIRST = {
 }
 """By package, the tests that say most of it."""
 
-SECOND = ("tests/test_motions.py", "tests/test_published.py", "tests/capar_rules")
+SECOND = (
+    "tests/scenes/test_rates.py",
+    "tests/test_motions.py",
+    "tests/test_published.py",
+    "tests/capar_rules",
+)
 NOT_RUN = ("tests/test_architecture.py", "tests/test_readme.py")
 """They judge how files are written and what is installed, not what a program does."""
 
