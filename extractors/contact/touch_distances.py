@@ -8,7 +8,7 @@ import trimesh
 from jaxtyping import Bool, Float
 
 from capar.model.calibration import Found, PairCalibration
-from capar.model.capture import Capture, Shape, ShapeSource, TagType
+from capar.model.capture import Capture, Role, Shape, ShapeSource, TagType
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.proximity import Body, at_frame, body, distance
@@ -109,7 +109,7 @@ def _witnesses(
 ) -> Iterator[tuple[Found, Bool[np.ndarray, "frames"]]]:
     """Kinds of evidence for a pair, the surest first."""
     nowhere = np.zeros(len(capture.times), dtype=bool)
-    acting = {each.name: each.end_effector for each in capture.acting}
+    acting = {each.name: each.end_effector for each in capture.sensors if each.role is Role.ACTS}
     tags = {each.name: each.tag for each in capture.objects}
     if first in acting:
         yield Found.CO_MOTION, evidence.carried.get((first, second), nowhere)

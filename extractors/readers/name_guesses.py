@@ -24,6 +24,17 @@ LIMBS = {
 }
 """Words in names by which end-effectors are known."""
 
+PARTS = {
+    "hand": ("hand", "wrist", "palm", "carpal", "metacarpal", "thumb", "index", "middle", "ring",
+             "pinky", "little", "finger", "fingers", "fingertip", "fingertips"),
+    "foot": ("foot", "ankle", "heel", "calcaneus", "instep", "midfoot", "ball", "sole", "forefoot",
+             "toe", "toes"),
+}  # fmt: skip
+"""What hands and feet consist of, in the words of names; those that act for the whole first."""
+
+WHOLES = {"hand": ("hand", "wrist"), "foot": ("foot", "ankle")}
+"""Words that name a hand or foot as a whole, and not a part of it."""
+
 _SIDES = {
     "right": re.compile(r"right|(^|[_.\W])r([_.\W]|$)|[a-z]Rt?$|^R(?=[A-Z_])|(?<=[a-z])R$|_r$"),
     "left": re.compile(r"left|(^|[_.\W])l([_.\W]|$)|[a-z]Lf?t?$|^L(?=[A-Z_])|(?<=[a-z])L$|_l$"),
@@ -34,6 +45,24 @@ def limb_of(name: str) -> str:
     """The end-effector that a name mentions, or an empty string."""
     low = name.lower()
     return next((limb for limb, words in LIMBS.items() if any(w in low for w in words)), "")
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name, in lower case and without numbers: ``L_Index1`` has ``l``, ``index``."""
+    parts = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name)
+    return [word for word in re.split(r"[^a-z]+", parts.lower()) if word]
+
+
+def part_of(name: str) -> tuple[str, int] | None:
+    """Which hand or foot a name is a part of, and how far from acting for it; None for no part.
+
+    The palm stands before the fingers and the heel before the toes.
+    """
+    for limb, words in PARTS.items():
+        ranks = [words.index(word) for word in words_of(name) if word in words]
+        if ranks:
+            return limb, min(ranks)
+    return None
 
 
 def side_of(name: str) -> str:

@@ -34,9 +34,9 @@ def company(
 ) -> Iterator[Travels | MovesWith]:
     """When each mobile object travels, and in whose frame it is steady meanwhile.
 
-    Asked are all sensors and all other mobile objects. A stretch is extended to the frames before
-    and after it in which either is no farther from where it then was in the other's frame than
-    fingers open about what they let go.
+    Asked are all sensors but those on parts of an end-effector, and all other mobile objects. A
+    stretch is extended to the frames before and after it in which either is no farther from where
+    it then was in the other's frame than fingers open about what they let go.
     """
     mobile = [body.name for body in capture.objects if body.tag is TagType.MOBILE]
     for name in mobile:
@@ -46,7 +46,8 @@ def company(
             continue
         for span in _spans(travels, capture, thresholds):
             yield Travels(name, *span)
-        others = [*bodies.sensors.values(), *(bodies.objects[name] for name in mobile)]
+        wholes = [bodies.sensors[each.name] for each in capture.sensors if not each.part_of]
+        others = [*wholes, *(bodies.objects[name] for name in mobile)]
         for other in others:
             if other.name == name or other.poses is thing.poses:
                 continue

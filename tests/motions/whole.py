@@ -4,13 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Unpack
 
-import numpy as np
-from scipy.spatial.transform import RigidTransform
-
 from capar.model.capture import Role, TagType
 from motions import figure, shapes
 from motions.encounters import Kicked
-from motions.paths import Move, Moves, Path, Riding, Still, Vector, aimed, pose
+from motions.paths import Move, Moves, Path, Still, Vector, aimed, pose
 from motions.performers import Performer
 from motions.trials import Body, Options, Sampling, Script, Trial, Truth, record
 
@@ -19,7 +16,7 @@ HEEL_LENGTH = 0.17
 """Length of the rear part of a foot, up to the ball [m]; the toes take the rest."""
 
 BEGIN_S, STEP_S, SWING_S = 0.8, 0.65, 0.55
-"""When the first step begins, from one step to the next, and how long a foot is off the floor [s]."""
+"""When the first step begins, from one step to the next, and how long a foot takes [s]."""
 
 TOE_OFF_S, TOE_ON_S = 0.08, 0.06
 """How much later than the heel the toes leave the floor, and come down on it [s]."""
@@ -67,8 +64,8 @@ def walk(
     taken = strides(performer, 5, length_m=length * performer.stature_m)
     end = taken[-1].end_s + 0.9
     names = {
-        "right_foot": ("Stand", "Step") * 3 + ("Stand",),
-        "left_foot": ("Stand", "Step") * 2 + ("Stand",),
+        "right_foot": ("Stand", "Walk") * 3 + ("Stand",),
+        "left_foot": ("Stand", "Walk") * 2 + ("Stand",),
     }
     bodies = [
         body
@@ -81,11 +78,11 @@ def walk(
 
 
 def stand_and_kick(performer: Performer, **options: Unpack[Options]) -> Trial:
-    """On both feet; the weight goes over to the left one; the right one kicks a ball and returns."""
+    """The weight goes over from both feet to the left one; the right one kicks a ball."""
     aside = 0.06 * performer.stature_m
     left, right = pose((0.0, aside, 0.0)), pose((0.0, -aside, 0.0))
     back, front = pose((-0.35, -aside, 0.06)), pose((0.55, -aside, 0.06))
-    leaves, swings, struck = 1.8, 2.5, 2.8
+    leaves, swings, struck = 1.8, 3.0, 3.3
     through = 2 * struck - swings
     home, end = through + 0.9, through + 2.2
     foot = Moves(
@@ -109,7 +106,16 @@ def stand_and_kick(performer: Performer, **options: Unpack[Options]) -> Trial:
     )
     names = {
         "left_foot": ("Stand", "StandOnOneLeg", "Stand"),
-        "right_foot": ("Stand", "RestFoot", "Withdraw", "Kick", "Step", "Stand"),
+        "right_foot": (
+            "Stand",
+            "RestFoot",
+            "Withdraw",
+            "Kick",
+            "ResumePosture",
+            "Reach",
+            "RestFoot",
+            "Stand",
+        ),
     }
     truth = Truth(end, (), {"extended": names}, {})
     return record(Script("stand_and_kick", performer, truth, bodies), Sampling(**options))
@@ -146,9 +152,7 @@ def touch_own_hand(performer: Performer, **options: Unpack[Options]) -> Trial:
     met = 1.3 * performer.pace
     leaves, home = met + 0.9, met + 0.9 + 1.2 * performer.pace
     over = figure.thickness(performer) - 0.003
-    goal = pose(
-        (0.35, 0.0, height + over), aimed(x=(1.0, 0.0, 0.0), z=(0.0, 0.0, 1.0))
-    )
+    goal = pose((0.35, 0.0, height + over), aimed(x=(1.0, 0.0, 0.0), z=(0.0, 0.0, 1.0)))
     hand = Moves(
         (
             figure.reach(performer, "right_hand", goal=goal, arrive=(0.03, 0.0, -0.25),
@@ -161,7 +165,7 @@ def touch_own_hand(performer: Performer, **options: Unpack[Options]) -> Trial:
         figure.hand_body(performer, "right_hand", hand),
         figure.hand_body(performer, "left_hand", Still(held)),
     )
-    names = {"right_hand": ("Reach", "TouchOneself", "ResumePosture"), "left_hand": ()}
+    names = {"right_hand": ("Reach", "Touch", "ResumePosture"), "left_hand": ()}
     truth = Truth(home + 0.8, (), {"extended": names}, {})
     return record(Script("touch_own_hand", performer, truth, bodies), Sampling(**options))
 
