@@ -1,6 +1,7 @@
 """Guesses from names in a motion file: end-effectors, sides, and how a person stands."""
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,10 +28,13 @@ LIMBS = {
 PARTS = {
     "hand": ("hand", "wrist", "palm", "carpal", "metacarpal", "thumb", "index", "middle", "ring",
              "pinky", "little", "finger", "fingers", "fingertip", "fingertips"),
-    "foot": ("foot", "ankle", "heel", "calcaneus", "instep", "midfoot", "ball", "sole", "forefoot",
+    "foot": ("foot", "ankle", "heel", "calcaneus", "instep", "midfoot", "sole", "forefoot",
              "toe", "toes"),
 }  # fmt: skip
 """What hands and feet consist of, in the words of names; those that act for the whole first."""
+
+AMBIGUOUS = {"index", "middle", "ring", "little"}
+"""Words for fingers that name other things too."""
 
 WHOLES = {"hand": ("hand", "wrist"), "foot": ("foot", "ankle")}
 """Words that name a hand or foot as a whole, and not a part of it."""
@@ -63,6 +67,24 @@ def part_of(name: str) -> tuple[str, int] | None:
         if ranks:
             return limb, min(ranks)
     return None
+
+
+def limbs(names: Iterable[str]) -> dict[str, str]:
+    """The bodies that are likely end-effectors or parts of one, each with its hand, foot or head.
+
+    Words that mean other things too, such as ``ring``, count where the same side has another part
+    of a hand.
+    """
+    out: dict[str, str] = {}
+    doubtful = []
+    for name in names:
+        part = part_of(name) if side_of(name) != "none" else None
+        if part and set(words_of(name)) & AMBIGUOUS and not limb_of(name):
+            doubtful.append(name)
+        elif limb := limb_of(name) or (part[0] if part else ""):
+            out[name] = limb
+    hands = {side_of(name) for name, limb in out.items() if limb == "hand"}
+    return out | {name: "hand" for name in doubtful if side_of(name) in hands}
 
 
 def side_of(name: str) -> str:
