@@ -90,10 +90,13 @@ def with_gaps(
     for pair in known:
         frames = evidence.carried.get((pair.first, pair.second))
         if pair.found is Found.TOLERANCE and frames is not None:
-            body, thing = bodies.sensors[pair.first], bodies.objects[pair.second]
-            gaps[pair.first, pair.second] = float(
-                np.median(_surface_distances(body, thing, frames, GAP_SAMPLES))
-            )
+            thing = bodies.objects[pair.second]
+            apart = [
+                _surface_distances(part, thing, frames, GAP_SAMPLES)
+                for part in bodies.on_end_effector(pair.first)
+                if part.shape is not None
+            ]
+            gaps[pair.first, pair.second] = float(np.median(np.min(apart, axis=0)))
     for pair in known:
         rivals = [gap for (_, thing), gap in gaps.items() if thing == pair.second]
         gap_m = gaps.get((pair.first, pair.second), 0.0)

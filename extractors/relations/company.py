@@ -52,7 +52,11 @@ def company(
             if other.name == name or other.poses is thing.poses:
                 continue
             for span in _together(other.poses.settled, thing.poses.settled, capture, thresholds):
-                gap = _gap(other, thing, span, calibration)
+                parts = (
+                    bodies.on_end_effector(other.name) if other.name in bodies.parts else (other,)
+                )
+                gaps = [_gap(part, thing, span, calibration) for part in parts]
+                gap = min(filter(np.isfinite, gaps), default=np.inf)
                 if np.isfinite(gap):
                     yield MovesWith(name, other.name, *span, round(1000.0 * gap))
 

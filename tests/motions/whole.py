@@ -4,10 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Unpack
 
-from capar.model.capture import Role, TagType
+import numpy as np
+import trimesh
+
+from capar.model.capture import Role, Shape, TagType
 from motions import figure, shapes
 from motions.encounters import Kicked
-from motions.paths import Move, Moves, Path, Still, Vector, aimed, pose
+from motions.paths import Move, Moves, Path, Riding, Still, Vector, aimed, pose
 from motions.performers import Performer
 from motions.trials import Body, Options, Sampling, Script, Trial, Truth, record
 
@@ -168,6 +171,61 @@ def touch_own_hand(performer: Performer, **options: Unpack[Options]) -> Trial:
     names = {"right_hand": ("Reach", "Touch", "ResumePosture"), "left_hand": ()}
     truth = Truth(home + 0.8, (), {"extended": names}, {})
     return record(Script("touch_own_hand", performer, truth, bodies), Sampling(**options))
+
+
+def pinch(performer: Performer, *, fingers: bool, **options: Unpack[Options]) -> Trial:
+    """Thumb and index finger take a block on a table from above, raise it and hold it.
+
+    Args:
+        performer: Who takes it.
+        fingers: Whether palm and fingers are tracked one by one, or the hand as one body.
+        options: How it is recorded.
+    """
+    table = performer.table_m
+    block = pose((0.5, -0.1, table))
+    goal = pose((0.46, -0.1, table + 0.12))
+    raised = pose(goal.translation + np.array([0.0, 0.0, 0.25]), goal.rotation)
+    met = 1.4 * performer.pace
+    lifts, up = met + 0.5, met + 0.5 + 0.9 * performer.pace
+    hand = Moves(
+        (
+            figure.reach(performer, "right_hand", goal=goal, arrive=(0.0, 0.0, -0.25),
+                         start_s=0.3, end_s=met),
+            Move(lifts, up, goal, raised, launch_mps2=figure.FIRM_MPS2),
+        )
+    )  # fmt: skip
+    grip = pose((0.04, 0.0, -0.12))
+    thing = Riding(Still(block), hand, grip, lifts)
+    parts = {f"right_{name}": _part(*place) for name, place in PARTS.items()}
+    if not fingers:
+        meshes = [shapes.surface(each) for each in parts.values()]
+        parts = {"right_hand": shapes.shape(trimesh.util.concatenate(meshes), "hand in one")}
+    bodies = (
+        *(Body(name, hand, shape, link="right_arm") for name, shape in parts.items()),
+        Body("block", thing, shapes.box(0.04, 0.04, 0.06), TagType.MOBILE, mass_kg=0.1),
+        Body("table", Still(pose((0.7, 0.0, table))), shapes.table(0.8, 1.6), TagType.FIXED,
+             noisy=False),
+    )  # fmt: skip
+    names = {"right_hand": ("Reach", "Touch", "Lift", "Touch")}
+    truth = Truth(up + 0.8, (), {"extended": names}, {})
+    return record(Script("pinch", performer, truth, bodies), Sampling(**options))
+
+
+PARTS: dict[str, tuple[Vector, Vector]] = {
+    "palm": ((0.09, 0.085, 0.03), (-0.055, 0.0, -0.015)),
+    "thumb": ((0.016, 0.016, 0.08), (0.04, 0.025, -0.07)),
+    "index": ((0.016, 0.016, 0.08), (0.04, -0.025, -0.07)),
+    "middle": ((0.08, 0.016, 0.016), (0.045, -0.05, -0.02)),
+    "ring": ((0.08, 0.016, 0.016), (0.045, -0.07, -0.02)),
+    "pinky": ((0.08, 0.016, 0.016), (0.045, -0.09, -0.02)),
+}
+"""Lengths of the parts of a hand about to pinch, and where their middles are in its frame [m]."""
+
+
+def _part(size: Vector, middle: Vector) -> Shape:
+    mesh = trimesh.creation.box(extents=size)
+    mesh.apply_translation(middle)
+    return shapes.shape(mesh, f"part of {size[0]:g} x {size[1]:g} x {size[2]:g} m")
 
 
 def _whole(performer: Performer, side: str, taken: Sequence[Stride]) -> list[Body]:
