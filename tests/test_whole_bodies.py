@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import motions
 import pytest
+from motions.trials import Options
 from motions.whole import WHOLE, pinch, walk
 from test_uses import RECORDED
 
@@ -109,7 +110,7 @@ def test_parts_that_are_not_grouped_are_told_each_by_itself() -> None:
 @pytest.mark.parametrize("options", RECORDED.values(), ids=RECORDED)
 @PEOPLE
 def test_a_hand_of_palm_and_fingers_does_what_the_same_hand_does_as_one_body(
-    performer: motions.Performer, options: dict[str, float]
+    performer: motions.Performer, options: Options
 ) -> None:
     of_parts = observe(grouped(pinch(performer, fingers=True, **options).capture))
     in_one = observe(pinch(performer, fingers=False, **options).capture)
@@ -161,14 +162,12 @@ def test_a_part_of_nobody_or_of_another_agent_is_refused() -> None:
     capture = walk(motions.WOMAN).capture
     first, second = capture.sensors
 
-    def with_second(**changes: str) -> Capture:
-        guest = replace(capture.agent, name="guest")
-        return replace(capture, sensors=(first, replace(second, **changes)), others=(guest,))
-
+    guest = replace(capture.agent, name="guest")
     with pytest.raises(UnknownNameError, match="rihgt_foot"):
-        with_second(part_of="rihgt_foot")
+        replace(capture, sensors=(first, replace(second, part_of="rihgt_foot")))
     with pytest.raises(CaptureError, match="another agent wears"):
-        with_second(part_of=first.name, agent="guest")
+        hers = replace(second, part_of=first.name, agent="guest")
+        replace(capture, sensors=(first, hers), others=(guest,))
 
 
 def test_hands_that_have_a_thing_between_them_do_not_clap() -> None:

@@ -198,8 +198,7 @@ def pinch(performer: Performer, *, fingers: bool, **options: Unpack[Options]) ->
     thing = Riding(Still(block), hand, grip, lifts)
     parts = {f"right_{name}": _part(*place) for name, place in PARTS.items()}
     if not fingers:
-        meshes = [shapes.surface(each) for each in parts.values()]
-        parts = {"right_hand": shapes.shape(trimesh.util.concatenate(meshes), "hand in one")}
+        parts = {"right_hand": _in_one(*parts.values())}
     bodies = (
         *(Body(name, hand, shape, link="right_arm") for name, shape in parts.items()),
         Body("block", thing, shapes.box(0.04, 0.04, 0.06), TagType.MOBILE, mass_kg=0.1),
@@ -220,6 +219,14 @@ PARTS: dict[str, tuple[Vector, Vector]] = {
     "pinky": ((0.08, 0.016, 0.016), (0.045, -0.09, -0.02)),
 }
 """Lengths of the parts of a hand about to pinch, and where their middles are in its frame [m]."""
+
+
+def _in_one(*parts: Shape) -> Shape:
+    """Shapes in one frame as one shape."""
+    counts = np.cumsum([0, *(len(each.vertices) for each in parts)])
+    faces = [each.faces + start for each, start in zip(parts, counts, strict=False)]
+    vertices = np.concatenate([each.vertices for each in parts])
+    return Shape(vertices, np.concatenate(faces), description="hand in one")
 
 
 def _part(size: Vector, middle: Vector) -> Shape:
