@@ -184,6 +184,14 @@ def test_hands_that_have_a_thing_between_them_do_not_clap() -> None:
     assert not any(each.name == "Clap" for each in observe(held).segments)
 
 
+def test_surfaces_that_are_stated_to_be_far_off_do_not_show_hands_that_meet() -> None:
+    capture = WHOLE[2](motions.WOMAN).capture
+    loose = replace(capture, contact_tolerance_m=0.02)
+    assert with_meeting_hands(loose) is loose
+    tight = replace(capture, contact_tolerance_m=0.008)
+    assert len(with_meeting_hands(tight).objects) == 2
+
+
 def test_hands_that_never_meet_are_no_objects() -> None:
     capture = motions.drink_from_mug(motions.WOMAN).capture
     assert with_meeting_hands(capture) is capture

@@ -24,9 +24,14 @@ def with_meeting_hands(capture: Capture) -> Capture:
 
     That holds for hands with shapes that come together while neither has a mobile object at its
     surface; those that hold or pass something meet by the way. Who declares one of the two hands
-    as an object has said which meetings are watched.
+    as an object has said which meetings are watched. Where the capture states a tolerance larger
+    than noise accounts for, its surfaces are off by so much that two hands beside each other would
+    meet: there they have to be declared.
     """
-    tolerance_m = capture.contact_tolerance_m or Thresholds().tolerance_most_m
+    limits = Thresholds()
+    tolerance_m = capture.contact_tolerance_m or limits.tolerance_most_m
+    if tolerance_m > limits.tolerance_most_m:
+        return capture
     found: dict[str, Sensor] = {}
     for one, other in _pairs(capture):
         if _meet_free(capture, one, other, tolerance_m):
