@@ -149,7 +149,9 @@ def _foot_levels(capture: Capture, bodies: Bodies, thresholds: Thresholds) -> It
         feet = [
             bodies.sensors[each.name]
             for each in capture.sensors
-            if capture.agent_of(each) == agent.name and each.end_effector == FOOT
+            if capture.agent_of(each) == agent.name
+            and each.end_effector == FOOT
+            and not each.part_of
         ]
         height_m = foot_level(feet, thresholds)
         if height_m is not None:

@@ -38,6 +38,7 @@ from capar.model.facts import (
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
+from extractors.contact.touching_part import touching_part
 from extractors.motion.impacts import closing_speed, falls, release_speed
 from extractors.motion.leaning import leaning
 from extractors.motion.lengthwise import lengthwise
@@ -274,10 +275,13 @@ def _contacts(
     capture: Capture, bodies: Bodies, touches: Iterable[Touching], thresholds: Thresholds
 ) -> Iterator[Fact]:
     upward: dict[tuple[str, str, int], int] = {}
-    acting = {sensor.name: bodies.sensors[sensor.name] for sensor in capture.acting}
-    known = {**bodies.objects, **acting}
+    acting = {sensor.name for sensor in capture.acting}
     for touch in touches:
-        body, other = known[touch.body], known[touch.other]
+        other = bodies.objects[touch.other]
+        if touch.body in acting:
+            body = touching_part(bodies, touch.body, other, touch.first)
+        else:
+            body = bodies.objects[touch.body]
         swapped = upward.get((touch.other, touch.body, touch.first))
         if swapped is not None:
             yield ContactNormal(touch.body, touch.other, touch.first, -swapped)

@@ -194,7 +194,7 @@ def _together(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
     segments = {(segment.ee, segment.index): segment for segment in seen.seen.segments}
     for joint in seen.seen.joint:
         own = [segments[each] for each in zip(joint.ees, joint.segments, strict=True)]
-        acting = [seen.seen.who(joint)] if both else joint.ees
+        acting = [seen.seen.who(joint)] if both else joint.who
         if sorted(acting) == sorted(who) and all(_fits(each, step) for each in own):
             yield joint.start_s, joint.end_s
 

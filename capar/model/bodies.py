@@ -137,6 +137,10 @@ class Sensor:
     agent: str = ""
     """Name of the agent whose body it rides on; empty for the capture's first, or only, one."""
 
+    part_of: str = ""
+    """Name of the sensor whose end-effector this one rides on too, as a finger's does on a hand's:
+    it makes no segments of its own, and what it touches that end-effector touches."""
+
 
 @dataclass(frozen=True, eq=False)
 class TagObject:

@@ -119,6 +119,18 @@ class Capture:
                 if name not in self.bodies:
                     raise UnknownNameError("body", name, self.bodies, where="pivot contact")
         self._check_agents()
+        self._check_parts()
+
+    def _check_parts(self) -> None:
+        wholes = {each.name: each for each in self.sensors if not each.part_of}
+        for each in self.sensors:
+            if each.part_of and each.part_of not in wholes:
+                raise UnknownNameError("sensor", each.part_of, wholes, where=each.name)
+            if each.part_of and self.agent_of(each) != self.agent_of(wholes[each.part_of]):
+                raise CaptureError(
+                    f"{each.name!r} is part of {each.part_of!r}, which another agent wears; the "
+                    "parts of an end-effector are of one agent"
+                )
 
     def _check_agents(self) -> None:
         agents = [each.name for each in self.agents]
@@ -164,8 +176,17 @@ class Capture:
 
     @property
     def acting(self) -> tuple[Sensor, ...]:
-        """The sensors that make links, segments and PARs."""
-        return tuple(each for each in self.sensors if each.role is Role.ACTS)
+        """The sensors that make links, segments and PARs: one for each end-effector."""
+        return tuple(each for each in self.sensors if each.role is Role.ACTS and not each.part_of)
+
+    def parts_of(self, name: str) -> tuple[Sensor, ...]:
+        """The sensors that ride on one end-effector: the one that acts for it, then its parts.
+
+        Raises:
+            UnknownNameError: There is no such sensor.
+        """
+        parts = (each for each in self.sensors if each.part_of == name)
+        return (self.sensor(name), *parts)
 
     @property
     def attending(self) -> tuple[Sensor, ...]:

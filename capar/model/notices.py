@@ -280,6 +280,9 @@ KINDS: Mapping[str, NoticeKind] = {
     "end-effector-unknown": NoticeKind(
         "{0}: end_effector {stated!r} is none of {known}, which rules know; did you mean {near!r}?"
     ),
+    "sensors-grouped": NoticeKind(
+        '{0!r} is one end-effector of several sensors: {sensors}; parts = "apart" tells each',
+    ),
     "mesh-not-closed": NoticeKind("{0}: the mesh {mesh} is not closed, it has {edges} open edges"),
     "earlier": NoticeKind("{text}"),
     "rule-violation": NoticeKind("{violation}"),

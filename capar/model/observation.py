@@ -118,7 +118,8 @@ class JointAction:
     """What all their segments are about; the object that all of them possess first."""
 
     ees: tuple[str, ...]
-    """Who takes part, sorted."""
+    """Who takes part, sorted; whoever has several segments in it, as each foot in a walk, once for
+    each of them."""
 
     segments: tuple[int, ...]
     """The index of each one's segment, in that order."""
@@ -131,6 +132,11 @@ class JointAction:
 
     start_s: float
     end_s: float
+
+    @property
+    def who(self) -> tuple[str, ...]:
+        """Who takes part, each once, sorted."""
+        return tuple(dict.fromkeys(self.ees))
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,10 +240,10 @@ class Observation:
         pair = sorted((each.kind, each.side) for each in own)
         for kind, several in BOTH.items():
             if (
-                len(joint.ees) == 2
+                len(joint.who) == 2
                 and len({each.agent for each in own}) == 1
                 and pair == [(kind, "left"), (kind, "right")]
             ):
                 return f"both {several}"
-        *some, last = (each.replace("_", " ") for each in joint.ees)
+        *some, last = (each.replace("_", " ") for each in joint.who)
         return f"{', '.join(some)} and {last}"

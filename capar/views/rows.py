@@ -156,8 +156,8 @@ def _joint_rows(observation: Observation, clock: Callable[[int], float]) -> list
     """For those who act together: what they do as one action."""
     rows = []
     kinds = _kinds(observation)
-    for ees in _in_order(each.ees for each in observation.joint):
-        joint = [each for each in observation.joint if each.ees == ees]
+    for ees in _in_order(each.who for each in observation.joint):
+        joint = [each for each in observation.joint if each.who == ees]
         spans = tuple(
             Span(clock(each.first), clock(each.last), each.name, kinds.get(each.name, each.name))
             for each in joint
@@ -168,10 +168,10 @@ def _joint_rows(observation: Observation, clock: Callable[[int], float]) -> list
 
 def _who(observation: Observation, joint: JointAction) -> str:
     """Who takes part, in few words: of many the first two are named."""
-    if len(joint.ees) <= MOST_NAMED:
+    if len(joint.who) <= MOST_NAMED:
         return observation.who(joint)
-    first, second = (spoken(each) for each in joint.ees[:2])
-    return f"{first}, {second} and {len(joint.ees) - 2} more"
+    first, second = (spoken(each) for each in joint.who[:2])
+    return f"{first}, {second} and {len(joint.who) - 2} more"
 
 
 def kind_of(segment: Segment) -> str:

@@ -15,6 +15,12 @@ class Bodies:
 
     sensors: dict[str, BodyGeometry]
     objects: dict[str, BodyGeometry]
+    parts: dict[str, tuple[str, ...]]
+    """Names of the sensors on each end-effector that several ride on, its own first."""
+
+    def on_end_effector(self, name: str) -> tuple[BodyGeometry, ...]:
+        """What rides on the end-effector that a sensor acts for: its own body, then its parts."""
+        return tuple(self.sensors[each] for each in self.parts.get(name, (name,)))
 
     @property
     def poses(self) -> dict[str, Poses]:
@@ -26,6 +32,7 @@ class Bodies:
         return Bodies(
             {name: replace(each) for name, each in self.sensors.items()},
             {name: replace(each) for name, each in self.objects.items()},
+            self.parts,
         )
 
     def named(self, name: str) -> BodyGeometry:
@@ -53,4 +60,6 @@ def bodies_of(
             objects[each.name] = BodyGeometry(each.name, each.shape, poses)
         else:
             objects[each.name] = geometry_of(each, thresholds, known)
-    return Bodies(sensors, objects)
+    wholes = {each.part_of for each in capture.sensors if each.part_of}
+    parts = {name: tuple(each.name for each in capture.parts_of(name)) for name in sorted(wholes)}
+    return Bodies(sensors, objects, parts)

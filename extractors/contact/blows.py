@@ -47,16 +47,33 @@ def blows(
             held = _held(touches, acting, around, set(motions) - {name})
             if _touched(touches, name, {*acting, *held}, around):
                 continue
-            pairs = [(each, name) for each in acting if each != name]
-            pairs += [(min(each, name), max(each, name)) for each in held]
-            for first, second in pairs:
-                pair = calibration.pair(first, second)
-                if pair.pivots:
-                    continue
-                one = bodies.sensors[first] if first in acting else bodies.objects[first]
-                met = blow(one, bodies.objects[second], frame, pair.touch_m, thresholds)
-                if met is not None:
-                    yield Contact(first, second, met, 0.0)
+            for each in acting:
+                if each != name:
+                    yield from _blow_of_any(each, name, frame, bodies, calibration, thresholds)
+            for first, second in ((min(each, name), max(each, name)) for each in held):
+                pair, one = calibration.pair(first, second), bodies.objects[first]
+                if not pair.pivots:
+                    met = blow(one, bodies.objects[second], frame, pair.touch_m, thresholds)
+                    if met is not None:
+                        yield Contact(first, second, met, 0.0)
+
+
+def _blow_of_any(
+    ee: str,
+    name: str,
+    frame: int,
+    bodies: Bodies,
+    calibration: Calibration,
+    thresholds: Thresholds,
+) -> Iterator[Contact]:
+    """The contact of an end-effector, or of any part of it, with a thing that is set going."""
+    for part in bodies.on_end_effector(ee):
+        if part.shape is None or (pair := calibration.pair(part.name, name)).pivots:
+            continue
+        met = blow(part, bodies.objects[name], frame, pair.touch_m, thresholds)
+        if met is not None:
+            yield Contact(ee, name, met, 0.0)
+            return
 
 
 def _held(

@@ -1,7 +1,8 @@
 """Which bodies touch, from which frame to which, at every frame of a capture (thesis 3.2)."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -12,6 +13,7 @@ from capar.model.capture import Capture, PivotContact, TagType
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import Poses
+from extractors.contact.own_hands import counted_meetings
 from extractors.contact.proximity import Body, distance, near
 from extractors.contact.screening import screened
 from extractors.contact.touch_distances import (
@@ -125,7 +127,32 @@ def contacts(capture: Capture, bodies: Bodies, calibration: Calibration) -> tupl
             else:
                 gap = distance(one, two, interval[0])
             found.append(Contact(first.name, second.name, interval, gap))
-    return tuple(_direct(capture, found, surfaces, calibration))
+    direct = tuple(_direct(capture, found, surfaces, calibration))
+    whole = tuple(of_end_effectors(capture, direct, calibration))
+    met = [(each.first, each.second, each.interval) for each in whole]
+    values: dict[str, Any] = dict(calibration.thresholds)
+    counted = counted_meetings(capture, bodies, met, Thresholds(**values))
+    return tuple(each for each, counts in zip(whole, counted, strict=True) if counts)
+
+
+def of_end_effectors(
+    capture: Capture, found: Iterable[Contact], calibration: Calibration
+) -> Iterator[Contact]:
+    """Contacts with those of the parts of an end-effector as its own: it touches where any does."""
+    wholes = {each.name: each.part_of for each in capture.sensors if each.part_of}
+    several: dict[tuple[str, str], list[Contact]] = {}
+    for each in found:
+        whole = wholes.get(each.first, each.first)
+        if whole in wholes.values():
+            several.setdefault((whole, each.second), []).append(each)
+        else:
+            yield each
+    for (whole, other), parts in several.items():
+        touching = mask([each.interval for each in parts], len(capture.times))
+        dropout_s = calibration.contact_dropout_s
+        for interval in intervals(touching, capture.times, dropout_s=dropout_s, minimum_s=0.0):
+            gap_m = min(each.gap_m for each in parts if each.interval[0] == interval[0])
+            yield Contact(whole, other, interval, gap_m)
 
 
 def _direct(
@@ -156,12 +183,17 @@ def watched(capture: Capture, bodies: Bodies) -> Iterator[tuple[BodyGeometry, Bo
     """Pairs of bodies whose contact matters, each once.
 
     Each acting sensor with each tag object but itself; each mobile object with each other tag
-    object. Of an object that is also an acting sensor both are watched: it may be handled too.
+    object. Of an object that is also an acting sensor both are watched: it may be handled too. The
+    parts of an end-effector are watched as it is, if they have shapes or a stated distance.
     """
     for sensor in capture.acting:
-        for each in capture.objects:
-            if each.name != sensor.name:
-                yield bodies.sensors[sensor.name], bodies.objects[each.name]
+        own = capture.parts_of(sensor.name)
+        for part in own:
+            for each in capture.objects:
+                if each.name in {one.name for one in own}:
+                    continue
+                if not part.part_of or part.shape or _pivot(capture, part.name, each.name):
+                    yield bodies.sensors[part.name], bodies.objects[each.name]
     mobile = sorted(thing.name for thing in capture.objects if thing.tag is TagType.MOBILE)
     for name in mobile:
         for thing in sorted(capture.objects, key=lambda other: other.name):

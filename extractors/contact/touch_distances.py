@@ -8,7 +8,7 @@ import trimesh
 from jaxtyping import Bool, Float
 
 from capar.model.calibration import Found, PairCalibration
-from capar.model.capture import Capture, Shape, ShapeSource, TagType
+from capar.model.capture import Capture, Role, Shape, ShapeSource, TagType
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.proximity import Body, at_frame, body, distance
@@ -90,10 +90,13 @@ def with_gaps(
     for pair in known:
         frames = evidence.carried.get((pair.first, pair.second))
         if pair.found is Found.TOLERANCE and frames is not None:
-            body, thing = bodies.sensors[pair.first], bodies.objects[pair.second]
-            gaps[pair.first, pair.second] = float(
-                np.median(_surface_distances(body, thing, frames, GAP_SAMPLES))
-            )
+            thing = bodies.objects[pair.second]
+            apart = [
+                _surface_distances(part, thing, frames, GAP_SAMPLES)
+                for part in bodies.on_end_effector(pair.first)
+                if part.shape is not None
+            ]
+            gaps[pair.first, pair.second] = float(np.median(np.min(apart, axis=0)))
     for pair in known:
         rivals = [gap for (_, thing), gap in gaps.items() if thing == pair.second]
         gap_m = gaps.get((pair.first, pair.second), 0.0)
@@ -109,7 +112,7 @@ def _witnesses(
 ) -> Iterator[tuple[Found, Bool[np.ndarray, "frames"]]]:
     """Kinds of evidence for a pair, the surest first."""
     nowhere = np.zeros(len(capture.times), dtype=bool)
-    acting = {each.name: each.end_effector for each in capture.acting}
+    acting = {each.name: each.end_effector for each in capture.sensors if each.role is Role.ACTS}
     tags = {each.name: each.tag for each in capture.objects}
     if first in acting:
         yield Found.CO_MOTION, evidence.carried.get((first, second), nowhere)

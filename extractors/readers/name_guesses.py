@@ -1,6 +1,7 @@
 """Guesses from names in a motion file: end-effectors, sides, and how a person stands."""
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,20 @@ LIMBS = {
 }
 """Words in names by which end-effectors are known."""
 
+PARTS = {
+    "hand": ("hand", "wrist", "palm", "carpal", "metacarpal", "thumb", "index", "middle", "ring",
+             "pinky", "little", "finger", "fingers", "fingertip", "fingertips"),
+    "foot": ("foot", "ankle", "heel", "calcaneus", "instep", "midfoot", "sole", "forefoot",
+             "toe", "toes"),
+}  # fmt: skip
+"""What hands and feet consist of, in the words of names; those that act for the whole first."""
+
+AMBIGUOUS = {"index", "middle", "ring", "little"}
+"""Words for fingers that name other things too."""
+
+WHOLES = {"hand": ("hand", "wrist"), "foot": ("foot", "ankle")}
+"""Words that name a hand or foot as a whole, and not a part of it."""
+
 _SIDES = {
     "right": re.compile(r"right|(^|[_.\W])r([_.\W]|$)|[a-z]Rt?$|^R(?=[A-Z_])|(?<=[a-z])R$|_r$"),
     "left": re.compile(r"left|(^|[_.\W])l([_.\W]|$)|[a-z]Lf?t?$|^L(?=[A-Z_])|(?<=[a-z])L$|_l$"),
@@ -34,6 +49,42 @@ def limb_of(name: str) -> str:
     """The end-effector that a name mentions, or an empty string."""
     low = name.lower()
     return next((limb for limb, words in LIMBS.items() if any(w in low for w in words)), "")
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name, in lower case and without numbers: ``L_Index1`` has ``l``, ``index``."""
+    parts = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name)
+    return [word for word in re.split(r"[^a-z]+", parts.lower()) if word]
+
+
+def part_of(name: str) -> tuple[str, int] | None:
+    """Which hand or foot a name is a part of, and how far from acting for it; None for no part.
+
+    The palm stands before the fingers and the heel before the toes.
+    """
+    for limb, words in PARTS.items():
+        ranks = [words.index(word) for word in words_of(name) if word in words]
+        if ranks:
+            return limb, min(ranks)
+    return None
+
+
+def limbs(names: Iterable[str]) -> dict[str, str]:
+    """The bodies that are likely end-effectors or parts of one, each with its hand, foot or head.
+
+    Words that mean other things too, such as ``ring``, count where the same side has another part
+    of a hand.
+    """
+    out: dict[str, str] = {}
+    doubtful = []
+    for name in names:
+        part = part_of(name) if side_of(name) != "none" else None
+        if part and set(words_of(name)) & AMBIGUOUS and not limb_of(name):
+            doubtful.append(name)
+        elif limb := limb_of(name) or (part[0] if part else ""):
+            out[name] = limb
+    hands = {side_of(name) for name, limb in out.items() if limb == "hand"}
+    return out | {name: "hand" for name in doubtful if side_of(name) in hands}
 
 
 def side_of(name: str) -> str:

@@ -34,9 +34,9 @@ def company(
 ) -> Iterator[Travels | MovesWith]:
     """When each mobile object travels, and in whose frame it is steady meanwhile.
 
-    Asked are all sensors and all other mobile objects. A stretch is extended to the frames before
-    and after it in which either is no farther from where it then was in the other's frame than
-    fingers open about what they let go.
+    Asked are all sensors but those on parts of an end-effector, and all other mobile objects. A
+    stretch is extended to the frames before and after it in which either is no farther from where
+    it then was in the other's frame than fingers open about what they let go.
     """
     mobile = [body.name for body in capture.objects if body.tag is TagType.MOBILE]
     for name in mobile:
@@ -46,12 +46,17 @@ def company(
             continue
         for span in _spans(travels, capture, thresholds):
             yield Travels(name, *span)
-        others = [*bodies.sensors.values(), *(bodies.objects[name] for name in mobile)]
+        wholes = [bodies.sensors[each.name] for each in capture.sensors if not each.part_of]
+        others = [*wholes, *(bodies.objects[name] for name in mobile)]
         for other in others:
             if other.name == name or other.poses is thing.poses:
                 continue
             for span in _together(other.poses.settled, thing.poses.settled, capture, thresholds):
-                gap = _gap(other, thing, span, calibration)
+                parts = (
+                    bodies.on_end_effector(other.name) if other.name in bodies.parts else (other,)
+                )
+                gaps = [_gap(part, thing, span, calibration) for part in parts]
+                gap = min(filter(np.isfinite, gaps), default=np.inf)
                 if np.isfinite(gap):
                     yield MovesWith(name, other.name, *span, round(1000.0 * gap))
 

@@ -11,6 +11,7 @@ from capar.model.facts import Bears, Touching
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
+from extractors.contact.touching_part import touching_part
 from extractors.motion.rest import resting
 from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
@@ -53,7 +54,7 @@ def bearing(
     known = list(touches)
     for agent in capture.agents:
         own = [each for each in capture.sensors if capture.agent_of(each) == agent.name]
-        feet = [each for each in own if each.end_effector == FOOT]
+        feet = [each for each in own if each.end_effector == FOOT and not each.part_of]
         if len(feet) == 2:
             level_m = calibration.foot_level(agent.name)
             middle = _middle(own, bodies)
@@ -158,7 +159,7 @@ def _down(
             for each in touches
             if each.body == foot.name
             and each.other in bodies.objects
-            and _bears(foot, bodies.objects[each.other], each.first, thresholds)
+            and _bears(bodies, foot, bodies.objects[each.other], each.first, thresholds)
         ]
         out.append(mask(spans, len(foot.middles)))
         resting_low.append(_heights_at_rest(foot, thresholds))
@@ -184,7 +185,10 @@ def _heights_at_rest(foot: BodyGeometry, thresholds: Thresholds) -> Float[np.nda
     return np.where(mask(list(resting(foot.poses, thresholds)), len(low)), low, np.nan)
 
 
-def _bears(foot: BodyGeometry, thing: BodyGeometry, frame: int, thresholds: Thresholds) -> bool:
+def _bears(
+    bodies: Bodies, foot: BodyGeometry, thing: BodyGeometry, frame: int, thresholds: Thresholds
+) -> bool:
     """Whether a thing that a foot begins to touch bears it from below."""
-    normal = contact_normal(foot, thing, frame, thresholds)
+    part = touching_part(bodies, foot.name, thing, frame)
+    normal = contact_normal(part, thing, frame, thresholds)
     return normal is not None and bool(normal[2] >= thresholds.steep)

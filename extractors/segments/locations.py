@@ -14,6 +14,7 @@ from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.proximity import at_frame, nearest
 from extractors.contact.surfaces import surface
+from extractors.contact.touching_part import touching_part
 from extractors.relations.attention import NOTHING, Attention
 
 _Point: TypeAlias = Float[np.ndarray, "3"]
@@ -77,7 +78,8 @@ def _contact(
     moved = bodies.objects[dominant] if dominant else holder
     if any(each.poses.lost[frame] for each in (holder, moved, at)):
         return None, None
-    on_moved, on_target = _points(moved, at, frame)
+    nearest_part = moved if dominant else touching_part(bodies, ee, at, frame)
+    on_moved, on_target = _points(nearest_part, at, frame)
     ee_nlt = None
     if comes is not None:
         ee_nlt = normalised(on_moved, _relative(moved, holder, frame), size(comes))

@@ -26,11 +26,11 @@ def _joint(
 ) -> NamedNode:
     parts = zip(seen.ees, seen.segments, strict=True)
     properties: PropertyValues = {
-        LABEL: f"{', '.join(seen.ees)}: {seen.name}",
+        LABEL: f"{', '.join(seen.who)}: {seen.name}",
         CAPAR.index: index,
         CAPAR.action: action(out, seen.name),
         CAPAR.name: seen.name,
-        CAPAR.effectors: " ".join(seen.ees),
+        CAPAR.effectors: " ".join(seen.who),
         CAPAR.objects: " ".join(seen.objects),
         CAPAR.dominant: objects.get(seen.objects[0]),
         CAPAR.object: [objects[each] for each in seen.objects if each in objects],

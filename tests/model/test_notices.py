@@ -55,6 +55,9 @@ ONE_OF_EACH = {
         "so the fewest changes explain it",
     notice("flicker", "mug", start_s=1.0, end_s=1.1, length_s=0.1, taken="still"):
         "mug: 0.10 s at 1.00 s taken for still, not as measured: so the fewest changes explain it",
+    notice("sensors-grouped", "right_foot", sensors="right_heel, right_toe"):
+        "'right_foot' is one end-effector of several sensors: right_heel, right_toe; "
+        "parts = \"apart\" tells each",
     notice("no-unit"): "the file states no unit; lengths are shown as if it were metres",
     notice("offset-and-position", "hip", "knee"):
         "hip, knee: OFFSET and position channels both given; a root adds them, any other joint "

@@ -22,7 +22,9 @@ from capar.model.capture import (
 )
 from capar.model.errors import CaptureError, FileError
 from capar.model.geometry import runs
+from extractors.contact.own_hands import with_meeting_hands
 from extractors.readers.bundle.declared import Declared, declared
+from extractors.readers.bundle.grouping import grouped
 from extractors.readers.bundle.location import find_place, open_bundle, takes
 from extractors.readers.bundle.resampling import GAP_S
 from extractors.readers.bundle.world import WorldRecording, to_world
@@ -55,7 +57,7 @@ def read_capture(place: str | Path) -> Capture:
     notices = [*(notice for file in files.values() for notice in file.notices), *group.notices]
     contact = document.contact
     try:
-        return Capture(
+        trial = Capture(
             name=_name(document, take),
             sensors=group.sensors,
             objects=group.objects,
@@ -72,6 +74,7 @@ def read_capture(place: str | Path) -> Capture:
             notices=(*notices, *_gap_notices(group.sensors, group.objects)),
             others=tuple(agents[1:]),
         )
+        return with_meeting_hands(trial if document.parts == "apart" else grouped(trial))
     except CaptureError as error:
         raise CaptureError(f"{document.file_path}: {error}") from None
 

@@ -23,6 +23,7 @@ from capar.model.capture import (
     notice,
 )
 from extractors.readers.bundle.bodies import Body, find_body
+from extractors.readers.bundle.links import LINKS, chain_of
 from extractors.readers.bundle.many import many_objects, many_sensors, pivots
 from extractors.readers.bundle.resampling import rate_notices, resampled, shared_clock
 from extractors.readers.bundle.shapes import Frame, assumed, build_shape
@@ -32,9 +33,6 @@ from extractors.readers.bundle.world import WorldRecording
 if TYPE_CHECKING:
     from extractors.readers.schema.bodies import ObjectEntry, SensorEntry
     from extractors.readers.schema.capture import CaptureFile
-
-LINKS = {"hand": "arm", "foot": "leg", "head": "neck"}
-"""The chain that an end-effector ends, where capture.toml does not say."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +119,7 @@ def _sensor(
     if not any(entry.gaze):
         raise entry.error("gaze", "gaze of no length.", "It is a direction in the sensor's frame.")
     kind = entry.end_effector
-    chain = LINKS.get(kind, kind)
+    chain = chain_of(kind)
     role = entry.role or ("attends" if kind == "head" else "acts")
     return Sensor(
         name=entry.name,

@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from extractors.readers.name_guesses import (
     HEIGHT_M,
     Standing,
     end_effectors,
-    limb_of,
+    limbs,
     side_of,
     standing,
 )
@@ -35,20 +35,22 @@ class _Found:
 def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
     """A commented capture.toml for files, with paths relative to a folder."""
     files = _files(recordings, folder)
-    lines = [f"name = {_quoted(constant_name(name))}", *_frame_lines(recordings), "", "[files]"]
-    lines += [f"{key} = {_quoted(path)}" for key, path in files.items()]
     found = [
         each
         for key, recording in zip(files, recordings, strict=True)
         for each in _found(key, recording)
     ]
+    of_limbs = limbs(each.name for each in found)
+    sensors = [each for each in found if each.name in of_limbs]
+    lines = [f"name = {_quoted(constant_name(name))}", *_frame_lines(recordings)]
+    lines += [*_parts_lines(of_limbs), "", "[files]"]
+    lines += [f"{key} = {_quoted(path)}" for key, path in files.items()]
     used: set[str] = set()
-    sensors = [each for each in found if limb_of(each.name)]
     if not sensors and found:
         lines += ["", f"{EDIT} no name tells of a hand, head or foot; the first body is taken."]
         sensors = found[:1]
     for each in sensors:
-        lines += ["", *_sensor(each, used)]
+        lines += ["", *_sensor(each, of_limbs.get(each.name, "hand"), used)]
     for each in [other for other in found if other not in sensors]:
         lines += ["", *_object(each, used)]
     if not found:
@@ -107,6 +109,14 @@ def _up_lines(person: Standing | None) -> list[str]:
     return [f'up = "{person.up}"                        # from the feet to the head']
 
 
+def _parts_lines(of_limbs: Mapping[str, str]) -> list[str]:
+    """What is done with several sensors on one hand or foot, where there are some."""
+    ends = [(limb, side_of(name)) for name, limb in of_limbs.items()]
+    if len(set(ends)) == len(ends):
+        return []
+    return ['parts = "together"              # each hand and foot is one; "apart" tells its parts']
+
+
 def _found(file: str, recording: Recording) -> list[_Found]:
     """Bodies and marker sets; of a skeleton only its end-effectors, for joints are no objects."""
     names = list(end_effectors(recording) if recording.parents else recording.bodies)
@@ -129,8 +139,8 @@ def _free_name(text: str, used: set[str]) -> str:
     return name
 
 
-def _sensor(found: _Found, used: set[str]) -> list[str]:
-    limb, side = limb_of(found.name) or "hand", side_of(found.name)
+def _sensor(found: _Found, limb: str, used: set[str]) -> list[str]:
+    side = side_of(found.name)
     return [
         "[[sensor]]",
         f"name = {_quoted(_free_name(found.name, used))}",

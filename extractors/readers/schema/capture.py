@@ -163,6 +163,13 @@ class CaptureFile(Takes):
         float | None, key("What is kept ends here, after the first frame.", unit="s")
     ] = None
     force_transfer: Annotated[bool, key("Whether force passes to objects in this trial.")] = False
+    parts: Annotated[
+        Literal["together", "apart"],
+        key(
+            "Sensors on parts of one hand or foot, by their names (palm and fingers, heel and "
+            "toes): ``together`` they are one end-effector, ``apart`` each is one of its own."
+        ),
+    ] = "together"
     files: Annotated[
         dict[
             str,
