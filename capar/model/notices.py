@@ -199,6 +199,43 @@ def _mount_gap(each: Notice) -> str:
     )
 
 
+def _up_contradicted(each: Notice) -> str:
+    """Gravity or rests that the declared upward axis does not fit."""
+    if each["shown"] == "rest":
+        found = (
+            f"{each.bodies[0]!r} rests {each['where']} {each.bodies[1]!r}, with nothing under it"
+        )
+    else:
+        found = (
+            f"{each.bodies[0]!r} falls freely from {each.start_s:.2f} to {each.end_s:.2f} s, "
+            f"{each['angle_deg']:.0f} degrees off the declared down"
+        )
+    if not each["up"]:
+        return f"{found}; no axis of its file points up: level the world before it is read"
+    return (
+        f'{found}: state up = "{each["up"]}" for its file, which was read with "{each["declared"]}"'
+    )
+
+
+def _unit_contradicted(each: Notice) -> str:
+    """Lengths that no person has, and falls by another acceleration than gravity's."""
+    if each["shown"] == "person":
+        first, second = each.bodies
+        found = f"{first!r} and {second!r} of one person are {each['size_m']:g} m apart at most"
+    elif each["shown"] == "speed":
+        found = (
+            f"{each.bodies[0]!r} is faster than {each['speed_mps']:g} m/s for a tenth of the time"
+        )
+    else:
+        found = (
+            f"{each.bodies[0]!r} falls with {each['acceleration_mps2']:g} m/s2 from "
+            f"{each.start_s:.2f} to {each.end_s:.2f} s, not with 9.81"
+        )
+    return (
+        f'{found}: state unit = "{each["unit"]}" for its file, which was read in {each["declared"]}'
+    )
+
+
 WHY_UNMOVED: Mapping[str, str] = {
     "nobody": "nothing that is recorded was near and went with it: is a sensor missing, is the "
     "unit of a file wrong, or was it tracked wrongly?",
@@ -238,6 +275,9 @@ class NoticeKind:
     Without one that does, what is told would be taken for more certain than it is.
     """
 
+    fault: bool = False
+    """Whether it tells of a fault of the recording, or of what was stated of it."""
+
 
 KINDS: Mapping[str, NoticeKind] = {
     "long-gap": NoticeKind(_long_gap, "bodies lost for long"),
@@ -258,10 +298,34 @@ KINDS: Mapping[str, NoticeKind] = {
         _touch_estimated, "pairs that touch by a distance estimated from the recording"
     ),
     "distance-contradicted": NoticeKind(
-        _distance_contradicted, "stated distances that the recording contradicts"
+        _distance_contradicted, "stated distances that the recording contradicts", fault=True
     ),
-    "mount-gap": NoticeKind(_mount_gap, "bodies carried with a gap"),
-    "no-mover": NoticeKind(_no_mover, "objects that move and nothing moves them"),
+    "mount-gap": NoticeKind(_mount_gap, "bodies carried with a gap", fault=True),
+    "no-mover": NoticeKind(_no_mover, "objects that move and nothing moves them", fault=True),
+    "up-contradicted": NoticeKind(
+        _up_contradicted, "falls and rests against the upward axis", fault=True
+    ),
+    "unit-contradicted": NoticeKind(_unit_contradicted, "sizes that no person has", fault=True),
+    "fall-rate": NoticeKind(
+        "{0!r} falls with {acceleration_mps2:g} m/s2 from {start_s:.2f} to {end_s:.2f} s, not with "
+        "9.81: frames came at {rate_hz:g} a second, not at {declared_hz:g}; state rate_hz = "
+        "{rate_hz:g} for its file, or correct its time stamps",
+        "falls at another rate",
+        fault=True,
+    ),
+    "shape-size": NoticeKind(
+        "the shape of {0!r}, {shape}, is {size_m:g} m long, and {0!r} is moved by hand: state "
+        'unit = "{unit}" in its shape',
+        "shapes of a size that nobody handles",
+        fault=True,
+    ),
+    "sides-exchanged": NoticeKind(
+        "{0!r} is on the left of {1!r} as {2!r} looks, in {share:.0%} of what shows their sides: "
+        'exchange the names, correct the gaze of {2!r}, or state handedness = "left" if the file '
+        "has a left-handed world (the other way round if it is stated)",
+        "pairs of right and left that are exchanged",
+        fault=True,
+    ),
     "contact-tolerance": NoticeKind(_contact_tolerance),
     "doubled-stamps": NoticeKind("{samples} samples repeat a stamp; the last of each is kept"),
     "flicker": NoticeKind(_flicker),

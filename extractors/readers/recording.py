@@ -9,10 +9,8 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.capture import Notice, Source, Stream
+from capar.model.conventions import UNITS as UNITS
 from capar.model.errors import CaptureError
-
-UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-"""Metres per unit, by the names that headers and capture.toml use."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -71,6 +71,7 @@ def read_capture(place: str | Path) -> Capture:
             sources=_sources(document, files, group),
             notices=(*notices, *_gap_notices(group.sensors, group.objects)),
             others=tuple(agents[1:]),
+            conventions=group.conventions,
         )
     except CaptureError as error:
         raise CaptureError(f"{document.file_path}: {error}") from None

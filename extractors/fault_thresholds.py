@@ -1,0 +1,101 @@
+"""The numbers by which faults of a recording are told, with unit, meaning and source."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class FaultThresholds:
+    """What separates what is odd in a recording from what cannot be."""
+
+    flight_noise_m: float = 0.0005
+    """Least noise of a path that is taken for a flight's [m]: that of the best trackers."""
+
+    flight_bend_sigmas: float = 20.0
+    """Least bend of a path, in deviations of its noise, by which acceleration is measured [1]."""
+
+    flight_change_share: float = 0.12
+    """A path is a parabola if no more than this share of its bend is another bend [1]."""
+
+    flight_noise_sigmas: float = 1.5
+    """What is left of a path beside a parabola may be so many deviations of its noise more [1]."""
+
+    flight_steady_share: float = 0.4
+    """For how much of its own length a window has to slide along a flight and fit [1]."""
+
+    flight_rim_share: float = 0.1
+    """How much of a flight at either end its acceleration is not taken from [1]: what a window
+    reaches beyond it."""
+
+    flight_along_share: float = 0.3
+    """Who keeps the distance from a body to this share of its way goes along with it [1]."""
+
+    flight_gain_share: float = 0.1
+    """What flies gains at least this share of its change of speed along its acceleration [1]: what
+    is braked by friction gains none."""
+
+    flight_across_share: float = 0.2
+    """A flight is curved if it goes across its acceleration, or against it, by this share of the
+    speed that it gains [1]; what is lowered or slides goes straight."""
+
+    gravity_share: float = 0.2
+    """An acceleration is gravity's if it differs by no more than this share of it [1]: drag of the
+    air and a wrong middle make a tenth."""
+
+    gravity_off_share: float = 0.35
+    """One that differs by more than this share of it cannot be gravity's [1]."""
+
+    gravity_cosine: float = 0.9
+    """Free fall is along an axis if the cosine of the angle between them is this [1]: 26 degrees.
+    Drag on a light ball makes fifteen."""
+
+    unit_share: float = 0.15
+    """A unit of length is the likely one if it explains a ratio but for this share [1]."""
+
+    person_most_m: float = 3.0
+    """No two sensors of a person are further apart than this [m]: a hand over the head of a tall
+    man is 2.6 m above his feet."""
+
+    head_to_foot_m: float = 0.4
+    """Head and foot of a person come at least so far apart within a recording [m]: those of a
+    small child that sits."""
+
+    trunk_to_limb_m: float = 0.15
+    """... and other places of the trunk and hands or feet [m]: a wrist at one's chin."""
+
+    head_to_foot_usual_m: float = 1.5
+    """Usual largest distance of head and foot [m], by which the likely unit is found."""
+
+    trunk_to_limb_usual_m: float = 0.8
+    """The same of other places of the trunk and hands or feet [m], and of two hands."""
+
+    hand_most_mps: float = 15.0
+    """Nobody's hand or foot is faster than this for a tenth of a recording [m/s]: those of throwers
+    and sprinters are for less."""
+
+    hand_usual_mps: float = 1.0
+    """Usual speed of a hand in its fastest tenth of a recording [m/s]."""
+
+    speed_quantile: float = 0.9
+    """Quantile of speeds that is compared with it [1]."""
+
+    thing_most_m: float = 6.0
+    """No thing that people move by hand is longer [m]: a ladder."""
+
+    thing_least_m: float = 0.003
+    """None that is tracked is smaller [m]: a bead."""
+
+    thing_usual_m: float = 0.15
+    """Usual size of a thing in a hand [m]."""
+
+    exchanged_share: float = 0.9
+    """Right and left are exchanged if they lie so in at least this share of the frames that show
+    it [1]: people cross their hands, but not for long."""
+
+    level_gaze: float = 0.5
+    """Sight shows where a person faces if its level part is at least this [1]."""
+
+    apart_share: float = 0.5
+    """Right and left show their sides if at least this share of their distance is aside [1]."""
+
+    shown_share: float = 0.2
+    """Sides are judged if as many places of sensors as this share of the frames show them [1]."""
