@@ -99,3 +99,31 @@ class FaultThresholds:
 
     shown_share: float = 0.2
     """Sides are judged if as many places of sensors as this share of the frames show them [1]."""
+
+    joined_m: float = 0.012
+    """Bodies are joined while one strays no farther than this in the other's frame [m]: the floor
+    of motion, and the noise of two trackers."""
+
+    wander_m: float = 0.036
+    """One wanders if it strays three times as far [m]."""
+
+    joined_share: float = 0.1
+    """What is joined keeps its distance but for this share of it [1]."""
+
+    turned_rad: float = 0.2618
+    """Bodies turn as one if the direction between them turns by so much [rad]: fifteen degrees."""
+
+    order_stretch_s: float = 1.0
+    """How long each stretch is in which that is asked [s]: a turn of the wrist."""
+
+    order_stretches: int = 2
+    """An order is contradicted by so many stretches [1]: one may be chance."""
+
+    order_share: float = 0.2
+    """... of which no more than this share supports it as well [1]."""
+
+    order_pairs: int = 400
+    """So many pairs of bodies of a file are compared at most [1]: those of twenty bodies."""
+
+    order_enough: int = 40
+    """No further pair is compared once so many stretches have shown an order [1]."""

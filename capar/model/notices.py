@@ -306,6 +306,13 @@ KINDS: Mapping[str, NoticeKind] = {
         _up_contradicted, "falls and rests against the upward axis", fault=True
     ),
     "unit-contradicted": NoticeKind(_unit_contradicted, "sizes that no person has", fault=True),
+    "order-contradicted": NoticeKind(
+        "{0} and {1} turn as one, but with quaternions read as {declared} {1} strays by "
+        "{stray_m:g} m in the frame of {0}, as in {stretches} stretches of a second; as {order} it "
+        'does not: state order = "{order}"',
+        "quaternions in another order than declared",
+        fault=True,
+    ),
     "fall-rate": NoticeKind(
         "{0!r} falls with {acceleration_mps2:g} m/s2 from {start_s:.2f} to {end_s:.2f} s, not with "
         "9.81: frames came at {rate_hz:g} a second, not at {declared_hz:g}; state rate_hz = "

@@ -21,6 +21,10 @@ class Recording:
     bodies: Mapping[str, Stream] = field(default_factory=dict)
     """Poses by the file's own names; positions in the file's unit."""
 
+    orders: Mapping[str, str] = field(default_factory=dict)
+    """The order in which quaternions of a body were read, ``xyzw`` or ``wxyz``, where the file does
+    not state it."""
+
     markers: Mapping[str, Float[np.ndarray, "frames 3"]] = field(default_factory=dict)
     """Points by the file's own names, in the file's unit; NaN where they were not seen."""
 
@@ -51,6 +55,7 @@ class Recording:
         if not self.markers and not self.bodies:
             raise CaptureError("neither a body nor a marker in it")
         object.__setattr__(self, "bodies", MappingProxyType(dict(self.bodies)))
+        object.__setattr__(self, "orders", MappingProxyType(dict(self.orders)))
         object.__setattr__(self, "markers", MappingProxyType(dict(self.markers)))
         object.__setattr__(self, "parents", MappingProxyType(dict(self.parents)))
 

@@ -65,6 +65,10 @@ ONE_OF_EACH = {
         "'right_hand' is on the left of 'left_hand' as 'head' looks, in 97% of what shows their "
         "sides: exchange the names, correct the gaze of 'head', or state handedness = \"left\" if "
         "the file has a left-handed world (the other way round if it is stated)",
+    notice("order-contradicted", "Hand", "Mug", declared="xyzw", order="wxyz", stray_m=0.14,
+           stretches=3):
+        "Hand and Mug turn as one, but with quaternions read as xyzw Mug strays by 0.14 m in the "
+        "frame of Hand, as in 3 stretches of a second; as wxyz it does not: state order = \"wxyz\"",
     notice("no-shape", "mug"): "'mug' has no shape, so no contact of it is known",
     notice("stand-in-shape", "mug", shape="ball of {radius}"):
         "'mug' is a stand-in: ball of {radius}",

@@ -12,7 +12,9 @@ from capar.model.capture import Notice, Source, Stream
 from capar.model.conventions import UP as UP
 from capar.model.conventions import Conventions
 from capar.model.errors import CaptureError
+from extractors.faults.quaternion_order import order_notices
 from extractors.readers.recording import UNITS, Recording
+from extractors.thresholds import Thresholds
 
 LARGEST_M = 100.0
 """No room for motion capture spans more [m]."""
@@ -61,7 +63,10 @@ def to_world(recording: Recording, *, unit_m: float, up: str, left_handed: bool)
         markers=markers,
         marker_times=recording.marker_times,
         parents=recording.parents,
-        notices=recording.notices,
+        notices=(
+            *recording.notices,
+            *order_notices(recording.bodies, recording.orders, unit_m, Thresholds()),
+        ),
         conventions=Conventions(unit_m, up, left_handed),
     )
 
