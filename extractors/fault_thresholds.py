@@ -127,3 +127,17 @@ class FaultThresholds:
 
     order_enough: int = 40
     """No further pair is compared once so many stretches have shown an order [1]."""
+
+    long_rest_s: float = 0.5
+    """A rest of at least this length shows what bears a thing [s]."""
+
+    level_apart_m: float = 0.05
+    """Things at the side of a body rest on no common floor if their heights differ by so much
+    [m]: a hand's breadth, more than things on one table differ in the height of their middles."""
+
+    box_overlap_m: float = 0.03
+    """Bodies whose boxes overlap by more than this are inside each other [m]."""
+
+    rest_share: float = 0.75
+    """Rests that are against what bears them in one direction, as a share of all, from which on
+    that direction is upward [1]: things also touch what stands beside them."""

@@ -152,7 +152,7 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
     notices = (
         *own,
         *notices_of(capture, calibration, limits),
-        *faults(capture, bodies, limits),
+        *faults(capture, bodies, touches, _motions(moves), limits),
     )
     return Measurements(
         _ordered(facts), notices, calibration, tracks, looks, bodies.without_caches(), guides
