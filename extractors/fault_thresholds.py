@@ -22,6 +22,14 @@ class FaultThresholds:
     flight_steady_share: float = 0.4
     """For how much of its own length a window has to slide along a flight and fit [1]."""
 
+    flight_even_share: float = 0.02
+    """Cubic and quartic terms of a whole flight are no more than this share of the square one [1]:
+    its acceleration then changes by no more than a quarter. Where a hand speeds up it changes by
+    all."""
+
+    flight_even_sigmas: float = 2.5
+    """... and so many deviations of its noise [1]."""
+
     flight_rim_share: float = 0.1
     """How much of a flight at either end its acceleration is not taken from [1]: what a window
     reaches beyond it."""

@@ -62,11 +62,12 @@ def flights(
     carriers = [each.poses.filled.positions for each in others if each.name != body.name]
     noise_m = max(body.poses.noise.position_m, thresholds.flight_noise_m)
     for first, last in geometry.runs(~np.isnan(places[:, 0])):
-        span = slice(first, last + 1)
-        if last - first + 1 < WINDOWS[0] or _uneven(times[span]):
+        known = slice(first, last + 1)
+        if last - first + 1 < WINDOWS[0] or _uneven(times[known]):
             continue
-        for begin, end in _parabolic(places[span], noise_m, thresholds):
-            found = _flight(body.name, places, times, (first + begin, first + end), thresholds)
+        for begin, end in _parabolic(places[known], noise_m, thresholds):
+            span = first + begin, first + end
+            found = _flight(body.name, places, times, span, noise_m, thresholds)
             if found and not any(
                 goes_along(places, carrier, slice(found.first, found.last + 1), thresholds)
                 for carrier in carriers
@@ -92,13 +93,16 @@ def _flight(
     places: Places,
     times: Float[np.ndarray, "frames"],
     span: Interval,
+    noise_m: float,
     thresholds: Thresholds,
 ) -> Flight | None:
-    """The flight of a parabolic stretch; None if it does not speed up along its acceleration."""
+    """The flight of a stretch; None if its acceleration changes, or it gains no speed along it."""
     first, last = span
     rim = round(thresholds.flight_rim_share * (last - first))
     frames = slice(first + rim, last - rim + 1)
     clock = times[frames] - times[frames.start]
+    if not _even(places[frames], clock, noise_m, thresholds):
+        return None
     (bend, begin, _), *_ = np.linalg.lstsq(
         np.stack([0.5 * clock**2, clock, np.ones_like(clock)], axis=1), places[frames], rcond=None
     )
@@ -112,6 +116,17 @@ def _flight(
     turned = before < -thresholds.flight_across_share * gained
     curved = across >= thresholds.flight_across_share * gained
     return Flight(name, first, last, bend, turned or curved)
+
+
+def _even(
+    places: Places, clock: Float[np.ndarray, "frames"], noise_m: float, thresholds: Thresholds
+) -> bool:
+    """Whether acceleration is even through a whole flight: no cubic and no quartic term."""
+    powers = np.stack([(clock / clock[-1]) ** power for power in range(5)], axis=1)
+    basis, _ = np.linalg.qr(powers)
+    terms = np.linalg.norm(basis.T @ places, axis=1)
+    allowed_m = thresholds.flight_even_share * terms[2] + thresholds.flight_even_sigmas * noise_m
+    return bool(terms[3] <= allowed_m and terms[4] <= allowed_m)
 
 
 def _parabolic(places: Places, noise_m: float, thresholds: Thresholds) -> Iterator[Interval]:

@@ -36,8 +36,9 @@ def gravity_notices(
 ) -> Iterator[Notice]:
     """Notices of falls that cannot be, with what would make them falls.
 
-    Straight descents may be other than free: of those it takes two. Where as many flights are
-    sound as are not, nothing is said.
+    Straight descents may be other than free: it takes two of them that are as fast as falls, and
+    what is slower or faster than a fall has to be curved. Where as many flights are sound as are
+    not, nothing is said.
 
     Args:
         capture: The trial.
@@ -55,8 +56,10 @@ def gravity_notices(
         groups[_verdict(flight, thresholds)].append(flight)
     sound = len(groups.pop(Verdict.SOUND))
     for verdict, group in groups.items():
-        if len(group) > sound and (len(group) > 1 or group[0].curved):
-            longest = max(group, key=lambda flight: flight.last - flight.first)
+        curved = [flight for flight in group if flight.curved]
+        sure = group if verdict is Verdict.ASIDE and len(group) > 1 else curved
+        if sure and len(group) > sound:
+            longest = max(sure, key=lambda flight: flight.last - flight.first)
             how = capture.conventions.get(longest.body, Conventions())
             yield from _notices(capture, longest, verdict, how, thresholds, sized=sized)
 
