@@ -7,7 +7,7 @@ from capar.model.notices import Notice
 from extractors.bodies.bodies import Bodies
 from extractors.contact.contacts import Contact
 from extractors.faults.gravity import gravity_notices
-from extractors.faults.person_size import is_sized, size_notices
+from extractors.faults.person_size import is_sized, shape_notices, size_notices
 from extractors.faults.rests import rest_notices
 from extractors.faults.sides import side_notices
 from extractors.signals.intervals import Interval
@@ -23,6 +23,8 @@ def faults(
 ) -> Iterator[Notice]:
     """Notices of what cannot be: falls, rests, sizes and sides that contradict what was declared.
 
+    A fall shows axis and unit exactly; rests and sizes are asked only where no fall does.
+
     Args:
         capture: The trial.
         bodies: Its bodies.
@@ -31,7 +33,11 @@ def faults(
         thresholds: What separates odd from impossible.
     """
     sized = is_sized(capture, thresholds)
-    yield from gravity_notices(capture, bodies, thresholds, sized=sized)
-    yield from rest_notices(capture, bodies, touches, motions, thresholds)
-    yield from size_notices(capture, thresholds)
+    falls = list(gravity_notices(capture, bodies, thresholds, sized=sized))
+    yield from falls
+    if not any(each.code == "up-contradicted" for each in falls):
+        yield from rest_notices(capture, bodies, touches, motions, thresholds)
+    if not any(each.code == "unit-contradicted" for each in falls):
+        yield from size_notices(capture, thresholds)
+    yield from shape_notices(capture, thresholds)
     yield from side_notices(capture, thresholds)

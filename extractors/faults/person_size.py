@@ -61,7 +61,7 @@ def is_sized(capture: Capture, thresholds: Thresholds) -> bool:
 
 
 def size_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
-    """One notice if people are too small or too large, and one for each thing that is."""
+    """A notice if people are too small or too large, or each sensor alone is too fast."""
     found = reaches(capture, thresholds)
     wrong = [
         each
@@ -76,7 +76,6 @@ def size_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
             **_remedy(capture, worst, thresholds),
         )  # fmt: skip
     yield from _fast_notices(capture, found, thresholds)
-    yield from _thing_notices(capture, thresholds)
 
 
 def _remedy(capture: Capture, reach: Reach, thresholds: Thresholds) -> dict[str, str]:
@@ -127,7 +126,7 @@ def _fast_notices(capture: Capture, found: list[Reach], thresholds: Thresholds) 
             )  # fmt: skip
 
 
-def _thing_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
+def shape_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
     """Mobile objects whose shapes nobody could handle or see."""
     for thing in capture.objects:
         if thing.tag is not TagType.MOBILE or thing.shape is None:

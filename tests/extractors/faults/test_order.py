@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from motions import PERFORMERS, drink_from_mug
+from motions.performers import Performer
 from scipy.spatial.transform import Rotation
 from write_demo import write_tables
 
@@ -36,7 +37,7 @@ def misread(bodies: dict[str, Stream], declared: str) -> dict[str, Stream]:
 @settings(max_examples=8, deadline=None)
 @given(st.sampled_from(PERFORMERS), ORDERS, st.integers(0, 99))
 def test_a_drink_read_in_the_wrong_order_is_noticed_and_the_sound_one_is_not(
-    performer, declared: str, seed: int
+    performer: Performer, declared: str, seed: int
 ) -> None:
     capture = drink_from_mug(performer, noise_m=0.0005, noise_rad=0.005, seed=seed).capture
     bodies = {name: capture.bodies[name].stream for name in ("right_hand", "mug")}
