@@ -9,6 +9,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from capar.model.errors import CaparError, UnknownNameError
+from capar.model.fault_sentences import (
+    FALL_RATE,
+    ORDER_CONTRADICTED,
+    SHAPE_SIZE,
+    SIDES_EXCHANGED,
+    distance_contradicted,
+    mount_gap,
+    no_mover,
+    unit_contradicted,
+    up_contradicted,
+)
 
 Value = str | int | float | bool
 
@@ -61,8 +72,12 @@ class Notice:
         text = KINDS[self.code].text
         if callable(text):
             return text(self)
-        fields = {"start_s": self.start_s, "end_s": self.end_s, **dict(self.values)}
-        return text.format(*self.bodies, **fields)
+        return text.format(*self.bodies, **self.fields)
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """Times and values by name."""
+        return {"start_s": self.start_s, "end_s": self.end_s, **dict(self.values)}
 
     def document(self) -> dict[str, Any]:
         """Its JSON form: the fields that it has, and the message for those who read no code."""
@@ -181,80 +196,6 @@ def _touch_estimated(each: Notice) -> str:
     )
 
 
-def _distance_contradicted(each: Notice) -> str:
-    first, second = each.bodies
-    taken, shown = (1e3 * float(each[name]) for name in ("touch_m", "shown_m"))
-    return (
-        f"{first!r} and {second!r} are stated to touch within {taken:.0f} mm, but {each['frames']} "
-        f"frames of sure contact show {shown:.0f} mm; state that, or leave distance_m out"
-    )
-
-
-def _mount_gap(each: Notice) -> str:
-    first, second = each.bodies
-    gap, taken = (1e3 * float(each[name]) for name in ("shown_m", "touch_m"))
-    return (
-        f"{first!r} carries {second!r} steadily in {each['frames']} frames with a gap of "
-        f"{gap:.0f} mm, but surfaces touch within {taken:.0f} mm: a mount, a mesh or a fit is off"
-    )
-
-
-def _up_contradicted(each: Notice) -> str:
-    """Gravity or rests that the declared upward axis does not fit."""
-    if each["shown"] == "rest":
-        found = (
-            f"{each.bodies[0]!r} rests {each['where']} {each.bodies[1]!r}, with nothing under it"
-        )
-    else:
-        found = (
-            f"{each.bodies[0]!r} falls freely from {each.start_s:.2f} to {each.end_s:.2f} s, "
-            f"{each['angle_deg']:.0f} degrees off the declared down"
-        )
-    if not each["up"]:
-        return f"{found}; no axis of its file points up: level the world before it is read"
-    return (
-        f'{found}: state up = "{each["up"]}" for its file, which was read with "{each["declared"]}"'
-    )
-
-
-def _unit_contradicted(each: Notice) -> str:
-    """Lengths that no person has, and falls by another acceleration than gravity's."""
-    if each["shown"] == "person":
-        first, second = each.bodies
-        found = f"{first!r} and {second!r} of one person are {each['size_m']:g} m apart at most"
-    elif each["shown"] == "speed":
-        found = (
-            f"{each.bodies[0]!r} is faster than {each['speed_mps']:g} m/s for a tenth of the time"
-        )
-    else:
-        found = (
-            f"{each.bodies[0]!r} falls with {each['acceleration_mps2']:g} m/s2 from "
-            f"{each.start_s:.2f} to {each.end_s:.2f} s, not with 9.81"
-        )
-    return (
-        f'{found}: state unit = "{each["unit"]}" for its file, which was read in {each["declared"]}'
-    )
-
-
-WHY_UNMOVED: Mapping[str, str] = {
-    "nobody": "nothing that is recorded was near and went with it: is a sensor missing, is the "
-    "unit of a file wrong, or was it tracked wrongly?",
-    "beyond_reach": "something went with it beyond reach: is a mount, a distance or a unit wrong?",
-    "left_behind": "what touched it rested meanwhile: is a distance of contact too large, or a "
-    "sensor missing?",
-}
-"""What would explain that nothing moves an object, by what the rules found."""
-
-
-def _no_mover(each: Notice) -> str:
-    share = 100.0 * float(each["share"])
-    often = "" if each["times"] == 1 else f", the longest of {each['times']} times"
-    return (
-        f"nothing moves {each.bodies[0]!r} in {share:.1f} % of its motion, from {each.start_s:.2f} "
-        f"to {each.end_s:.2f} s{often}; {WHY_UNMOVED[str(each['why'])]}"
-    )
-
-
 def _flicker(each: Notice) -> str:
     return (
         f"{' with '.join(each.bodies)}: {each['length_s']:.2f} s at {each.start_s:.2f} s taken for "
@@ -298,40 +239,35 @@ KINDS: Mapping[str, NoticeKind] = {
         _touch_estimated, "pairs that touch by a distance estimated from the recording"
     ),
     "distance-contradicted": NoticeKind(
-        _distance_contradicted, "stated distances that the recording contradicts", fault=True
+        lambda each: distance_contradicted(each.bodies, each.fields),
+        "stated distances that the recording contradicts",
+        fault=True,
     ),
-    "mount-gap": NoticeKind(_mount_gap, "bodies carried with a gap", fault=True),
-    "no-mover": NoticeKind(_no_mover, "objects that move and nothing moves them", fault=True),
+    "mount-gap": NoticeKind(
+        lambda each: mount_gap(each.bodies, each.fields), "bodies carried with a gap", fault=True
+    ),
+    "no-mover": NoticeKind(
+        lambda each: no_mover(each.bodies, each.fields),
+        "objects that move and nothing moves them",
+        fault=True,
+    ),
     "up-contradicted": NoticeKind(
-        _up_contradicted, "falls and rests against the upward axis", fault=True
+        lambda each: up_contradicted(each.bodies, each.fields),
+        "falls and rests against the upward axis",
+        fault=True,
     ),
-    "unit-contradicted": NoticeKind(_unit_contradicted, "sizes that no person has", fault=True),
+    "unit-contradicted": NoticeKind(
+        lambda each: unit_contradicted(each.bodies, each.fields),
+        "sizes that no person has",
+        fault=True,
+    ),
     "order-contradicted": NoticeKind(
-        "{0} and {1} turn as one, but with quaternions read as {declared} {1} strays by "
-        "{stray_m:g} m in the frame of {0}, as in {stretches} stretches of a second; as {order} it "
-        'does not: state order = "{order}"',
-        "quaternions in another order than declared",
-        fault=True,
+        ORDER_CONTRADICTED, "quaternions in another order than declared", fault=True
     ),
-    "fall-rate": NoticeKind(
-        "{0!r} falls with {acceleration_mps2:g} m/s2 from {start_s:.2f} to {end_s:.2f} s, not with "
-        "9.81: frames came at {rate_hz:g} a second, not at {declared_hz:g}; state rate_hz = "
-        "{rate_hz:g} for its file, or correct its time stamps",
-        "falls at another rate",
-        fault=True,
-    ),
-    "shape-size": NoticeKind(
-        "the shape of {0!r}, {shape}, is {size_m:g} m long, and {0!r} is moved by hand: state "
-        'unit = "{unit}" in its shape',
-        "shapes of a size that nobody handles",
-        fault=True,
-    ),
+    "fall-rate": NoticeKind(FALL_RATE, "falls at another rate", fault=True),
+    "shape-size": NoticeKind(SHAPE_SIZE, "shapes of a size that nobody handles", fault=True),
     "sides-exchanged": NoticeKind(
-        "{0!r} is on the left of {1!r} as {2!r} looks, in {share:.0%} of what shows their sides: "
-        'exchange the names, correct the gaze of {2!r}, or state handedness = "left" if the file '
-        "has a left-handed world (the other way round if it is stated)",
-        "pairs of right and left that are exchanged",
-        fault=True,
+        SIDES_EXCHANGED, "pairs of right and left that are exchanged", fault=True
     ),
     "contact-tolerance": NoticeKind(_contact_tolerance),
     "doubled-stamps": NoticeKind("{samples} samples repeat a stamp; the last of each is kept"),

@@ -18,7 +18,7 @@ def faults(
     capture: Capture,
     bodies: Bodies,
     touches: Sequence[Contact],
-    motions: Mapping[str, Sequence[Interval]],
+    motions: Mapping[str, list[Interval]],
     thresholds: Thresholds,
 ) -> Iterator[Notice]:
     """Notices of what cannot be: falls, rests, sizes and sides that contradict what was declared.

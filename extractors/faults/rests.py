@@ -35,7 +35,7 @@ def rest_notices(
     capture: Capture,
     bodies: Bodies,
     touches: Sequence[Contact],
-    motions: Mapping[str, Sequence[Interval]],
+    motions: Mapping[str, list[Interval]],
     thresholds: Thresholds,
 ) -> Iterator[Notice]:
     """A notice if things that are moved by hand rest against other bodies, and none on one.
@@ -81,7 +81,7 @@ def _rests(
     bodies: Bodies,
     name: str,
     touches: Sequence[Contact],
-    motions: Sequence[Interval],
+    motions: list[Interval],
     thresholds: Thresholds,
 ) -> Iterator[Rest]:
     """Each long stay of a thing against each body that it touches meanwhile; none if it is held."""
