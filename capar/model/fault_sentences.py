@@ -67,7 +67,8 @@ def distance_contradicted(bodies: Sequence[str], fields: Mapping[str, Any]) -> s
     taken, shown = (1e3 * float(fields[name]) for name in ("touch_m", "shown_m"))
     return (
         f"{first!r} and {second!r} are stated to touch within {taken:.0f} mm, but "
-        f"{fields['frames']} frames of sure contact show {shown:.0f} mm; state that, or leave distance_m out"
+        f"{fields['frames']} frames of sure contact show {shown:.0f} mm; "
+        "state that, or leave distance_m out"
     )
 
 
