@@ -41,6 +41,7 @@ from extractors.bodies.poses import Poses
 from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
+from extractors.faults.faults import faults
 from extractors.handling_facts import handling
 from extractors.measurement_notices import LOSS, notices_of
 from extractors.motion.motion_edges import motion_edges
@@ -148,7 +149,11 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
     guides = dict(_guides(capture, bodies, calibration, limits))
     facts += handling(capture, bodies, facts, calibration, limits, guides)
     own = [notice for notice in capture.notices if notice.code != LOSS]
-    notices = (*own, *notices_of(capture, calibration, limits))
+    notices = (
+        *own,
+        *notices_of(capture, calibration, limits),
+        *faults(capture, bodies, touches, _motions(moves), limits),
+    )
     return Measurements(
         _ordered(facts), notices, calibration, tracks, looks, bodies.without_caches(), guides
     )

@@ -8,9 +8,11 @@ can be found.
 
 from dataclasses import dataclass
 
+from extractors.fault_thresholds import FaultThresholds
+
 
 @dataclass(frozen=True, slots=True)
-class Thresholds:
+class Thresholds(FaultThresholds):
     """What separates motion from rest, contact from nearness and a gap from a loss."""
 
     cutoff_hz: float = 8.0

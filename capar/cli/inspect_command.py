@@ -90,12 +90,9 @@ def _of_capture(place: str) -> dict[str, Any]:
     return head | as_json(surveys, near_pairs(streams))
 
 
-FINDINGS = ("no-mover", "mount-gap", "distance-contradicted")
-"""Notices of measuring that tell of a fault of the recording, or of what was stated of it."""
-
-
 def _findings(capture: "Capture") -> "Iterator[Notice]":
-    """What measuring finds to be wrong: motion without a mover, distances that do not fit."""
+    """What measuring finds to be wrong: motion without a mover, falls, sizes and distances."""
+    from capar.model.notices import KINDS
     from capar.pipelines.movers import unmoved_notices
     from capar_rules.borders.deflicker import steady
     from capar_rules.movers.movers import movers
@@ -104,7 +101,7 @@ def _findings(capture: "Capture") -> "Iterator[Notice]":
     measured = measure(capture)
     facts = steady(measured.facts)
     found = unmoved_notices((*facts, *movers(facts)), capture.times)
-    yield from (each for each in (*measured.notices, *found) if each.code in FINDINGS)
+    yield from (each for each in (*measured.notices, *found) if KINDS[each.code].fault)
 
 
 def _of_file(path: Path) -> dict[str, Any]:

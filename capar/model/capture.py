@@ -17,6 +17,7 @@ from capar.model.bodies import ShapeSource as ShapeSource
 from capar.model.bodies import Stream as Stream
 from capar.model.bodies import TagObject as TagObject
 from capar.model.bodies import TagType as TagType
+from capar.model.conventions import Conventions
 from capar.model.errors import CaptureError, UnknownNameError
 from capar.model.names import NAME as NAME
 from capar.model.notices import Notice as Notice
@@ -92,6 +93,9 @@ class Capture:
     notices: tuple[Notice, ...] = ()
     others: tuple[Agent, ...] = ()
     """Who else performed, where several agents did."""
+
+    conventions: Mapping[str, Conventions] = field(default_factory=dict)
+    """By which each body's file was read, by the body's name; empty of what no file held."""
 
     def __post_init__(self) -> None:
         """Check names and clocks."""

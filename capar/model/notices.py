@@ -9,6 +9,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from capar.model.errors import CaparError, UnknownNameError
+from capar.model.fault_sentences import (
+    FALL_RATE,
+    ORDER_CONTRADICTED,
+    SHAPE_SIZE,
+    SIDES_EXCHANGED,
+    distance_contradicted,
+    mount_gap,
+    no_mover,
+    unit_contradicted,
+    up_contradicted,
+)
 
 Value = str | int | float | bool
 
@@ -61,8 +72,12 @@ class Notice:
         text = KINDS[self.code].text
         if callable(text):
             return text(self)
-        fields = {"start_s": self.start_s, "end_s": self.end_s, **dict(self.values)}
-        return text.format(*self.bodies, **fields)
+        return text.format(*self.bodies, **self.fields)
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """Times and values by name."""
+        return {"start_s": self.start_s, "end_s": self.end_s, **dict(self.values)}
 
     def document(self) -> dict[str, Any]:
         """Its JSON form: the fields that it has, and the message for those who read no code."""
@@ -181,43 +196,6 @@ def _touch_estimated(each: Notice) -> str:
     )
 
 
-def _distance_contradicted(each: Notice) -> str:
-    first, second = each.bodies
-    taken, shown = (1e3 * float(each[name]) for name in ("touch_m", "shown_m"))
-    return (
-        f"{first!r} and {second!r} are stated to touch within {taken:.0f} mm, but {each['frames']} "
-        f"frames of sure contact show {shown:.0f} mm; state that, or leave distance_m out"
-    )
-
-
-def _mount_gap(each: Notice) -> str:
-    first, second = each.bodies
-    gap, taken = (1e3 * float(each[name]) for name in ("shown_m", "touch_m"))
-    return (
-        f"{first!r} carries {second!r} steadily in {each['frames']} frames with a gap of "
-        f"{gap:.0f} mm, but surfaces touch within {taken:.0f} mm: a mount, a mesh or a fit is off"
-    )
-
-
-WHY_UNMOVED: Mapping[str, str] = {
-    "nobody": "nothing that is recorded was near and went with it: is a sensor missing, is the "
-    "unit of a file wrong, or was it tracked wrongly?",
-    "beyond_reach": "something went with it beyond reach: is a mount, a distance or a unit wrong?",
-    "left_behind": "what touched it rested meanwhile: is a distance of contact too large, or a "
-    "sensor missing?",
-}
-"""What would explain that nothing moves an object, by what the rules found."""
-
-
-def _no_mover(each: Notice) -> str:
-    share = 100.0 * float(each["share"])
-    often = "" if each["times"] == 1 else f", the longest of {each['times']} times"
-    return (
-        f"nothing moves {each.bodies[0]!r} in {share:.1f} % of its motion, from {each.start_s:.2f} "
-        f"to {each.end_s:.2f} s{often}; {WHY_UNMOVED[str(each['why'])]}"
-    )
-
-
 def _flicker(each: Notice) -> str:
     return (
         f"{' with '.join(each.bodies)}: {each['length_s']:.2f} s at {each.start_s:.2f} s taken for "
@@ -237,6 +215,9 @@ class NoticeKind:
 
     Without one that does, what is told would be taken for more certain than it is.
     """
+
+    fault: bool = False
+    """Whether it tells of a fault of the recording, or of what was stated of it."""
 
 
 KINDS: Mapping[str, NoticeKind] = {
@@ -258,10 +239,36 @@ KINDS: Mapping[str, NoticeKind] = {
         _touch_estimated, "pairs that touch by a distance estimated from the recording"
     ),
     "distance-contradicted": NoticeKind(
-        _distance_contradicted, "stated distances that the recording contradicts"
+        lambda each: distance_contradicted(each.bodies, each.fields),
+        "stated distances that the recording contradicts",
+        fault=True,
     ),
-    "mount-gap": NoticeKind(_mount_gap, "bodies carried with a gap"),
-    "no-mover": NoticeKind(_no_mover, "objects that move and nothing moves them"),
+    "mount-gap": NoticeKind(
+        lambda each: mount_gap(each.bodies, each.fields), "bodies carried with a gap", fault=True
+    ),
+    "no-mover": NoticeKind(
+        lambda each: no_mover(each.bodies, each.fields),
+        "objects that move and nothing moves them",
+        fault=True,
+    ),
+    "up-contradicted": NoticeKind(
+        lambda each: up_contradicted(each.bodies, each.fields),
+        "falls and rests against the upward axis",
+        fault=True,
+    ),
+    "unit-contradicted": NoticeKind(
+        lambda each: unit_contradicted(each.bodies, each.fields),
+        "sizes that no person has",
+        fault=True,
+    ),
+    "order-contradicted": NoticeKind(
+        ORDER_CONTRADICTED, "quaternions in another order than declared", fault=True
+    ),
+    "fall-rate": NoticeKind(FALL_RATE, "falls at another rate", fault=True),
+    "shape-size": NoticeKind(SHAPE_SIZE, "shapes of a size that nobody handles", fault=True),
+    "sides-exchanged": NoticeKind(
+        SIDES_EXCHANGED, "pairs of right and left that are exchanged", fault=True
+    ),
     "contact-tolerance": NoticeKind(_contact_tolerance),
     "doubled-stamps": NoticeKind("{samples} samples repeat a stamp; the last of each is kept"),
     "flicker": NoticeKind(_flicker),

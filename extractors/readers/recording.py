@@ -9,10 +9,8 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.capture import Notice, Source, Stream
+from capar.model.conventions import UNITS as UNITS
 from capar.model.errors import CaptureError
-
-UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-"""Metres per unit, by the names that headers and capture.toml use."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +20,10 @@ class Recording:
     source: Source
     bodies: Mapping[str, Stream] = field(default_factory=dict)
     """Poses by the file's own names; positions in the file's unit."""
+
+    orders: Mapping[str, str] = field(default_factory=dict)
+    """The order in which quaternions of a body were read, ``xyzw`` or ``wxyz``, where the file does
+    not state it."""
 
     markers: Mapping[str, Float[np.ndarray, "frames 3"]] = field(default_factory=dict)
     """Points by the file's own names, in the file's unit; NaN where they were not seen."""
@@ -53,6 +55,7 @@ class Recording:
         if not self.markers and not self.bodies:
             raise CaptureError("neither a body nor a marker in it")
         object.__setattr__(self, "bodies", MappingProxyType(dict(self.bodies)))
+        object.__setattr__(self, "orders", MappingProxyType(dict(self.orders)))
         object.__setattr__(self, "markers", MappingProxyType(dict(self.markers)))
         object.__setattr__(self, "parents", MappingProxyType(dict(self.parents)))
 

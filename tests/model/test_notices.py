@@ -32,6 +32,43 @@ ONE_OF_EACH = {
         "nothing moves 'mug' in 25.0 % of its motion, from 1.00 to 2.50 s, the longest of 2 times; "
         "nothing that is recorded was near and went with it: is a sensor missing, is the unit of "
         "a file wrong, or was it tracked wrongly?",
+    notice("up-contradicted", "ball", start_s=1.0, end_s=1.5, shown="fall", angle_deg=90.0, up="y",
+           declared="z"):
+        "'ball' falls freely from 1.00 to 1.50 s, 90 degrees off the declared down: "
+        'state up = "y" for its file, which was read with "z"',
+    notice("up-contradicted", "ball", start_s=1.0, end_s=1.5, shown="fall", angle_deg=41.0, up="",
+           declared="z"):
+        "'ball' falls freely from 1.00 to 1.50 s, 41 degrees off the declared down; "
+        "no axis of its file points up: level the world before it is read",
+    notice("up-contradicted", "mug", "table", shown="rest", where="under", up="-z", declared="z"):
+        "'mug' rests under 'table', with nothing under it: "
+        'state up = "-z" for its file, which was read with "z"',
+    notice("unit-contradicted", "head", "foot", start_s=1.0, end_s=1.0, shown="person", size_m=0.14,
+           unit="cm", declared="mm"):
+        "'head' and 'foot' of one person are 0.14 m apart at most: "
+        'state unit = "cm" for its file, which was read in mm',
+    notice("unit-contradicted", "hand", shown="speed", speed_mps=900.0, unit="mm", declared="m"):
+        "'hand' is faster than 900 m/s for a tenth of the time: "
+        'state unit = "mm" for its file, which was read in m',
+    notice("unit-contradicted", "ball", start_s=1.0, end_s=1.5, shown="fall",
+           acceleration_mps2=9810.0, unit="mm", declared="m"):
+        "'ball' falls with 9810 m/s2 from 1.00 to 1.50 s, not with 9.81: "
+        'state unit = "mm" for its file, which was read in m',
+    notice("fall-rate", "ball", start_s=1.0, end_s=1.5, acceleration_mps2=39.2, rate_hz=60.0,
+           declared_hz=120.0):
+        "'ball' falls with 39.2 m/s2 from 1.00 to 1.50 s, not with 9.81: frames came at 60 a "
+        "second, not at 120; state rate_hz = 60 for its file, or correct its time stamps",
+    notice("shape-size", "mug", shape="mug.obj", size_m=110.0, unit="mm"):
+        "the shape of 'mug', mug.obj, is 110 m long, and 'mug' is moved by hand: "
+        'state unit = "mm" in its shape',
+    notice("sides-exchanged", "right_hand", "left_hand", "head", share=0.97):
+        "'right_hand' is on the left of 'left_hand' as 'head' looks, in 97% of what shows their "
+        "sides: exchange the names, correct the gaze of 'head', or state handedness = \"left\" if "
+        "the file has a left-handed world (the other way round if it is stated)",
+    notice("order-contradicted", "Hand", "Mug", declared="xyzw", order="wxyz", stray_m=0.14,
+           stretches=3):
+        "Hand and Mug turn as one, but with quaternions read as xyzw Mug strays by 0.14 m in the "
+        "frame of Hand, as in 3 stretches of a second; as wxyz it does not: state order = \"wxyz\"",
     notice("no-shape", "mug"): "'mug' has no shape, so no contact of it is known",
     notice("stand-in-shape", "mug", shape="ball of {radius}"):
         "'mug' is a stand-in: ball of {radius}",

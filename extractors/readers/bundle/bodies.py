@@ -12,6 +12,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
 from capar.model.capture import Notice, Stream, notice
+from capar.model.conventions import Conventions
 from capar.model.errors import CaptureError
 from extractors.readers.bundle.marker_fit import Cluster, arrangement, check_fit, fit_cluster
 from extractors.readers.bundle.shapes import Frame, transform
@@ -30,6 +31,8 @@ class Body:
     stream: Stream
     frame: Frame
     notices: tuple[Notice, ...] = field(default=())
+    conventions: Conventions = field(default=Conventions())
+    """Those of its file."""
 
 
 def find_body(entry: "Tracked", files: Files) -> Body:
@@ -47,13 +50,15 @@ def find_body(entry: "Tracked", files: Files) -> Body:
     file = _file_of(entry, files, "body", entry.body)
     recording = files[file]
     stream = offset_by(recording.bodies[entry.body], offset)
-    return Body(stream, skeleton_frame(recording, entry.body, stream))
+    frame = skeleton_frame(recording, entry.body, stream)
+    return Body(stream, frame, conventions=recording.conventions)
 
 
 def _carried(entry: "Tracked", files: Files, patterns: list[str], offset: RigidTransform) -> Body:
     """What is recorded only through what it carries: the poses of several bodies, one at a time."""
     names = [name for pattern in patterns for name in _fitting(pattern, files)]
-    streams = [files[_file_of(entry, files, "body", name)].bodies[name] for name in names]
+    sources = [files[_file_of(entry, files, "body", name)] for name in names]
+    streams = [source.bodies[name] for source, name in zip(sources, names, strict=True)]
     order = np.argsort([stream.times[0] for stream in streams])
     for earlier, later in pairwise(order):
         if streams[later].times[0] <= streams[earlier].times[-1]:
@@ -65,7 +70,7 @@ def _carried(entry: "Tracked", files: Files, patterns: list[str], offset: RigidT
         np.concatenate([each.positions for each in parts]),
         np.concatenate([each.orientations for each in parts]),
     )
-    return Body(offset_by(whole, offset), Frame())
+    return Body(offset_by(whole, offset), Frame(), conventions=sources[0].conventions)
 
 
 def _fitting(pattern: str, files: Files) -> list[str]:
@@ -124,7 +129,7 @@ def _from_markers(entry: "Tracked", files: Files, names: list[str], offset: Rigi
     points_here = MeanPlaces(recording, stream, dict(zip(names, places, strict=True)))
     frame = Frame(points=points_here, markers=tuple(names), mirrored=recording.mirrored)
     wrong = notice("markers-not-rigid", label, frames=int(wild.sum()))
-    return Body(stream, frame, (wrong,) if wild.any() else ())
+    return Body(stream, frame, (wrong,) if wild.any() else (), recording.conventions)
 
 
 def _stated(entry: "Tracked", names: list[str]) -> Cluster | None:

@@ -73,6 +73,7 @@ def read_capture(place: str | Path) -> Capture:
             sources=_sources(document, files, group),
             notices=(*notices, *_gap_notices(group.sensors, group.objects)),
             others=tuple(agents[1:]),
+            conventions=group.conventions,
         )
         return with_meeting_hands(trial if document.parts == "apart" else grouped(trial))
     except CaptureError as error:

@@ -22,6 +22,7 @@ from capar.model.capture import (
     TagType,
     notice,
 )
+from capar.model.conventions import Conventions
 from extractors.readers.bundle.bodies import Body, find_body
 from extractors.readers.bundle.links import LINKS, chain_of
 from extractors.readers.bundle.many import many_objects, many_sensors, pivots
@@ -48,6 +49,9 @@ class Declared:
     sources: tuple[Source, ...]
     pivot_contacts: tuple[PivotContact, ...]
     """Those that many objects declared at once share."""
+
+    conventions: Mapping[str, Conventions]
+    """By which each body's file was read, by the body's name."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +99,11 @@ def declared(document: "CaptureFile", files: Mapping[str, WorldRecording]) -> De
             *rate_notices(streams, document.rate_hz),
         ),
         sources=tuple(source for each in tracked for source in each.frame.sources),
+        conventions={
+            entry.name: each.body.conventions
+            for entry, each in zip(entries, tracked, strict=True)
+            if each.body
+        },
         pivot_contacts=tuple(pair for entry, (found, _) in pairs for pair in pivots(entry, found)),
     )
 

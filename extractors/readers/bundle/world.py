@@ -9,24 +9,18 @@ from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from capar.model.capture import Notice, Source, Stream
+from capar.model.conventions import UP as UP
+from capar.model.conventions import Conventions
 from capar.model.errors import CaptureError
+from extractors.faults.quaternion_order import order_notices
 from extractors.readers.recording import UNITS, Recording
+from extractors.thresholds import Thresholds
 
 LARGEST_M = 100.0
 """No room for motion capture spans more [m]."""
 
 SMALLEST_M = 0.005
 """Nor do sensors and objects together span less [m]."""
-
-UP = {
-    "z": Rotation.identity(),
-    "y": Rotation.from_euler("x", 90.0, degrees=True),
-    "x": Rotation.from_euler("y", -90.0, degrees=True),
-    "-z": Rotation.from_euler("x", 180.0, degrees=True),
-    "-y": Rotation.from_euler("x", -90.0, degrees=True),
-    "-x": Rotation.from_euler("y", 90.0, degrees=True),
-}
-"""The turn that brings each axis to z."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +33,13 @@ class WorldRecording:
     marker_times: Float[np.ndarray, "frames"]
     parents: Mapping[str, str]
     notices: tuple[Notice, ...]
-    mirrored: bool
-    """Whether the file's world is left-handed, so that shapes made for it must be mirrored."""
+    conventions: Conventions
+    """By which it was brought there."""
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the file's world is left-handed, so that shapes made for it must be mirrored."""
+        return self.conventions.left_handed
 
 
 def to_world(recording: Recording, *, unit_m: float, up: str, left_handed: bool) -> WorldRecording:
@@ -64,8 +63,11 @@ def to_world(recording: Recording, *, unit_m: float, up: str, left_handed: bool)
         markers=markers,
         marker_times=recording.marker_times,
         parents=recording.parents,
-        notices=recording.notices,
-        mirrored=left_handed,
+        notices=(
+            *recording.notices,
+            *order_notices(recording.bodies, recording.orders, unit_m, Thresholds()),
+        ),
+        conventions=Conventions(unit_m, up, left_handed),
     )
 
 

@@ -100,7 +100,11 @@ def _recording(
         )
     clock = times if markers else np.empty(0)
     return Recording(
-        source=source_of(path, "csv"), bodies=bodies, markers=markers, marker_times=clock
+        source=source_of(path, "csv"),
+        bodies=bodies,
+        orders=dict.fromkeys(bodies, order),
+        markers=markers,
+        marker_times=clock,
     )
 
 

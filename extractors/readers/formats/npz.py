@@ -45,16 +45,21 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
         )
     groups = [_group(path, arrays, each) for each in options["arrays"]]
     times = _times(path, arrays, options, len(groups[0][1]))
-    bodies, markers = {}, {}
-    for names, positions, quaternions in groups:
+    bodies, markers, orders = {}, {}, {}
+    for group, (names, positions, quaternions) in zip(options["arrays"], groups, strict=True):
         for index, name in enumerate(names):
             if quaternions is None:
                 markers[name] = positions[:, index]
             else:
                 bodies[name] = track(name, times, positions[:, index], quaternions[:, index])
+                orders[name] = str(group["order"])
     clock = times if markers else np.empty(0)
     return Recording(
-        source=source_of(path, "npz"), bodies=bodies, markers=markers, marker_times=clock
+        source=source_of(path, "npz"),
+        bodies=bodies,
+        orders=orders,
+        markers=markers,
+        marker_times=clock,
     )
 
 

@@ -1,0 +1,161 @@
+"""Quaternions in another order than declared, by bodies that turn as one.
+
+To exchange the components of quaternions keeps all angles between them: speeds of turning, rests
+and jumps stay the same, and show nothing. What changes is the axis of every turn, and so where a
+body lies in the frame of another one: what is carried, worn or joined stays there in the right
+order, and wanders in the wrong one.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import permutations
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from capar.model.bodies import Stream
+from capar.model.notices import Notice, notice
+from extractors.bodies.poses import rotation_matrices
+from extractors.signals.clock import frame_rate
+from extractors.thresholds import Thresholds
+
+SAMPLES = 16
+"""So many frames of each stretch are compared [1]."""
+
+SHIFT = {"xyzw": ("wxyz", -1), "wxyz": ("xyzw", 1)}
+"""The other order of each, and how far components w x y z shift where that one is right."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Sampled:
+    """A body at the sampled frames of each stretch."""
+
+    times: Float[np.ndarray, "stretches samples"]
+    positions: Float[np.ndarray, "stretches samples 3"]
+    orientations: Float[np.ndarray, "stretches samples 4"]
+    shift: int
+
+    @cached_property
+    def declared(self) -> Float[np.ndarray, "stretches samples 3 3"]:
+        """Rotation matrices by the declared order."""
+        return _matrices(self.orientations)
+
+    @cached_property
+    def other(self) -> Float[np.ndarray, "stretches samples 3 3"]:
+        """Rotation matrices by the other order."""
+        return _matrices(np.roll(self.orientations, self.shift, axis=-1))
+
+
+@dataclass(frozen=True, slots=True)
+class _Votes:
+    """Stretches that support the declared order, and how far bodies stray in the others [m]."""
+
+    right: int
+    wrong: tuple[float, ...]
+
+
+def order_notices(
+    bodies: Mapping[str, Stream],
+    orders: Mapping[str, str],
+    unit_m: float,
+    thresholds: Thresholds,
+) -> Iterator[Notice]:
+    """A notice for each order that was declared for bodies of a file and cannot be theirs.
+
+    In stretches of a second two bodies turn as one if either lies steadily in the other's frame,
+    while the direction between them turns in the world. Each such stretch in which the orders
+    disagree is evidence for one of them.
+
+    Args:
+        bodies: Poses as the file has them, by name.
+        orders: The declared order of each, ``xyzw`` or ``wxyz``.
+        unit_m: Metres per unit of the file.
+        thresholds: How steady, and how many stretches.
+    """
+    for declared, (likely, shift) in SHIFT.items():
+        sampled = {
+            name: _sampled(bodies[name], shift, thresholds)
+            for name in sorted(orders)
+            if orders[name] == declared
+        }
+        right = 0
+        wrong: list[tuple[float, str, str]] = []
+        for first, second in _pairs(list(sampled), thresholds):
+            votes = _votes(sampled[first], sampled[second], unit_m, thresholds)
+            right += votes.right
+            wrong += [(stray_m, first, second) for stray_m in votes.wrong]
+            if right + len(wrong) >= thresholds.order_enough:
+                break
+        least = max(thresholds.order_stretches, right / thresholds.order_share)
+        if len(wrong) >= least:
+            stray_m, first, second = max(wrong)
+            yield notice(
+                "order-contradicted",
+                first,
+                second,
+                declared=declared,
+                order=likely,
+                stray_m=round(stray_m, 3),
+                stretches=len(wrong),
+            )
+
+
+def _pairs(names: list[str], thresholds: Thresholds) -> list[tuple[str, str]]:
+    """Ordered pairs of bodies, spread evenly over all there are where those are too many."""
+    every = list(permutations(names, 2))
+    step = max(1, -(-len(every) // thresholds.order_pairs))
+    return every[::step]
+
+
+def _sampled(stream: Stream, shift: int, thresholds: Thresholds) -> _Sampled:
+    step = max(1, round(frame_rate(stream.times) * thresholds.order_stretch_s / SAMPLES))
+    count = len(stream.times[::step]) // SAMPLES
+
+    def stretches(values: np.ndarray) -> np.ndarray:
+        return values[::step][: count * SAMPLES].reshape(count, SAMPLES, *values.shape[1:])
+
+    return _Sampled(
+        stretches(stream.times),
+        stretches(stream.positions),
+        stretches(stream.orientations),
+        shift,
+    )
+
+
+def _votes(body: _Sampled, other: _Sampled, unit_m: float, thresholds: Thresholds) -> _Votes:
+    """What the stretches show in which the direction from a body to another turns."""
+    if not np.array_equal(body.times, other.times):
+        return _Votes(0, ())
+    between = other.positions - body.positions
+    turning = np.flatnonzero(_turning(between, thresholds))
+    declared = unit_m * _strays(body.declared[turning], between[turning])
+    turned = unit_m * _strays(body.other[turning], between[turning])
+    right = (declared <= thresholds.joined_m) & (turned >= thresholds.wander_m)
+    wrong = (turned <= thresholds.joined_m) & (declared >= thresholds.wander_m)
+    return _Votes(int(right.sum()), tuple(map(float, declared[wrong])))
+
+
+def _turning(
+    between: Float[np.ndarray, "stretches samples 3"], thresholds: Thresholds
+) -> Bool[np.ndarray, "stretches"]:
+    """Whether the direction between two bodies turns in the world, at a steady distance."""
+    lengths = np.linalg.norm(between, axis=2)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        joined = np.ptp(lengths, axis=1) <= thresholds.joined_share * lengths.max(axis=1)
+        along = between / lengths[:, :, None]
+        cosines = np.einsum("bsi,bi->bs", along, along[:, 0]).min(axis=1)
+        return np.asarray(joined & (cosines < np.cos(thresholds.turned_rad)))
+
+
+def _strays(
+    turns: Float[np.ndarray, "some samples 3 3"], between: Float[np.ndarray, "some samples 3"]
+) -> Float[np.ndarray, "some"]:
+    """How far a place strays from its mean in a body's frame, in the unit of the file."""
+    inside = np.einsum("bsji,bsj->bsi", turns, between)
+    apart = np.linalg.norm(inside - inside.mean(axis=1, keepdims=True), axis=2)
+    return np.asarray(apart.max(axis=1, initial=0.0))
+
+
+def _matrices(orientations: Float[np.ndarray, "some samples 4"]) -> np.ndarray:
+    return rotation_matrices(orientations.reshape(-1, 4)).reshape(*orientations.shape[:2], 3, 3)
