@@ -114,7 +114,7 @@ class Thresholds:
     swing_m: float = 0.010
     """Least way between turning points of motion to and fro [m]: the floor of motion."""
 
-    swing_s: float = 0.5
+    swing_s: float = 1.0
     """Longest time between them [s]: people stir, shake and wipe at one turn a second or more."""
 
     slender_ratio: float = 3.0
