@@ -34,6 +34,17 @@ class Thresholds:
     """A shorter contact is dropped [s] (spec 4). So is a shorter arrangement of two bodies, a
     shorter look, and a shorter leaning or rolling."""
 
+    passing_s: float = 0.15
+    """What goes on past another thing as before may touch it for less than this and does nothing to
+    it [s]: a longer touch is meant."""
+
+    passing_mps: float = 0.3
+    """... if it is at least so fast [m/s]: what is slower stops there, or is led along it."""
+
+    passing_share: float = 0.5
+    """... and if afterwards at least this share of its velocity is left [1]: of a blow nothing is,
+    or it turns back; of a push the pushed thing takes all."""
+
     tolerance_sigmas: float = 3.0
     """Bodies touch within so many deviations of the sensors' noise, unless a capture says [1]."""
 
@@ -115,7 +126,8 @@ class Thresholds:
     """Least way between turning points of motion to and fro [m]: the floor of motion."""
 
     swing_s: float = 1.0
-    """Longest time between them [s]: people stir, shake and wipe at one turn a second or more."""
+    """Longest time between them [s]: slower than that, a motion to and fro breaks up into separate
+    strokes (Park, Marino, Charles, Sternad and Hogan, Moving slowly is hard for humans, 2017)."""
 
     slender_ratio: float = 3.0
     """A body is long and thin if it is so many times as long as wide [1]: a knife is six times, a
