@@ -68,15 +68,21 @@ def covers_a_hollow(
 def borne_from_below(
     body: BodyGeometry, others: Iterable[BodyGeometry], frame: int, thresholds: Thresholds
 ) -> bool:
-    """Whether a true surface of another body is so near below a body that it may lie on it."""
+    """Whether a true surface of another body is so near below a body that it may lie on it.
+
+    What of the body is within the other's hull, as noise has it, lies beside that and not on it.
+    """
     down = np.array([0.0, 0.0, -1.0])
     points = _points(body, frame)
     _, front = _through(points, down, body, frame)
-    return any(
-        float((_surface_ahead(points, down, other, frame) - front).min())
-        <= thresholds.tolerance_most_m
-        for other in others
-    )
+    for other in others:
+        beside = np.full(len(points), True)
+        if other.planes is not None:
+            beside = _outside(points, other, frame) > 0.0
+        below = (_surface_ahead(points, down, other, frame) - front)[beside]
+        if (below <= thresholds.tolerance_most_m).any():
+            return True
+    return False
 
 
 def edge_gap(
