@@ -106,7 +106,7 @@ def handling(
     for body in mobile:
         guide = guides.get(body.name)
         out += _motion(things[body.name], seen, upright[body.name], thresholds, guide)
-    out += _seats(things, touches, seen, thresholds)
+    out += _seats(things, hands, touches, seen, thresholds)
     out += bearing(capture, bodies, touches, calibration, thresholds)
     borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
     others = (things[body.name] for body in mobile if body.name not in hands)
@@ -216,6 +216,7 @@ def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Inte
 
 def _seats(
     things: Mapping[str, BodyGeometry],
+    hands: Mapping[str, BodyGeometry],
     touches: Iterable[Touching],
     known: Iterable[Fact],
     thresholds: Thresholds,
@@ -223,16 +224,23 @@ def _seats(
     """When each thing is down on what bears it: it comes and goes while one of the two moves.
 
     On what has no surface of its own nothing is seen to come down: there a contact is its distance.
+    A palm that faces up bears a thing as a table does.
     """
     moves = [fact for fact in known if isinstance(fact, Displaced)]
     for touch in touches:
-        if touch.body in things and touch.other in things and things[touch.other].shape:
+        if touch.other not in things:
+            continue
+        if touch.body in things and things[touch.other].shape:
             body, other = things[touch.body], things[touch.other]
-            normal = contact_normal(body, other, touch.first, thresholds)
-            if normal is not None and normal[2] >= thresholds.steep:
-                spans = [(m.first, m.last) for m in moves if m.object in (touch.body, touch.other)]
-                down = seat(body, other, (touch.first, touch.last), spans, thresholds)
-                yield Seated(touch.body, touch.other, *down)
+        elif touch.body in hands and hands[touch.body].shape:
+            body, other = things[touch.other], hands[touch.body]
+        else:
+            continue
+        normal = contact_normal(body, other, touch.first, thresholds)
+        if normal is not None and normal[2] >= thresholds.steep:
+            spans = [(m.first, m.last) for m in moves if m.object in (touch.body, touch.other)]
+            down = seat(body, other, (touch.first, touch.last), spans, thresholds)
+            yield Seated(body.name, other.name, *down)
 
 
 def _loads(
