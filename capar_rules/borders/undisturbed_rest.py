@@ -1,4 +1,4 @@
-"""Rest that nothing disturbs: while an end-effector rests and touches nothing, or nothing any more."""
+"""Rest that nothing disturbs: an end-effector rests and touches nothing, or nothing any more."""
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Sequence
@@ -14,7 +14,8 @@ def undisturbed(
     """The rests of an end-effector in which no contact of its own has a tick, or none any more.
 
     Of a rest in which it is relieved of all that it touches, what follows from there on counts: a
-    palm from which the last thing is taken rests on. Each costs two searches, however many ticks or contacts it holds.
+    palm from which the last thing is taken rests on. Each costs two searches, however many ticks or
+    contacts it holds.
 
     Args:
         ee: The end-effector.
