@@ -2,10 +2,10 @@
 
     cd tests && python -m scenes.rates FOLDER [--cell 30:1.5:1 ...] [--table scenes/rates.md]
 
-Each cell is a rate [Hz], a noise of positions [mm] and a draw; rotations have a fifth of a degree of
-noise for each millimetre. The outcome of each cell is kept in the folder, and a cell that is there
-is not observed again: the folder is to be emptied when the program has changed. The table has all
-cells of the folder.
+Each cell is a rate [Hz], a noise of positions [mm] and a draw; rotations have a fifth of a degree
+of noise for each millimetre. The outcome of each cell is kept in the folder, and a cell that is
+there is not observed again: the folder is to be emptied when the program has changed. The table has
+all cells of the folder.
 """
 
 import argparse
