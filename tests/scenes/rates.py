@@ -124,11 +124,11 @@ def table(folder: Path) -> str:
     return HEADER + "\n".join(rows) + "\n"
 
 
-def fill(folder: Path, cells: Iterable[Cell]) -> None:
+def fill(folder: Path, cells: Iterable[Cell], batteries: Iterable[str]) -> None:
     """Observe what the folder lacks of some cells."""
     folder.mkdir(parents=True, exist_ok=True)
     for cell in cells:
-        for battery in BATTERIES:
+        for battery in batteries:
             path = folder / f"{cell.name}_{battery}.json"
             if not path.exists():
                 rows = [asdict(each) for each in observed_cell(cell, battery)]
@@ -140,9 +140,10 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="scenes.rates", description=__doc__)
     parser.add_argument("folder", type=Path, help="where outcomes are kept, a file a cell")
     parser.add_argument("--cell", action="append", type=Cell.read, help="RATE:NOISE_MM:DRAW")
+    parser.add_argument("--battery", action="append", choices=tuple(BATTERIES))
     parser.add_argument("--table", type=Path, help="the table's file; else it is printed")
     options = parser.parse_args(arguments)
-    fill(options.folder, ALL if options.cell is None else options.cell)
+    fill(options.folder, options.cell or ALL, options.battery or BATTERIES)
     text = table(options.folder)
     if options.table:
         options.table.write_text(text)
