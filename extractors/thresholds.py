@@ -125,9 +125,10 @@ class Thresholds:
     swing_m: float = 0.010
     """Least way between turning points of motion to and fro [m]: the floor of motion."""
 
-    swing_s: float = 1.0
-    """Longest time between them [s]: slower than that, a motion to and fro breaks up into separate
-    strokes (Park, Marino, Charles, Sternad and Hogan, Moving slowly is hard for humans, 2017)."""
+    swing_s: float = 0.9
+    """Longest time between them [s]: at one stroke a second a motion to and fro breaks up into
+    strokes by themselves (Park, Marino, Charles, Sternad and Hogan, Moving slowly is hard for
+    humans, 2017)."""
 
     slender_ratio: float = 3.0
     """A body is long and thin if it is so many times as long as wide [1]: a knife is six times, a
