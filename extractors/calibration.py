@@ -8,8 +8,8 @@ falls, rolling, and how bodies are arranged. It does not hold for these:
 * ``Moving``, ``Displaced``, ``Resting`` and ``Bears``: a place of rest is the median pose of a
   whole standstill, and holds for as long as the body is within the floor of it. It would take the
   places of rest that hold at the beginning of a window, handed over from the window before.
-* ``Reverses``, ``Swings`` and ``Lengthwise``: all are sought within a motion from its beginning,
-  so they need what ``Moving`` needs.
+* ``Reverses``, ``DrawsBack``, ``Swings`` and ``Lengthwise``: all are sought within a motion from
+  its beginning, so they need what ``Moving`` needs.
 * ``Guided``, ``Opening`` and what turns back on a guide: a hinge or rail is fitted to every motion
   of the recording. It would take the guide as part of the calibration.
 * ``Place``, ``Posture``, ``Distance``, ``Travelled`` and ``SweptAzimuth``: their frames are

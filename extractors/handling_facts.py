@@ -14,6 +14,7 @@ from capar.model.facts import (
     ClosingSpeed,
     ContactNormal,
     Displaced,
+    DrawsBack,
     Fact,
     Flies,
     Guided,
@@ -30,7 +31,6 @@ from capar.model.facts import (
     Reverses,
     Rides,
     Rolls,
-    Seated,
     SightNormal,
     Swings,
     Touching,
@@ -45,8 +45,7 @@ from extractors.motion.lengthwise import lengthwise
 from extractors.motion.phases import phases, turns_of_height
 from extractors.motion.rest import resting
 from extractors.motion.rolling import rolling
-from extractors.motion.seats import seat
-from extractors.motion.turning_points import swings
+from extractors.motion.turning_points import level_turns, swings
 from extractors.relations.arrangement import ARRANGEMENTS, Holds, Pair, between, sides
 from extractors.relations.attention import seeing, sight
 from extractors.relations.grips import shifts
@@ -54,6 +53,7 @@ from extractors.relations.guides import Guide, turns_on_guide
 from extractors.relations.loads import rides
 from extractors.relations.places import distances, places
 from extractors.relations.rooms import rooms
+from extractors.relations.seated import seated
 from extractors.relations.weight_bearing import bearing
 from extractors.sample_frames import boundary_frames
 from extractors.signals.intervals import Interval, intervals
@@ -107,7 +107,7 @@ def handling(
     for body in mobile:
         guide = guides.get(body.name)
         out += _motion(things[body.name], seen, upright[body.name], thresholds, guide)
-    out += _seats(things, touches, seen, thresholds)
+    out += seated(things, hands, touches, seen, thresholds)
     out += bearing(capture, bodies, touches, calibration, thresholds)
     borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
     others = (things[body.name] for body in mobile if body.name not in hands)
@@ -160,6 +160,8 @@ def _motion(
         turns = turns_on_guide(guide, motions, thresholds)
         yield Guided(one.name, guide.fit.kind, guide.base)
     yield from (Reverses(one.name, frame) for frame in turns)
+    back = level_turns(one.middles, motions, thresholds)
+    yield from (DrawsBack(one.name, frame) for frame in back)
     swinging = swings(pose, moves, thresholds)
     yield from (Swings(one.name, *span) for span in swinging)
     yield from (Lengthwise(one.name, *span) for span in lengthwise(one, swinging, thresholds))
@@ -213,27 +215,6 @@ def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Inte
         dropout_s=thresholds.dropout_s,
         minimum_s=thresholds.contact_minimum_s,
     )
-
-
-def _seats(
-    things: Mapping[str, BodyGeometry],
-    touches: Iterable[Touching],
-    known: Iterable[Fact],
-    thresholds: Thresholds,
-) -> Iterator[Fact]:
-    """When each thing is down on what bears it: it comes and goes while one of the two moves.
-
-    On what has no surface of its own nothing is seen to come down: there a contact is its distance.
-    """
-    moves = [fact for fact in known if isinstance(fact, Displaced)]
-    for touch in touches:
-        if touch.body in things and touch.other in things and things[touch.other].shape:
-            body, other = things[touch.body], things[touch.other]
-            normal = contact_normal(body, other, touch.first, thresholds)
-            if normal is not None and normal[2] >= thresholds.steep:
-                spans = [(m.first, m.last) for m in moves if m.object in (touch.body, touch.other)]
-                down = seat(body, other, (touch.first, touch.last), spans, thresholds)
-                yield Seated(touch.body, touch.other, *down)
 
 
 def _loads(

@@ -122,7 +122,7 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
     }
     looks = {sensor.name: attention(capture, sensor, bodies, limits) for sensor in seeing(capture)}
     moves = tuple(_moving(capture, bodies, calibration, limits))
-    touches = contacts(capture, bodies, calibration)
+    touches = contacts(capture, bodies, calibration, limits)
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
     reach = horizon_frames(capture.times, limits)
     facts = [

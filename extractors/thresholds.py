@@ -36,6 +36,17 @@ class Thresholds(FaultThresholds):
     """A shorter contact is dropped [s] (spec 4). So is a shorter arrangement of two bodies, a
     shorter look, and a shorter leaning or rolling."""
 
+    passing_s: float = 0.15
+    """What goes on past another thing as before may touch it for less than this and does nothing to
+    it [s]: a longer touch is meant."""
+
+    passing_mps: float = 0.3
+    """... if it is at least so fast [m/s]: what is slower stops there, or is led along it."""
+
+    passing_share: float = 0.5
+    """... and if afterwards at least this share of its velocity is left [1]: of a blow nothing is,
+    or it turns back; of a push the pushed thing takes all."""
+
     tolerance_sigmas: float = 3.0
     """Bodies touch within so many deviations of the sensors' noise, unless a capture says [1]."""
 
@@ -116,8 +127,10 @@ class Thresholds(FaultThresholds):
     swing_m: float = 0.010
     """Least way between turning points of motion to and fro [m]: the floor of motion."""
 
-    swing_s: float = 0.5
-    """Longest time between them [s]: people stir, shake and wipe at one turn a second or more."""
+    swing_s: float = 0.9
+    """Longest time between them [s]: at one stroke a second a motion to and fro breaks up into
+    strokes by themselves (Park, Marino, Charles, Sternad and Hogan, Moving slowly is hard for
+    humans, 2017)."""
 
     slender_ratio: float = 3.0
     """A body is long and thin if it is so many times as long as wide [1]: a knife is six times, a
@@ -204,8 +217,9 @@ class Thresholds(FaultThresholds):
     """From a place of rest a motion that is known begins at this distance [m]: the tenth part of
     its floor, and still more than trackers of the day make of a thing that lies."""
 
-    onset_s: float = 0.1
-    """At most so long before it is that far a motion began [s]: what takes longer drifts."""
+    onset_s: float = 0.3
+    """At most so long before it is that far a motion began [s]: of a way of 20 cm that is covered
+    smoothly in four seconds the first millimetre takes that long. What takes longer drifts."""
 
     creep_s: float = 0.6
     """At most so long before it is beyond its floor a motion begins, and ends after it [s]: at the

@@ -25,6 +25,7 @@ from capar.model.declarations import Observed as Observed
 from capar.model.errors import FactError
 from capar.model.motion_facts import Displaced as Displaced
 from capar.model.motion_facts import Distance as Distance
+from capar.model.motion_facts import DrawsBack as DrawsBack
 from capar.model.motion_facts import Flies as Flies
 from capar.model.motion_facts import Guided as Guided
 from capar.model.motion_facts import Leans as Leans

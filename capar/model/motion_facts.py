@@ -169,6 +169,18 @@ class Reverses(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class DrawsBack(Observed):
+    """A moving object turns back on a level path, after a real way and before another one."""
+
+    predicate = "draws_back"
+    declaration = Declaration(
+        about="object", span=Span.INSTANT, border=True, has_sentence=False, stretch="draws_back"
+    )
+    object: str
+    frame: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Swings(Observed):
     """A body moves to and fro, again and again, from the first to the last frame."""
 

@@ -20,7 +20,7 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
-from capar_rules.borders.motion_borders import Edge, by_pair, edges, landings, true_ends
+from capar_rules.borders.motion_borders import Edge, as_borne, by_pair, edges, landings, true_ends
 from capar_rules.borders.shared_contacts import by_object, overlapping, shared
 from capar_rules.borders.spans import Stretches
 from capar_rules.borders.ticks import CrossingNear as CrossingNear
@@ -108,6 +108,7 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
     moves |= {each.other: scene.moving[each.other] for each in others if each.other not in moves}
     crossings = scene.crossings[ee]
     refined: tuple[Edge, ...] = ()
+    borne: list[Touching] = []
     if crossings_only:
         frames = set(crossings)
     else:
@@ -117,6 +118,8 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
         frames |= {frame for name in reach for each in moves[name] for frame in _ends(each)}
         frames |= {each.refined for each in refined}
         frames |= {frame for each in others for frame in true_ends(each, scene.seats)}
+        borne = sorted((as_borne(each, scene.seats) for each in own), key=_ends)
+        frames |= {frame for each in borne for frame in _ends(each)}
         frames |= {
             pause
             for gap in _free(own)
@@ -153,9 +156,9 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
         )
     )
     if not crossings_only:
-        yield from landings(ee, ticks, others, scene.seats)
+        yield from landings(ee, ticks, own, others, scene.seats)
         yield from scene.stretches.numbered(ee, ticks, reach)
-        yield from undisturbed(ee, ticks, scene.rests[ee], own)
+        yield from undisturbed(ee, ticks, scene.rests[ee], borne)
         others_too = [scene.by_object[link.ee] for link in scene.links if link.ee != ee]
         pairs = overlapping(own, others_too)
         yield from shared(ee, ticks, pairs, rate_hz=scene.rate)
@@ -193,8 +196,8 @@ def _overlap(spans: Sequence[tuple[int, int]], first: int, last: int) -> bool:
     return index >= 0 and spans[index][1] >= first
 
 
-def _ends(moving: Moving) -> tuple[int, int]:
-    return moving.first, moving.last
+def _ends(fact: Moving | Touching) -> tuple[int, int]:
+    return fact.first, fact.last
 
 
 def _within(

@@ -7,7 +7,7 @@ is measured more finely, and that is where the ticks stand.
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from capar.model.facts import Displaced, Fact, Moving, Seated, Touching
 
@@ -138,17 +138,35 @@ def true_ends(contact: Touching, seats: Seats) -> tuple[int, int]:
     return (own[0].first, own[-1].last) if own else (contact.first, contact.last)
 
 
+def as_borne(contact: Touching, seats: Seats) -> Touching:
+    """An end-effector's contact, from when a thing truly comes down on it until it leaves it.
+
+    The contact itself where the end-effector does not bear the thing.
+    """
+    first, last = true_ends(replace(contact, body=contact.other, other=contact.body), seats)
+    return replace(contact, first=first, last=last)
+
+
 def landings(
-    ee: str, ticks: Sequence[int], others: Iterable[Touching], seats: Seats
+    ee: str,
+    ticks: Sequence[int],
+    own: Iterable[Touching],
+    others: Iterable[Touching],
+    seats: Seats,
 ) -> Iterator[Fact]:
-    """When what the end-effector handles truly begins and ceases to touch what.
+    """When what the end-effector handles, or itself, truly begins and ceases to touch what.
 
     Args:
         ee: The end-effector.
         ticks: Frames of its link's ticks, ascending; the true ends are among them.
+        own: Its own contacts.
         others: Contacts of what it handles.
         seats: When bodies are down on others.
     """
+    for each in own:
+        borne = as_borne(each, seats)
+        yield Lands(ee, ee, each.other, each.first, bisect_left(ticks, borne.first))
+        yield Leaves(ee, ee, each.other, each.first, bisect_left(ticks, borne.last))
     for each in others:
         first, last = true_ends(each, seats)
         yield Lands(ee, each.body, each.other, each.first, bisect_left(ticks, first))

@@ -1,4 +1,4 @@
-"""Rest that nothing disturbs: whether an end-effector touches anything while it rests."""
+"""Rest that nothing disturbs: an end-effector rests and touches nothing, or nothing any more."""
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Sequence
@@ -11,9 +11,11 @@ from capar_rules.borders.ticks import Undisturbed
 def undisturbed(
     ee: str, ticks: Sequence[int], rests: Iterable[Resting], own: Sequence[Touching]
 ) -> Iterator[Undisturbed]:
-    """The rests of an end-effector in which no contact of its own has a tick.
+    """The rests of an end-effector in which no contact of its own has a tick, or none any more.
 
-    Each costs two searches, however many ticks or contacts it holds.
+    Of a rest in which it is relieved of all that it touches, what follows from there on counts: a
+    palm from which the last thing is taken rests on. Each costs two searches, however many ticks or
+    contacts it holds.
 
     Args:
         ee: The end-effector.
@@ -30,3 +32,5 @@ def undisturbed(
         before = bisect_right(begins, ticks[last])
         if before == 0 or latest[before - 1] < ticks[first]:
             yield Undisturbed(ee, first, last)
+        elif ticks[first] < latest[before - 1] < ticks[last]:
+            yield Undisturbed(ee, bisect_left(ticks, latest[before - 1]), last)

@@ -14,6 +14,7 @@ from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import Poses
 from extractors.contact.own_hands import counted_meetings
+from extractors.contact.passing import in_passing
 from extractors.contact.proximity import Body, distance, near
 from extractors.contact.screening import screened
 from extractors.contact.touch_distances import (
@@ -88,8 +89,12 @@ def _pair_distances(
             yield PairCalibration(first.name, second.name, tolerance_m, release)
 
 
-def contacts(capture: Capture, bodies: Bodies, calibration: Calibration) -> tuple[Contact, ...]:
+def contacts(
+    capture: Capture, bodies: Bodies, calibration: Calibration, limits: Thresholds
+) -> tuple[Contact, ...]:
     """Every contact that is watched for: acting sensors and mobile objects with tag objects.
+
+    What merely brushes past is none.
 
     A contact that is there before and after a body was lost is taken to last in between, however
     long; one that is there on one side alone ends, or begins, where the body was last, or first,
@@ -99,6 +104,7 @@ def contacts(capture: Capture, bodies: Bodies, calibration: Calibration) -> tupl
         capture: The trial.
         bodies: Its bodies.
         calibration: Distances of contact, and least durations of contacts and interruptions.
+        limits: What brushes past.
     """
     surfaces = {each: touchable(each) for pair in watched(capture, bodies) for each in pair}
     found: list[Contact] = []
@@ -122,6 +128,8 @@ def contacts(capture: Capture, bodies: Bodies, calibration: Calibration) -> tupl
             dropout_s=calibration.contact_dropout_s,
             minimum_s=calibration.contact_minimum_s,
         ):
+            if in_passing(first, second, interval, limits):
+                continue
             if pair.pivots:
                 gap = float(_apart(pair, first, second)[interval[0]])
             else:

@@ -5,6 +5,7 @@ from jaxtyping import Bool, Float
 
 from extractors.bodies.poses import Poses, rotation_matrices
 from extractors.motion.object_motion import RestPose
+from extractors.signals.clock import frame_rate
 from extractors.signals.filters import derivative
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds
@@ -37,6 +38,7 @@ def leaning(
         far = angle > thresholds.lean_rad
         turns = (np.abs(pace) >= thresholds.rest_speed_radps) & (speed <= np.abs(pace) * length_m)
         over, back = turns & (pace > 0.0), turns & (pace < 0.0)
+    lapse = round(thresholds.dropout_s * frame_rate(stream.times))
     found: list[Interval] = []
     for first, last in intervals(
         far,
@@ -44,18 +46,23 @@ def leaning(
         dropout_s=thresholds.dropout_s,
         minimum_s=thresholds.contact_minimum_s,
     ):
-        begin = first - _run(over[:first][::-1])
-        end = last + _run(back[last + 1 :])
+        begin = first - _run(over[:first][::-1], lapse)
+        end = last + _run(back[last + 1 :], lapse)
         if found and begin <= found[-1][1]:
             begin = found[-1][1] + 1
         found.append((begin, end))
     return tuple(found)
 
 
-def _run(holds: Bool[np.ndarray, "frames"]) -> int:
-    """For how many frames from the first on it holds."""
-    gaps = np.flatnonzero(~holds)
-    return int(gaps[0]) if gaps.size else len(holds)
+def _run(holds: Bool[np.ndarray, "frames"], lapse: int) -> int:
+    """For how many frames from the first on it holds, but for lapses of fewer frames than so many.
+
+    Noise makes such lapses in what is told by a rate of change.
+    """
+    known = np.flatnonzero(holds)
+    ends = np.flatnonzero(np.diff(known, prepend=-1) > lapse)
+    known = known[: ends[0]] if ends.size else known
+    return int(known[-1]) + 1 if known.size else 0
 
 
 def upright_axis(poses: Poses, rest: RestPose | None) -> Float[np.ndarray, "3"]:

@@ -1,6 +1,6 @@
 """Where motion turns back, and motion to and fro."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -33,6 +33,32 @@ def turning_points(values: Float[np.ndarray, "frames"], least: float) -> Int[np.
             found += [low] if direction else []
             direction, high = 1, frame
     return np.array(found, dtype=np.int64)
+
+
+def level_turns(
+    middles: Float[np.ndarray, "frames 3"],
+    motions: Iterable[Interval],
+    thresholds: Thresholds,
+) -> tuple[int, ...]:
+    """Frames at which a body turns back on the level, after a real way and before another one.
+
+    Args:
+        middles: The middles of the body [m]; a motion in which it is lost is left out.
+        motions: When it moves, as closed intervals of frames.
+        thresholds: The least way, and what is level.
+    """
+    found: list[int] = []
+    for first, last in motions:
+        part = middles[first : last + 1]
+        if np.isnan(part).any() or len(part) < 2:
+            continue
+        offsets = part - part.mean(axis=0)
+        axis = np.linalg.svd(offsets, full_matrices=False)[2][0]
+        if abs(axis[2]) < thresholds.steep:
+            found += [
+                first + int(at) for at in turning_points(offsets @ axis, thresholds.reversal_m)
+            ]
+    return tuple(found)
 
 
 def swings(

@@ -1,5 +1,6 @@
 """How a body lies to the fixed one that guides it: inside, flush, at its edge, kept between."""
 
+from collections.abc import Iterable
 from functools import cache
 
 import numpy as np
@@ -62,6 +63,37 @@ def covers_a_hollow(
     _, front = _through(points, way, body, frame)
     deep = _surface_ahead(points, way, base, frame) - front > thresholds.flush_m
     return bool(deep.mean() > 0.5)
+
+
+def borne_from_below(
+    body: BodyGeometry, others: Iterable[BodyGeometry], frame: int, thresholds: Thresholds
+) -> bool:
+    """Whether a true surface of another body is so near below a body that it may lie on it.
+
+    What of the body is within the other's hull, as noise has it, lies beside that and not on it.
+    """
+    down = np.array([0.0, 0.0, -1.0])
+    points = _points(body, frame)
+    _, front = _through(points, down, body, frame)
+    for other in others:
+        beside = np.full(len(points), True)
+        if other.planes is not None:
+            beside = _outside(points, other, frame) > 0.0
+        below = (_surface_ahead(points, down, other, frame) - front)[beside]
+        if (below <= thresholds.tolerance_most_m).any():
+            return True
+    return False
+
+
+def edge_gap(
+    body: BodyGeometry, base: BodyGeometry, frame: int, way: Float[np.ndarray, "3"]
+) -> float:
+    """How far a body's outermost point along a direction is from that of another [m]."""
+    one, two = (
+        float(((each.corners @ each.turn(frame).T + each.middles[frame]) @ way).max())
+        for each in (body, base)
+    )
+    return abs(one - two)
 
 
 def hinge_at_own_edge(

@@ -13,6 +13,7 @@ a lid or a drawer differs from it by what it is:
   edge on a table covers nothing.
 * What is on a rail is never wholly out of the fixed body, which stands close by on both sides:
   sideways it cannot go.
+* A door that slides aside stays before the fixed body's opening, where nothing bears it from below.
 
 What has no closed place in the recording is taken for a thing that was pushed or turned.
 """
@@ -25,7 +26,7 @@ from jaxtyping import Float
 
 from capar.model import geometry
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.motion.guide_fitting import HINGE, GuideFit, fit_hinge, fit_rail
+from extractors.motion.guide_fitting import HINGE, RAIL, GuideFit, fit_hinge, fit_rail
 from extractors.motion.object_motion import Floor
 from extractors.relations.guide_places import (
     confined,
@@ -36,6 +37,7 @@ from extractors.relations.guide_places import (
     hinge_near,
     inside_share,
 )
+from extractors.relations.sliding_doors import ends_before_opening
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
 
@@ -89,12 +91,32 @@ def guide_of(
     if fit is None:
         return None
     still = floor.rotation_rad if fit.kind == HINGE else floor.position_m
+    bases = tuple(fixed)
     best, most = None, 0.0
-    for base in fixed:
+    for base in bases:
         found = _closed_end(body, base, fit, still, thresholds)
-        if found is not None and found[1] > most and _borne(body, base, found[0], thresholds):
+        if found is not None and not _borne(body, base, found[0], thresholds):
+            found = None
+        if found is None and fit.kind == RAIL:
+            found = _before_opening(body, base, bases, fit, still, thresholds)
+        if found is not None and found[1] > most:
             best, most = found
     return best
+
+
+def _before_opening(
+    body: BodyGeometry,
+    base: BodyGeometry,
+    fixed: tuple[BodyGeometry, ...],
+    fit: GuideFit,
+    still_m: float,
+    thresholds: Thresholds,
+) -> tuple[Guide, float] | None:
+    """The rail of a door that slides aside before an opening, and how much it covers [1]."""
+    ends = ends_before_opening(body, base, fixed, fit, still_m, thresholds)
+    if ends is None:
+        return None
+    return Guide(fit, base.name, ends.closed, ends.opened, still_m), ends.share
 
 
 def _fit(body: BodyGeometry, floor: Floor, thresholds: Thresholds) -> GuideFit | None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.normals import contact_normal
+from extractors.contact.surfaces import surface
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
 
@@ -19,7 +20,8 @@ def rides(
 ) -> bool:
     """Whether a body is borne by another one, in a contact, and goes along when that one moves.
 
-    It is borne if it lies on it or in it as the motion begins. It goes along if it stays at its
+    It is borne if it lies on it as the motion begins, or in it with its bottom below: what stands
+    between the shaft of a rake and its teeth has none below. It goes along if it stays at its
     place on the bearer, in comparison with the bearer's own way, or in the bearer: a ball may
     roll about in a box.
 
@@ -46,7 +48,9 @@ def _goes_along(
     own = np.swapaxes(bearer.turns_at(part), 1, 2) @ offset[..., None]
     if np.isnan(own).any():
         return False
-    contained = [_contains(bearer, load, frame) for frame in span]
+    contained = [
+        _contains(bearer, load, frame) and _bottom_below(bearer, load, frame) for frame in span
+    ]
     if not contained[0]:
         normal = contact_normal(load, bearer, first, thresholds)
         if normal is None or normal[2] < thresholds.steep:
@@ -64,6 +68,17 @@ def _contains(bearer: BodyGeometry, load: BodyGeometry, frame: int) -> bool:
         return False
     point = bearer.turn(frame).T @ (load.middles[frame] - bearer.middles[frame])
     return bool((bearer.planes[:, :3] @ point + bearer.planes[:, 3] <= 0.0).all())
+
+
+def _bottom_below(bearer: BodyGeometry, load: BodyGeometry, frame: int) -> bool:
+    """Whether the bearer's true surface is below the middle of a load, as a bottom is."""
+    if bearer.shape is None:
+        return False
+    down = np.array([[0.0, 0.0, -1.0]]) @ bearer.turn(frame)
+    centre = bearer.shape.bounds.mean(axis=0)
+    point = (load.middles[frame] - bearer.middles[frame]) @ bearer.turn(frame) + centre
+    places, _, _ = surface(bearer.shape).mesh.ray.intersects_location(point[None], down)
+    return bool(len(places))
 
 
 def _size(body: BodyGeometry) -> float:

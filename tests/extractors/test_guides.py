@@ -136,6 +136,53 @@ def test_what_is_pushed_into_a_wide_shelf_is_on_no_rail() -> None:
     assert guide_of(pushed, [CASE], FLOOR, LIMITS) is None
 
 
+LEAF = shapes.box(0.012, 0.25, 0.3)
+SHUT = np.array([-0.208, 0.125, 0.0])
+"""Where a leaf covers the left half of the case's front [m]."""
+
+
+@settings(deadline=None, max_examples=10)
+@given(st.floats(0.05, 0.22), NOISE, SEEDS)
+def test_a_sliding_door_is_shut_where_it_meets_the_edge_of_its_opening(
+    way_m: float, noise_m: float, seed: int
+) -> None:
+    for side in (1.0, -1.0):
+        leaf = body(
+            SHUT * np.array([1.0, side, 1.0]) + along((0, -side * way_m, 0)),
+            still(),
+            LEAF,
+            noise_m,
+            seed,
+        )
+        found = guide_of(leaf, [CASE], FLOOR, LIMITS)
+        assert found is not None
+        assert (found.fit.kind, found.base) == ("rail", "fixed")
+        assert np.median(found.opening[:40]) < 0.004
+        assert np.median(found.opening[130:160]) == pytest.approx(way_m, abs=0.004)
+
+
+def test_a_leaf_that_is_drawn_off_its_opening_is_shut_before_it() -> None:
+    beside = SHUT + np.array([0.0, 0.15, 0.0]) + along((0, -0.15, 0))
+    found = guide_of(body(beside, still(), LEAF), [CASE], FLOOR, LIMITS)
+    assert found is not None
+    assert np.median(found.opening[:40]) == pytest.approx(0.15, abs=0.002)
+    assert np.median(found.opening[130:160]) < 0.001
+
+
+def test_what_goes_straight_before_an_opening_is_no_door_if_it_can_lie_or_has_no_shut_end() -> None:
+    whole = body(SHUT + along((0, -0.25, 0)), still(), LEAF)
+    between = body(SHUT + np.array([0.0, -0.05, 0.0]) + along((0, -0.05, 0)), still(), LEAF)
+    ajar = body(SHUT + along((0, -0.2, 0)), still(), LEAF)
+    away = body(SHUT - np.array([0.05, 0.0, 0.0]) + along((0, -0.2, 0)), still(), LEAF)
+    table = fixed(shapes.table(0.8, 1.6), (0.0, 0.0, -0.003))
+    block = fixed(shapes.box(0.4, 0.5, 0.3))
+    for each in (whole, between, away):
+        assert guide_of(each, [CASE], FLOOR, LIMITS) is None
+    assert guide_of(ajar, [CASE], FLOOR, LIMITS) is not None
+    assert guide_of(ajar, [CASE, table], FLOOR, LIMITS) is None
+    assert guide_of(ajar, [block], FLOOR, LIMITS) is None
+
+
 def test_what_slides_turns_or_tips_on_a_table_is_on_no_guide() -> None:
     table, plate = fixed(shapes.table(0.8, 1.6)), shapes.box(0.3, 0.3, 0.05)
     slid = body(along((0.3, 0.0, 0.0)), still(), plate)

@@ -17,7 +17,7 @@ from extractors.motion.leaning import leaning, spin
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.motion.rest import resting
-from extractors.motion.turning_points import swings, turning_points
+from extractors.motion.turning_points import level_turns, swings, turning_points
 from extractors.relations.arrangement import (
     Pair,
     above,
@@ -62,6 +62,17 @@ def test_a_wave_turns_at_its_extrema(turns: int, size: float) -> None:
     found = turning_points(size * np.sin(phase), 0.9 * size)
     expected = [(index + 1) * 999 / (turns + 1) for index in range(turns)]
     assert found == pytest.approx(expected, abs=1.0)
+
+
+def test_what_is_drawn_back_on_the_level_turns_once_and_what_goes_up_and_down_never() -> None:
+    there = np.concatenate([np.linspace(0.0, -0.14, 71), np.linspace(-0.14, 0.04, 61)[1:]])
+    for way, turns in (
+        ((1.0, 0.5, 0.0), (70,)),
+        ((0.1, 0.0, 1.0), ()),
+        ((0.3, 0.0, 0.0), ()),
+    ):
+        places = np.outer(there, way) + 1.0
+        assert level_turns(places, [(0, len(there) - 1)], LIMITS) == turns
 
 
 @given(st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=50))

@@ -81,6 +81,16 @@ def test_a_ball_in_a_carton_rides_though_it_rolls_from_wall_to_wall(x: float, y:
     assert rides(load, carton, (0, FRAMES - 1), [MOTION], LIMITS)
 
 
+def test_a_block_that_a_rake_draws_along_rides_not_though_it_is_within_the_outline() -> None:
+    shaft = trimesh.creation.box((0.4, 0.02, 0.02))
+    teeth = trimesh.creation.box((0.02, 0.16, 0.1))
+    teeth.apply_translation([0.19, 0.0, -0.05])
+    way = np.outer(SHARE, [-0.3, 0.0, 0.0])
+    rake = thing("rake", shape(trimesh.util.concatenate([shaft, teeth])), way)
+    block = thing("block", box(0.06, 0.06, 0.05), way + np.array([0.149, 0.0, -0.06]))
+    assert not rides(block, rake, (0, FRAMES - 1), [MOTION], LIMITS)
+
+
 @pytest.mark.parametrize("touching", [(0, 40), (160, 199)])
 def test_nothing_rides_while_its_bearer_stands(touching: tuple[int, int]) -> None:
     load = geometry_of(
