@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -138,8 +137,7 @@ def contacts(
     direct = tuple(_direct(capture, found, surfaces, calibration))
     whole = tuple(of_end_effectors(capture, direct, calibration))
     met = [(each.first, each.second, each.interval) for each in whole]
-    values: dict[str, Any] = dict(calibration.thresholds)
-    counted = counted_meetings(capture, bodies, met, Thresholds(**values))
+    counted = counted_meetings(capture, bodies, met, limits)
     return tuple(each for each, counts in zip(whole, counted, strict=True) if counts)
 
 

@@ -21,6 +21,13 @@ No threshold: as displacement grows with the cube of time, that is twice as long
 POWERS = (1.0, 3.0)
 """With which power of time a displacement grows [1]: at once, by a steady push, smoothly."""
 
+AGREEMENT = 0.1
+"""A beginning is sure if both estimates of how long ago it was differ by no larger share [1]."""
+
+UNSURE = 1.0 / 3.0
+"""Share of the longest time by which a motion may have begun earlier if that is not sure [1]: what
+drifts, or is recorded at few frames, grows with no power of time."""
+
 LEAST = 0.01
 """A displacement is taken for at least this [1], since less is noise."""
 
@@ -131,7 +138,9 @@ def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> in
     tries = [
         (_lasted(begin, end, far, power), _lasted(begin, middle, half, power)) for power in POWERS
     ]
-    whole, _ = min(tries, key=lambda both: abs(1.0 - both[1] / both[0]))
+    whole, part = min(tries, key=lambda both: abs(1.0 - both[1] / both[0]))
+    if abs(1.0 - part / whole) > AGREEMENT:
+        most = round(most * UNSURE)
     return min(round(whole), most)
 
 
