@@ -1,4 +1,4 @@
-"""Contacts in passing: two bodies go by each other, and neither takes any notice."""
+"""Contacts in passing: two bodies brush against each other, and both keep their course."""
 
 import numpy as np
 from jaxtyping import Float

@@ -10,7 +10,7 @@ from recomputed.known import NAME, ROUNDED, TIME, Known, near
 GONE_M, GONE_RAD = 0.009, 0.07
 """What has left its place is further away than this [m], [rad]."""
 
-CREEP_S = 0.3
+CREEP_S = 0.6
 """A motion may begin so long before, and end so long after, the floor of motion tells of it [s]."""
 
 SETTLED_M = 0.015
@@ -41,12 +41,28 @@ def stayed(known: Known, what: str, first: str, last: str) -> bool:
     return all(_apart(known, what, frame, middle) <= 1.2 for frame in inner)
 
 
+SIDE_S = 0.2
+"""How long before and after it the direction of a path is taken [s]."""
+
+
 def _apart(known: Known, what: str, one: int, other: int) -> float:
     """How far it is at one frame from where it is at another, by the least that counts [1]."""
     stream = known.stream(what)
     way = np.linalg.norm(stream.positions[one] - stream.positions[other])
     turn = (known.turn(what, one) * known.turn(what, other).inv()).magnitude()
     return max(float(way) / GONE_M, float(turn) / GONE_RAD)
+
+
+def levelled(known: Known, what: str, at: str) -> bool:
+    """Its path is steeper than 45 degrees on one side of that time, and less steep on the other."""
+    frame, aside = known.frame(at), round(SIDE_S * known.rate)
+    place, last = known.stream(what).positions, len(known.capture.times) - 1
+    ways = [
+        place[min(max(end, 0), last)] - place[min(max(begin, 0), last)]
+        for begin, end in ((frame - aside, frame), (frame, frame + aside))
+    ]
+    steep = [abs(float(way[2])) - float(np.linalg.norm(way[:2])) for way in ways]
+    return min(steep) < 0.0 < max(steep)
 
 
 def measured(known: Known, what: str, first: str, last: str) -> bool:
@@ -236,6 +252,7 @@ def flew_on(known: Known) -> bool:
 
 
 FORMS = (
+    (rf"the path of the {NAME} became level, or ceased to be, at {TIME}", levelled),
     (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),
     (rf"the {NAME} stayed where it was between {TIME} and {TIME}", stayed),
     (rf"motion of the {NAME} to and fro was measured from {TIME} to {TIME}", measured_swings),

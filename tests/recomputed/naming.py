@@ -8,8 +8,10 @@ from capar.model.facts import (
     Displaced,
     LookingAt,
     Moving,
+    Phase,
     Resting,
     Reverses,
+    Seated,
     Touching,
     ZeroCrossing,
 )
@@ -40,7 +42,10 @@ FURTHER: dict[str, tuple[Row, ...]] = {
 }
 """What the extended profile adds to it: of one object, and of what moves itself."""
 
-CHANGES = (Touching, Moving, Displaced, Resting, Reverses, LookingAt, Bears, ZeroCrossing)
+CHANGES = (
+    *(Touching, Moving, Displaced, Resting, Reverses, LookingAt, Bears, ZeroCrossing),
+    *(Phase, Seated),
+)
 """Measurements whose begin or end may be a border."""
 
 
@@ -205,6 +210,9 @@ def changes_alike(known: Known, side: str) -> bool:
         for frame in (each.first, each.last)
     }
     frames |= {each.frame for each in known.of(Reverses) if each.object == what}
+    for kind in (Displaced, Phase):
+        for each in known.of(kind):
+            frames |= {each.first, each.last} if each.object == what else set()
     return any(abs(each - border) <= known.reach for each in frames)
 
 
