@@ -1,4 +1,4 @@
-"""Explain random segments of a battery, and compute every sentence again from exact captures."""
+"""Explain random segments of a battery, and compute every sentence again from exact captures.
 
 Run by hand: ``cd tests && python -m scenes.explanations BATTERY [--count 20] [--seed 0]``.
 """
