@@ -126,7 +126,7 @@ def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> in
         reach: How large it should have grown for this to be told [1]; less if it never is.
         most: The answer at most.
     """
-    if np.isnan(grows).all():
+    if not grows.size or np.isnan(grows[0]):
         return 0
     large = np.flatnonzero(grows >= reach)
     far = int(large[0]) if large.size else int(np.nanargmax(grows))

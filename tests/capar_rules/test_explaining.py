@@ -28,6 +28,8 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "strikes_with", 2, ""): "no story has a tool; tests/kb/language/test_instruments.py has",
     ("", "pushes_with", 2, ""): "no story has a tool",
     ("", "sends_off", 2, ""): "no story strikes away what a hand does not hold; the scenes do",
+    ("", "awaited", 1, ""): "no story has hands that meet; the scenes of hands have",
+    ("", "walks", 1, ""): "no story has feet; tests/test_whole_bodies.py has",
 }
 """Templates of what holds that no explanation tells, and why."""
 
