@@ -1,11 +1,10 @@
 """Every driver against its simulator at the highest rate that its line carries.
 
 Run as ``python benchmarks/devices.py [--seconds 20] [--long] [--at-once 3]``. Without ``--long``
-every format and mode, one line each; with it one run a driver, all side by side. A run is a
-process of its own. Printed are frames, the records that were sent and accepted, how many were
-wrong (no record that was sent, in order) and how many were lost; the second decoder of the tests
-says what was sent. The script fails if a record is wrong, if one is lost on a clean line, or if
-fewer than nine tenths of the undamaged ones are kept on a bad one.
+every format and mode, one line each; with it one run a driver, all side by side, each a process.
+Printed are frames, the records sent and accepted, how many were wrong (no record that was sent, in
+order) and lost; the second decoder of the tests says what was sent. The script fails if a record is
+wrong, one is lost on a clean line, or under nine tenths of the undamaged are kept on a bad one.
 """
 
 import argparse

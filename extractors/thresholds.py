@@ -293,8 +293,7 @@ class Thresholds(FaultThresholds):
     closed [1]: fronts, handles and overlaps stand out by the other quarter."""
 
     withdrawn_share: float = 0.05
-    """What is open is less inside by at least this share [1]: a drawer of 60 cm that is drawn by
-    the least range of a rail, 3 cm."""
+    """What is open is less inside by at least this share [1]: 3 cm, a rail's least, of 60 cm."""
 
     rail_play_m: float = 0.03
     """What guides a drawer is so near on both sides of it [m]; what is pushed onto a shelf has room

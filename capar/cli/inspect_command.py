@@ -73,18 +73,18 @@ def _of_capture(place: str) -> dict[str, Any]:
     from extractors.readers.drafting.survey import as_json, near_pairs, survey
 
     capture = read_capture(place)
-    kinds = {each.name: f"sensor, {each.role.value}" for each in capture.sensors}
-    kinds |= {each.name: f"object, {each.tag.value}" for each in capture.objects}
-    streams = {name: each.stream for name, each in capture.bodies.items()}
-    surveys = [survey(name, kinds[name], each) for name, each in streams.items()]
+    kinds = {sensor.name: f"sensor, {sensor.role.value}" for sensor in capture.sensors}
+    kinds |= {thing.name: f"object, {thing.tag.value}" for thing in capture.objects}
+    streams = {name: body.stream for name, body in capture.bodies.items()}
+    surveys = [survey(name, kinds[name], stream) for name, stream in streams.items()]
     head = {
         "name": capture.name,
         "frames": len(capture.times),
         "rate_hz": capture.rate_hz,
         "shapes": {
-            name: each.shape.description for name, each in capture.bodies.items() if each.shape
+            name: body.shape.description for name, body in capture.bodies.items() if body.shape
         },
-        "notices": [each.document() for each in (*capture.notices, *_findings(capture))],
+        "notices": [found.document() for found in (*capture.notices, *_findings(capture))],
         "sources": [{"path": s.path, "format": s.format} for s in capture.sources],
     }
     return head | as_json(surveys, near_pairs(streams))
@@ -101,7 +101,7 @@ def _findings(capture: "Capture") -> "Iterator[Notice]":
     measured = measure(capture)
     facts = steady(measured.facts)
     found = unmoved_notices((*facts, *movers(facts)), capture.times)
-    yield from (each for each in (*measured.notices, *found) if KINDS[each.code].fault)
+    yield from (told for told in (*measured.notices, *found) if KINDS[told.code].fault)
 
 
 def _of_file(path: Path) -> dict[str, Any]:
@@ -114,8 +114,8 @@ def _of_file(path: Path) -> dict[str, Any]:
     recording = read_recording(path)
     metres = recording.unit_m or 1.0
     streams = {
-        name: Stream(each.times, each.positions * metres, each.orientations)
-        for name, each in recording.bodies.items()
+        name: Stream(stream.times, stream.positions * metres, stream.orientations)
+        for name, stream in recording.bodies.items()
     }
     kinds = dict.fromkeys(streams, "body")
     upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(recording.marker_times), 1))
@@ -123,8 +123,8 @@ def _of_file(path: Path) -> dict[str, Any]:
         streams[name] = Stream(recording.marker_times, points * metres, upright)
         kinds[name] = "marker"
     unit = [notice("no-unit")] if recording.unit_m is None else []
-    notices = [each.document() for each in (*recording.notices, *unit)]
-    surveys = [survey(name, kinds[name], each) for name, each in streams.items()]
+    notices = [told.document() for told in (*recording.notices, *unit)]
+    surveys = [survey(name, kinds[name], stream) for name, stream in streams.items()]
     head = {
         "name": path.name,
         "format": recording.format,
@@ -142,27 +142,27 @@ def _show(report: dict[str, Any]) -> None:
     out.print(f"[bold]{report['name']}[/]: {report['frames']} frames")
     rows = [
         (
-            each["name"], each["kind"], f"{each['seconds']:.2f}", f"{each['rate_hz']:.1f}",
-            f"{each['jitter_ms']:.1f}", str(each["lost"]), f"{each['longest_gap_s']:.2f}",
-            _figure(each["noise_mm"]), _figure(each["noise_deg"]),
-            " x ".join(f"{v:.2f}" for v in each["range_m"] or ()) or "-",
+            stream["name"], stream["kind"], f"{stream['seconds']:.2f}", f"{stream['rate_hz']:.1f}",
+            f"{stream['jitter_ms']:.1f}", str(stream["lost"]), f"{stream['longest_gap_s']:.2f}",
+            _figure(stream["noise_mm"]), _figure(stream["noise_deg"]),
+            " x ".join(f"{length:.2f}" for length in stream["range_m"] or ()) or "-",
         )
-        for each in report["streams"]
+        for stream in report["streams"]
     ]  # fmt: skip
     out.print(terminal_table(STREAM_COLUMNS, rows, names={0}))
     if report["pairs"]:
         pairs = [
             (
-                each["first"], each["second"], f"{each['least_m']:.3f}",
-                f"{each['at_s']:.2f}", f"{each['near_s']:.2f}",
+                pair["first"], pair["second"], f"{pair['least_m']:.3f}",
+                f"{pair['at_s']:.2f}", f"{pair['near_s']:.2f}",
             )
-            for each in report["pairs"]
+            for pair in report["pairs"]
         ]  # fmt: skip
         out.print(terminal_table(PAIR_COLUMNS, pairs, names={0, 1}))
     for name, text in report.get("shapes", {}).items():
         out.print(f"shape of {name}: {text}", highlight=False)
-    for each in report["notices"]:
-        out.print(f"[yellow]{each['code']}[/]: {each['message']}", highlight=False)
+    for told in report["notices"]:
+        out.print(f"[yellow]{told['code']}[/]: {told['message']}", highlight=False)
 
 
 def _figure(value: float | None) -> str:

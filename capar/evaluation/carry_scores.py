@@ -55,22 +55,22 @@ class CarryCounts:
 
     def scores(self) -> dict[str, Any]:
         """Shares of carries whose printed start, end and both are near [%], and errors [ms]."""
-        counted = [each for each in self.carries if each.moved]
-        sharp = [each for each in counted if each.moves_at_ends]
+        counted = [carry for carry in self.carries if carry.moved]
+        sharp = [carry for carry in counted if carry.moves_at_ends]
         return {
             "carries": len(self.carries),
             "excluded": len(self.carries) - len(counted),
             "counted": len(counted),
             "within_s": self.within_s,
             **self._shares(counted),
-            "start_ms": errors_ms([each.start_error_s for each in counted]),
-            "end_ms": errors_ms([each.end_error_s for each in counted]),
+            "start_ms": errors_ms([carry.start_error_s for carry in counted]),
+            "end_ms": errors_ms([carry.end_error_s for carry in counted]),
             "extra": self.extra,
             "moving_at_both_ends": {"carries": len(sharp), **self._shares(sharp)},
         }
 
     def _shares(self, carries: Sequence[CarryEnds]) -> dict[str, Any]:
-        errors_s = [(each.start_error_s, each.end_error_s) for each in carries]
+        errors_s = [(carry.start_error_s, carry.end_error_s) for carry in carries]
         near = np.abs(np.array(errors_s).reshape(-1, 2)) <= self.within_s + SAME_S
         shares = (near[:, 0], near[:, 1], near.all(axis=1))
         names = ("start", "end", "both")
@@ -100,13 +100,13 @@ def compare_carries(
 ) -> Scored:
     """The carries of a capture beside their labels, which are in seconds."""
     parts, channels = {}, []
-    for thing in dict.fromkeys(each.object for each in labels.marks):
-        marks = [each for each in labels.marks if each.object == thing and each.sure]
+    for thing in dict.fromkeys(mark.object for mark in labels.marks):
+        marks = [mark for mark in labels.marks if mark.object == thing and mark.sure]
         segments = _segments_of(observation, thing)
         found = printed_carries(segments, options.names)
         stream = capture.tag_object(thing).stream
         parts[thing] = _counts(marks, found, stream, options)
-        true = tuple(Interval(each.start, each.end, CARRY) for each in marks)
+        true = tuple(Interval(mark.start, mark.end, CARRY) for mark in marks)
         channels.append(Channel(thing, true, found, silent=True, segments=segments))
     return Scored(
         name=name,
@@ -126,13 +126,13 @@ def printed_carries(segments: Iterable[Segment], names: Sequence[str]) -> tuple[
         names: What they are called, or specialise, where they carry it.
     """
     runs: list[list[Segment]] = []
-    for each in segments:
-        if not runs or (runs[-1][-1].ee, runs[-1][-1].index + 1) != (each.ee, each.index):
+    for segment in segments:
+        if not runs or (runs[-1][-1].ee, runs[-1][-1].index + 1) != (segment.ee, segment.index):
             runs.append([])
-        runs[-1].append(each)
+        runs[-1].append(segment)
     out = []
     for run in runs:
-        carrying = [each for each in run if {each.name, *each.general} & set(names)]
+        carrying = [step for step in run if {step.name, *step.general} & set(names)]
         if carrying:
             out.append(Interval(carrying[0].start_s, carrying[-1].end_s, CARRY))
     return tuple(sorted(out))

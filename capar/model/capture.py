@@ -126,13 +126,13 @@ class Capture:
         self._check_parts()
 
     def _check_parts(self) -> None:
-        wholes = {each.name: each for each in self.sensors if not each.part_of}
-        for each in self.sensors:
-            if each.part_of and each.part_of not in wholes:
-                raise UnknownNameError("sensor", each.part_of, wholes, where=each.name)
-            if each.part_of and self.agent_of(each) != self.agent_of(wholes[each.part_of]):
+        wholes = {sensor.name: sensor for sensor in self.sensors if not sensor.part_of}
+        for part in (sensor for sensor in self.sensors if sensor.part_of):
+            if part.part_of not in wholes:
+                raise UnknownNameError("sensor", part.part_of, wholes, where=part.name)
+            if self.agent_of(part) != self.agent_of(wholes[part.part_of]):
                 raise CaptureError(
-                    f"{each.name!r} is part of {each.part_of!r}, which another agent wears; the "
+                    f"{part.name!r} is part of {part.part_of!r}, which another agent wears; the "
                     "parts of an end-effector are of one agent"
                 )
 
@@ -215,7 +215,7 @@ class Capture:
 
 
 def _named(kind: str, name: str, group: tuple[_Named, ...]) -> _Named:
-    for each in group:
-        if each.name == name:
-            return each
-    raise UnknownNameError(kind, name, [each.name for each in group])
+    for member in group:
+        if member.name == name:
+            return member
+    raise UnknownNameError(kind, name, [member.name for member in group])

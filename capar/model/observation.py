@@ -236,14 +236,14 @@ class Observation:
 
     def who(self, joint: JointAction) -> str:
         """Who takes part in a joint action: ``both hands``, or each end-effector by its name."""
-        own = [each for each in self.links if each.ee in joint.ees]
-        pair = sorted((each.kind, each.side) for each in own)
+        own = [link for link in self.links if link.ee in joint.ees]
+        pair = sorted((link.kind, link.side) for link in own)
         for kind, several in BOTH.items():
             if (
                 len(joint.who) == 2
-                and len({each.agent for each in own}) == 1
+                and len({link.agent for link in own}) == 1
                 and pair == [(kind, "left"), (kind, "right")]
             ):
                 return f"both {several}"
-        *some, last = (each.replace("_", " ") for each in joint.who)
+        *some, last = (name.replace("_", " ") for name in joint.who)
         return f"{', '.join(some)} and {last}"

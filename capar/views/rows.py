@@ -78,7 +78,7 @@ def rows(observation: Observation, speeds: Speeds, lost: Lost | None = None) -> 
 
 
 def _lost(about: Sequence[str], lost: Lost, clock: Callable[[int], float]) -> tuple[Span, ...]:
-    found = [lost[each] for each in about if each in lost]
+    found = [lost[name] for name in about if name in lost]
     missing = runs(np.logical_or.reduce(found)) if found else []
     return tuple(Span(clock(first), clock(last), "") for first, last in missing)
 
@@ -97,7 +97,7 @@ def frame_clock(observation: Observation, speeds: Speeds) -> Callable[[int], flo
     known |= {each.first: each.start_s for each in observation.segments}
     known |= {each.last: each.end_s for each in observation.segments}
     frames = sorted(known)
-    seconds = [known[each] for each in frames]
+    seconds = [known[frame] for frame in frames]
     return lambda frame: float(np.interp(frame, frames, seconds))
 
 

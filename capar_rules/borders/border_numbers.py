@@ -169,9 +169,9 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
 def _reach(own: Iterable[Touching], margin: int) -> dict[str, list[tuple[int, int]]]:
     """For each object that the end-effector touches, when: disjoint intervals, a little wider."""
     reach: dict[str, list[tuple[int, int]]] = {}
-    for each in own:
-        spans = reach.setdefault(each.other, [])
-        first, last = each.first - margin, each.last + margin
+    for contact in own:
+        spans = reach.setdefault(contact.other, [])
+        first, last = contact.first - margin, contact.last + margin
         if spans and first <= spans[-1][1]:
             spans[-1] = (spans[-1][0], max(last, spans[-1][1]))
         else:
@@ -183,10 +183,10 @@ def _free(own: Iterable[Touching]) -> list[tuple[int, int]]:
     """Last and first frames of neighbouring contacts, whatever is touched, with none between."""
     gaps: list[tuple[int, int]] = []
     last = None
-    for each in own:
-        if last is not None and each.first > last + 1:
-            gaps.append((last, each.first))
-        last = each.last if last is None else max(last, each.last)
+    for contact in own:
+        if last is not None and contact.first > last + 1:
+            gaps.append((last, contact.first))
+        last = contact.last if last is None else max(last, contact.last)
     return gaps
 
 
@@ -203,10 +203,10 @@ def _ends(fact: Moving | Touching) -> tuple[int, int]:
 def _within(
     ee: str, ticks: list[int], own: Iterable[Touching], others: Iterable[Touching]
 ) -> Iterable[Fact]:
-    for each in (*own, *others):
-        first, last = bisect_left(ticks, each.first), bisect_right(ticks, each.last) - 1
+    for contact in (*own, *others):
+        first, last = bisect_left(ticks, contact.first), bisect_right(ticks, contact.last) - 1
         if first <= last:
-            yield Within(ee, each.body, each.other, each.first, first, last)
+            yield Within(ee, contact.body, contact.other, contact.first, first, last)
 
 
 def _moves(ee: str, ticks: list[int], moves: dict[str, list[Moving]]) -> Iterable[Fact]:
@@ -224,6 +224,6 @@ def _confirmed(ee: str, ticks: list[int], crossings: list[int], reach: float) ->
     for index, frame in enumerate(ticks):
         place = bisect_left(crossings, frame)
         near = crossings[max(place - 1, 0) : place + 1]
-        best = min(near, key=lambda each: (abs(each - frame), each), default=None)
+        best = min(near, key=lambda at: (abs(at - frame), at), default=None)
         if best is not None and abs(best - frame) <= reach:
             yield CrossingNear(ee, index, best)

@@ -81,8 +81,8 @@ def edges(
         displaced: When those truly began and ended.
     """
     contacts: dict[str, list[Touching]] = {}
-    for each in own:
-        contacts.setdefault(each.other, []).append(each)
+    for contact in own:
+        contacts.setdefault(contact.other, []).append(contact)
     true: dict[str, list[Displaced]] = {}
     for edge in displaced:
         true.setdefault(edge.object, []).append(edge)
@@ -90,13 +90,13 @@ def edges(
     for motion in moving:
         held = contacts.get(motion.object, [])
         start, stop = _around(held, motion.first), _around(held, motion.last)
-        within = [each for each in true.get(motion.object, ()) if _meet(each, motion)]
+        within = [edge for edge in true.get(motion.object, ()) if _meet(edge, motion)]
         if start:
-            frame = min((each.first for each in within), default=motion.first)
+            frame = min((edge.first for edge in within), default=motion.first)
             frame = max(min(frame, motion.first), start.first)
             found.append(Edge(SetsOff, motion.object, motion.first, frame))
         if stop:
-            frame = max((each.last for each in within), default=motion.last)
+            frame = max((edge.last for edge in within), default=motion.last)
             frame = min(max(frame, motion.last), stop.last)
             found.append(Edge(Settles, motion.object, motion.last, frame))
     return tuple(found)
@@ -163,11 +163,11 @@ def landings(
         others: Contacts of what it handles.
         seats: When bodies are down on others.
     """
-    for each in own:
-        borne = as_borne(each, seats)
-        yield Lands(ee, ee, each.other, each.first, bisect_left(ticks, borne.first))
-        yield Leaves(ee, ee, each.other, each.first, bisect_left(ticks, borne.last))
-    for each in others:
-        first, last = true_ends(each, seats)
-        yield Lands(ee, each.body, each.other, each.first, bisect_left(ticks, first))
-        yield Leaves(ee, each.body, each.other, each.first, bisect_left(ticks, last))
+    for contact in own:
+        borne = as_borne(contact, seats)
+        yield Lands(ee, ee, contact.other, contact.first, bisect_left(ticks, borne.first))
+        yield Leaves(ee, ee, contact.other, contact.first, bisect_left(ticks, borne.last))
+    for contact in others:
+        first, last = true_ends(contact, seats)
+        yield Lands(ee, contact.body, contact.other, contact.first, bisect_left(ticks, first))
+        yield Leaves(ee, contact.body, contact.other, contact.first, bisect_left(ticks, last))

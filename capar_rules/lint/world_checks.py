@@ -200,19 +200,19 @@ def rivals(name: str, own: Sequence[Statement], base: Known) -> tuple[str, ...]:
 def _rivals(name: str, audit: Audit) -> tuple[str, ...]:
     """The same of an audit."""
     shared = {
-        each.second if each.first == name else each.first: len(each.features)
-        for each in audit.ambiguous
-        if name in (each.first, each.second)
+        pair.second if pair.first == name else pair.first: len(pair.features)
+        for pair in audit.ambiguous
+        if name in (pair.first, pair.second)
     }
-    return tuple(sorted(shared, key=lambda each: (-shared[each], each)))
+    return tuple(sorted(shared, key=lambda rival: (-shared[rival], rival)))
 
 
 def _clashes(own: Sequence[Statement], audit: Audit) -> Iterator[Finding]:
     for name, place in _primitives(own).items():
         others = _rivals(name, audit)
         if others:
-            pairs = [each for each in audit.ambiguous if name in (each.first, each.second)]
-            where = ", ".join(each or "none" for each in pairs[0].features[0])
+            pairs = [pair for pair in audit.ambiguous if name in (pair.first, pair.second)]
+            where = ", ".join(bit or "none" for bit in pairs[0].features[0])
             told = ", ".join(others[:MOST_RIVALS])
             rest = len(others) - MOST_RIVALS
             yield Finding(

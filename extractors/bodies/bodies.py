@@ -20,18 +20,18 @@ class Bodies:
 
     def on_end_effector(self, name: str) -> tuple[BodyGeometry, ...]:
         """What rides on the end-effector that a sensor acts for: its own body, then its parts."""
-        return tuple(self.sensors[each] for each in self.parts.get(name, (name,)))
+        return tuple(self.sensors[part] for part in self.parts.get(name, (name,)))
 
     @property
     def poses(self) -> dict[str, Poses]:
         """The poses of every body by name; of an object that is also a sensor, the object's."""
-        return {name: each.poses for name, each in (self.sensors | self.objects).items()}
+        return {name: body.poses for name, body in (self.sensors | self.objects).items()}
 
     def without_caches(self) -> "Bodies":
         """The same bodies without what was computed of them, which takes more memory than poses."""
         return Bodies(
-            {name: replace(each) for name, each in self.sensors.items()},
-            {name: replace(each) for name, each in self.objects.items()},
+            {name: replace(body) for name, body in self.sensors.items()},
+            {name: replace(body) for name, body in self.objects.items()},
             self.parts,
         )
 
@@ -52,14 +52,14 @@ def bodies_of(
     for sensor in capture.sensors:
         known = calibration.sensor(sensor.name) if calibration else None
         sensors[sensor.name] = geometry_of(sensor, thresholds, known)
-    for each in capture.objects:
-        known = calibration.tag_object(each.name) if calibration else None
-        sensor_of_it = next((one for one in capture.sensors if one.stream is each.stream), None)
-        if sensor_of_it and each.tag is not TagType.FIXED:
+    for thing in capture.objects:
+        known = calibration.tag_object(thing.name) if calibration else None
+        sensor_of_it = next((one for one in capture.sensors if one.stream is thing.stream), None)
+        if sensor_of_it and thing.tag is not TagType.FIXED:
             poses = sensors[sensor_of_it.name].poses
-            objects[each.name] = BodyGeometry(each.name, each.shape, poses)
+            objects[thing.name] = BodyGeometry(thing.name, thing.shape, poses)
         else:
-            objects[each.name] = geometry_of(each, thresholds, known)
-    wholes = {each.part_of for each in capture.sensors if each.part_of}
-    parts = {name: tuple(each.name for each in capture.parts_of(name)) for name in sorted(wholes)}
+            objects[thing.name] = geometry_of(thing, thresholds, known)
+    wholes = {sensor.part_of for sensor in capture.sensors if sensor.part_of}
+    parts = {name: tuple(part.name for part in capture.parts_of(name)) for name in sorted(wholes)}
     return Bodies(sensors, objects, parts)

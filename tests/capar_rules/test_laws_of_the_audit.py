@@ -27,7 +27,10 @@ def possible() -> frozenset[Features]:
     """The feature sets that some world of the audit has."""
     atoms = evaluate(parse(profile("extended").files), [("possible", 4)])
     assert summarise(atoms).possible > 200
-    return frozenset(tuple(map(str, row)) for name, row in atoms if name == "possible")  # type: ignore[misc]
+    rows = [row for name, row in atoms if name == "possible"]
+    return frozenset(
+        (str(start), str(end), str(change), str(force)) for start, end, change, force in rows
+    )
 
 
 def broken(capture: Capture) -> Iterator[str]:
