@@ -57,12 +57,8 @@ class Case:
 
 def short() -> list[Case]:
     """Every format and mode, and bad lines."""
-    flock = [
-        Case("flock", form, birds, mode)
-        for form in FORMATS
-        for birds in (1, 12)
-        for mode in ("stream", "point")
-    ]
+    modes = ("stream", "point")
+    flock = [Case("flock", form, n, mode) for form in FORMATS for n in (1, 12) for mode in modes]
     bad = [Case("flock", form, birds, "stream", 0.005) for form in FORMATS for birds in (1, 12)]
     star = [Case("motionstar", form, 12, mode) for form in FORMATS for mode in ("tcp", "udp")]
     fastrak = [
