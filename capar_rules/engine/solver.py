@@ -99,18 +99,22 @@ def fingerprint(files: Iterable[Path]) -> str:
         path = waiting.pop()
         if str(path) in seen:
             continue
-        content = path.read_bytes()
+        about = path.stat()
+        content, included = _read(path, about.st_mtime_ns, about.st_size)
         seen[str(path)] = content
-        waiting += [path.parent / name for name in _includes(content.decode())]
+        waiting += [path.parent / name for name in included]
     digest = sha256()
     for path_name in sorted(seen, key=lambda each: (Path(each).name, seen[each])):
         digest.update(Path(path_name).name.encode() + b"\0" + seen[path_name] + b"\0")
     return digest.hexdigest()
 
 
-def _includes(text: str) -> list[str]:
-    lines = (line.strip() for line in text.splitlines())
-    return [line.split('"')[1] for line in lines if line.startswith("#include ")]
+@lru_cache(maxsize=512)
+def _read(path: Path, changed_ns: int, size: int) -> tuple[bytes, tuple[str, ...]]:
+    """What a file holds that was changed then, and the names of the files that it includes."""
+    content = path.read_bytes()
+    lines = (line.strip() for line in content.decode().splitlines())
+    return content, tuple(line.split('"')[1] for line in lines if line.startswith("#include "))
 
 
 _CONTRADICTION = "the rules contradict each other over these facts: they have no answer"

@@ -1,9 +1,12 @@
 """The patch where two surfaces meet: places on either that face the other close by."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import product
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 from scipy.spatial import cKDTree
 
 SPACING_M = 0.0025
@@ -17,6 +20,15 @@ MOST_STEPS = 256
 
 BOX_DEPTHS = 3.0
 """Places further from the other body's box than so many depths of a patch are left out [1]."""
+
+FEW_CELLS = 512
+"""A triangle in more cells is so large that most of it may lie outside of the box [1]."""
+
+SAMPLED = 16
+"""One place in so many says how near the surfaces are at least."""
+
+ROUNDED = 1e-9
+"""By this share bounds are wider than what is sought within them [1], as numbers are rounded."""
 
 LEAST_SHARE = 0.01
 """Faces that cancel each other to less than this share of the patch's area press nowhere [1]."""
@@ -91,14 +103,39 @@ def places(
     found = [(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0))]
     for along, across in np.unique(steps, axis=0):
         rows = np.flatnonzero((steps == (along, across)).all(axis=1) & (length > 0.0))
-        u, v = _spread(int(along), int(across))
-        points = some[rows, None, 0] + u[:, None] * one[rows, None] + v[:, None] * two[rows, None]
-        inside = ((points >= box[0]) & (points <= box[1])).all(axis=2)
-        row, _ = np.nonzero(inside)
-        row = rows[row]
-        found.append((points[inside], normal[row] / length[row, None], 0.5 * length[row] / len(u)))
+        count = len(_spread(int(along), int(across))[0])
+        for group, u, v in _cells(some, rows, box, int(along), int(across)):
+            points = some[group, None, 0] + u[:, None] * one[group, None]
+            points = points + v[:, None] * two[group, None]
+            inside = ((points >= box[0]) & (points <= box[1])).all(axis=2)
+            row = group[np.nonzero(inside)[0]]
+            found.append(
+                (points[inside], normal[row] / length[row, None], 0.5 * length[row] / count)
+            )
     points, normals, areas = (np.concatenate(each) for each in zip(*found, strict=True))
     return Places(points, normals, areas, outward)
+
+
+def _cells(
+    triangles: Float[np.ndarray, "triangles 3 3"],
+    rows: Int[np.ndarray, "rows"],
+    box: Box,
+    along: int,
+    across: int,
+) -> Iterator[tuple[Int[np.ndarray, "group"], np.ndarray, np.ndarray]]:
+    """Triangles with the shares of their edges at which places may lie in a box."""
+    u, v = _spread(along, across)
+    if len(u) <= FEW_CELLS:
+        yield rows, u, v
+        return
+    for row in rows:
+        corner, *ends = triangles[row]
+        edges = np.stack([end - corner for end in ends], axis=1)
+        shares = np.linalg.pinv(edges) @ (np.array(list(product(*box.T))) - corner).T
+        slack = ROUNDED * (1.0 + np.abs(shares).max())
+        low, high = shares.min(axis=1) - slack, shares.max(axis=1) + slack
+        some = (u >= low[0]) & (u <= high[0]) & (v >= low[1]) & (v <= high[1])
+        yield np.array([row]), u[some], v[some]
 
 
 def _opposite_longest(
@@ -116,6 +153,7 @@ def _steps(edges: Float[np.ndarray, "edges 3"], spacing_m: float) -> np.ndarray:
     return np.clip(2 ** np.ceil(np.log2(np.maximum(ratio, 1.0))), 1, MOST_STEPS).astype(int)
 
 
+@lru_cache(maxsize=128)
 def _spread(along: int, across: int) -> tuple[np.ndarray, np.ndarray]:
     """Shares of two edges at even places of a triangle: the thirds of each cell's two halves."""
     grid = np.mgrid[0:along, 0:across].reshape(2, -1)
@@ -141,10 +179,19 @@ def _box(triangles: Float[np.ndarray, "triangles 3 3"]) -> Box:
 
 def _patch(one: Places, two: Places, depth_m: float) -> tuple[Places, Places]:
     """What of either surface is near the other one."""
-    far_one = cKDTree(two.points).query(one.points)[0]
-    far_two = cKDTree(one.points).query(two.points)[0]
-    reach = float(min(far_one.min(), far_two.min())) + depth_m
+    tree = _tree(two)
+    some = tree.query(one.points[::SAMPLED])[0]
+    bound = (float(some.min()) + depth_m) * (1.0 + ROUNDED)
+    far_one = tree.query(one.points, distance_upper_bound=bound)[0]
+    # The nearest pair is the same from either side.
+    reach = float(far_one.min()) + depth_m
+    far_two = _tree(one).query(two.points, distance_upper_bound=bound)[0]
     return one.of(far_one <= reach), two.of(far_two <= reach)
+
+
+def _tree(of: Places) -> cKDTree:
+    """A search tree that is built faster than it could be searched, for it is used twice."""
+    return cKDTree(of.points, balanced_tree=False, compact_nodes=False)
 
 
 def _faced(own: Places, others: Places) -> Float[np.ndarray, "3"]:
