@@ -168,7 +168,7 @@ class Capture:
         """Seconds since the first frame: the clock of every stream."""
         return self.sensors[0].stream.times
 
-    @property
+    @cached_property
     def rate_hz(self) -> float:
         """Frames a second, from the median step."""
         return 1.0 / float(np.median(np.diff(self.times)))

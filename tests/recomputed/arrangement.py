@@ -1,7 +1,6 @@
 """Sentences about directions and arrangements, recomputed from positions, turns and shapes."""
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from capar.model.facts import Leans, Place
 from recomputed.known import NAME, TIME, Known, name, near
@@ -74,7 +73,7 @@ def measured_leaning(known: Known, what: str, first: str, last: str) -> bool:
 def spun(known: Known, what: str) -> bool:
     """The twist about the vertical, step by step."""
     frames = range(known.segment.first, known.segment.last + 1)
-    turns = Rotation.concatenate([known.turn(what, each) for each in frames])
+    turns = known.turns(what, frames)
     twist = (turns[1:] * turns[:-1].inv()).as_rotvec()[:, 2].sum()
     return bool(abs(twist) >= TURN_RAD - SLACK_RAD)
 

@@ -62,7 +62,7 @@ def on_a_hinge(known: Known, what: str, base: str) -> bool:
     """A point stays where it is as it turns: some place in its frame is fixed in the world."""
     place = known.stream(what).positions
     frames = range(0, len(place), 10)
-    turns = np.stack([known.turn(what, each).as_matrix() for each in frames])
+    turns = known.turns(what, frames).as_matrix()
     # R(t) q + p(t) = c at each frame: linear in q and c.
     terms = np.concatenate([np.hstack([each, -np.eye(3)]) for each in turns])
     goal = -np.concatenate([place[each] for each in frames])

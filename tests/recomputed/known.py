@@ -93,7 +93,12 @@ class Known:
         raise AssertionError(f"the capture has no {what!r}")
 
     def turn(self, what: str, frame: int) -> Rotation:
-        return Rotation.from_quat(self.stream(what).orientations[frame], scalar_first=True)
+        return self.turns(what, frame)
+
+    def turns(self, what: str, frames: int | Sequence[int]) -> Rotation:
+        """How it is turned at a frame, or at several in one value."""
+        at = frames if isinstance(frames, int | np.integer) else list(frames)
+        return Rotation.from_quat(self.stream(what).orientations[at], scalar_first=True)
 
     def middle(self, what: str, frame: int) -> np.ndarray:
         """Where the middle of the body's box is in the world [m]."""

@@ -1,8 +1,9 @@
 """Sentences about motion and rest, recomputed from streams."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from motions.rolling import CAN
-from scipy.spatial.transform import Rotation
 
 from capar.model.facts import Flies, Lengthwise, Rolls, Swings, Touching
 from recomputed.known import NAME, ROUNDED, TIME, Known, near
@@ -29,8 +30,8 @@ def moved(known: Known, what: str, distance: str, first: str, last: str) -> bool
     way = float(np.linalg.norm(place[end] - place[begin]))
     if distance:
         return abs(way - float(distance)) < 0.02
-    far = [_apart(known, what, begin, frame) for frame in range(begin, end + 1)]
-    return way < 0.015 and max(far) > 1.0
+    far = _apart(known, what, range(begin, end + 1), begin)
+    return way < 0.015 and float(far.max()) > 1.0
 
 
 def stayed(known: Known, what: str, first: str, last: str) -> bool:
@@ -38,19 +39,21 @@ def stayed(known: Known, what: str, first: str, last: str) -> bool:
     begin, end = known.frame(first), known.frame(last)
     inner = range(min(begin + round(known.reach), end), max(end - round(known.reach), begin) + 1)
     middle = (begin + end) // 2
-    return all(_apart(known, what, frame, middle) <= 1.2 for frame in inner)
+    return bool((_apart(known, what, inner, middle) <= 1.2).all())
 
 
 SIDE_S = 0.2
 """How long before and after it the direction of a path is taken [s]."""
 
 
-def _apart(known: Known, what: str, one: int, other: int) -> float:
-    """How far it is at one frame from where it is at another, by the least that counts [1]."""
+def _apart(
+    known: Known, what: str, frames: Sequence[int], others: int | Sequence[int]
+) -> np.ndarray:
+    """How far it is at some frames from where it is at others, by the least that counts [1]."""
     stream = known.stream(what)
-    way = np.linalg.norm(stream.positions[one] - stream.positions[other])
-    turn = (known.turn(what, one) * known.turn(what, other).inv()).magnitude()
-    return max(float(way) / GONE_M, float(turn) / GONE_RAD)
+    way = np.linalg.norm(stream.positions[list(frames)] - stream.positions[others], axis=1)
+    turn = (known.turns(what, frames) * known.turns(what, others).inv()).magnitude()
+    return np.maximum(way / GONE_M, turn / GONE_RAD)
 
 
 def levelled(known: Known, what: str, at: str) -> bool:
@@ -89,9 +92,9 @@ def _parts(known: Known, what: str, at: str, sign: int) -> bool:
     frame, last = known.frame(at), len(known.capture.times) - 1
     frames = [frame + sign * each for each in range(round(0.35 * known.rate))]
     side = [each for each in frames if 0 <= each <= last]
-    steps = [_apart(known, what, each, max(each - 1, 0)) for each in side]
+    steps = _apart(known, what, side, [max(each - 1, 0) for each in side])
     rest = side[int(np.argmin(steps))]
-    return 0.8 < _apart(known, what, rest, frame) < 2.5 and min(steps) < 0.1
+    return 0.8 < float(_apart(known, what, [rest], frame)[0]) < 2.5 and float(steps.min()) < 0.1
 
 
 def rested(known: Known, what: str, first: str, last: str) -> bool:
@@ -187,9 +190,7 @@ def went_lengthwise(known: Known, what: str) -> bool:
     sizes = np.sort(thing.shape.size)
     side = np.eye(3)[int(np.argmax(thing.shape.size))]
     steps = np.diff(known.stream(what).positions[span], axis=0)
-    axes = np.array(
-        [known.turn(what, each).apply(side) for each in range(span.start, span.stop - 1)]
-    )
+    axes = np.array(known.turns(what, range(span.start, span.stop - 1)).apply(side))
     along = np.abs((steps * axes).sum(axis=1)).sum() / np.linalg.norm(steps, axis=1).sum()
     return bool(sizes[2] > 3.0 * sizes[1] and along > 0.7)
 
@@ -208,7 +209,7 @@ def rolled(known: Known, what: str) -> bool:
     """The can's turn about its axis is its way over its radius."""
     ends = [known.segment.first, known.segment.last]
     way = np.linalg.norm(np.diff(known.stream(what).positions[ends], axis=0))
-    turns = Rotation.concatenate([known.turn(what, each) for each in ends])
+    turns = known.turns(what, ends)
     return bool(abs((turns[1] * turns[0].inv()).magnitude() - way / CAN[0]) < 0.05 and way > 0.02)
 
 

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import fields
+from functools import cache
 
 from capar.model.facts import (
     Bears,
     Displaced,
+    Fact,
     LookingAt,
     Moving,
     Phase,
@@ -66,8 +68,12 @@ def borders(known: Known, first: str, last: str) -> bool:
 
 def _changes(known: Known, frame: float) -> bool:
     ends = (0, len(known.capture.times) - 1)
-    marks = {*ends, *(mark for fact in known.facts for mark in _marks(fact))}
-    return any(near(mark, frame) for mark in marks)
+    return any(near(mark, frame) for mark in (*ends, *_all_marks(known.facts)))
+
+
+@cache
+def _all_marks(facts: tuple[Fact, ...]) -> frozenset[int]:
+    return frozenset(mark for fact in facts for mark in _marks(fact))
 
 
 def _marks(fact: object) -> Iterable[int]:
