@@ -1,12 +1,17 @@
 """The direction in which two bodies press on each other where they touch."""
 
+from itertools import product
+
 import numpy as np
 from jaxtyping import Float
 
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.contact.patches import facing_normal
+from extractors.contact.patches import Box, facing_normal, meeting_box
 from extractors.contact.surfaces import Surface, surface
 from extractors.thresholds import Thresholds
+
+SLACK_M = 1e-6
+"""By so much the box is larger in which triangles are sought, since turning it rounds [m]."""
 
 
 def contact_normal(
@@ -23,23 +28,38 @@ def contact_normal(
         return None
     if body.shape is not None and other.shape is not None:
         one, two = surface(body.shape), surface(other.shape)
+        depth_m = thresholds.patch_m
+        corners = _placed(one.corners, body, frame), _placed(two.corners, other, frame)
+        box = meeting_box(*corners, depth_m=depth_m)
         found = facing_normal(
-            _placed(one, body, frame),
-            _placed(two, other, frame),
-            depth_m=thresholds.patch_m,
+            _triangles(one, body, frame, box),
+            _triangles(two, other, frame, box),
+            depth_m=depth_m,
             solid=(one.closed, two.closed),
+            box=box,
         )
         if found is not None:
             return found
     return _between_outlines(body, other, frame)
 
 
-def _placed(of: Surface, body: BodyGeometry, frame: int) -> Float[np.ndarray, "triangles 3 3"]:
-    """A surface's triangles in the world at a frame [m], outward, where its body's middle is."""
-    local = of.triangles - of.centre
-    if of.inverted:
-        local = local[:, ::-1]
-    return np.asarray(local @ body.turn(frame).T + body.middles[frame])
+def _triangles(
+    of: Surface, body: BodyGeometry, frame: int, box: Box
+) -> Float[np.ndarray, "triangles 3 3"]:
+    """The triangles that may reach into a box, in the world at a frame [m], facing outward."""
+    ends = np.array(list(product(*box.T))) - body.middles[frame]
+    local = ends @ body.turn(frame) + of.centre
+    low, high = of.triangle_boxes
+    near = (low <= local.max(axis=0) + SLACK_M) & (high >= local.min(axis=0) - SLACK_M)
+    some = of.triangles[near.all(axis=1)] - of.centre
+    return _placed(some[:, ::-1] if of.inverted else some, body, frame)
+
+
+def _placed(
+    points: Float[np.ndarray, "*some 3"], body: BodyGeometry, frame: int
+) -> Float[np.ndarray, "*some 3"]:
+    """Points from the middle of a body [m] where they are in the world at a frame [m]."""
+    return np.asarray(points @ body.turn(frame).T + body.middles[frame])
 
 
 def _between_outlines(

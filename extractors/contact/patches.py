@@ -59,6 +59,7 @@ def facing_normal(
     *,
     depth_m: float,
     solid: tuple[bool, bool] = (True, True),
+    box: Box | None = None,
 ) -> Float[np.ndarray, "3"] | None:
     """The mean normal of the patch where two surfaces meet, from the other to the body.
 
@@ -71,9 +72,10 @@ def facing_normal(
         depth_m: The patch holds what is no further from the other surface than this beyond the
             nearest of all [m].
         solid: Whether either bounds a solid, so that its normals point outward.
+        box: Where they may meet; None for where the boxes of these triangles do.
     """
-    wide = BOX_DEPTHS * depth_m * np.array([[-1.0], [1.0]])
-    box = _common(_box(body) + wide, _box(other) + wide)
+    if box is None:
+        box = meeting_box(body.reshape(-1, 3), other.reshape(-1, 3), depth_m=depth_m)
     spacing_m = max(SPACING_M, _spacing(box))
     one = places(body, box, spacing_m=spacing_m, outward=solid[0])
     two = places(other, box, spacing_m=spacing_m, outward=solid[1])
@@ -84,6 +86,15 @@ def facing_normal(
     length = float(np.linalg.norm(total))
     area = float(one.areas.sum() + two.areas.sum())
     return total / length if length > LEAST_SHARE * area else None
+
+
+def meeting_box(
+    body: Float[np.ndarray, "corners 3"], other: Float[np.ndarray, "others 3"], *, depth_m: float
+) -> Box:
+    """Where two bodies may have a patch so deep, by their corners in one frame [m]."""
+    low = np.maximum(body.min(axis=0), other.min(axis=0)) - BOX_DEPTHS * depth_m
+    high = np.minimum(body.max(axis=0), other.max(axis=0)) + BOX_DEPTHS * depth_m
+    return np.stack([low, high])
 
 
 def places(
@@ -163,18 +174,10 @@ def _spread(along: int, across: int) -> tuple[np.ndarray, np.ndarray]:
     return u[inside], v[inside]
 
 
-def _common(one: Box, two: Box) -> Box:
-    return np.stack([np.maximum(one[0], two[0]), np.minimum(one[1], two[1])])
-
-
 def _spacing(box: Box) -> float:
     """How far places may be apart so that there are not too many [m]."""
     sides = np.sort(np.maximum(box[1] - box[0], 0.0))
     return float(np.sqrt(sides[1] * sides[2] / MANY_PLACES))
-
-
-def _box(triangles: Float[np.ndarray, "triangles 3 3"]) -> Box:
-    return np.stack([triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))])
 
 
 def _patch(one: Places, two: Places, depth_m: float) -> tuple[Places, Places]:

@@ -48,6 +48,16 @@ class Surface:
         return np.array(self.mesh.triangles, float)
 
     @cached_property
+    def corners(self) -> Float[np.ndarray, "corners 3"]:
+        """Its corners from the middle of its box [m], in the body's frame."""
+        return np.asarray(self.mesh.vertices, float) - self.centre
+
+    @cached_property
+    def triangle_boxes(self) -> Float[np.ndarray, "2 faces 3"]:
+        """Lowest and highest corner of each triangle [m], in the body's frame."""
+        return np.stack([self.triangles.min(axis=1), self.triangles.max(axis=1)])
+
+    @cached_property
     def closed(self) -> bool:
         """Whether it bounds a solid."""
         return bool(self.mesh.is_watertight and self.mesh.is_winding_consistent)
