@@ -1,0 +1,97 @@
+"""What is shown of a capture: each body with its surface and its way, thinned for the eye."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from capar.model.capture import Capture, Role, Sensor, Shape, TagObject, TagType
+
+SMOOTH_HZ = 60.0
+"""Frames are thinned to about this rate [Hz]: what screens show."""
+
+COLOURS = {
+    "sensor": "#c98d6b",
+    "looks": "#8a6bc9",
+    "mobile": "#4477aa",
+    "fixed": "#a9a9a9",
+    "self": "#c98d6b",
+}
+"""The colour of a body by what it is."""
+
+
+@dataclass(frozen=True, eq=False)
+class StagedBody:
+    """A sensor or an object, in the world: metres, z up."""
+
+    name: str
+    kind: str
+    """``sensor``, ``looks`` (it attends), or the tag of an object."""
+
+    shape: Shape | None
+    positions: Float[np.ndarray, "frames 3"]
+    """[m]; NaN where it was lost."""
+
+    orientations: Float[np.ndarray, "frames 4"]
+    """Unit quaternions, scalar first; NaN where it was lost."""
+
+    @property
+    def colour(self) -> str:
+        """As a hexadecimal number after ``#``."""
+        return COLOURS[self.kind]
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """Every body of a capture at the frames that are shown."""
+
+    title: str
+    times: Float[np.ndarray, "frames"]
+    """[s]."""
+
+    bodies: tuple[StagedBody, ...]
+
+    def nearest(self, time_s: float) -> int:
+        """The frame that is nearest to a time."""
+        return int(np.argmin(np.abs(self.times - time_s)))
+
+
+def stage(capture: Capture) -> Stage:
+    """A capture as it is shown."""
+    frames = shown_frames(capture)
+    bodies = tuple(_staged(body, frames) for body in capture.bodies.values())
+    return Stage(capture.name, capture.times[frames], bodies)
+
+
+def shown_frames(capture: Capture) -> Int[np.ndarray, "frames"]:
+    """The frames that are shown: every so many, and the last one."""
+    every = max(round(capture.rate_hz / SMOOTH_HZ), 1)
+    last = len(capture.times) - 1
+    return np.unique([*range(0, last, every), last])
+
+
+def _staged(body: Sensor | TagObject, frames: Int[np.ndarray, "frames"]) -> StagedBody:
+    stream = body.stream
+    at = stream.positions[frames], stream.orientations[frames]
+    return StagedBody(body.name, _kind(body), body.shape, *at)
+
+
+def _kind(body: Sensor | TagObject) -> str:
+    if isinstance(body, TagObject):
+        return {TagType.MOBILE: "mobile", TagType.FIXED: "fixed"}.get(body.tag, "self")
+    return "looks" if body.role is Role.ATTENDS else "sensor"
+
+
+def world_bounds(shown: Stage) -> Float[np.ndarray, "2 3"]:
+    """Lowest and highest place where anything small is [m]: what a picture has to hold."""
+    places = np.concatenate([each for body in shown.bodies for each in _extent(body)])
+    return np.stack([np.nanmin(places, axis=0), np.nanmax(places, axis=0)])
+
+
+def _extent(body: StagedBody) -> Iterator[Float[np.ndarray, "places 3"]]:
+    yield body.positions
+    if body.shape is not None and body.kind != "fixed":
+        radius = float(np.linalg.norm(body.shape.vertices, axis=1).max())
+        yield body.positions - radius
+        yield body.positions + radius

@@ -1,0 +1,113 @@
+"""A capture as one HTML file that needs no network: bodies in three dimensions over a timeline."""
+
+import json
+from base64 import b64encode
+from collections.abc import Sequence
+from html import escape
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from capar.model.facts import LookingAt, Touching
+from capar.model.observation import Observation
+from capar.views.painter import COLOURS, CONTACT, MOTION, OTHERS, PALE
+from capar.views.rows import Kind, Row, frame_clock, rows
+from capar.views.viewer.meshes import surfaces_glb
+from capar.views.viewer.stage import Stage
+
+BARS = {Kind.MOTION: MOTION, Kind.BARS: CONTACT}
+
+
+def web_page(shown: Stage, observation: Observation | None = None) -> str:
+    """The page.
+
+    Args:
+        shown: The bodies and their ways.
+        observation: What was found in the capture; None leaves the timeline empty.
+    """
+    place = resources.files("capar.views.viewer")
+    parts = {
+        "title": escape(shown.title),
+        "data": json.dumps(_data(shown, observation)).replace("<", "\\u003c"),
+        "glb": b64encode(surfaces_glb(shown)).decode("ascii"),
+        "three": (place / "three" / "three.min.js").read_text(encoding="utf-8"),
+        "style": (place / "viewer.css").read_text(encoding="utf-8"),
+        "script": (place / "viewer.js").read_text(encoding="utf-8"),
+    }
+    page = (place / "viewer.html").read_text(encoding="utf-8")
+    # Each part once, in turn, so that nothing inside of one is taken for the place of another.
+    head, *rest = page.split("{{")
+    return head + "".join(
+        parts[name] + text for name, text in (each.split("}}", 1) for each in rest)
+    )
+
+
+def _data(shown: Stage, observation: Observation | None) -> dict[str, Any]:
+    """What the page's script reads: times [s], places [m] and turns as 32-bit floats."""
+    return {
+        "times": _packed(shown.times),
+        "bodies": [
+            {
+                "name": body.name,
+                "kind": body.kind,
+                "colour": body.colour,
+                "positions": _packed(body.positions),
+                "orientations": _packed(body.orientations),
+            }
+            for body in shown.bodies
+        ],
+        "rows": [] if observation is None else _rows(observation),
+        "contacts": [] if observation is None else _contacts(observation),
+        "looks": [] if observation is None else _looks(observation),
+    }
+
+
+def _packed(values: np.ndarray) -> str:
+    return b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
+
+
+def _rows(observation: Observation) -> list[dict[str, Any]]:
+    """The rows of the timeline: as in pictures, without curves and marks of single frames."""
+    out: list[dict[str, Any]] = []
+    for row in rows(observation, {}):
+        if row.kind is Kind.HEADING:
+            out.append({"heading": row.label})
+        elif row.spans:
+            out.append({"label": row.label, "spans": _spans(row)})
+    return out
+
+
+def _spans(row: Row) -> list[dict[str, Any]]:
+    seen = sorted({each.label for each in row.spans})
+    return [
+        {
+            "start": round(each.start_s, 4),
+            "end": round(each.end_s, 4),
+            "label": each.label,
+            "colour": _colour(row, each.kind, seen, each.label),
+        }
+        for each in row.spans
+    ]
+
+
+def _colour(row: Row, kind: str, seen: Sequence[str], label: str) -> str:
+    if row.kind in BARS:
+        return BARS[row.kind]
+    if row.kind is Kind.NAMES:
+        return PALE[seen.index(label) % len(PALE)]
+    return COLOURS.get(kind, OTHERS[len(kind) % len(OTHERS)])
+
+
+def _contacts(observation: Observation) -> list[list[Any]]:
+    """Each contact: both bodies, begin and end [s]."""
+    clock = frame_clock(observation, {})
+    found = [each for each in observation.facts if isinstance(each, Touching)]
+    return [[each.body, each.other, clock(each.first), clock(each.last)] for each in found]
+
+
+def _looks(observation: Observation) -> list[list[Any]]:
+    """Each look: who, at what, begin and end [s]."""
+    clock = frame_clock(observation, {})
+    found = [each for each in observation.facts if isinstance(each, LookingAt)]
+    return [[each.sensor, each.object, clock(each.first), clock(each.last)] for each in found]
