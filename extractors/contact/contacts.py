@@ -12,6 +12,7 @@ from capar.model.capture import Capture, PivotContact, TagType
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import Poses
+from extractors.contact.arrivals import settled_ends
 from extractors.contact.own_hands import counted_meetings
 from extractors.contact.passing import in_passing
 from extractors.contact.proximity import Body, distance, near
@@ -28,6 +29,9 @@ from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
+
+SETTLES = (Found.CO_MOTION, Found.SETTLING)
+"""Distances with room for a hand that opens: with them it is seen when it arrives and leaves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +110,7 @@ def contacts(
         limits: What brushes past.
     """
     surfaces = {each: touchable(each) for pair in watched(capture, bodies) for each in pair}
+    acting = {each.name for each in capture.acting}
     found: list[Contact] = []
     for first, second in watched(capture, bodies):
         one, two = surfaces[first], surfaces[second]
@@ -130,7 +135,10 @@ def contacts(
             if in_passing(first, second, interval, limits):
                 continue
             if pair.pivots:
-                gap = float(_apart(pair, first, second)[interval[0]])
+                apart = _apart(pair, first, second)
+                if pair.found in SETTLES and first.name in acting:
+                    interval = settled_ends(apart, interval, capture.times, limits)
+                gap = float(apart[interval[0]])
             else:
                 gap = distance(one, two, interval[0])
             found.append(Contact(first.name, second.name, interval, gap))
