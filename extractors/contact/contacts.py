@@ -12,7 +12,6 @@ from capar.model.capture import Capture, PivotContact, TagType
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import Poses
-from extractors.contact.arrivals import settled_ends
 from extractors.contact.own_hands import counted_meetings
 from extractors.contact.passing import in_passing
 from extractors.contact.proximity import Body, distance, near
@@ -29,10 +28,6 @@ from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
-
-SETTLES = (Found.CO_MOTION, Found.SETTLING)
-"""Distances with room for a hand that opens: with them it is seen when it arrives and leaves."""
-
 
 @dataclass(frozen=True, slots=True)
 class Contact:
@@ -110,7 +105,6 @@ def contacts(
         limits: What brushes past.
     """
     surfaces = {each: touchable(each) for pair in watched(capture, bodies) for each in pair}
-    acting = {each.name for each in capture.acting}
     found: list[Contact] = []
     for first, second in watched(capture, bodies):
         one, two = surfaces[first], surfaces[second]
@@ -118,7 +112,7 @@ def contacts(
         if pair.found is Found.NEVER:
             continue
         if pair.pivots:
-            apart = _apart(pair, first, second)
+            apart = points_apart(pair, first, second)
             touching = np.nan_to_num(apart, nan=np.inf) <= pair.touch_m
         else:
             touching = near(one, two, distance_m=pair.touch_m)
@@ -135,10 +129,7 @@ def contacts(
             if in_passing(first, second, interval, limits):
                 continue
             if pair.pivots:
-                apart = _apart(pair, first, second)
-                if pair.found in SETTLES and first.name in acting:
-                    interval = settled_ends(apart, interval, capture.times, limits)
-                gap = float(apart[interval[0]])
+                gap = float(points_apart(pair, first, second)[interval[0]])
             else:
                 gap = distance(one, two, interval[0])
             found.append(Contact(first.name, second.name, interval, gap))
@@ -242,7 +233,7 @@ def _pivot(capture: Capture, first: str, second: str) -> PivotContact | None:
     return None
 
 
-def _apart(
+def points_apart(
     pair: PairCalibration, first: BodyGeometry, second: BodyGeometry
 ) -> Float[np.ndarray, "frames"]:
     """Distance of the points by which two bodies touch [m]; NaN where either is lost."""
