@@ -39,6 +39,7 @@ from capar.model.facts import (
 from extractors.bodies.bodies import Bodies, bodies_of
 from extractors.bodies.poses import Poses
 from extractors.calibration import calibrated, check_clock, thresholds_of
+from extractors.contact.arrivals import arrivals
 from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
 from extractors.faults.faults import faults
@@ -122,7 +123,8 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
     }
     looks = {sensor.name: attention(capture, sensor, bodies, limits) for sensor in seeing(capture)}
     moves = tuple(_moving(capture, bodies, calibration, limits))
-    touches = contacts(capture, bodies, calibration, limits)
+    near = contacts(capture, bodies, calibration, limits)
+    touches = tuple(arrivals(capture, bodies, calibration, near, moves, limits))
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
     reach = horizon_frames(capture.times, limits)
     facts = [

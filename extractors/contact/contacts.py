@@ -29,7 +29,6 @@ from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
 
-
 @dataclass(frozen=True, slots=True)
 class Contact:
     """Two bodies that touch through a closed interval of frames; an end-effector is first."""
@@ -113,7 +112,7 @@ def contacts(
         if pair.found is Found.NEVER:
             continue
         if pair.pivots:
-            apart = _apart(pair, first, second)
+            apart = points_apart(pair, first, second)
             touching = np.nan_to_num(apart, nan=np.inf) <= pair.touch_m
         else:
             touching = near(one, two, distance_m=pair.touch_m)
@@ -130,7 +129,7 @@ def contacts(
             if in_passing(first, second, interval, limits):
                 continue
             if pair.pivots:
-                gap = float(_apart(pair, first, second)[interval[0]])
+                gap = float(points_apart(pair, first, second)[interval[0]])
             else:
                 gap = distance(one, two, interval[0])
             found.append(Contact(first.name, second.name, interval, gap))
@@ -234,7 +233,7 @@ def _pivot(capture: Capture, first: str, second: str) -> PivotContact | None:
     return None
 
 
-def _apart(
+def points_apart(
     pair: PairCalibration, first: BodyGeometry, second: BodyGeometry
 ) -> Float[np.ndarray, "frames"]:
     """Distance of the points by which two bodies touch [m]; NaN where either is lost."""

@@ -1,10 +1,12 @@
 """When a motion truly begins and ends, within the floor that separates motion from rest."""
 
+from functools import partial
+
 import numpy as np
 from jaxtyping import Float, Int
 
 from capar.model import geometry
-from extractors.bodies.poses import Poses
+from extractors.bodies.poses import Poses, median_pose
 from extractors.motion.object_motion import Floor, RestPose, rests_at
 from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
@@ -41,7 +43,8 @@ def motion_edges(
     began when the object was last where it had rested, and ended when it first was where it
     rests afterwards: within what noise alone makes, and at least a hair's width. What passed
     before it was that far is added (``onset``). What takes longer to the floor than motion at the
-    slowest does, drifts until then.
+    slowest does, drifts until then. What was nudged or wobbled, and for the least duration of a rest
+    went no farther away, sets off from there.
 
     Args:
         poses: The object's poses.
@@ -65,9 +68,11 @@ def _left(
     poses: Poses, stay: RestPose, moved: Interval, floor: Floor, thresholds: Thresholds
 ) -> int:
     """When an object left a place."""
-    near, stream = hair(poses, thresholds), poses.smooth
-    there = last_where(lambda frames: rests_at(stream, frames, stay, near), moved[0] - 1)
-    edge = stay.interval[0] if there is None else there + 1
+    near = hair(poses, thresholds)
+    edge = _gone(poses, stay, moved, near)
+    nudged = _nudged(poses, np.arange(moved[0], edge - 1, -1), stay, near, thresholds)
+    if nudged is not None:
+        stay, edge = nudged, _gone(poses, nudged, moved, near)
     frames = np.arange(edge, max(moved[1], edge) + 1)
     return max(edge - onset(growth(poses, frames, stay, near), poses, floor, thresholds), 0)
 
@@ -76,13 +81,55 @@ def _arrived(
     poses: Poses, stay: RestPose, moved: Interval, floor: Floor, thresholds: Thresholds
 ) -> int:
     """When an object was at a place to stay."""
-    near, stream = hair(poses, thresholds), poses.smooth
-    count = len(stream.times)
-    there = first_where(lambda frames: rests_at(stream, frames, stay, near), moved[1] + 1, count)
-    edge = stay.interval[1] if there is None else there - 1
+    near, count = hair(poses, thresholds), len(poses.smooth.times)
+    edge = _come(poses, stay, moved, near)
+    nudged = _nudged(poses, np.arange(moved[1], edge + 1), stay, near, thresholds)
+    if nudged is not None:
+        stay, edge = nudged, _come(poses, nudged, moved, near)
     frames = np.arange(edge, min(moved[0], edge) - 1, -1)
     later = onset(growth(poses, frames, stay, near), poses, floor, thresholds)
     return min(edge + later, count - 1)
+
+
+def _gone(poses: Poses, stay: RestPose, moved: Interval, near: Floor) -> int:
+    """The first frame at which an object that moves next is no longer at a place."""
+    at_place = partial(rests_at, poses.smooth, stay=stay, floor=near)
+    there = last_where(at_place, moved[0] - 1)
+    return stay.interval[0] if there is None else there + 1
+
+
+def _come(poses: Poses, stay: RestPose, moved: Interval, near: Floor) -> int:
+    """The last frame at which an object that has moved is not yet at a place."""
+    at_place = partial(rests_at, poses.smooth, stay=stay, floor=near)
+    there = first_where(at_place, moved[1] + 1, len(poses.smooth.times))
+    return stay.interval[1] if there is None else there - 1
+
+
+def _nudged(
+    poses: Poses,
+    frames: Int[np.ndarray, "some"],
+    stay: RestPose,
+    near: Floor,
+    thresholds: Thresholds,
+) -> RestPose | None:
+    """Where an object stood beside its place of rest, next to its motion; None if it did not.
+
+    Args:
+        poses: The object's poses.
+        frames: From the motion to where it is at its place of rest.
+        stay: That place.
+        near: The unit of its displacement.
+        thresholds: The least duration of a rest.
+    """
+    window = max(1, round(thresholds.rest_minimum_s * frame_rate(poses.filled.times)))
+    grows = growth(poses, frames, stay, near)
+    with np.errstate(invalid="ignore"):
+        stands = np.flatnonzero(grows[:-window] <= grows[window:])
+    if not stands.size:
+        return None
+    ends = frames[stands[0]], frames[stands[0] + window]
+    first, last = int(min(ends)), int(max(ends))
+    return RestPose((first, last), *median_pose(poses.smooth, slice(first, last + 1)))
 
 
 def growth(

@@ -53,14 +53,16 @@ def _settled(
     least: float,
     most: int,
 ) -> int:
-    """How many frames pass before it is down, from the first on; none where it was lost.
+    """How many frames pass before it is down, from the first on, as far as it was not lost.
 
     People stop smoothly: the height over what bears it shrinks with the cube of time (minimum jerk;
     Flash and Hogan 1985), so it comes down later than it passes a hair's width, by at most so many
     frames. Where noise makes a hair as wide as the tolerance of contact, the height is followed
     beyond the contact.
     """
-    if np.isnan(height).any():
+    lost = np.flatnonzero(np.isnan(height))
+    height = height[: lost[0]] if lost.size else height
+    if not height.size:
         return 0
     lowest = np.minimum.accumulate(height)
     higher = np.flatnonzero(height > lowest + least)
