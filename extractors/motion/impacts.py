@@ -80,9 +80,7 @@ def recorded_middles(body: BodyGeometry, span: slice) -> Float[np.ndarray, "some
     )
 
 
-def _speed_at_end(
-    places: Float[np.ndarray, "some 3"], times: Float[np.ndarray, "some"]
-) -> float:
+def _speed_at_end(places: Float[np.ndarray, "some 3"], times: Float[np.ndarray, "some"]) -> float:
     """Speed at the end of a steadily accelerated motion, fitted by least squares [m/s]."""
     if len(places) < FEWEST_PLACES or np.isnan(places).any():
         return 0.0
