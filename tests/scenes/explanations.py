@@ -39,8 +39,15 @@ class Checked:
     """What it was named by."""
 
 
-def checked(scene: Scene, chance: random.Random, rules: Profile) -> Checked:
-    """Observe a scene, explain one of its segments, and compute each sentence again."""
+def checked(scene: Scene, chance: random.Random, rules: Profile, *, name: str = "") -> Checked:
+    """Observe a scene, explain one of its segments, and compute each sentence again.
+
+    Args:
+        scene: The scene, which is recorded without noise.
+        chance: What draws the segment.
+        rules: By which it is named.
+        name: What the segment is called; any if empty.
+    """
     capture, expectation = scene(100.0, 0.0, 0.0, 0)
     measurements = measure(capture)
     observation = observe_measured(capture, measurements, rules=rules)
@@ -48,7 +55,7 @@ def checked(scene: Scene, chance: random.Random, rules: Profile) -> Checked:
         observation.facts, profile=rules, distance_m=distances(capture, measurements)
     )
     steps = {unit.ee: [step.name for step in unit.steps] for unit in expectation.units}
-    segment = chance.choice(observation.segments)
+    segment = chance.choice([each for each in observation.segments if name in ("", each.name)])
     seen = Explained(observation, explainer)
     known = Known(seen, measurements.facts, segment, capture, steps)
     reason = explainer.explain(segment).reason.with_sentences()
