@@ -169,14 +169,23 @@ def _fitted(
 
     Returns:
         The frames by which it began before the first one, and the root of the mean square of
-        what the profile leaves, as a share of the last displacement [1].
+        what the profile leaves, as a share of the last displacement [1]; infinite if it does
+        not grow by the profile.
     """
     times = inverse(seen)
     weights = slope_at(times)
+    total = float(np.sum(weights**2))
+    if total <= 0.0:
+        return 0.0, np.inf
+    shares = weights**2 / total
     clock = np.arange(len(seen))
-    slope, start = np.polyfit(clock, times, 1, w=weights)
-    left = (times - start - slope * clock) * weights
-    return float(start / slope), float(np.sqrt(np.mean(left**2)) / seen[-1])
+    middle, centre = float(shares @ clock), float(shares @ times)
+    spread = float(shares @ (clock - middle) ** 2)
+    slope = float(shares @ ((clock - middle) * (times - centre))) / spread if spread > 0.0 else 0.0
+    if slope <= 0.0:
+        return 0.0, np.inf
+    left = (times - centre - slope * (clock - middle)) * weights
+    return centre / slope - middle, float(np.sqrt(np.mean(left**2))) / float(seen[-1])
 
 
 def longest(poses: Poses, near: Floor, thresholds: Thresholds) -> int:
