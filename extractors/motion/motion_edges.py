@@ -42,6 +42,9 @@ UNSURE = 1.0 / 3.0
 """Share of the longest time by which a motion may have begun earlier if that is not sure [1]: what
 drifts, or is recorded at few frames, grows with no power of time."""
 
+FEWEST_FRAMES = 3
+"""For so many frames at least a displacement is followed [1]: two fit any profile."""
+
 LEAST = 0.01
 """A displacement is taken for at least this [1], since less is noise."""
 
@@ -142,7 +145,8 @@ def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> in
     if not grows.size or np.isnan(grows[0]):
         return 0
     large = np.flatnonzero(grows >= reach)
-    far = int(large[0]) if large.size else int(np.nanargmax(grows))
+    top = int(np.nanargmax(grows))
+    far = min(max(int(large[0]), FEWEST_FRAMES), max(top, int(large[0]))) if large.size else top
     if far < 1 or np.isnan(grows[: far + 1]).any() or grows[far] <= grows[0]:
         return 0
     largest = float(np.nanmax(grows))
