@@ -5,7 +5,8 @@
 Each cell is a rate [Hz], a noise of positions [mm] and a draw; rotations have a fifth of a degree
 of noise for each millimetre. The outcome of each cell is kept in the folder, and a cell that is
 there is not observed again: the folder is to be emptied when the program has changed. The table has
-all cells of the folder; where one has all batteries, a row pools them and names the worst.
+all cells of the folder; where one has all batteries, a row pools them and names the worst. What
+the table's file says under a heading below the table stays.
 """
 
 import argparse
@@ -162,6 +163,12 @@ def fill(folder: Path, cells: Iterable[Cell], batteries: Iterable[str]) -> None:
                 path.write_text(json.dumps(rows, indent=1) + "\n")
 
 
+def remarks(path: Path) -> str:
+    """What a table's file says below its table, under headings of its own."""
+    _, heading, rest = (path.read_text() if path.exists() else "").partition("\n## ")
+    return heading + rest
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Observe some cells, and write the table of all that the folder has."""
     parser = argparse.ArgumentParser(prog="scenes.rates", description=__doc__)
@@ -173,7 +180,7 @@ def main(arguments: list[str] | None = None) -> int:
     fill(options.folder, options.cell or ALL, options.battery or BATTERIES)
     text = table(options.folder)
     if options.table:
-        options.table.write_text(text)
+        options.table.write_text(text + remarks(options.table))
     else:
         sys.stdout.write(text)
     return 0
