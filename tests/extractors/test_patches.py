@@ -125,7 +125,7 @@ def test_a_plate_between_a_ball_and_a_table_keeps_them_apart_and_a_plate_beside_
 def test_a_table_below_a_plate_is_not_between_the_plate_and_the_ball_on_it(
     gap_m: float, thick_m: float
 ) -> None:
-    """Noise holds the ball off the plate; the line that joins them, made longer, meets the table."""
+    """Noise holds the ball off the plate; the longer line that joins them meets the table."""
     bodies = {
         "ball": stands(ball(0.03), (0.0, 0.0, thick_m + gap_m + 0.03)),
         "plate": stands(box(0.2, 0.2, thick_m), (0.0, 0.0, 0.5 * thick_m)),
