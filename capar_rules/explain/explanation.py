@@ -16,6 +16,7 @@ from capar_rules.engine.solver import rule_file
 from capar_rules.engine.syntax import Place, Statement, parse, parse_text
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.instants import corrected, frames_of
+from capar_rules.explain.near_misses import more_specific, near_misses
 from capar_rules.explain.reason import Reason as Reason
 from capar_rules.explain.sentences import Clock, Sentences
 from capar_rules.explain.summary import summary
@@ -50,7 +51,8 @@ class RuleBase:
         if name == UNKNOWN:
             return Recorder(self.statements, targets=(("parted_at", 2), ("nearest", 2), *ALWAYS))
         others = [each for each in self.statements if not _names(each) and not _overrules(each)]
-        return Recorder([*others, *_naming(self.statements, name)], targets=(("named", 2), *ALWAYS))
+        naming = [*_naming(self.statements, name), *near_misses(self.statements, name)]
+        return Recorder([*others, *naming], targets=(("named", 2), *ALWAYS))
 
 
 def _names(statement: Statement) -> bool:
@@ -62,11 +64,14 @@ def _overrules(statement: Statement) -> bool:
 
 
 def _naming(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
-    """The rule that names segments, for one name: that it is not overruled is known already."""
+    """The rules that name segments, for one name: only what is more specific can overrule it."""
     rule = f'named(Segment,"{name}") :- fits(Segment,"{name}"); not overruled(Segment,"{name}").'
     for each in statements:
         if _names(each):
             yield replace(parse_text(rule)[0], place=each.place)
+    for other in sorted(more_specific(statements, name)):
+        fit = f'fits(Segment,"{other}"); fits(Segment,"{name}")'
+        yield from parse_text(f'overruled(Segment,"{name}") :- {fit}.')
 
 
 def rule_base(profile: Profile) -> RuleBase:

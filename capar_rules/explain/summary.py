@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from capar_rules.engine.syntax import split_arguments
 from capar_rules.explain.reason import Reason
 
-BESIDE = ("joins_in(", "looks(")
+BESIDE = ("joins_in(", "looks(", "kept_from(")
 """Prefixes of atoms that accompany a name and are no reason for it."""
 
 FEATURES = "features("

@@ -29,6 +29,7 @@ from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
 
+
 @dataclass(frozen=True, slots=True)
 class Contact:
     """Two bodies that touch through a closed interval of frames; an end-effector is first."""
@@ -117,7 +118,9 @@ def contacts(
         else:
             touching = near(one, two, distance_m=pair.touch_m)
             if pair.release_m > pair.touch_m and touching.any():
-                touching = bridged(touching, near(one, two, distance_m=pair.release_m))
+                near_by = near(one, two, distance_m=pair.release_m)
+                edge = round(calibration.contact_dropout_s * frame_rate(capture.times))
+                touching = bridged(touching, near_by, edge=edge)
         # Where a body was lost nothing begins or ends: what touched before and after has touched.
         touching = bridged(touching, first.poses.lost | second.poses.lost)
         for interval in intervals(
@@ -207,14 +210,24 @@ def watched(capture: Capture, bodies: Bodies) -> Iterator[tuple[BodyGeometry, Bo
 
 
 def bridged(
-    touching: Bool[np.ndarray, "frames"], near_by: Bool[np.ndarray, "frames"]
+    touching: Bool[np.ndarray, "frames"], near_by: Bool[np.ndarray, "frames"], *, edge: int = 0
 ) -> Bool[np.ndarray, "frames"]:
-    """Contact that also lasts between two of its frames if the bodies stay near by throughout."""
+    """Contact that also lasts between two of its frames if the bodies stay near by throughout.
+
+    Args:
+        touching: Whether they touch, at each frame.
+        near_by: Whether they are near by.
+        edge: An interruption of fewer frames than so many that the recording's begin or end cuts
+            off counts as one between two frames of contact: nobody sees that it lasts, and a
+            filter takes least noise away there.
+    """
     out = touching.copy()
     for first, last in geometry.runs(near_by | touching):
-        inside = np.flatnonzero(touching[first : last + 1])
+        inside = first + np.flatnonzero(touching[first : last + 1])
         if inside.size:
-            out[first + inside[0] : first + inside[-1] + 1] = True
+            begin = 0 if first == 0 and inside[0] < edge else inside[0]
+            cut_off = last == len(out) - 1 and last - inside[-1] < edge
+            out[begin : (last if cut_off else inside[-1]) + 1] = True
     return out
 
 

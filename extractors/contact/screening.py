@@ -29,7 +29,9 @@ def screened(
     Bodies touch if their surfaces are within a tolerance, which reaches through a thin wall. A
     third body is between two if it touches both, and the line that joins their nearest points
     goes through it. The line is made longer at both ends, by as much as surfaces that touch may
-    seem to cut each other. What cuts each other has nothing between.
+    seem to cut each other. What cuts each other has nothing between, and what is between two is
+    no further from either than they are from each other: of a ball in a bowl on a floor, the floor
+    is not between the ball and the bowl, although the longer line reaches it.
 
     Args:
         meetings: Contacts.
@@ -77,7 +79,7 @@ def _between(one: Body, two: Body, third: Body, frame: int, reach_m: float) -> b
     if any(np.isnan(each.positions[frame]).any() for each in (one, two, third)):
         return False
     distance, on_one, on_two = nearest(one, two, frame)
-    if distance <= 0.0:
+    if distance <= 0.0 or any(nearest(each, third, frame)[0] > distance for each in (one, two)):
         return False
     begin, end = _local(third, one, on_one, frame), _local(third, two, on_two, frame)
     middle = 0.5 * (begin + end)

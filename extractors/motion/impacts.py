@@ -20,17 +20,26 @@ No threshold: it is the time over which the low-pass filter blurs a blow.
 
 
 LATE_S = 0.03
-"""By how much a filter may let a blow touch later, and over how long a time its slope is taken
-[s]: half of the filter's blur, and a hand's slowing to a soft contact takes much longer."""
+"""By how much a filter may let a blow touch later [s]: half of the filter's blur."""
+
+SWING_S = 0.13
+"""For how long before a blow its acceleration is taken for steady [s].
+
+A limb swings for a fifth of a second at least; over less, the noise of a slow clock's few frames
+would decide how fast the blow was.
+"""
+
+FEWEST_PLACES = 4
+"""A steady acceleration has three unknowns, and one place more shows what is noise [1]."""
 
 
 def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     """How fast two bodies' middles move relative to each other just before a frame [m/s].
 
     The fastest relative speed of the low-passed motion in the last twentieth of a second or, if
-    more, the steepest slope of their offset as it was recorded, just before: a filter rounds a
-    blow that ends in a halt, and lets it touch later. Zero where either is lost or the
-    contact begins the capture.
+    more, that of their offset as it was recorded, at the end of a steady acceleration: a filter
+    rounds a blow that ends in a halt, and lets it touch later. Zero where either is lost or
+    the contact begins the capture.
     """
     times = body.poses.filled.times
     first = _before(times, frame, APPROACH_S)
@@ -39,14 +48,12 @@ def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     if frame == 0 or len(offset) < 2 or np.isnan(offset).any():
         return 0.0
     speeds = np.linalg.norm(np.diff(offset, axis=0), axis=1) / np.diff(times[span])
-    latest, begin = _before(times, frame, LATE_S), _before(times, frame, 2.0 * LATE_S)
+    begin = _before(times, frame, LATE_S + SWING_S)
     span = slice(begin, frame + 1)
     recorded, clock = recorded_middles(body, span) - recorded_middles(other, span), times[span]
-    width = max(latest - begin, 1) + 1
-    slopes = (
-        _slope(recorded[start : start + width], clock[start : start + width])
-        for start in range(len(recorded) - width + 1)
-    )
+    ends = range(_before(times, frame, LATE_S), frame + 1)
+    spans = (slice(_before(times, end, SWING_S) - begin, end + 1 - begin) for end in ends)
+    slopes = (_speed_at_end(recorded[each], clock[each]) for each in spans)
     return max(float(speeds.max()), *slopes)
 
 
@@ -73,12 +80,13 @@ def recorded_middles(body: BodyGeometry, span: slice) -> Float[np.ndarray, "some
     )
 
 
-def _slope(places: Float[np.ndarray, "some 3"], times: Float[np.ndarray, "some"]) -> float:
-    """Speed of a straight motion fitted to places by least squares [m/s]."""
-    if np.isnan(places).any():
+def _speed_at_end(places: Float[np.ndarray, "some 3"], times: Float[np.ndarray, "some"]) -> float:
+    """Speed at the end of a steadily accelerated motion, fitted by least squares [m/s]."""
+    if len(places) < FEWEST_PLACES or np.isnan(places).any():
         return 0.0
-    late = times - times.mean()
-    return float(np.linalg.norm(late @ places) / (late @ late))
+    early = times - times[-1]
+    powers = np.stack([np.ones_like(early), early, early**2], axis=1)
+    return float(np.linalg.norm(np.linalg.lstsq(powers, places, rcond=None)[0][1]))
 
 
 def falls(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:

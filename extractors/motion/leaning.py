@@ -22,7 +22,8 @@ def leaning(
 
     It leans while its axis is far from the vertical. The interval also covers the tipping over
     before and the righting after, as long as it turns faster than a body at rest does, and turns
-    rather than travels: its middle goes no faster than its turning moves one end about the other.
+    rather than travels: its middle goes no farther meanwhile than its turning moves one end about
+    the other.
 
     Args:
         poses: The object's poses.
@@ -36,8 +37,8 @@ def leaning(
     speed = np.linalg.norm(derivative(stream.positions, stream.times), axis=1)
     with np.errstate(invalid="ignore"):
         far = angle > thresholds.lean_rad
-        turns = (np.abs(pace) >= thresholds.rest_speed_radps) & (speed <= np.abs(pace) * length_m)
-        over, back = turns & (pace > 0.0), turns & (pace < 0.0)
+        over, back = pace >= thresholds.rest_speed_radps, pace <= -thresholds.rest_speed_radps
+    reach = np.abs(pace) * length_m
     lapse = round(thresholds.dropout_s * frame_rate(stream.times))
     found: list[Interval] = []
     for first, last in intervals(
@@ -46,12 +47,21 @@ def leaning(
         dropout_s=thresholds.dropout_s,
         minimum_s=thresholds.contact_minimum_s,
     ):
-        begin = first - _run(over[:first][::-1], lapse)
-        end = last + _run(back[last + 1 :], lapse)
+        before, after = slice(first - 1, None, -1) if first else slice(0, 0), slice(last + 1, None)
+        begin = first - _run(over[before] & _turns(speed[before], reach[before]), lapse)
+        end = last + _run(back[after] & _turns(speed[after], reach[after]), lapse)
         if found and begin <= found[-1][1]:
             begin = found[-1][1] + 1
         found.append((begin, end))
     return tuple(found)
+
+
+def _turns(
+    speed: Float[np.ndarray, "frames"], reach: Float[np.ndarray, "frames"]
+) -> Bool[np.ndarray, "frames"]:
+    """Up to which frames it has come no farther than its turning takes it; not where it is lost."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.cumsum(speed) <= np.cumsum(reach))
 
 
 def _run(holds: Bool[np.ndarray, "frames"], lapse: int) -> int:

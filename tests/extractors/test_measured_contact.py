@@ -176,3 +176,17 @@ def test_many_poses_are_answered_as_few_are(size_m: float) -> None:
     ]
     assert 0.0 < whole.mean() < 1.0
     assert (whole != np.concatenate(parts)).sum() <= 4
+
+
+@given(st.integers(1, 12), st.integers(0, 12), st.booleans())
+def test_a_contact_that_noise_hides_at_the_recording_s_edge_lasts_up_to_it(
+    hidden: int, apart: int, turned: bool
+) -> None:
+    """It does if the bodies stay near by, and no longer than a short interruption lasts."""
+    edge = 10
+    touching = np.array([False] * 20 + [True] * 20 + [False] * (hidden + apart))
+    near_by = np.array([False] * 20 + [True] * (20 + hidden) + [False] * apart)
+    one, other = (touching[::-1], near_by[::-1]) if turned else (touching, near_by)
+    found = bridged(one, other, edge=edge)
+    extended = apart == 0 and hidden < edge
+    assert (found == (other if extended else one)).all()

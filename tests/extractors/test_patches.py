@@ -118,3 +118,19 @@ def test_a_plate_between_a_ball_and_a_table_keeps_them_apart_and_a_plate_beside_
         ]
         through = list(screened(met, bodies, bodies, reach_m=0.005))
         assert through == [(), ((0, 19),) if between else (), ()]
+
+
+@given(st.floats(0.0003, 0.0025), st.floats(0.003, 0.004))
+@settings(max_examples=20, deadline=None)
+def test_a_table_below_a_plate_is_not_between_the_plate_and_the_ball_on_it(
+    gap_m: float, thick_m: float
+) -> None:
+    """Noise holds the ball off the plate; the longer line that joins them meets the table."""
+    bodies = {
+        "ball": stands(ball(0.03), (0.0, 0.0, thick_m + gap_m + 0.03)),
+        "plate": stands(box(0.2, 0.2, thick_m), (0.0, 0.0, 0.5 * thick_m)),
+        "table": stands(box(2.0, 2.0, 0.1), (0.0, 0.0, -0.05)),
+    }
+    pairs = (("ball", "plate"), ("ball", "table"), ("plate", "table"))
+    met = [(one, two, (0, 19)) for one, two in pairs]
+    assert list(screened(met, bodies, bodies, reach_m=0.005)) == [(), ((0, 19),), ()]

@@ -3,8 +3,8 @@
 import numpy as np
 
 from capar.model.capture import Sensor
-from capar.model.facts import LookingAt
-from recomputed.known import NAME, TIME, Known, name, near
+from capar.model.facts import LookingAt, Touching
+from recomputed.known import NAME, TIME, Known, covers, name, near
 
 BORNE = 0.8
 """Share of the weight from which on a foot bears the whole [1]; the rest is none."""
@@ -113,8 +113,11 @@ def bore_none(known: Known) -> bool:
 
 
 def nothing_says(known: Known) -> bool:
-    """With one foot tracked nothing can be said, and with two it bore something."""
-    return len(_feet(known)) < 2 or not bore_none(known)
+    """With one foot tracked nothing can be said, and with two it was lifted or bore something."""
+    spans = [each for each in known.of(Touching) if each.body == known.segment.ee]
+    ends = (known.segment.first, known.segment.last)
+    down = all(any(covers(each, frame) for each in spans) for frame in ends)
+    return len(_feet(known)) < 2 or not down or not bore_none(known)
 
 
 def measured_whole(known: Known, foot: str, first: str, last: str) -> bool:
@@ -143,7 +146,7 @@ FORMS = (
     (rf"the {NAME} still looked at the {NAME} at {TIME}", looked_until),
     (r"the foot bore the whole weight of the body", bore_whole),
     (r"the foot bore no weight", bore_none),
-    (r"nothing says that the foot bore no weight", nothing_says),
+    (r"nothing says that the foot was down and bore no weight", nothing_says),
     (
         rf"the {NAME} bore the whole weight, as far as feet tell, from {TIME} to {TIME}",
         measured_whole,

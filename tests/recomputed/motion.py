@@ -117,6 +117,14 @@ def measured_rest(known: Known, what: str, first: str, last: str) -> bool:
     )
 
 
+def came_back(known: Known, what: str) -> bool:
+    """At the end it is within a hand's width of where it was first, or rested since."""
+    place, border = known.stream(what).positions, known.segment.last
+    before = [0, *(min(each.last, border) for each in known.resting(what))]
+    stays = [frame for frame in before if frame < known.segment.first]
+    return bool(any(np.linalg.norm(place[border] - place[frame]) < 0.12 for frame in stays))
+
+
 def came_to_rest(known: Known, what: str, at: str) -> bool:
     return _turned_from_rest(known, what, known.frame(at), 1)
 
@@ -272,6 +280,7 @@ FORMS = (
     (rf"the {NAME} had come to its place by {TIME}, which counts from {TIME} on", came_to_place),
     (rf"the {NAME} rested and touched nothing from {TIME} to {TIME}", rested_free),
     (rf"the {NAME} came to rest at {TIME}", came_to_rest),
+    (rf"it ended where the {NAME} had rested before", came_back),
     (rf"the {NAME} began to move at {TIME}", left_rest),
     (rf"the {NAME} turned back at {TIME}", turned_back),
     (rf"the {NAME} turned round at {TIME}", turned_round),

@@ -1,8 +1,11 @@
 """Sentences about features and names: relations from contacts, names as authors wrote them."""
 
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import fields
 from functools import cache
+from importlib import resources
+from pathlib import Path
 
 from capar.model.facts import (
     Bears,
@@ -185,6 +188,24 @@ def overruled_by_none(known: Known, what: str) -> bool:
     return what == known.segment.name and written(known, what)
 
 
+def kept_from(known: Known, what: str) -> bool:
+    """What the author wrote is more general than the told name, and not that name."""
+    own = known.segment.name
+    return own != what and own in _generals(what) and written(known, own)
+
+
+@cache
+def _generals(what: str) -> frozenset[str]:
+    """The primitives that one specialises, as the files of primitives declare."""
+    folder = Path(str(resources.files("capar_rules") / "primitives"))
+    text = "\n".join(each.read_text() for each in sorted(folder.glob("*.lp")))
+    declared = re.findall(r'^specialises\("(\w+)", "(\w+)"\)\.', text, flags=re.MULTILINE)
+    found = {what}
+    while wider := {general for one, general in declared if one in found} - found:
+        found |= wider
+    return frozenset(found - {what})
+
+
 def listed(known: Known, what: str) -> bool:
     """The end-effector touches it at a border, or looks at it and touches nothing."""
     held = any(
@@ -261,6 +282,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (r"it is (\w+)", written),
     (r"it fits (\w+)", fits),
     (r"nothing that fits is more specific than (\w+)", overruled_by_none),
+    (r"but for one thing it would be (\w+)", kept_from),
     (rf"the {NAME} is its dominant object", listed),
     (rf"the {NAME} is its subordinate object", subordinate),
     (r"both segments (begin|end) with the same change of the object", changes_alike),

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from capar.model.capture import TagType
-from capar.model.facts import Touching
+from capar.model.facts import Moving, Touching
 from recomputed.known import NAME, ROUNDED, TIME, Known, covers, name
 
 BLOW_MPS = 1.0
@@ -110,14 +110,21 @@ def tagged(known: Known, what: str, kind: str) -> bool:
 
 
 def not_borne(known: Known, what: str, bearer: str) -> bool:
-    """It cannot be taken along, or is not above what would bear it, or does not touch it."""
+    """It cannot go along, or does not, or is not above what would bear it, or does not touch it."""
     loads = {each.name for each in known.capture.objects if each.tag is TagType.MOBILE}
-    if name(what) not in loads or not known.touching(what, bearer):
+    met = known.touching(what, bearer)
+    if name(what) not in loads or not any(
+        _overlap(each, move) for each in met for move in known.moving(what)
+    ):
         return True
     return bool(np.isnan(known.middle(what, known.segment.first)[2])) or any(
         known.middle(what, frame)[2] < known.middle(bearer, frame)[2]
         for frame in (known.segment.first, known.segment.last)
     )
+
+
+def _overlap(one: Touching, other: Moving) -> bool:
+    return one.first <= other.last and other.first <= one.last
 
 
 def met_at(known: Known, one: str, other: str, mm_s: str) -> bool:

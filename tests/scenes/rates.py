@@ -5,7 +5,8 @@
 Each cell is a rate [Hz], a noise of positions [mm] and a draw; rotations have a fifth of a degree
 of noise for each millimetre. The outcome of each cell is kept in the folder, and a cell that is
 there is not observed again: the folder is to be emptied when the program has changed. The table has
-all cells of the folder.
+all cells of the folder; where one has all batteries, a row pools them and names the worst. What
+the table's file says under a heading below the table stays.
 """
 
 import argparse
@@ -61,7 +62,13 @@ class Cell:
 
 
 USUAL = Cell(100.0, 0.5, 0)
-ALL = tuple(Cell(rate, noise, draw) for rate in RATES_HZ for noise in NOISES_MM for draw in DRAWS)
+ALL = tuple(
+    Cell(rate, noise, draw)
+    for rate in RATES_HZ
+    for noise in NOISES_MM
+    for draw in (DRAWS if noise else DRAWS[:1])
+)
+"""Every way; without noise all draws are the same."""
 
 
 def observed_cell(cell: Cell, battery: str) -> list[Outcome]:
@@ -105,23 +112,44 @@ def row(cell: Cell, battery: str, found: list[Outcome], usual: list[Outcome] | N
     named, placed = sum(each.named for each in found), sum(each.placed for each in found)
     kept = [] if usual is None else [stays(a, b) for a, b in zip(found, usual, strict=True)]
     same = [each for each in kept if each is not None]
-    near = f"{sum(same)} of {len(same)}" if usual is not None else ""
+    near = part(sum(same), len(same)) if usual is not None else ""
     count = len(found)
     return (
         f"| {cell.rate_hz:g} | {cell.noise_mm:g} | {cell.draw} | {battery} "
-        f"| {named} of {count} | {placed} of {count} | {near} |"
+        f"| {part(named, count)} | {part(placed, count)} | {near} |"
     )
+
+
+def part(some: int, count: int) -> str:
+    """How many of how many, with the share in percent."""
+    return f"{some} of {count}" + (f" ({100.0 * some / count:.1f} %)" if count else "")
+
+
+def pooled(cell: Cell, found: dict[str, list[Outcome]], usual: dict[str, list[Outcome]]) -> str:
+    """The row of all batteries of a cell together, with the name of the worst."""
+    worst = min(found, key=lambda each: sum(one.named for one in found[each]) / len(found[each]))
+    every = [outcome for battery in found for outcome in found[battery]]
+    known = [outcome for battery in found for outcome in usual.get(battery, ())]
+    beside = known if len(known) == len(every) else None
+    return row(cell, f"**all**, worst {worst}", every, beside)
 
 
 def table(folder: Path) -> str:
     """All cells of a folder."""
+    usual = _batteries(folder, USUAL)
     rows = []
     for cell in ALL:
-        for battery in BATTERIES:
-            found = outcomes(folder, cell, battery)
-            if found is not None:
-                rows.append(row(cell, battery, found, outcomes(folder, USUAL, battery)))
+        found = _batteries(folder, cell)
+        rows += [row(cell, name, each, usual.get(name)) for name, each in found.items()]
+        if len(found) == len(BATTERIES):
+            rows.append(pooled(cell, found, usual))
     return HEADER + "\n".join(rows) + "\n"
+
+
+def _batteries(folder: Path, cell: Cell) -> dict[str, list[Outcome]]:
+    """What the folder has of a cell, by battery."""
+    found = ((name, outcomes(folder, cell, name)) for name in BATTERIES)
+    return {name: each for name, each in found if each is not None}
 
 
 def fill(folder: Path, cells: Iterable[Cell], batteries: Iterable[str]) -> None:
@@ -135,6 +163,12 @@ def fill(folder: Path, cells: Iterable[Cell], batteries: Iterable[str]) -> None:
                 path.write_text(json.dumps(rows, indent=1) + "\n")
 
 
+def remarks(path: Path) -> str:
+    """What a table's file says below its table, under headings of its own."""
+    _, heading, rest = (path.read_text() if path.exists() else "").partition("\n## ")
+    return heading + rest
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Observe some cells, and write the table of all that the folder has."""
     parser = argparse.ArgumentParser(prog="scenes.rates", description=__doc__)
@@ -146,7 +180,7 @@ def main(arguments: list[str] | None = None) -> int:
     fill(options.folder, options.cell or ALL, options.battery or BATTERIES)
     text = table(options.folder)
     if options.table:
-        options.table.write_text(text)
+        options.table.write_text(text + remarks(options.table))
     else:
         sys.stdout.write(text)
     return 0
