@@ -35,7 +35,7 @@ def test_the_readme_shows_commands() -> None:
     assert len(COMMANDS) > 10
 
 
-@pytest.mark.xdist_group("readme")
+@pytest.mark.long
 def test_every_command_of_the_readme_runs(folder: Path) -> None:
     environment = {key: value for key, value in os.environ.items() if not key.startswith("CAPAR_")}
     for command in COMMANDS:

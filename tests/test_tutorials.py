@@ -45,6 +45,7 @@ def run(command: str, folder: Path) -> str:
     return done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("page", TUTORIALS, ids=lambda each: each.stem)
 def test_every_command_answers_what_the_page_says(page: Path, tmp_path: Path) -> None:
     tried = 0

@@ -152,6 +152,7 @@ def test_rules_over_words_of_which_the_world_has_few_are_not_judged_but_noted(tm
     ]  # fmt: skip
 
 
+@pytest.mark.long
 def test_every_word_of_rules_can_stand_in_one_and_no_such_rule_is_said_never_to_fire():
     words = {
         each.signature: ",".join("S" if name == "Segment" else "_" for name in each.arguments)

@@ -144,6 +144,7 @@ def test_what_others_specialise_needs_no_rule_of_its_own(tmp_path):
     assert "nothing-fits" not in {each.code for each in found}
 
 
+@pytest.mark.long
 def test_an_ambiguity_lists_five_at_most_and_tells_of_a_condition_too(tmp_path):
     path = tmp_path / "nip.lp"
     path.write_text(
