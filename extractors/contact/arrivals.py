@@ -1,4 +1,4 @@
-"""When a hand has come to what it touches, and leaves it, where only a distance tells of contact."""
+"""When a hand arrives at what it touches and leaves it, where only a distance tells of contact."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -31,8 +31,8 @@ def arrivals(
 ) -> Iterator[Contact]:
     """Contacts, those by an estimated distance from when an end-effector arrives until it leaves.
 
-    What moves beyond its floor as the end-effector comes is touched already, and what moves so as it
-    goes is touched still; what merely wobbles as it is grasped or let go is not.
+    What moves beyond its floor as the end-effector comes is touched already, and what moves so as
+    it goes is touched still; what merely wobbles as it is grasped or let go is not.
 
     Args:
         capture: The trial.

@@ -29,6 +29,7 @@ from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
 
+
 @dataclass(frozen=True, slots=True)
 class Contact:
     """Two bodies that touch through a closed interval of frames; an end-effector is first."""

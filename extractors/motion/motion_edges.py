@@ -43,8 +43,8 @@ def motion_edges(
     began when the object was last where it had rested, and ended when it first was where it
     rests afterwards: within what noise alone makes, and at least a hair's width. What passed
     before it was that far is added (``onset``). What takes longer to the floor than motion at the
-    slowest does, drifts until then. What was nudged or wobbled, and for the least duration of a rest
-    went no farther away, sets off from there.
+    slowest does, drifts until then. What was nudged or wobbled, and for the least duration of a
+    rest went no farther away, sets off from there.
 
     Args:
         poses: The object's poses.
