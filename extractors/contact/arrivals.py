@@ -1,4 +1,4 @@
-"""When a hand has come to what it touches, and leaves it, where a distance alone tells contact."""
+"""When a hand arrives at what it touches and leaves it, where only a distance tells of contact."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace

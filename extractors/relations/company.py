@@ -1,6 +1,6 @@
 """In whose company objects travel: steady in another body's frame, and how far from it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -51,14 +51,22 @@ def company(
         for other in others:
             if other.name == name or other.poses is thing.poses:
                 continue
-            for span in _together(other.poses.settled, thing.poses.settled, capture, thresholds):
-                parts = (
-                    bodies.on_end_effector(other.name) if other.name in bodies.parts else (other,)
-                )
-                gaps = [_gap(part, thing, span, calibration) for part in parts]
+            parts = bodies.on_end_effector(other.name) if other.name in bodies.parts else (other,)
+            for one, span in _any_together(parts, thing, capture, thresholds):
+                near = parts if one is other else (one,)
+                gaps = [_gap(part, thing, span, calibration) for part in near]
                 gap = min(filter(np.isfinite, gaps), default=np.inf)
                 if np.isfinite(gap):
                     yield MovesWith(name, other.name, *span, round(1000.0 * gap))
+
+
+def _any_together(
+    parts: Sequence[BodyGeometry], thing: BodyGeometry, capture: Capture, thresholds: Thresholds
+) -> Iterator[tuple[BodyGeometry, Interval]]:
+    """When a thing is steady in the frame of a hand or of a finger: one finger may carry it."""
+    for one in parts:
+        for span in _together(one.poses.settled, thing.poses.settled, capture, thresholds):
+            yield one, span
 
 
 def _together(

@@ -79,6 +79,15 @@ STORIES = {
         "displaced(mug,100,300) touching(right_hand,mug,90,140) rolls(mug,120,300)",
         ["moved_by(mug,mug,set_going,141,300)", "moved_by(mug,right_hand,pushed,100,140)"],
     ),
+    "It hangs from the table, is pushed, and swings on.": (
+        "displaced(mug,100,300) touching(right_hand,mug,90,140) swings(mug,120,300) "
+        "touching(mug,table,0,400)",
+        ["moved_by(mug,mug,set_going,141,300)", "moved_by(mug,right_hand,pushed,100,140)"],
+    ),
+    "It is pushed, and goes to and fro in the air: nothing swings there by itself.": (
+        "displaced(mug,100,300) touching(right_hand,mug,90,140) swings(mug,120,300)",
+        ["moved_by(mug,nobody,unknown,141,300)", "moved_by(mug,right_hand,pushed,100,140)"],
+    ),
     "It swings to and fro, and nobody ever set it going.": (
         f"{MOVES} swings(mug,100,200)",
         ["moved_by(mug,nobody,unknown,100,200)"],

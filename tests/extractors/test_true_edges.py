@@ -1,4 +1,4 @@
-"""Motions and contacts begin and end where they truly do: after a nudge, a loss, an approach."""
+"""Motions and contacts begin and end where they truly do: after nudges, losses and approaches."""
 
 import numpy as np
 import pytest
