@@ -36,8 +36,12 @@ PROFILES: tuple[tuple[Profile, Profile], ...] = (
 """How a displacement grows from 0 to 1: at once, by a steady push, or smoothly (minimum jerk; Flash
 and Hogan 1985). Of each the time at a displacement, and the speed at a time."""
 
-AGREEMENT = 0.1
-"""A beginning is sure if the displacement strays from that by no larger share of itself [1]."""
+AGREEMENT = 0.035
+"""A beginning is sure if the displacement strays from its profile by no larger share of itself [1].
+
+Noise of a fifth of a hair is a fortieth of the eight hairs that are looked at; the rest is for what
+the filter rounds.
+"""
 
 UNSURE = 1.0 / 3.0
 """Share of the longest time by which a motion may have begun earlier if that is not sure [1]: what
