@@ -6,7 +6,7 @@ import numpy as np
 
 from capar.model.capture import TagType
 from capar.model.facts import Moving, Touching
-from recomputed.known import NAME, ROUNDED, TIME, Known, covers, name
+from recomputed.known import NAME, ROUNDED, TIME, Known, covers, name, near
 
 BLOW_MPS = 1.0
 """Whoever means to touch has slowed down to less than this [m/s]."""
@@ -123,6 +123,39 @@ def not_borne(known: Known, what: str, bearer: str) -> bool:
     )
 
 
+RIDE_SHARE, RIDE_M = 0.25, 0.01
+"""What goes along strays by no larger share of its bearer's way [1], or by so little [m]."""
+
+
+def borne(known: Known, what: str, bearer: str, at: str) -> bool:
+    """In that contact it is above the bearer's bottom, and stays at its place when that moves."""
+    for met in known.touching(what, bearer):
+        spans = [
+            (max(met.first, move.first), min(met.last, move.last))
+            for move in known.moving(bearer)
+            if near(met.first, known.at(at)) and _overlap(met, move)
+        ]
+        if any(_rode(known, what, bearer, *span) for span in spans):
+            return True
+    return False
+
+
+def _rode(known: Known, what: str, bearer: str, first: int, last: int) -> bool:
+    frames = range(first, last + 1, 5)
+    ways = [known.middle(bearer, frame) - known.middle(bearer, first) for frame in frames]
+    offsets = [
+        known.turn(bearer, frame)
+        .inv()
+        .apply(known.middle(what, frame) - known.middle(bearer, frame))
+        for frame in frames
+    ]
+    stray = max(float(np.linalg.norm(each - offsets[0])) for each in offsets)
+    way = max(float(np.linalg.norm(each)) for each in ways)
+    low = float(known.points(bearer, first)[:, 2].min())
+    above = bool(known.middle(what, first)[2] > low)
+    return above and stray <= max(RIDE_SHARE * way, RIDE_M)
+
+
 def _overlap(one: Touching, other: Moving) -> bool:
     return one.first <= other.last and other.first <= one.last
 
@@ -198,6 +231,11 @@ def clings(known: Known, what: str, one: str) -> bool:
 
 FORMS = (
     (rf"the {NAME} was not borne by the {NAME}", not_borne),
+    (
+        rf"the {NAME} was borne by the {NAME} and went along with it, "
+        rf"in the contact that began at {TIME}",
+        borne,
+    ),
     (rf"the {NAME} met the {NAME} at (\d+) mm/s", met_at),
     (
         rf"the {NAME} pressed on the {NAME} along \((-?\d+), (-?\d+), level\) thousandths,"
