@@ -18,8 +18,9 @@ import scene
 
 from extractors.bodies.bodies import bodies_of
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.contact.contacts import shaped, watched
+from extractors.contact.contacts import watched
 from extractors.contact.proximity import Body, near
+from extractors.contact.touch_distances import touchable
 from extractors.thresholds import Thresholds
 
 TOLERANCE_M = 0.005
@@ -28,8 +29,7 @@ Pair = tuple[BodyGeometry, BodyGeometry]
 
 
 def surfaces(pairs: list[Pair]) -> dict[BodyGeometry, Body]:
-    found = {each: shaped(each) for pair in pairs for each in pair}
-    return {each: body for each, body in found.items() if body is not None}
+    return {each: touchable(each) for pair in pairs for each in pair if each.shape is not None}
 
 
 def plain(one: Body, two: Body, frames: np.ndarray) -> np.ndarray:
