@@ -20,6 +20,7 @@ from pyoxigraph import (
 from capar.model.errors import FileError, UnknownNameError
 from kb.errors import SchemaError, ShapeError
 from kb.lookup.stored import observations
+from kb.schema_steps import STEPS, migration
 from kb.store import names, schema, shacl_validation
 from kb.store import updates as writing
 from kb.store.answers import turtle
@@ -174,11 +175,11 @@ def _present(quads: list[Quad], source: str) -> list[Quad]:
     found = schema.version_of(quads)
     if found in {None, schema.SCHEMA}:
         return quads
-    if found not in schema.STEPS:
+    if found not in STEPS:
         raise SchemaError(source, found or 0, schema.remedy(source, found or 0))
     store = EmbeddedStore(None)
     store.bulk(quads)
-    store.change(" ;\n".join(schema.migration(found)))
+    store.change(" ;\n".join(migration(store, found)))
     return list(store.quads())
 
 

@@ -1,6 +1,7 @@
 """The ontology's files: terms, kinds of objects, alignments and shapes."""
 
 import hashlib
+from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -8,7 +9,7 @@ from importlib.resources.abc import Traversable
 from pyoxigraph import NamedNode, RdfFormat, Triple, parse
 
 from ontology.closed import BASE, DATA
-from ontology.vocabularies import RDF
+from ontology.vocabularies import RDF, RDFS
 
 KIND = DATA + "kind/"
 """Where the kinds of objects are named."""
@@ -74,6 +75,35 @@ def closure(pairs: list[tuple[str, str]]) -> dict[str, set[str]]:
                 waiting += direct.get(each, ())
         above[name] = reached
     return above
+
+
+@cache
+def ontology_kinds() -> Mapping[NamedNode, tuple[NamedNode, ...]]:
+    """The classes of each thing that the ontology itself states."""
+    found: dict[NamedNode, tuple[NamedNode, ...]] = {}
+    for each in ontology():
+        if each.predicate.value == RDF + "type" and isinstance(each.object, NamedNode):
+            assert isinstance(each.subject, NamedNode)
+            found[each.subject] = (*found.get(each.subject, ()), each.object)
+    return found
+
+
+@cache
+def subclasses() -> tuple[Triple, ...]:
+    """The statements that a class of ours is below another one of ours."""
+    return tuple(
+        each
+        for each in ontology()
+        if each.predicate.value == RDFS + "subClassOf" and BASE in str(each.object)
+    )
+
+
+@cache
+def classes_below(kind: NamedNode) -> frozenset[NamedNode]:
+    """The classes of ours below a class, directly or not."""
+    pairs = [(str(each.object), str(each.subject)) for each in subclasses()]
+    found = closure(pairs).get(str(kind), set())
+    return frozenset(NamedNode(each.strip("<>")) for each in found)
 
 
 @cache

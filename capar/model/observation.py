@@ -16,6 +16,7 @@ from capar.model.par import (
     Style,
     Upar,
 )
+from capar.model.sampled_track import SampledTrack
 
 BOTH = {"hand": "hands", "foot": "feet"}
 """End-effectors of which a body has two, and what both are called."""
@@ -199,6 +200,9 @@ class Observation:
 
     guides: tuple[GuideLocation, ...] = ()
     """The hinges and rails on which objects move, by object."""
+
+    tracks: tuple[SampledTrack, ...] = ()
+    """Where each sensor and object was throughout, by name."""
 
     @property
     def segments(self) -> tuple[Segment, ...]:

@@ -27,6 +27,7 @@ from extractors.measure import Measurements, measure
 from extractors.relations.guide_locations import guide_location
 from extractors.segments.locations import constraint_location
 from extractors.segments.motion_kinds import moved_path
+from extractors.segments.sampled_tracks import sampled_tracks
 from extractors.segments.styles import style
 from extractors.thresholds import Thresholds
 
@@ -117,6 +118,7 @@ def observe_measured(
         others=capture.others,
         calibration=measurements.calibration,
         guides=() if base.crossings_only else tuple(_guides(measurements)),
+        tracks=tuple(sampled_tracks(measurements.bodies, capture.times)),
     )
 
 

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 from pyoxigraph import NamedNode
 
 from kb.encode import complex_pars, facts, joint, measures, pars, scene, segments
-from kb.store import names
+from kb.encode.bodies import Bodies
+from kb.store import literals, names
 from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
 
@@ -33,6 +34,9 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
         scene.performer(out, each, agents[each.name], number=number)
     links = scene.links(out, observation, agents)
     objects = scene.objects(out, observation)
+    bodies = Bodies(out, objects, links)
+    frame_s = observation.duration_s / max(observation.frames - 1, 1)
+    world = facts.Scene(bodies, agents, frame_s)
     called = name or observation.complex_par.name or observation.capture
     complex_pars.complex_par(out, observation, called)
     rules = out.share(
@@ -56,15 +60,18 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
         CAPAR.agent: agent,
         CAPAR.object: list(objects.values()),
         CAPAR.link: list(links.values()),
-        CAPAR.segment: segments.segments(out, observation, links, objects),
+        CAPAR.segment: segments.segments(out, observation, links, objects, bodies),
         CAPAR.jointAction: joint.joint_actions(out, observation, objects),
-        CAPAR.fact: facts.facts(out, observation.facts, capture),
+        CAPAR.fact: facts.facts(out, observation.facts, world),
         CAPAR.location: measures.locations(out, observation, agents, objects),
         CAPAR.guide: measures.guides(out, observation, objects),
         CAPAR.style: measures.styles(out, observation, agents),
         CAPAR.notice: _notices(out, observation),
     }
     pars.ipars(out, observation, agents, objects)
+    for track in observation.tracks:
+        for body in bodies[track.body]:
+            out.add(body, (), {CAPAR.track: literals.track(track)})
     out.add(out.about, (CAPAR.Observation,), properties)
     return out
 

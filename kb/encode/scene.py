@@ -145,6 +145,7 @@ def links(
             names.part(out.about, "link", link.ee),
             (CAPAR.Link,),
             {
+                CAPAR.name: link.ee,
                 CAPAR.ee: link.ee,
                 CAPAR.effectorType: link.kind,
                 CAPAR.side: link.side,

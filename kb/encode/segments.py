@@ -7,6 +7,7 @@ from pyoxigraph import NamedNode
 from capar.model.errors import UnknownNameError
 from capar.model.par import UNKNOWN, FeatureSet
 from capar.model.segment_address import SegmentAddress
+from kb.encode.bodies import Bodies
 from kb.encode.scene import GENERATED
 from kb.store import names
 from kb.store.statements import LABEL, PropertyValues, Statements
@@ -78,10 +79,11 @@ def segments(
     observation: "Observation",
     links: dict[str, NamedNode],
     objects: dict[str, NamedNode],
+    bodies: Bodies,
 ) -> list[NamedNode]:
     """Every segment, links in order."""
     return [
-        _segment(out, link, each, links[link.ee], objects)
+        _segment(out, link, each, links[link.ee], objects, bodies)
         for link in observation.links
         for each in link.segments
     ]
@@ -93,6 +95,7 @@ def _segment(
     seen: "Segment",
     link_node: NamedNode,
     objects: dict[str, NamedNode],
+    bodies: Bodies,
 ) -> NamedNode:
     node = segment_node(out.about, seen.ee, seen.index)
     after = seen.index + 1
@@ -119,9 +122,9 @@ def _segment(
         CAPAR.dominant: objects.get(seen.objects[0]) if seen.objects else None,
         CAPAR.subordinate: [objects[each] for each in seen.objects[1:] if each in objects],
         CAPAR.features: features(out, seen.features),
-        CAPAR.beginsWith: _borders(out, node, "begin", seen.begins),
-        CAPAR.endsWith: _borders(out, node, "end", seen.ends),
-        CAPAR.placement: _placements(out, node, seen.prepositions),
+        CAPAR.beginsWith: _borders(out, node, "begin", seen.begins, bodies),
+        CAPAR.endsWith: _borders(out, node, "end", seen.ends, bodies),
+        CAPAR.placement: _placements(out, node, seen.prepositions, bodies),
         CAPAR.look: _looks(out, node, seen.looks, objects),
         CAPAR.purpose: seen.purpose,
         CAPAR.next: follows,
@@ -144,13 +147,20 @@ def border_kind(word: str) -> NamedNode:
 
 
 def _placements(
-    out: Statements, of: NamedNode, prepositions: tuple[tuple[str, str, str], ...]
+    out: Statements,
+    of: NamedNode,
+    prepositions: tuple[tuple[str, str, str], ...],
+    bodies: Bodies,
 ) -> list[NamedNode]:
     return [
         out.add(
             names.part(of, "placement", index),
             (CAPAR.Placement,),
-            {CAPAR.preposition: preposition, CAPAR.body: body, CAPAR.other: other},
+            {
+                CAPAR.preposition: preposition,
+                CAPAR.body: bodies[body],
+                CAPAR.other: bodies[other],
+            },
         )
         for index, (preposition, body, other) in enumerate(prepositions)
     ]
@@ -174,7 +184,7 @@ def _looks(
 
 
 def _borders(
-    out: Statements, of: NamedNode, where: str, borders: "tuple[Border, ...]"
+    out: Statements, of: NamedNode, where: str, borders: "tuple[Border, ...]", bodies: Bodies
 ) -> list[NamedNode]:
     return [
         out.add(
@@ -183,8 +193,8 @@ def _borders(
             {
                 CAPAR.index: index,
                 CAPAR.borderKind: border_kind(each.kind),
-                CAPAR.body: each.body,
-                CAPAR.other: each.other,
+                CAPAR.body: bodies[each.body] if each.body else None,
+                CAPAR.other: bodies[each.other] if each.other else None,
             },
         )
         for index, each in enumerate(borders)

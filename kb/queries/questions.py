@@ -28,7 +28,7 @@ BEARERS = {
         "{ ?of a capar:Observation ; rdfs:label ?name } UNION { ?of a ?kind ; capar:name ?name "
         "VALUES ?kind { capar:Action capar:Upar capar:JointAction capar:Observation } }",
     ),
-    "body": ("body", "?of capar:body ?name"),
+    "body": ("body", "?of capar:body/capar:name ?name"),
     "capture": ("capture", "?of a capar:Capture ; capar:name ?name"),
     "first": _WHOLE,
     "goal": _OBJECT,
