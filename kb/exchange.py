@@ -71,6 +71,9 @@ def format_of(path: Path | str, given: str | None = None) -> str:
 def export(store: Store, format_name: str, *, observation: str | None = None) -> bytes:
     """Everything, or an observation with what it mentions, as bytes that are always the same.
 
+    When and where observations were made goes with everything, and not with an observation: the
+    same capture gives the same bytes on any computer.
+
     Raises:
         UnknownNameError: There is no such format or observation.
     """

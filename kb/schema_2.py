@@ -11,6 +11,8 @@ from capar.model.declarations import Observed
 from capar.model.facts import ALL_FACT_KINDS, Fact
 from kb.encode.bodies import Bodies
 from kb.encode.facts import Scene, facts
+from kb.encode.scene import UNNAMED
+from kb.encode.segments import BROADER
 from kb.lookup.facts import in_order
 from kb.lookup.stored import observations
 from kb.store import names
@@ -34,6 +36,9 @@ OWN: Mapping[str, tuple[str, ...]] = {
 }
 """The classes that facts had: the predicate, and the property of each argument. All others were of
 the class Fact, with a name and their arguments as one text."""
+
+AGENT = names.shared("agent", UNNAMED)
+"""The one agent that every unnamed performer was."""
 
 _KINDS: Mapping[str, type[Observed]] = {each.predicate: each for each in ALL_FACT_KINDS}
 
@@ -83,12 +88,48 @@ WHERE {{
   }}
 }}"""
 
+_UNNAMED = f"""DELETE {{
+  GRAPH ?g {{ ?thing ?property {AGENT} }}
+}}
+INSERT {{
+  GRAPH ?g {{ ?thing ?property ?own }}
+  GRAPH {names.GRAPHS["agents"]} {{
+    ?own a {CAPAR.Agent} ; {LABEL} ?label ; {CAPAR.name} "{UNNAMED}"
+  }}
+}}
+WHERE {{
+  GRAPH ?g {{
+    ?g {CAPAR.capture}/{CAPAR.name} ?capture .
+    ?thing ?property {AGENT} .
+  }}
+  BIND(CONCAT("{UNNAMED} of ", ?capture) AS ?label)
+  BIND(IRI(CONCAT("{AGENT.value}.", ENCODE_FOR_URI(?capture))) AS ?own)
+}} ;
+DELETE {{ GRAPH {names.GRAPHS["agents"]} {{ {AGENT} ?property ?value }} }}
+WHERE {{
+  GRAPH {names.GRAPHS["agents"]} {{
+    {AGENT} ?property ?value
+    FILTER NOT EXISTS {{ {AGENT} {CAPAR.declared} true }}
+  }}
+}}"""
+_KINDS_OF_ACTION = f"""INSERT {{
+  GRAPH {names.GRAPHS["actions"]} {{ ?action {CAPAR.kindOf} ?action }}
+}}
+WHERE {{ GRAPH {names.GRAPHS["actions"]} {{ ?action a {CAPAR.Action} }} }} ;
+INSERT {{
+  GRAPH {names.GRAPHS["actions"]} {{ ?action {CAPAR.kindOf} ?general ; {BROADER} ?general }}
+}}
+WHERE {{
+  GRAPH ?g {{ ?segment {CAPAR.action} ?action ; {CAPAR.specialises} ?general }}
+}}"""
+
 
 def from_2(store: Store) -> tuple[str, ...]:
     """The updates to version 3."""
     stated = [quad for each in observations(store) for quad in _facts_of(store, each.name)]
     inserted = (insertion(stated),) if stated else ()
-    return (_NO_FACTS, _LINK_NAMES, _SENSORS, _REFERENCES, *inserted)
+    references = (_NO_FACTS, _LINK_NAMES, _SENSORS, _REFERENCES)
+    return (*references, *inserted, _UNNAMED, _KINDS_OF_ACTION)
 
 
 def _facts_of(store: Store, name: str) -> list[Quad]:

@@ -99,6 +99,7 @@ class CAPAR(metaclass=Closed):
     ofAction: NamedNode
     instanceOf: NamedNode
     specialises: NamedNode
+    kindOf: NamedNode
     parameters: NamedNode
     agentParameter: NamedNode
     general: NamedNode
@@ -325,6 +326,17 @@ class CAPAR(metaclass=Closed):
     fileFormat: NamedNode
     sha256: NamedNode
     mentions: NamedNode
+    Rule: NamedNode
+    Threshold: NamedNode
+    Run: NamedNode
+    namedBy: NamedNode
+    ruleText: NamedNode
+    threshold: NamedNode
+    thresholdValue: NamedNode
+    calibration: NamedNode
+    ofObservation: NamedNode
+    host: NamedNode
+    readFrom: NamedNode
     # functions.ttl
     SparqlFunction: NamedNode
     element: NamedNode

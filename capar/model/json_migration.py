@@ -1,7 +1,7 @@
 """The version of the JSON form of an observation, and bringing older documents to it.
 
 Version 1 stated no version, could hold facts that are no longer measured, had notices of a code
-and a sentence alone, and no calibration. Version 2 had no tracks.
+and a sentence alone, and no calibration. Version 2 had no tracks and no naming rules.
 """
 
 import json

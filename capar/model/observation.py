@@ -8,6 +8,7 @@ from capar.model.capture import Agent, Notice, Source
 from capar.model.display import display
 from capar.model.facts import Fact
 from capar.model.locations import ConstraintLocation, GuideLocation
+from capar.model.naming_rule import NamingRule
 from capar.model.par import (
     UNKNOWN,
     ComplexPar,
@@ -203,6 +204,9 @@ class Observation:
 
     tracks: tuple[SampledTrack, ...] = ()
     """Where each sensor and object was throughout, by name."""
+
+    naming: tuple[NamingRule, ...] = ()
+    """The rules that named its segments, by name."""
 
     @property
     def segments(self) -> tuple[Segment, ...]:

@@ -19,6 +19,7 @@ from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.movers.movers import movers
 from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key, infer
+from capar_rules.pars.naming_rules import naming_rules
 from capar_rules.pars.primitive_pars import Measured, ipars, upars
 from extractors.bodies.observed_objects import observed_object
 from extractors.calibration import calibrate as calibration_of
@@ -118,6 +119,7 @@ def observe_measured(
         others=capture.others,
         calibration=measurements.calibration,
         guides=() if base.crossings_only else tuple(_guides(measurements)),
+        naming=naming_rules(base, (segment.name for segment in _segments(inference))),
         tracks=tuple(sampled_tracks(measurements.bodies, capture.times)),
     )
 

@@ -93,19 +93,27 @@ def text_of(term: Term) -> str:
 
 def fingerprint(files: Iterable[Path]) -> str:
     """SHA-256 over the rule files and all that they include, in the order of their names."""
-    seen: dict[str, bytes] = {}
-    waiting = [Path(each).resolve() for each in files]
-    while waiting:
-        path = waiting.pop()
-        if str(path) in seen:
-            continue
-        content = path.read_bytes()
-        seen[str(path)] = content
-        waiting += [path.parent / name for name in _includes(content.decode())]
+    seen = {str(path): content for path, content in _contents(files).items()}
     digest = sha256()
     for path_name in sorted(seen, key=lambda each: (Path(each).name, seen[each])):
         digest.update(Path(path_name).name.encode() + b"\0" + seen[path_name] + b"\0")
     return digest.hexdigest()
+
+
+def loaded_files(files: Iterable[Path]) -> tuple[Path, ...]:
+    """The rule files and all that they include, sorted."""
+    return tuple(sorted(_contents(files)))
+
+
+def _contents(files: Iterable[Path]) -> dict[Path, bytes]:
+    seen: dict[Path, bytes] = {}
+    waiting = [Path(each).resolve() for each in files]
+    while waiting:
+        path = waiting.pop()
+        if path not in seen:
+            seen[path] = path.read_bytes()
+            waiting += [path.parent / name for name in _includes(seen[path].decode())]
+    return seen
 
 
 def _includes(text: str) -> list[str]:

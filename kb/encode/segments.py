@@ -12,7 +12,7 @@ from kb.encode.scene import GENERATED
 from kb.store import names
 from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
-from ontology.vocabularies import TIME
+from ontology.vocabularies import PREFIXES, TIME
 
 if TYPE_CHECKING:
     from capar.model.observation import Border, Observation, ObservedLink, Segment
@@ -39,6 +39,7 @@ BORDER_KINDS = {
 }
 """What may happen at a border, by the word that observations use for it."""
 
+BROADER = NamedNode(PREFIXES["skos"] + "broaderTransitive")
 MEETS = NamedNode(TIME + "intervalMeets")
 
 
@@ -46,8 +47,18 @@ def action(out: Statements, name: str) -> NamedNode | None:
     """What an action is called; the unknown has no name."""
     if name in {"", UNKNOWN}:
         return None
-    properties: PropertyValues = {LABEL: name, CAPAR.name: name}
-    return out.share(names.shared("action", name), (CAPAR.Action,), properties)
+    node = names.shared("action", name)
+    properties: PropertyValues = {LABEL: name, CAPAR.name: name, CAPAR.kindOf: node}
+    return out.share(node, (CAPAR.Action,), properties)
+
+
+def specific_action(out: Statements, name: str, general: tuple[str, ...]) -> NamedNode | None:
+    """The action of a segment, under every more general one."""
+    node = action(out, name)
+    above = actions(out, general)
+    if node is not None and above:
+        out.add(node, (), {CAPAR.kindOf: above, BROADER: above})
+    return node
 
 
 def actions(out: Statements, known: tuple[str, ...]) -> list[NamedNode]:
@@ -80,10 +91,11 @@ def segments(
     links: dict[str, NamedNode],
     objects: dict[str, NamedNode],
     bodies: Bodies,
+    rules: dict[str, NamedNode],
 ) -> list[NamedNode]:
     """Every segment, links in order."""
     return [
-        _segment(out, link, each, links[link.ee], objects, bodies)
+        _segment(out, link, each, links[link.ee], objects, bodies, rules)
         for link in observation.links
         for each in link.segments
     ]
@@ -96,6 +108,7 @@ def _segment(
     link_node: NamedNode,
     objects: dict[str, NamedNode],
     bodies: Bodies,
+    rules: dict[str, NamedNode],
 ) -> NamedNode:
     node = segment_node(out.about, seen.ee, seen.index)
     after = seen.index + 1
@@ -111,7 +124,8 @@ def _segment(
         CAPAR.start: float(seen.start_s),
         CAPAR.end: float(seen.end_s),
         CAPAR.duration: float(seen.end_s - seen.start_s),
-        CAPAR.action: action(out, seen.name),
+        CAPAR.action: specific_action(out, seen.name, seen.general),
+        CAPAR.namedBy: rules.get(seen.name),
         CAPAR.general: " ".join(seen.general),
         CAPAR.specialises: actions(out, seen.general),
         CAPAR.candidate: actions(out, seen.candidates),

@@ -8,6 +8,7 @@ from pyoxigraph import Literal
 
 from capar.model.par import UNKNOWN
 from kb.encode import encode
+from kb.encode.run import run, run_removal
 from kb.store import names
 from kb.store import updates as writing
 from kb.store.shacl_validation import validate_statements
@@ -89,6 +90,7 @@ def replace_all(store: Store, observations: Iterable[tuple["Observation", str]])
         statements = encode(observation, name=called)
         validate_statements(observation.capture, statements)
         graph = names.observation(observation.capture)
-        updates.append(writing.replacement(graph, statements.quads))
+        updates.append(run_removal(graph))
+        updates.append(writing.replacement(graph, [*statements.quads, *run(observation)]))
     if updates:
         store.change(" ;\n".join(updates))

@@ -6,6 +6,7 @@ from pyoxigraph import Literal
 
 from capar.model.errors import UnknownNameError
 from kb.encode import encode
+from kb.encode.run import run, run_removal
 from kb.encode.scene import identity
 from kb.errors import ExistsError
 from kb.findings import Added, Stored
@@ -51,9 +52,10 @@ def add(store: Store, observation: "Observation", *, name: str | None, replace: 
     validate_statements(observation.capture, statements)
     quads = statements.quads
     if there or is_address(store.place):
-        store.change(writing.replacement(graph, quads))
+        change = writing.replacement(graph, [*quads, *run(observation)])
+        store.change(f"{run_removal(graph)} ;\n{change}")
     else:
-        store.insert(quads)
+        store.insert([*quads, *run(observation)])
     return Added(observation.capture, called, recognised, bool(there), len(quads))
 
 
@@ -62,7 +64,8 @@ def forget(store: Store, name: str) -> None:
     known = [each.name for each in observations(store)]
     if name not in known:
         raise UnknownNameError("observation", name, known, where=store.place)
-    store.change(writing.removal(names.observation(name)))
+    graph = names.observation(name)
+    store.change(f"{run_removal(graph)} ;\n{writing.removal(graph)}")
 
 
 def observations(store: Store, filters: str = "") -> tuple[Stored, ...]:

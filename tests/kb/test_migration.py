@@ -78,7 +78,7 @@ def test_a_migrated_folder_answers_every_question_as_before(older: Path, tmp_pat
     done = migrate(str(place))
     with Actionary.open(place) as actionary:
         answers = json.loads((older / "answers.json").read_text("utf-8"))
-        assert {each["question"] for each in answers} == set(questions())
+        assert {each["question"] for each in answers} <= set(questions())
         assert sum(bool(each["rows"]) for each in answers) > 10
         assert asked(actionary, older) == answers
         assert check(actionary.store, full=False) == ()
