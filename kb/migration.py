@@ -63,6 +63,6 @@ def _beside(place: str, found: int) -> Path:
 def _back_up(store: Store, file: Path) -> None:
     try:
         with file.open("xb") as target:
-            target.write(export(store, "nquads"))
+            target.write(export(store, "nquads", runs=True))
     except FileExistsError:
         raise FileError(file, "exists already.", "Name another file: --backup FILE.nq") from None

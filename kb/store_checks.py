@@ -10,6 +10,7 @@ from pyoxigraph import Literal, NamedNode, Quad, Triple
 from kb.exchange import part
 from kb.lookup.stored import observations
 from kb.store import names, shacl_validation
+from kb.store.consistency import inconsistencies
 from kb.store.literals import LiteralError, nlt_of, numbers
 from kb.store.sparql import fill
 from kb.store.stores import Store
@@ -64,6 +65,7 @@ def check(store: Store, *, full: bool = True) -> tuple[Problem, ...]:
         found += [
             Problem(each.name, *_split(line)) for line in shacl_validation.nlt_problems(triples)
         ]
+        found += [Problem(each.name, *_split(line)) for line in inconsistencies(triples)]
         found += [Problem(each.name, *_split(line)) for line in _out_of_reach(quads)]
         found += [Problem(each.name, *_split(line)) for line in _dangling(store, each.name)]
     found += _unlisted(store)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, fields
 from decimal import Decimal
 from functools import cache
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from pyoxigraph import Literal, NamedNode
 
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 BODIES = frozenset({CAPAR.body, CAPAR.other, CAPAR.one, CAPAR.seen})
 """The properties whose values are bodies."""
+
+Properties: TypeAlias = dict[NamedNode, Value | Iterable[NamedNode] | Iterable[Literal]]
 
 UNMOVED = "unknown"
 """How an object is moved that nothing moves."""
@@ -77,7 +79,7 @@ def facts(out: Statements, stated: "tuple[Fact, ...]", scene: Scene) -> list[Nam
 
 def _fact(out: Statements, fact: Observed, scene: Scene, intervals: FactIntervals) -> NamedNode:
     known = form(type(fact))
-    properties: dict[NamedNode, Value | Iterable[NamedNode]] = {}
+    properties: Properties = {}
     values = {each: getattr(fact, each) for each in known.properties}
     for name, value in values.items():
         power = known.powers.get(name, 0)
@@ -129,7 +131,7 @@ def _sampled_of(fact: Observed) -> tuple[str, ...]:
 
 def _samples(out: Statements, samples: list[Observed], scene: Scene) -> NamedNode:
     known = form(type(samples[0]))
-    properties: dict[NamedNode, Value | Iterable[NamedNode]] = {}
+    properties: Properties = {}
     for name, predicate in known.properties.items():
         properties |= _property(predicate, getattr(samples[0], name), 0, scene)
     rows = sorted(samples, key=lambda each: each.ends())

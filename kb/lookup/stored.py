@@ -13,6 +13,7 @@ from kb.findings import Added, Stored
 from kb.lookup import recognition
 from kb.store import names
 from kb.store import updates as writing
+from kb.store.consistency import check_consistent
 from kb.store.shacl_validation import validate_statements
 from kb.store.sparql import fill
 from kb.store.stores import Store, is_address
@@ -51,6 +52,7 @@ def add(store: Store, observation: "Observation", *, name: str | None, replace: 
     statements = encode(observation, name=called)
     validate_statements(observation.capture, statements)
     quads = statements.quads
+    check_consistent(observation.capture, quads)
     if there or is_address(store.place):
         change = writing.replacement(graph, [*quads, *run(observation)])
         store.change(f"{run_removal(graph)} ;\n{change}")
