@@ -11,6 +11,10 @@ from pyoxigraph import NamedNode, RdfFormat, Triple, parse
 from ontology.closed import BASE, DATA
 from ontology.vocabularies import RDF, RDFS
 
+WHOLE = NamedNode(BASE.removesuffix("#"))
+"""The ontology itself."""
+
+DEFINED_BY = NamedNode(RDFS + "isDefinedBy")
 KIND = DATA + "kind/"
 """Where the kinds of objects are named."""
 
@@ -51,6 +55,8 @@ def ontology() -> tuple[Triple, ...]:
         for each in stated
         if each.predicate.value == RDF + "type" and each.object == NamedNode(BASE + "ObjectKind")
     }
+    named = {each.subject for each in stated if str(each.subject).startswith(f"<{BASE}")}
+    stated |= {Triple(each, DEFINED_BY, WHOLE) for each in named}
     is_a = NamedNode(BASE + "isA")
     above = closure(pairs)
     for kind in kinds:

@@ -233,6 +233,8 @@ class CAPAR(metaclass=Closed):
     rank: NamedNode
     look: NamedNode
     when: NamedNode
+    previous: NamedNode
+    segmentOf: NamedNode
     # facts.ttl
     Fact: NamedNode
     IntervalFact: NamedNode
