@@ -6,7 +6,7 @@ two takes from a kitchen.
 
 import os
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,6 +27,8 @@ from kb.actionary import Actionary
 from kb.lexicon.links import class_links, sense_links, thesis_senses
 from kb.lexicon.loading import load_words
 from kb.lexicon.wordnet import wordnet
+from kb.queries.filters import FILTERS
+from kb.queries.questions import questions
 
 HERE = Path(__file__).parents[2]
 TAKES = ("take0", "take5")
@@ -443,3 +445,43 @@ def test_which_names_are_ambiguous_and_what_else_would_have_fitted(
     rows = actionary.ask("ambiguous")
     assert {(r["address"], r["action"], r["otherwise"]) for r in rows} == expected
     assert expected
+
+
+def test_every_filter_leaves_exactly_what_it_says(world: World, actionary: Actionary) -> None:
+    kinds = {
+        (seen.capture, each.name): set(actionary.kinds_above(each.kind or each.name)) | {each.name}
+        for seen in world.seen
+        for each in seen.objects
+    }
+    first = world.seen[0].capture
+    fitting: dict[tuple[str, object], Callable[[Observation, Segment], bool]] = {
+        ("action", "MoveObj"): lambda seen, each: world.is_kind(each, "MoveObj"),
+        ("ee", "left_hand"): lambda seen, each: each.ee == "left_hand",
+        ("side", "left"): lambda seen, each: side(seen, each.ee) == "left",
+        ("effector", "hand"): lambda seen, each: each.features.end_effector == "hand",
+        ("performer", "tall_man"): lambda seen, each: seen.performer(each.ee) == "tall_man",
+        ("capture", first): lambda seen, each: seen.capture == first,
+        ("from", 2.0): lambda seen, each: each.end_s > 2.0,
+        ("until", 2.0): lambda seen, each: each.start_s < 2.0,
+        ("kind", "container"): lambda seen, each: any(
+            "container" in kinds.get((seen.capture, name), ()) for name in each.objects
+        ),
+    }
+    assert {name for name, _ in fitting} == FILTERS.keys()
+    for (name, value), fits in fitting.items():
+        expected = {address for seen, each, address in world.segments() if fits(seen, each)}
+        rows = actionary.ask("segments", **{name: value})
+        assert {row["address"] for row in rows} == expected, name
+        assert expected
+
+
+def test_every_question_of_segments_takes_the_same_filters() -> None:
+    exempt = {"allen", "before", "shared", "world"}  # of whole actions, conditions, or one time
+    other = {"notices", "observations", "sources", "held"}  # of observations
+    body = {"place", "both_hands", "looked_at", "uses", "abilities"}
+    for name, each in questions().items():
+        taken = {parameter.name for parameter in each.parameters}
+        if name not in exempt | other | body:
+            assert taken >= FILTERS.keys(), name
+        if name in other | {"both_hands", "looked_at"}:
+            assert {"performer", "capture"} & taken, name
