@@ -20,9 +20,11 @@ from pyoxigraph import (
 from capar.model.errors import FileError, UnknownNameError
 from kb.errors import SchemaError, ShapeError
 from kb.lookup.stored import observations
+from kb.schema_steps import STEPS, migration
 from kb.store import names, schema, shacl_validation
 from kb.store import updates as writing
 from kb.store.answers import turtle
+from kb.store.consistency import inconsistencies
 from kb.store.embedded import EmbeddedStore
 from kb.store.statements import insertion
 from kb.store.stores import Store
@@ -67,8 +69,17 @@ def format_of(path: Path | str, given: str | None = None) -> str:
     return name
 
 
-def export(store: Store, format_name: str, *, observation: str | None = None) -> bytes:
+def export(
+    store: Store, format_name: str, *, observation: str | None = None, runs: bool = False
+) -> bytes:
     """Everything, or an observation with what it mentions, as bytes that are always the same.
+
+    Args:
+        store: What is exported.
+        format_name: One of ``FORMATS``.
+        observation: The capture of the one that is meant; all if None.
+        runs: Whether everything includes when and where observations were made, which is of this
+            computer alone.
 
     Raises:
         UnknownNameError: There is no such format or observation.
@@ -76,7 +87,8 @@ def export(store: Store, format_name: str, *, observation: str | None = None) ->
     if format_name not in FORMATS:
         raise UnknownNameError("format", format_name, FORMATS)
     if observation is None:
-        quads = sorted(set(store.quads()), key=str)
+        left_out = None if runs else names.GRAPHS["runs"]
+        quads = sorted({e for e in store.quads() if e.graph_name != left_out}, key=str)
     else:
         quads = sorted({*part(store, observation), schema.statement()}, key=str)
     form = FORMATS[format_name]
@@ -174,12 +186,17 @@ def _present(quads: list[Quad], source: str) -> list[Quad]:
     found = schema.version_of(quads)
     if found in {None, schema.SCHEMA}:
         return quads
-    if found not in schema.STEPS:
+    if found not in STEPS:
         raise SchemaError(source, found or 0, schema.remedy(source, found or 0))
     store = EmbeddedStore(None)
     store.bulk(quads)
-    store.change(" ;\n".join(schema.migration(found)))
+    store.change(" ;\n".join(migration(store, found)))
     return list(store.quads())
+
+
+def _classes(store: Store, thing: NamedNode) -> list[object]:
+    """What a store says that a thing is."""
+    return [row[0] for row in store.ask(f"SELECT ?kind WHERE {{ {thing} a ?kind }}").rows]
 
 
 def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -> tuple[int, int]:
@@ -198,7 +215,11 @@ def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -
     present = _present(list(quads), source)
     taken = [each for each in present if each.graph_name != names.GRAPHS["ontology"]]
     triples = [each.triple for each in taken]
-    problems = (*shacl_validation.violations(triples), *shacl_validation.nlt_problems(triples))
+    problems = (
+        *shacl_validation.violations(triples, elsewhere=lambda thing: _classes(store, thing)),
+        *shacl_validation.nlt_problems(triples),
+        *inconsistencies(triples),
+    )
     if problems:
         raise ShapeError(source, problems)
     seen = sorted(

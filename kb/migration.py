@@ -6,6 +6,7 @@ from pathlib import Path
 from capar.model.errors import FileError
 from kb.errors import SchemaError
 from kb.exchange import export
+from kb.schema_steps import STEPS, migration
 from kb.store import schema, updates
 from kb.store.stores import Store, is_address, open_store
 
@@ -42,11 +43,11 @@ def migrate(place: str, *, backup: Path | None = None, wait_s: float = 0.0) -> M
         found = schema.version(store)
         if found in {None, schema.SCHEMA}:
             return Migrated(place, schema.SCHEMA, None)
-        if found not in schema.STEPS:
+        if found not in STEPS:
             raise SchemaError(place, found or 0, schema.remedy(place, found or 0))
         file = backup or _beside(place, found)
         _back_up(store, file)
-        store.change(" ;\n".join([*schema.migration(found), updates.ontology_replacement()]))
+        store.change(" ;\n".join([*migration(store, found), updates.ontology_replacement()]))
         return Migrated(place, found, file)
     finally:
         store.close()
@@ -62,6 +63,6 @@ def _beside(place: str, found: int) -> Path:
 def _back_up(store: Store, file: Path) -> None:
     try:
         with file.open("xb") as target:
-            target.write(export(store, "nquads"))
+            target.write(export(store, "nquads", runs=True))
     except FileExistsError:
         raise FileError(file, "exists already.", "Name another file: --backup FILE.nq") from None

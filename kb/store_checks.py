@@ -10,11 +10,12 @@ from pyoxigraph import Literal, NamedNode, Quad, Triple
 from kb.exchange import part
 from kb.lookup.stored import observations
 from kb.store import names, shacl_validation
+from kb.store.consistency import inconsistencies
 from kb.store.literals import LiteralError, nlt_of, numbers
 from kb.store.sparql import fill
 from kb.store.stores import Store
 from ontology import BASE, CAPAR, DATA
-from ontology.files import shape_files
+from ontology.files import ontology, ontology_kinds, shape_files, subclasses
 
 REACH_M = 0.1
 """How far from an object's origin, beyond its own size, its constraints may lie [m]."""
@@ -64,6 +65,7 @@ def check(store: Store, *, full: bool = True) -> tuple[Problem, ...]:
         found += [
             Problem(each.name, *_split(line)) for line in shacl_validation.nlt_problems(triples)
         ]
+        found += [Problem(each.name, *_split(line)) for line in inconsistencies(triples)]
         found += [Problem(each.name, *_split(line)) for line in _out_of_reach(quads)]
         found += [Problem(each.name, *_split(line)) for line in _dangling(store, each.name)]
     found += _unlisted(store)
@@ -86,7 +88,9 @@ def by_shacl(triples: Iterable[Triple]) -> list[tuple[str, str]]:
 
     shacl = Namespace(shacl_validation.SH)
     data = Graph()
-    data.parse(data="".join(f"{each} .\n" for each in triples), format="nt")
+    stated = [*triples, *subclasses()]
+    stated += _of_ontology(stated)
+    data.parse(data="".join(f"{each} .\n" for each in stated), format="nt")
     _, report, _ = validate(data, shacl_graph=_shapes(), inference="none", advanced=False)
     assert isinstance(report, Graph)
     found = {
@@ -94,6 +98,12 @@ def by_shacl(triples: Iterable[Triple]) -> list[tuple[str, str]]:
         for each in report.objects(None, shacl.result)
     }
     return sorted((thing.rsplit("/", 1)[-1], message) for thing, message in found)
+
+
+def _of_ontology(triples: Iterable[Triple]) -> list[Triple]:
+    """What the ontology says of its things to which statements refer."""
+    named = {each.object for each in triples if isinstance(each.object, NamedNode)}
+    return [each for each in ontology() if each.subject in named & ontology_kinds().keys()]
 
 
 @cache

@@ -1,6 +1,7 @@
 """The ontology's files: terms, kinds of objects, alignments and shapes."""
 
 import hashlib
+from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -8,8 +9,12 @@ from importlib.resources.abc import Traversable
 from pyoxigraph import NamedNode, RdfFormat, Triple, parse
 
 from ontology.closed import BASE, DATA
-from ontology.vocabularies import RDF
+from ontology.vocabularies import RDF, RDFS
 
+WHOLE = NamedNode(BASE.removesuffix("#"))
+"""The ontology itself."""
+
+DEFINED_BY = NamedNode(RDFS + "isDefinedBy")
 KIND = DATA + "kind/"
 """Where the kinds of objects are named."""
 
@@ -50,6 +55,8 @@ def ontology() -> tuple[Triple, ...]:
         for each in stated
         if each.predicate.value == RDF + "type" and each.object == NamedNode(BASE + "ObjectKind")
     }
+    named = {each.subject for each in stated if str(each.subject).startswith(f"<{BASE}")}
+    stated |= {Triple(each, DEFINED_BY, WHOLE) for each in named}
     is_a = NamedNode(BASE + "isA")
     above = closure(pairs)
     for kind in kinds:
@@ -74,6 +81,35 @@ def closure(pairs: list[tuple[str, str]]) -> dict[str, set[str]]:
                 waiting += direct.get(each, ())
         above[name] = reached
     return above
+
+
+@cache
+def ontology_kinds() -> Mapping[NamedNode, tuple[NamedNode, ...]]:
+    """The classes of each thing that the ontology itself states."""
+    found: dict[NamedNode, tuple[NamedNode, ...]] = {}
+    for each in ontology():
+        if each.predicate.value == RDF + "type" and isinstance(each.object, NamedNode):
+            assert isinstance(each.subject, NamedNode)
+            found[each.subject] = (*found.get(each.subject, ()), each.object)
+    return found
+
+
+@cache
+def subclasses() -> tuple[Triple, ...]:
+    """The statements that a class of ours is below another one of ours."""
+    return tuple(
+        each
+        for each in ontology()
+        if each.predicate.value == RDFS + "subClassOf" and BASE in str(each.object)
+    )
+
+
+@cache
+def classes_below(kind: NamedNode) -> frozenset[NamedNode]:
+    """The classes of ours below a class, directly or not."""
+    pairs = [(str(each.object), str(each.subject)) for each in subclasses()]
+    found = closure(pairs).get(str(kind), set())
+    return frozenset(NamedNode(each.strip("<>")) for each in found)
 
 
 @cache

@@ -55,6 +55,10 @@ class CAPAR(metaclass=Closed):
     assumedFrom: NamedNode
     affords: NamedNode
     declared: NamedNode
+    Body: NamedNode
+    Sensor: NamedNode
+    track: NamedNode
+    sampledTrack: NamedNode
     # sites.ttl
     Site: NamedNode
     StateSpace: NamedNode
@@ -95,6 +99,7 @@ class CAPAR(metaclass=Closed):
     ofAction: NamedNode
     instanceOf: NamedNode
     specialises: NamedNode
+    kindOf: NamedNode
     parameters: NamedNode
     agentParameter: NamedNode
     general: NamedNode
@@ -201,21 +206,8 @@ class CAPAR(metaclass=Closed):
     Segment: NamedNode
     UnknownSegment: NamedNode
     Border: NamedNode
-    Fact: NamedNode
-    FramesFact: NamedNode
-    RateFact: NamedNode
-    LinkFact: NamedNode
-    TagFact: NamedNode
-    ZeroCrossing: NamedNode
-    Touching: NamedNode
-    Gap: NamedNode
-    Moving: NamedNode
-    LookingAt: NamedNode
     Look: NamedNode
-    ForceTransfer: NamedNode
-    Intended: NamedNode
     segment: NamedNode
-    fact: NamedNode
     ofLink: NamedNode
     action: NamedNode
     candidate: NamedNode
@@ -233,9 +225,7 @@ class CAPAR(metaclass=Closed):
     firstFrame: NamedNode
     lastFrame: NamedNode
     end: NamedNode
-    micrometres: NamedNode
     rateMhz: NamedNode
-    sensor: NamedNode
     objectName: NamedNode
     actionName: NamedNode
     goalName: NamedNode
@@ -243,6 +233,80 @@ class CAPAR(metaclass=Closed):
     rank: NamedNode
     look: NamedNode
     when: NamedNode
+    previous: NamedNode
+    segmentOf: NamedNode
+    # facts.ttl
+    Fact: NamedNode
+    IntervalFact: NamedNode
+    ContactFact: NamedNode
+    InstantFact: NamedNode
+    SampledFact: NamedNode
+    SceneFact: NamedNode
+    FramesFact: NamedNode
+    RateFact: NamedNode
+    LinkFact: NamedNode
+    TagFact: NamedNode
+    Belonging: NamedNode
+    ForceTransfer: NamedNode
+    Intended: NamedNode
+    SolidObject: NamedNode
+    ShapelessObject: NamedNode
+    GuidedObject: NamedNode
+    ZeroCrossings: NamedNode
+    Places: NamedNode
+    Ways: NamedNode
+    Postures: NamedNode
+    Distances: NamedNode
+    SweptAzimuths: NamedNode
+    Openings: NamedNode
+    Pause: NamedNode
+    Reversal: NamedNode
+    DrawingBack: NamedNode
+    Touching: NamedNode
+    Moving: NamedNode
+    LookingAt: NamedNode
+    Displacement: NamedNode
+    Resting: NamedNode
+    Phase: NamedNode
+    Swinging: NamedNode
+    LengthwiseSwinging: NamedNode
+    Leaning: NamedNode
+    Flying: NamedNode
+    Rolling: NamedNode
+    Travelling: NamedNode
+    Seat: NamedNode
+    WeightBearing: NamedNode
+    Arrangement: NamedNode
+    PlaceBetween: NamedNode
+    CoMotion: NamedNode
+    FlickerCorrection: NamedNode
+    MovedBy: NamedNode
+    Gap: NamedNode
+    ContactNormal: NamedNode
+    PressDirection: NamedNode
+    SightNormal: NamedNode
+    Riding: NamedNode
+    ClosingSpeed: NamedNode
+    ReleaseSpeed: NamedNode
+    Passage: NamedNode
+    fact: NamedNode
+    samples: NamedNode
+    time: NamedNode
+    gap: NamedNode
+    upward: NamedNode
+    pressX: NamedNode
+    pressY: NamedNode
+    sightward: NamedNode
+    contactSpeed: NamedNode
+    weightShare: NamedNode
+    arrangement: NamedNode
+    sides: NamedNode
+    phaseKind: NamedNode
+    takenFor: NamedNode
+    mover: NamedNode
+    how: NamedNode
+    unmovedBecause: NamedNode
+    one: NamedNode
     # provenance.ttl
     Observation: NamedNode
     Capture: NamedNode
@@ -264,10 +328,25 @@ class CAPAR(metaclass=Closed):
     fileFormat: NamedNode
     sha256: NamedNode
     mentions: NamedNode
+    Rule: NamedNode
+    Threshold: NamedNode
+    Run: NamedNode
+    namedBy: NamedNode
+    ruleText: NamedNode
+    threshold: NamedNode
+    thresholdValue: NamedNode
+    calibration: NamedNode
+    ofObservation: NamedNode
+    host: NamedNode
+    readFrom: NamedNode
     # functions.ttl
     SparqlFunction: NamedNode
     element: NamedNode
     elements: NamedNode
+    speed: NamedNode
+    distance: NamedNode
+    highestSpeed: NamedNode
+    pathLength: NamedNode
     # lexicon.ttl
     LevinClass: NamedNode
     VerbNetClass: NamedNode

@@ -16,6 +16,7 @@ class Bears(Observed):
         border=frozenset({"bears_whole", "bears_none"}),
         has_sentence=True,
         stretch="bears_{share}",
+        rdf=("WeightBearing", "body", "weightShare", "firstFrame", "lastFrame"),
     )
     foot: str
     share: str
@@ -39,6 +40,7 @@ class Lies(Observed):
         has_sentence=False,
         stretch="{how}",
         others=("other",),
+        rdf=("Arrangement", "body", "arrangement", "other", "firstFrame", "lastFrame"),
     )
     body: str
     how: str
@@ -59,6 +61,7 @@ class Between(Observed):
         has_sentence=False,
         stretch="between",
         others=("one", "other"),
+        rdf=("PlaceBetween", "body", "one", "other", "firstFrame", "lastFrame"),
     )
     body: str
     one: str
@@ -82,6 +85,7 @@ class Passage(Observed):
         has_sentence=False,
         stretch="{how}_{sides}",
         others=("other",),
+        rdf=("Passage", "body", "arrangement", "other", "firstFrame", "sides"),
     )
     body: str
     how: str
@@ -95,7 +99,14 @@ class MovesWith(Observed):
     """A travelling object is steady in another body's frame, so far from touching it [mm]."""
 
     predicate = "moves_with"
-    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="object",
+        span=Span.INTERVAL,
+        border=False,
+        has_sentence=False,
+        rdf=("CoMotion", "body", "other", "firstFrame", "lastFrame", "gap"),
+        powers={"gap": -3},
+    )
     object: str
     body: str
     first: int

@@ -14,7 +14,14 @@ class ContactNormal(Observed):
     """
 
     predicate = "upward"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="body",
+        span=Touching,
+        border=False,
+        has_sentence=False,
+        rdf=("ContactNormal", "body", "other", "firstFrame", "upward"),
+        powers={"permille": -3},
+    )
     body: str
     other: str
     first: int
@@ -29,7 +36,14 @@ class PressDirection(Observed):
     """
 
     predicate = "presses"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    declaration = Declaration(
+        about="body",
+        span=Touching,
+        border=False,
+        has_sentence=True,
+        rdf=("PressDirection", "body", "other", "firstFrame", "pressX", "pressY"),
+        powers={"x": -3, "y": -3},
+    )
     body: str
     other: str
     first: int
@@ -45,7 +59,14 @@ class SightNormal(Observed):
     """
 
     predicate = "sighted"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    declaration = Declaration(
+        about="body",
+        span=Touching,
+        border=False,
+        has_sentence=True,
+        rdf=("SightNormal", "body", "other", "firstFrame", "sightward"),
+        powers={"permille": -3},
+    )
     body: str
     other: str
     first: int
@@ -60,7 +81,13 @@ class Rides(Observed):
     """
 
     predicate = "rides"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    declaration = Declaration(
+        about="body",
+        span=Touching,
+        border=False,
+        has_sentence=True,
+        rdf=("Riding", "body", "other", "firstFrame"),
+    )
     body: str
     other: str
     first: int
@@ -71,7 +98,14 @@ class ClosingSpeed(Observed):
     """How fast two bodies approached each other when they began to touch [mm/s]."""
 
     predicate = "closing"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    declaration = Declaration(
+        about="body",
+        span=Touching,
+        border=False,
+        has_sentence=True,
+        rdf=("ClosingSpeed", "body", "other", "firstFrame", "contactSpeed"),
+        powers={"speed": -3},
+    )
     body: str
     other: str
     first: int
@@ -86,7 +120,14 @@ class ReleaseSpeed(Observed):
     """
 
     predicate = "released"
-    declaration = Declaration(about="body", span=Touching, border=False, has_sentence=True)
+    declaration = Declaration(
+        about="body",
+        span=Touching,
+        border=False,
+        has_sentence=True,
+        rdf=("ReleaseSpeed", "body", "other", "firstFrame", "contactSpeed"),
+        powers={"speed": -3},
+    )
     body: str
     other: str
     first: int
@@ -98,7 +139,13 @@ class Seated(Observed):
     """A body is down on another one that bears it: in a contact, less its coming and going."""
 
     predicate = "seated"
-    declaration = Declaration(about="body", span=Span.INTERVAL, border=True, has_sentence=False)
+    declaration = Declaration(
+        about="body",
+        span=Span.INTERVAL,
+        border=True,
+        has_sentence=False,
+        rdf=("Seat", "body", "other", "firstFrame", "lastFrame"),
+    )
     body: str
     other: str
     first: int

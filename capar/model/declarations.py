@@ -1,11 +1,12 @@
 """What every kind of observed fact declares, once, where it is defined."""
 
 import re
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cache
 from inspect import get_annotations
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 from typing import Any, ClassVar, Self, cast
 
 from capar.model.atoms import Fact
@@ -18,10 +19,6 @@ class Span(Enum):
     ALWAYS = ()
     INSTANT = ("frame",)
     INTERVAL = ("first", "last")
-
-
-GENERIC = ("Fact",)
-"""In RDF: a fact with the name of its predicate and its arguments as one text."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,8 +51,17 @@ class Declaration:
     """What a measured interval is taken for that is contradicted as flicker, such as ``apart``;
     empty where flicker is not resolved."""
 
-    rdf: tuple[str, ...] = GENERIC
-    """The class in the ontology, and the property of each argument, where it has its own."""
+    rdf: tuple[str, ...]
+    """The class in the ontology, and the property of each argument. Of a sampled kind: of each
+    argument that names something, and of the rows of the others, each row led by its frame."""
+
+    powers: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
+    """The power of ten by which an argument becomes a number of SI units in RDF, by its field."""
+
+    @property
+    def sampled(self) -> bool:
+        """Whether its facts are samples of a quantity at frames, which RDF keeps as one row."""
+        return self.span is Span.INSTANT and not self.border
 
 
 class Observed(Fact):
@@ -75,7 +81,7 @@ class Observed(Fact):
         declared = cls.__dict__.get("declaration")
         if declared is None:
             raise FactError(f"{cls.__name__} lacks a declaration: what it is about, its span ...")
-        _check(cls.__name__, declared, list(get_annotations(cls)))
+        _check(cls.__name__, declared, get_annotations(cls))
 
     def subject(self) -> str:
         """The body that the fact is about; empty where it is about none."""
@@ -121,7 +127,7 @@ def _naming_fields(kind: Any) -> tuple[str, ...]:
     return tuple(each for each in get_annotations(kind) if each != "last")
 
 
-def _check(name: str, declared: Declaration, fields: list[str]) -> None:
+def _check(name: str, declared: Declaration, fields: dict[str, type]) -> None:
     span = declared.span
     braces = _BRACES.findall(declared.stretch)
     frames = span.value if isinstance(span, Span) else _naming_fields(cast(Any, span))
@@ -129,11 +135,19 @@ def _check(name: str, declared: Declaration, fields: list[str]) -> None:
     needed = (*about, *frames, *declared.others, *braces)
     missing = [each for each in needed if each not in fields]
     if missing:
-        raise FactError(f"{name} declares the fields {missing}, but has {fields}")
-    if declared.rdf != GENERIC and len(declared.rdf) != len(fields) + 1:
-        raise FactError(f"{name} declares {declared.rdf}: expected a class and {len(fields)} terms")
+        raise FactError(f"{name} declares the fields {missing}, but has {list(fields)}")
+    _check_rdf(name, declared, fields)
     if declared.negated and span is not Span.INTERVAL:
         raise FactError(f"{name} cannot flicker: it is no interval")
+
+
+def _check_rdf(name: str, declared: Declaration, fields: dict[str, type]) -> None:
+    named = [each for each, of in fields.items() if of is str]
+    terms = len(named) + 1 if declared.sampled else len(fields)
+    if len(declared.rdf) != terms + 1:
+        raise FactError(f"{name} declares {declared.rdf}: expected a class and {terms} properties")
+    if strange := [each for each in declared.powers if fields.get(each) is not int]:
+        raise FactError(f"{name} declares powers of {strange}, which are no whole numbers of it")
 
 
 def kinds_of(module: ModuleType) -> tuple[type[Observed], ...]:

@@ -68,7 +68,13 @@ class FlickerCorrection(Observed):
     """
 
     predicate = "doubted"
-    declaration = Declaration(about="body", span=Span.INTERVAL, border=False, has_sentence=True)
+    declaration = Declaration(
+        about="body",
+        span=Span.INTERVAL,
+        border=False,
+        has_sentence=True,
+        rdf=("FlickerCorrection", "body", "other", "firstFrame", "lastFrame", "takenFor"),
+    )
     body: str
     other: str
     first: int
@@ -85,7 +91,13 @@ class MovedBy(Observed):
     """
 
     predicate = "moved_by"
-    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="object",
+        span=Span.INTERVAL,
+        border=False,
+        has_sentence=False,
+        rdf=("MovedBy", "body", "mover", "how", "firstFrame", "lastFrame"),
+    )
     object: str
     mover: str
     how: str

@@ -1,7 +1,7 @@
 """The version of the JSON form of an observation, and bringing older documents to it.
 
 Version 1 stated no version, could hold facts that are no longer measured, had notices of a code
-and a sentence alone, and no calibration.
+and a sentence alone, and no calibration. Version 2 had no tracks and no naming rules.
 """
 
 import json
@@ -10,7 +10,7 @@ from typing import Any
 from capar.model.errors import ParError
 from capar.model.facts import ALL_FACT_KINDS
 
-SCHEMA = 2
+SCHEMA = 3
 """The version that this program reads and writes, the field ``schema`` of an observation."""
 
 
@@ -52,15 +52,23 @@ def migrated(text: str, *, where: str = "") -> str:
         ParError: It is no JSON object, or its version is no number from 1.
     """
     content = _document(text, where)
-    return json.dumps(_from_1(content) if _version(content, where) == 1 else content)
+    found = _version(content, where)
+    if found < SCHEMA:
+        content = _of_present_kinds(_from_1(content) if found == 1 else content)
+    return json.dumps(content)
 
 
-def _from_1(content: dict[str, Any]) -> dict[str, Any]:
+def _of_present_kinds(content: dict[str, Any]) -> dict[str, Any]:
+    """The same in the present version, without facts that are no longer measured."""
     known = {each.predicate for each in ALL_FACT_KINDS}
     facts = content.get("facts", [])
     kept = [each for each in facts if str(each).partition("(")[0] in known]
-    notices = [_sentence_only(each) for each in content.get("notices", [])]
-    return {"schema": 2, **content, "facts": kept, "notices": notices}
+    return {**content, "schema": SCHEMA, "facts": kept}
+
+
+def _from_1(content: dict[str, Any]) -> dict[str, Any]:
+    """The same with notices as version 2 has them."""
+    return {**content, "notices": [_sentence_only(each) for each in content.get("notices", [])]}
 
 
 def _sentence_only(notice: Any) -> Any:

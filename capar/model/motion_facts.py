@@ -14,7 +14,13 @@ class Displaced(Observed):
     """
 
     predicate = "displaced"
-    declaration = Declaration(about="object", span=Span.INTERVAL, border=True, has_sentence=False)
+    declaration = Declaration(
+        about="object",
+        span=Span.INTERVAL,
+        border=True,
+        has_sentence=False,
+        rdf=("Displacement", "body", "firstFrame", "lastFrame"),
+    )
     object: str
     first: int
     last: int
@@ -32,6 +38,7 @@ class Resting(Observed):
         has_sentence=True,
         stretch="resting",
         negated="going",
+        rdf=("Resting", "body", "firstFrame", "lastFrame"),
     )
     ee: str
     first: int
@@ -43,7 +50,13 @@ class Place(Observed):
     """Where the middle of a body is at a frame [millimetres]."""
 
     predicate = "place"
-    declaration = Declaration(about="body", span=Span.INSTANT, border=False, has_sentence=True)
+    declaration = Declaration(
+        about="body",
+        span=Span.INSTANT,
+        border=False,
+        has_sentence=True,
+        rdf=("Places", "body", "samples"),
+    )
     body: str
     frame: int
     x: int
@@ -59,7 +72,13 @@ class Travelled(Observed):
     """
 
     predicate = "travelled"
-    declaration = Declaration(about="body", span=Span.INSTANT, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="body",
+        span=Span.INSTANT,
+        border=False,
+        has_sentence=False,
+        rdf=("Ways", "body", "samples"),
+    )
     body: str
     frame: int
     way: int
@@ -75,7 +94,13 @@ class Posture(Observed):
     """
 
     predicate = "posture"
-    declaration = Declaration(about="body", span=Span.INSTANT, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="body",
+        span=Span.INSTANT,
+        border=False,
+        has_sentence=False,
+        rdf=("Postures", "body", "samples"),
+    )
     body: str
     frame: int
     lean: int
@@ -87,7 +112,13 @@ class Distance(Observed):
     """How far the middles of two bodies are apart at a frame [millimetres]."""
 
     predicate = "apart"
-    declaration = Declaration(about="body", span=Span.INSTANT, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="body",
+        span=Span.INSTANT,
+        border=False,
+        has_sentence=False,
+        rdf=("Distances", "body", "other", "samples"),
+    )
     body: str
     other: str
     frame: int
@@ -99,7 +130,13 @@ class SweptAzimuth(Observed):
     """The angle by which a body has gone about another, seen from above [milliradians]."""
 
     predicate = "wound"
-    declaration = Declaration(about="body", span=Span.INSTANT, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="body",
+        span=Span.INSTANT,
+        border=False,
+        has_sentence=False,
+        rdf=("SweptAzimuths", "body", "other", "samples"),
+    )
     body: str
     other: str
     frame: int
@@ -117,6 +154,7 @@ class Phase(Observed):
         border=frozenset({"goes_level"}),
         has_sentence=False,
         stretch="goes_{kind}",
+        rdf=("Phase", "body", "phaseKind", "firstFrame", "lastFrame"),
     )
     object: str
     kind: str
@@ -132,7 +170,13 @@ class Guided(Observed):
     """
 
     predicate = "guided"
-    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=True)
+    declaration = Declaration(
+        about="object",
+        span=Span.ALWAYS,
+        border=False,
+        has_sentence=True,
+        rdf=("GuidedObject", "body", "guideKind", "other"),
+    )
     object: str
     kind: str
     base: str
@@ -146,7 +190,13 @@ class Opening(Observed):
     """
 
     predicate = "opening"
-    declaration = Declaration(about="object", span=Span.INSTANT, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="object",
+        span=Span.INSTANT,
+        border=False,
+        has_sentence=False,
+        rdf=("Openings", "body", "samples"),
+    )
     object: str
     frame: int
     amount: int
@@ -162,7 +212,12 @@ class Reverses(Observed):
 
     predicate = "reverses"
     declaration = Declaration(
-        about="object", span=Span.INSTANT, border=True, has_sentence=False, stretch="reverses"
+        about="object",
+        span=Span.INSTANT,
+        border=True,
+        has_sentence=False,
+        stretch="reverses",
+        rdf=("Reversal", "body", "frame"),
     )
     object: str
     frame: int
@@ -174,7 +229,12 @@ class DrawsBack(Observed):
 
     predicate = "draws_back"
     declaration = Declaration(
-        about="object", span=Span.INSTANT, border=True, has_sentence=False, stretch="draws_back"
+        about="object",
+        span=Span.INSTANT,
+        border=True,
+        has_sentence=False,
+        stretch="draws_back",
+        rdf=("DrawingBack", "body", "frame"),
     )
     object: str
     frame: int
@@ -186,7 +246,12 @@ class Swings(Observed):
 
     predicate = "swings"
     declaration = Declaration(
-        about="body", span=Span.INTERVAL, border=True, has_sentence=True, stretch="swings"
+        about="body",
+        span=Span.INTERVAL,
+        border=True,
+        has_sentence=True,
+        stretch="swings",
+        rdf=("Swinging", "body", "firstFrame", "lastFrame"),
     )
     body: str
     first: int
@@ -199,7 +264,12 @@ class Lengthwise(Observed):
 
     predicate = "lengthwise"
     declaration = Declaration(
-        about="body", span=Span.INTERVAL, border=True, has_sentence=True, stretch="lengthwise"
+        about="body",
+        span=Span.INTERVAL,
+        border=True,
+        has_sentence=True,
+        stretch="lengthwise",
+        rdf=("LengthwiseSwinging", "body", "firstFrame", "lastFrame"),
     )
     body: str
     first: int
@@ -212,7 +282,12 @@ class Leans(Observed):
 
     predicate = "leans"
     declaration = Declaration(
-        about="object", span=Span.INTERVAL, border=True, has_sentence=True, stretch="leans"
+        about="object",
+        span=Span.INTERVAL,
+        border=True,
+        has_sentence=True,
+        stretch="leans",
+        rdf=("Leaning", "body", "firstFrame", "lastFrame"),
     )
     object: str
     first: int
@@ -225,7 +300,12 @@ class Flies(Observed):
 
     predicate = "flies"
     declaration = Declaration(
-        about="object", span=Span.INTERVAL, border=True, has_sentence=True, stretch="flies"
+        about="object",
+        span=Span.INTERVAL,
+        border=True,
+        has_sentence=True,
+        stretch="flies",
+        rdf=("Flying", "body", "firstFrame", "lastFrame"),
     )
     object: str
     first: int
@@ -238,7 +318,12 @@ class Rolls(Observed):
 
     predicate = "rolls"
     declaration = Declaration(
-        about="object", span=Span.INTERVAL, border=False, has_sentence=True, stretch="rolls"
+        about="object",
+        span=Span.INTERVAL,
+        border=False,
+        has_sentence=True,
+        stretch="rolls",
+        rdf=("Rolling", "body", "firstFrame", "lastFrame"),
     )
     object: str
     first: int
@@ -250,7 +335,13 @@ class Travels(Observed):
     """An object covers more way than a floor of motion in a moment, throughout."""
 
     predicate = "travels"
-    declaration = Declaration(about="object", span=Span.INTERVAL, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="object",
+        span=Span.INTERVAL,
+        border=False,
+        has_sentence=False,
+        rdf=("Travelling", "body", "firstFrame", "lastFrame"),
+    )
     object: str
     first: int
     last: int

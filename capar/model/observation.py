@@ -8,6 +8,7 @@ from capar.model.capture import Agent, Notice, Source
 from capar.model.display import display
 from capar.model.facts import Fact
 from capar.model.locations import ConstraintLocation, GuideLocation
+from capar.model.naming_rule import NamingRule
 from capar.model.par import (
     UNKNOWN,
     ComplexPar,
@@ -16,6 +17,7 @@ from capar.model.par import (
     Style,
     Upar,
 )
+from capar.model.sampled_track import SampledTrack
 
 BOTH = {"hand": "hands", "foot": "feet"}
 """End-effectors of which a body has two, and what both are called."""
@@ -199,6 +201,12 @@ class Observation:
 
     guides: tuple[GuideLocation, ...] = ()
     """The hinges and rails on which objects move, by object."""
+
+    tracks: tuple[SampledTrack, ...] = ()
+    """Where each sensor and object was throughout, by name."""
+
+    naming: tuple[NamingRule, ...] = ()
+    """The rules that named its segments, by name."""
 
     @property
     def segments(self) -> tuple[Segment, ...]:

@@ -42,7 +42,7 @@ class Link(Observed):
         span=Span.ALWAYS,
         border=False,
         has_sentence=False,
-        rdf=("LinkFact", "ee", "effectorType", "side"),
+        rdf=("LinkFact", "body", "effectorType", "side"),
     )
     ee: str
     kind: str
@@ -59,7 +59,7 @@ class Tag(Observed):
         span=Span.ALWAYS,
         border=False,
         has_sentence=True,
-        rdf=("TagFact", "objectName", "tagName"),
+        rdf=("TagFact", "body", "tagName"),
     )
     object: str
     type: str
@@ -70,7 +70,13 @@ class OfAgent(Observed):
     """Whose an end-effector or a body part is; stated where several agents perform."""
 
     predicate = "of_agent"
-    declaration = Declaration(about="body", span=Span.ALWAYS, border=False, has_sentence=True)
+    declaration = Declaration(
+        about="body",
+        span=Span.ALWAYS,
+        border=False,
+        has_sentence=True,
+        rdf=("Belonging", "body", "agent"),
+    )
     body: str
     agent: str
 
@@ -85,7 +91,7 @@ class ZeroCrossing(Observed):
         span=Span.INSTANT,
         border=False,
         has_sentence=False,
-        rdf=("ZeroCrossing", "ee", "frame"),
+        rdf=("ZeroCrossings", "body", "samples"),
     )
     ee: str
     frame: int
@@ -96,7 +102,13 @@ class Pause(Observed):
     """A zero crossing at which the end-effector is slow: it starts, stops or turns."""
 
     predicate = "pause"
-    declaration = Declaration(about="ee", span=Span.INSTANT, border=True, has_sentence=False)
+    declaration = Declaration(
+        about="ee",
+        span=Span.INSTANT,
+        border=True,
+        has_sentence=False,
+        rdf=("Pause", "body", "frame"),
+    )
     ee: str
     frame: int
 
@@ -131,7 +143,8 @@ class Gap(Observed):
         span=Touching,
         border=False,
         has_sentence=False,
-        rdf=("Gap", "body", "other", "firstFrame", "micrometres"),
+        rdf=("Gap", "body", "other", "firstFrame", "gap"),
+        powers={"micrometres": -6},
     )
     body: str
     other: str
@@ -150,7 +163,7 @@ class Moving(Observed):
         border=True,
         has_sentence=True,
         negated="still",
-        rdf=("Moving", "objectName", "firstFrame", "lastFrame"),
+        rdf=("Moving", "body", "firstFrame", "lastFrame"),
     )
     object: str
     first: int
@@ -169,7 +182,7 @@ class LookingAt(Observed):
         has_sentence=True,
         stretch="looks",
         others=("object",),
-        rdf=("LookingAt", "sensor", "objectName", "firstFrame", "lastFrame"),
+        rdf=("LookingAt", "body", "seen", "firstFrame", "lastFrame"),
     )
     sensor: str
     object: str
@@ -214,7 +227,13 @@ class Solid(Observed):
     """
 
     predicate = "solid"
-    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="object",
+        span=Span.ALWAYS,
+        border=False,
+        has_sentence=False,
+        rdf=("SolidObject", "body"),
+    )
     object: str
 
 
@@ -226,5 +245,11 @@ class Shapeless(Observed):
     """
 
     predicate = "shapeless"
-    declaration = Declaration(about="object", span=Span.ALWAYS, border=False, has_sentence=False)
+    declaration = Declaration(
+        about="object",
+        span=Span.ALWAYS,
+        border=False,
+        has_sentence=False,
+        rdf=("ShapelessObject", "body"),
+    )
     object: str

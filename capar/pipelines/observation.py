@@ -19,6 +19,7 @@ from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.movers.movers import movers
 from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key, infer
+from capar_rules.pars.naming_rules import naming_rules
 from capar_rules.pars.primitive_pars import Measured, ipars, upars
 from extractors.bodies.observed_objects import observed_object
 from extractors.calibration import calibrate as calibration_of
@@ -27,6 +28,7 @@ from extractors.measure import Measurements, measure
 from extractors.relations.guide_locations import guide_location
 from extractors.segments.locations import constraint_location
 from extractors.segments.motion_kinds import moved_path
+from extractors.segments.sampled_tracks import sampled_tracks
 from extractors.segments.styles import style
 from extractors.thresholds import Thresholds
 
@@ -117,6 +119,8 @@ def observe_measured(
         others=capture.others,
         calibration=measurements.calibration,
         guides=() if base.crossings_only else tuple(_guides(measurements)),
+        naming=naming_rules(base, (segment.name for segment in _segments(inference))),
+        tracks=tuple(sampled_tracks(measurements.bodies, capture.times)),
     )
 
 

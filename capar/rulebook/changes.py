@@ -15,7 +15,8 @@ from capar_rules.lint.admission import admitted_profile
 from capar_rules.pars.inference import infer
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
-from kb.lookup.changes import NamedSegment, facts, named_segments, replace_all, source_files
+from kb.lookup.changes import NamedSegment, named_segments, replace_all, source_files
+from kb.lookup.facts import facts
 
 NOTHING = "none"
 """Stands for the name of a segment that is not there before, or not after."""

@@ -93,20 +93,28 @@ def text_of(term: Term) -> str:
 
 def fingerprint(files: Iterable[Path]) -> str:
     """SHA-256 over the rule files and all that they include, in the order of their names."""
-    seen: dict[str, bytes] = {}
-    waiting = [Path(each).resolve() for each in files]
-    while waiting:
-        path = waiting.pop()
-        if str(path) in seen:
-            continue
-        about = path.stat()
-        content, included = _read(path, about.st_mtime_ns, about.st_size)
-        seen[str(path)] = content
-        waiting += [path.parent / name for name in included]
+    seen = {str(path): content for path, content in _contents(files).items()}
     digest = sha256()
     for path_name in sorted(seen, key=lambda each: (Path(each).name, seen[each])):
         digest.update(Path(path_name).name.encode() + b"\0" + seen[path_name] + b"\0")
     return digest.hexdigest()
+
+
+def loaded_files(files: Iterable[Path]) -> tuple[Path, ...]:
+    """The rule files and all that they include, sorted."""
+    return tuple(sorted(_contents(files)))
+
+
+def _contents(files: Iterable[Path]) -> dict[Path, bytes]:
+    seen: dict[Path, bytes] = {}
+    waiting = [Path(each).resolve() for each in files]
+    while waiting:
+        path = waiting.pop()
+        if path not in seen:
+            about = path.stat()
+            seen[path], included = _read(path, about.st_mtime_ns, about.st_size)
+            waiting += [path.parent / name for name in included]
+    return seen
 
 
 @lru_cache(maxsize=512)

@@ -1,48 +1,152 @@
-"""Facts as statements: of the class that its kind declares, or else a generic fact.
+"""Facts as statements: each of the class and with the properties that its kind declares.
 
-A kind whose declaration names a class of the ontology has a property for each argument. Any other
-is a ``Fact`` with its predicate as its name, and its arguments as one text.
+Bodies and agents are things; a fact of an interval has its frames and its seconds. Samples of one
+quantity at frames are one thing, with a row of numbers.
 """
 
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, fields
+from decimal import Decimal
 from functools import cache
-from typing import TYPE_CHECKING, Any, cast
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
-from pyoxigraph import NamedNode
+from pyoxigraph import Literal, NamedNode
 
-from capar.model.atoms import arguments
-from kb.encode.scene import DERIVED
+from capar.model.declarations import Observed, Span
+from capar.model.fact_intervals import FactIntervals
+from capar.model.facts import MovedBy
+from kb.encode.bodies import Bodies
 from kb.store import names
-from kb.store.statements import Statements, Value
+from kb.store.statements import PropertyValues, Statements, Value
 from ontology import CAPAR
 
 if TYPE_CHECKING:
     from capar.model.facts import Fact
 
+BODIES = frozenset({CAPAR.body, CAPAR.other, CAPAR.one, CAPAR.seen})
+"""The properties whose values are bodies."""
 
-def facts(out: Statements, stated: "tuple[Fact, ...]", capture: NamedNode) -> list[NamedNode]:
-    """Every fact, derived from its capture."""
-    return [_fact(out, each, capture) for each in stated]
+Properties: TypeAlias = dict[NamedNode, Value | Iterable[NamedNode] | Iterable[Literal]]
+
+UNMOVED = "unknown"
+"""How an object is moved that nothing moves."""
 
 
-def terms(kind: "type[Fact]") -> tuple[NamedNode, ...]:
-    """The class of a kind of fact, and the property of each argument where it has its own."""
-    return _terms(cast(Any, kind))
+@dataclass(frozen=True)
+class Scene:
+    """What facts refer to: bodies, agents, and how long a frame lasts [s]."""
+
+    bodies: Bodies
+    agents: Mapping[str, NamedNode]
+    frame_s: float
+
+
+@dataclass(frozen=True)
+class FactForm:
+    """How the facts of a kind stand in RDF."""
+
+    kind: NamedNode
+    properties: Mapping[str, NamedNode]
+    """By field; of a sampled kind only those that name something."""
+
+    powers: Mapping[str, int] = field(default_factory=dict)
+
+
+def form(kind: "type[Fact]") -> FactForm:
+    """The class, the properties and the powers of ten of a kind of fact."""
+    return _form(cast(Any, kind))
 
 
 @cache
-def _terms(kind: Any) -> tuple[NamedNode, ...]:
-    return tuple(getattr(CAPAR, each) for each in kind.declaration.rdf)
+def _form(kind: Any) -> FactForm:
+    declared = kind.declaration
+    cls, *predicates = (getattr(CAPAR, each) for each in declared.rdf)
+    named = [each.name for each in fields(kind) if not declared.sampled or each.type is str]
+    return FactForm(cls, dict(zip(named, predicates, strict=False)), declared.powers)
 
 
-def _fact(out: Statements, fact: "Fact", capture: NamedNode) -> NamedNode:
-    values = [getattr(fact, each) for each in arguments(cast(Any, type(fact)))]
-    kind, *predicates = terms(type(fact))
-    if kind == CAPAR.Fact:
-        properties: dict[NamedNode, Value] = {
-            CAPAR.name: fact.predicate,
-            CAPAR.parameters: " ".join(map(str, values)),
-        }
-    else:
-        properties = dict(zip(predicates, values, strict=True))
-    properties[DERIVED] = capture
-    return out.add(names.part(out.about, "fact", fact.predicate, *values), (kind,), properties)
+def facts(out: Statements, stated: "tuple[Fact, ...]", scene: Scene) -> list[NamedNode]:
+    """Every fact; those of a sampled kind by what they are samples of."""
+    observed = [each for each in stated if isinstance(each, Observed)]
+    intervals = FactIntervals(observed)
+    single = [each for each in observed if not each.declaration.sampled]
+    sampled = [each for each in observed if each.declaration.sampled]
+    nodes = [_fact(out, each, scene, intervals) for each in single]
+    groups = groupby(sorted(sampled, key=_sampled_of), key=_sampled_of)
+    return nodes + [_samples(out, list(each), scene) for _, each in groups]
+
+
+def _fact(out: Statements, fact: Observed, scene: Scene, intervals: FactIntervals) -> NamedNode:
+    known = form(type(fact))
+    properties: Properties = {}
+    values = {each: getattr(fact, each) for each in known.properties}
+    for name, value in values.items():
+        power = known.powers.get(name, 0)
+        properties |= _property(known.properties[name], value, power, scene)
+    if isinstance(fact, MovedBy):
+        properties |= _mover(fact, scene)
+    properties |= _times(fact, scene, intervals)
+    return out.add(
+        names.part(out.about, "fact", fact.predicate, *values.values()), (known.kind,), properties
+    )
+
+
+def _property(predicate: NamedNode, value: Any, power: int, scene: Scene) -> PropertyValues:
+    if predicate in BODIES:
+        return {predicate: scene.bodies[value]}
+    if predicate == CAPAR.agent:
+        return {predicate: scene.agents.get(value)}
+    if predicate == CAPAR.mover:
+        return {}
+    return {predicate: float(Decimal(value).scaleb(power)) if power else value}
+
+
+def _mover(fact: MovedBy, scene: Scene) -> PropertyValues:
+    """The body or the agent that moves an object; else what is known of a motion without one."""
+    if fact.how == UNMOVED:
+        return {CAPAR.unmovedBecause: fact.mover}
+    agent = scene.agents.get(fact.mover)
+    return {CAPAR.mover: agent or scene.bodies[fact.mover]}
+
+
+def _times(fact: Observed, scene: Scene, intervals: FactIntervals) -> PropertyValues:
+    interval = intervals.of(fact)
+    if interval is None:
+        return {}
+    first, last = interval
+    if fact.declaration.span is Span.INSTANT:
+        return {CAPAR.time: first * scene.frame_s}
+    return {
+        CAPAR.lastFrame: last,
+        CAPAR.start: first * scene.frame_s,
+        CAPAR.end: last * scene.frame_s,
+    }
+
+
+def _sampled_of(fact: Observed) -> tuple[str, ...]:
+    """The predicate of a fact, and what it is a sample of."""
+    return fact.predicate, *(getattr(fact, each) for each in form(type(fact)).properties)
+
+
+def _samples(out: Statements, samples: list[Observed], scene: Scene) -> NamedNode:
+    known = form(type(samples[0]))
+    properties: Properties = {}
+    for name, predicate in known.properties.items():
+        properties |= _property(predicate, getattr(samples[0], name), 0, scene)
+    rows = sorted(samples, key=lambda each: each.ends())
+    numbers = (str(number) for each in rows for number in sample(each))
+    properties[CAPAR.samples] = Literal(" ".join(numbers), datatype=CAPAR.vector)
+    node = names.part(out.about, "samples", *_sampled_of(samples[0]))
+    return out.add(node, (known.kind,), properties)
+
+
+def sample(fact: Observed) -> tuple[int, ...]:
+    """The numbers of a sample, its frame first, the others in the order of its fields."""
+    named = form(type(fact)).properties
+    numbers = {
+        each.name: getattr(fact, each.name)
+        for each in fields(cast(Any, fact))
+        if each.name not in named
+    }
+    return numbers.pop("frame"), *numbers.values()

@@ -20,6 +20,9 @@ USED = NamedNode(PROV + "used")
 DERIVED = NamedNode(PROV + "wasDerivedFrom")
 GENERATED = NamedNode(PROV + "wasGeneratedBy")
 ASSOCIATED = NamedNode(PROV + "wasAssociatedWith")
+UNNAMED = "agent"
+"""The name of an agent that nobody named."""
+
 OF_INTEREST = NamedNode(PREFIXES["sosa"] + "hasFeatureOfInterest")
 
 
@@ -77,15 +80,26 @@ def capture(out: Statements, observation: "Observation") -> NamedNode:
 
 
 def agents(out: Statements, observation: "Observation") -> dict[str, NamedNode]:
-    """Everyone who performed, by name, the first one first."""
+    """Everyone who performed, by name, the first one first.
+
+    Who has no name belongs to the capture: the same word in two captures is not one person.
+    """
     return {
-        each.name: out.share(
-            names.shared("agent", each.name),
-            (CAPAR.Agent,),
-            {LABEL: each.name, CAPAR.name: each.name},
-        )
+        each.name: _agent(out, each.name, observation.capture)
         for each in (observation.agent, *observation.others)
     }
+
+
+def _agent(out: Statements, name: str, capture: str) -> NamedNode:
+    unnamed = name == UNNAMED
+    node = names.shared("agent", name, *([capture] if unnamed else []))
+    label = unnamed_label(capture) if unnamed else name
+    return out.share(node, (CAPAR.Agent,), {LABEL: label, CAPAR.name: name})
+
+
+def unnamed_label(capture: str) -> str:
+    """What the agent of a capture is called that nobody named."""
+    return f"{UNNAMED} of {capture}"
 
 
 def performer(out: Statements, agent: "Agent", who: NamedNode, *, number: int = 0) -> NamedNode:
@@ -145,6 +159,7 @@ def links(
             names.part(out.about, "link", link.ee),
             (CAPAR.Link,),
             {
+                CAPAR.name: link.ee,
                 CAPAR.ee: link.ee,
                 CAPAR.effectorType: link.kind,
                 CAPAR.side: link.side,

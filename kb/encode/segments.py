@@ -7,11 +7,12 @@ from pyoxigraph import NamedNode
 from capar.model.errors import UnknownNameError
 from capar.model.par import UNKNOWN, FeatureSet
 from capar.model.segment_address import SegmentAddress
+from kb.encode.bodies import Bodies
 from kb.encode.scene import GENERATED
 from kb.store import names
 from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
-from ontology.vocabularies import TIME
+from ontology.vocabularies import PREFIXES, TIME
 
 if TYPE_CHECKING:
     from capar.model.observation import Border, Observation, ObservedLink, Segment
@@ -38,6 +39,7 @@ BORDER_KINDS = {
 }
 """What may happen at a border, by the word that observations use for it."""
 
+BROADER = NamedNode(PREFIXES["skos"] + "broaderTransitive")
 MEETS = NamedNode(TIME + "intervalMeets")
 
 
@@ -45,8 +47,18 @@ def action(out: Statements, name: str) -> NamedNode | None:
     """What an action is called; the unknown has no name."""
     if name in {"", UNKNOWN}:
         return None
-    properties: PropertyValues = {LABEL: name, CAPAR.name: name}
-    return out.share(names.shared("action", name), (CAPAR.Action,), properties)
+    node = names.shared("action", name)
+    properties: PropertyValues = {LABEL: name, CAPAR.name: name, CAPAR.kindOf: node}
+    return out.share(node, (CAPAR.Action,), properties)
+
+
+def specific_action(out: Statements, name: str, general: tuple[str, ...]) -> NamedNode | None:
+    """The action of a segment, under every more general one."""
+    node = action(out, name)
+    above = actions(out, general)
+    if node is not None and above:
+        out.add(node, (), {CAPAR.kindOf: above, BROADER: above})
+    return node
 
 
 def actions(out: Statements, known: tuple[str, ...]) -> list[NamedNode]:
@@ -78,10 +90,12 @@ def segments(
     observation: "Observation",
     links: dict[str, NamedNode],
     objects: dict[str, NamedNode],
+    bodies: Bodies,
+    rules: dict[str, NamedNode],
 ) -> list[NamedNode]:
     """Every segment, links in order."""
     return [
-        _segment(out, link, each, links[link.ee], objects)
+        _segment(out, link, each, links[link.ee], objects, bodies, rules)
         for link in observation.links
         for each in link.segments
     ]
@@ -93,6 +107,8 @@ def _segment(
     seen: "Segment",
     link_node: NamedNode,
     objects: dict[str, NamedNode],
+    bodies: Bodies,
+    rules: dict[str, NamedNode],
 ) -> NamedNode:
     node = segment_node(out.about, seen.ee, seen.index)
     after = seen.index + 1
@@ -108,7 +124,8 @@ def _segment(
         CAPAR.start: float(seen.start_s),
         CAPAR.end: float(seen.end_s),
         CAPAR.duration: float(seen.end_s - seen.start_s),
-        CAPAR.action: action(out, seen.name),
+        CAPAR.action: specific_action(out, seen.name, seen.general),
+        CAPAR.namedBy: rules.get(seen.name),
         CAPAR.general: " ".join(seen.general),
         CAPAR.specialises: actions(out, seen.general),
         CAPAR.candidate: actions(out, seen.candidates),
@@ -119,9 +136,9 @@ def _segment(
         CAPAR.dominant: objects.get(seen.objects[0]) if seen.objects else None,
         CAPAR.subordinate: [objects[each] for each in seen.objects[1:] if each in objects],
         CAPAR.features: features(out, seen.features),
-        CAPAR.beginsWith: _borders(out, node, "begin", seen.begins),
-        CAPAR.endsWith: _borders(out, node, "end", seen.ends),
-        CAPAR.placement: _placements(out, node, seen.prepositions),
+        CAPAR.beginsWith: _borders(out, node, "begin", seen.begins, bodies),
+        CAPAR.endsWith: _borders(out, node, "end", seen.ends, bodies),
+        CAPAR.placement: _placements(out, node, seen.prepositions, bodies),
         CAPAR.look: _looks(out, node, seen.looks, objects),
         CAPAR.purpose: seen.purpose,
         CAPAR.next: follows,
@@ -144,13 +161,20 @@ def border_kind(word: str) -> NamedNode:
 
 
 def _placements(
-    out: Statements, of: NamedNode, prepositions: tuple[tuple[str, str, str], ...]
+    out: Statements,
+    of: NamedNode,
+    prepositions: tuple[tuple[str, str, str], ...],
+    bodies: Bodies,
 ) -> list[NamedNode]:
     return [
         out.add(
             names.part(of, "placement", index),
             (CAPAR.Placement,),
-            {CAPAR.preposition: preposition, CAPAR.body: body, CAPAR.other: other},
+            {
+                CAPAR.preposition: preposition,
+                CAPAR.body: bodies[body],
+                CAPAR.other: bodies[other],
+            },
         )
         for index, (preposition, body, other) in enumerate(prepositions)
     ]
@@ -174,7 +198,7 @@ def _looks(
 
 
 def _borders(
-    out: Statements, of: NamedNode, where: str, borders: "tuple[Border, ...]"
+    out: Statements, of: NamedNode, where: str, borders: "tuple[Border, ...]", bodies: Bodies
 ) -> list[NamedNode]:
     return [
         out.add(
@@ -183,8 +207,8 @@ def _borders(
             {
                 CAPAR.index: index,
                 CAPAR.borderKind: border_kind(each.kind),
-                CAPAR.body: each.body,
-                CAPAR.other: each.other,
+                CAPAR.body: bodies[each.body] if each.body else None,
+                CAPAR.other: bodies[each.other] if each.other else None,
             },
         )
         for index, each in enumerate(borders)

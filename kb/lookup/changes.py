@@ -1,16 +1,14 @@
-"""The measured facts of an observation, and several observations replaced at once."""
+"""The files and segments of an observation, and several observations replaced at once."""
 
-from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from pyoxigraph import Literal, NamedNode
+from pyoxigraph import Literal
 
-from capar.model.facts import ALL_FACT_KINDS, Fact, MovedBy
 from capar.model.par import UNKNOWN
 from kb.encode import encode
-from kb.encode.facts import terms
+from kb.encode.run import run, run_removal
 from kb.store import names
 from kb.store import updates as writing
 from kb.store.shacl_validation import validate_statements
@@ -20,31 +18,6 @@ from ontology import CAPAR
 
 if TYPE_CHECKING:
     from capar.model.observation import Observation
-
-_FACTS = f"""SELECT ?fact ?property ?value
-WHERE {{ GRAPH @graph@ {{ @graph@ {CAPAR.fact} ?fact . ?fact ?property ?value }} }}"""
-
-_TYPE = NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#type")
-
-
-def facts(store: Store, name: str) -> tuple[Fact, ...]:
-    """What was measured in the capture of an observation, in the order of the extractors.
-
-    What moves what is left out, as that is derived; so are kinds of facts that an older program
-    measured and this one does not.
-    """
-    said: dict[str, dict[str, str]] = defaultdict(dict)
-    kinds: dict[str, str] = {}
-    for fact, key, value in store.ask(fill(_FACTS, graph=str(names.observation(name)))).rows:
-        if key == _TYPE:
-            kinds[str(fact)] = str(value)
-        else:
-            said[str(fact)][str(key)] = value.value if isinstance(value, Literal) else str(value)
-    stated = [_fact(kinds[node], said[node]) for node in said]
-    found = [each for each in stated if each is not None and not isinstance(each, MovedBy)]
-    rank: dict[type[Fact], int] = {kind: index for index, kind in enumerate(ALL_FACT_KINDS)}
-    return tuple(sorted(found, key=lambda each: (rank[type(each)], each)))
-
 
 _FILES = f"""SELECT ?path ?digest
 WHERE {{ GRAPH @graph@ {{ ?file {CAPAR.filePath} ?path ; {CAPAR.sha256} ?digest }} }}
@@ -102,26 +75,6 @@ def named_segments(store: Store, name: str) -> tuple[NamedSegment, ...]:
     return tuple(sorted(found))
 
 
-_BY_CLASS = {str(terms(kind)[0]): kind for kind in ALL_FACT_KINDS if terms(kind)[0] != CAPAR.Fact}
-_BY_PREDICATE = {each.predicate: each for each in ALL_FACT_KINDS}
-
-
-def _fact(kind: str, said: dict[str, str]) -> Fact | None:
-    cls = _BY_CLASS.get(kind) or _BY_PREDICATE.get(said.get(str(CAPAR.name), ""))
-    if cls is None:
-        return None
-    if kind in _BY_CLASS:
-        values = [said[str(each)] for each in terms(cls)[1:]]
-    else:
-        values = said[str(CAPAR.parameters)].split(" ")
-    return cls(
-        *(
-            int(value) if each.type is int else value
-            for each, value in zip(fields(cls), values, strict=True)
-        )
-    )
-
-
 def replace_all(store: Store, observations: Iterable[tuple["Observation", str]]) -> None:
     """Put several observations in the places of those of their captures, in one transaction.
 
@@ -137,6 +90,7 @@ def replace_all(store: Store, observations: Iterable[tuple["Observation", str]])
         statements = encode(observation, name=called)
         validate_statements(observation.capture, statements)
         graph = names.observation(observation.capture)
-        updates.append(writing.replacement(graph, statements.quads))
+        updates.append(run_removal(graph))
+        updates.append(writing.replacement(graph, [*statements.quads, *run(observation)]))
     if updates:
         store.change(" ;\n".join(updates))

@@ -71,7 +71,7 @@ def ipar(of: StatementIndex, node: NamedNode) -> Ipar:
     agent = of.one(node, CAPAR.agent)
     return Ipar(
         upar=of.text(node, CAPAR.name),
-        agent=names.last_word(agent) if agent else "",
+        agent=names.last_word(agent).partition(".")[0] if agent else "",
         ee=of.text(node, CAPAR.ee),
         objects=of.words(node, CAPAR.objects),
         start_s=of.number(node, CAPAR.start),

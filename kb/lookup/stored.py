@@ -6,12 +6,14 @@ from pyoxigraph import Literal
 
 from capar.model.errors import UnknownNameError
 from kb.encode import encode
+from kb.encode.run import run, run_removal
 from kb.encode.scene import identity
 from kb.errors import ExistsError
 from kb.findings import Added, Stored
 from kb.lookup import recognition
 from kb.store import names
 from kb.store import updates as writing
+from kb.store.consistency import check_consistent
 from kb.store.shacl_validation import validate_statements
 from kb.store.sparql import fill
 from kb.store.stores import Store, is_address
@@ -50,10 +52,12 @@ def add(store: Store, observation: "Observation", *, name: str | None, replace: 
     statements = encode(observation, name=called)
     validate_statements(observation.capture, statements)
     quads = statements.quads
+    check_consistent(observation.capture, quads)
     if there or is_address(store.place):
-        store.change(writing.replacement(graph, quads))
+        change = writing.replacement(graph, [*quads, *run(observation)])
+        store.change(f"{run_removal(graph)} ;\n{change}")
     else:
-        store.insert(quads)
+        store.insert([*quads, *run(observation)])
     return Added(observation.capture, called, recognised, bool(there), len(quads))
 
 
@@ -62,7 +66,8 @@ def forget(store: Store, name: str) -> None:
     known = [each.name for each in observations(store)]
     if name not in known:
         raise UnknownNameError("observation", name, known, where=store.place)
-    store.change(writing.removal(names.observation(name)))
+    graph = names.observation(name)
+    store.change(f"{run_removal(graph)} ;\n{writing.removal(graph)}")
 
 
 def observations(store: Store, filters: str = "") -> tuple[Stored, ...]:

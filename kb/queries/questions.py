@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 from pyoxigraph import Literal
 
 from capar.model.errors import CaparError, UnknownNameError
+from kb.queries.filters import FILTERS, filtered, filters_of
 from kb.store import sparql
+from ontology.vocabularies import RELATIONS
 
 if TYPE_CHECKING:
     from kb.store.stores import Store
@@ -28,16 +30,24 @@ BEARERS = {
         "{ ?of a capar:Observation ; rdfs:label ?name } UNION { ?of a ?kind ; capar:name ?name "
         "VALUES ?kind { capar:Action capar:Upar capar:JointAction capar:Observation } }",
     ),
-    "body": ("body", "?of capar:body ?name"),
+    "body": ("body", "?of capar:body/capar:name ?name"),
     "capture": ("capture", "?of a capar:Capture ; capar:name ?name"),
+    "ee": ("end-effector", "?of a capar:Link ; capar:ee ?name"),
+    "effector": ("kind of end-effector", "?of a capar:Link ; capar:effectorType ?name"),
     "first": _WHOLE,
     "goal": _OBJECT,
+    "kind": ("kind of object", "?of a capar:ObjectKind ; capar:name ?name"),
+    "lemma": ("verb", "?of a ontolex:Word ; rdfs:label ?word BIND(STR(?word) AS ?name)"),
+    "levin": ("class of Levin's", "?of a capar:LevinClass ; skos:notation ?name"),
     "object": _OBJECT,
     "observation": ("observation", "?of a capar:Observation ; rdfs:label ?name"),
-    "performer": ("performer", "?of a capar:Agent ; capar:name ?name"),
+    "other": ("action", "?of a capar:Action ; capar:name ?name"),
+    "performer": ("performer", "?of a capar:Agent ; capar:name|rdfs:label ?name"),
     "preposition": ("preposition", "?of capar:preposition ?name"),
     "purpose": ("purpose", "?of capar:purpose ?name"),
+    "relation": ("relation of Allen's", f"VALUES ?name {{ {' '.join(map(repr, RELATIONS))} }}"),
     "second": _WHOLE,
+    "side": ("side", "?of a capar:Link ; capar:side ?name"),
 }
 """What each parameter that is a text names, and the pattern of those that bear such a name."""
 
@@ -79,9 +89,14 @@ class Question:
         for name in given:
             if name not in names:
                 raise UnknownNameError(f"parameter of the question {self.name!r}", name, names)
-        query = self.query
+        values = {each.name: self._value(each, given) for each in self.parameters}
+        set_filters = filters_of(self.query)
+        query = filtered(
+            self.query,
+            {each: value for each in set_filters if (value := values[each]) is not None},
+        )
         for each in self.parameters:
-            query = _set(query, each, self._value(each, given))
+            query = _set(query, each, values[each.name])
         return sparql.complete(query)
 
     def _value(self, parameter: Parameter, given: Mapping[str, object]) -> Literal | None:
@@ -182,4 +197,9 @@ def _read(name: str, query: str) -> Question:
         )
         for each in _PARAMETER.finditer(second)
     )
-    return Question(name, first.removeprefix("#").strip(), parameters, query)
+    own = {each.name for each in parameters}
+    shared = (each for each in filters_of(query) if each not in own)
+    filters = tuple(
+        Parameter(each, FILTERS[each].kind, False, "", FILTERS[each].meaning) for each in shared
+    )
+    return Question(name, first.removeprefix("#").strip(), (*parameters, *filters), query)

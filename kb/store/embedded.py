@@ -14,6 +14,7 @@ from kb.store import timed_query as bounded
 from kb.store.answers import Answer
 from kb.store.lock import WriterLock
 from kb.store.readonly_folder import check_whole, open_reader, read, unusable
+from kb.store.track_functions import track_functions
 
 _T = TypeVar("_T")
 
@@ -146,8 +147,16 @@ class EmbeddedStore:
 
 
 def _answer(store: Oxigraph, query: str) -> Answer:
-    union = not sparql.names_graphs(query)
-    return answers.collect(store.query(query, use_default_graph_as_union=union))
+    return answers.collect(evaluated(store, query))
+
+
+def evaluated(store: Oxigraph, query: str) -> Any:
+    """What a query answers over a database, our functions at hand, as the database gives it."""
+    return store.query(
+        query,
+        use_default_graph_as_union=not sparql.names_graphs(query),
+        custom_functions=track_functions(store),
+    )
 
 
 def _read_all(store: Oxigraph) -> None:

@@ -7,6 +7,7 @@ from pyoxigraph import Literal
 
 from capar.model.errors import CaparError
 from capar.model.par import Nlt, PathPoint
+from capar.model.sampled_track import SampledTrack
 from ontology import CAPAR
 
 
@@ -40,6 +41,24 @@ def path(points: Iterable[PathPoint]) -> Literal:
     """
     numbers = [each for point in points for each in (point.time, *point.position)]
     return Literal(_text(numbers, "path"), datatype=CAPAR.path)
+
+
+def track(value: SampledTrack) -> Literal:
+    """Sampled places as a literal: the seconds between two samples, and their text."""
+    return Literal(f"{value.step_s!r} {value.samples}", datatype=CAPAR.sampledTrack)
+
+
+def track_of(text: str) -> SampledTrack:
+    """The sampled places that a literal states, of a body without a name.
+
+    Raises:
+        LiteralError: It is no step of time and places.
+    """
+    step, _, samples = text.partition(" ")
+    try:
+        return SampledTrack("", float(step), samples)
+    except (ValueError, CaparError):
+        raise LiteralError(f"{text[:40]!r} is no step in seconds and places in Base64") from None
 
 
 def numbers(text: str) -> tuple[float, ...]:

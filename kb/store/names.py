@@ -21,6 +21,7 @@ GRAPHS = {
     "verbnet": NamedNode(DATA + "graph/lexicon/verbnet"),
     "links": NamedNode(DATA + "graph/lexicon/links"),
     "imported": NamedNode(DATA + "graph/imported"),
+    "runs": NamedNode(DATA + "graph/runs"),
 }
 """The named graphs that are no observation's, by what they hold."""
 
@@ -36,6 +37,9 @@ _OF_FOLDER = {
     "row": "actions",
     "complex": "actions",
     "rules": "actions",
+    "rule": "actions",
+    "threshold": "actions",
+    "run": "runs",
     "graph": "ontology",
     "synset": "wordnet",
     "sense": "wordnet",

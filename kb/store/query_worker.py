@@ -12,7 +12,9 @@ from pyoxigraph import Store as Oxigraph
 from capar.model.errors import UnknownNameError
 from kb.errors import QueryError, StoreError
 from kb.store import answers, sparql
+from kb.store.embedded import evaluated
 from kb.store.readonly_folder import read
+from kb.store.track_functions import ARITIES
 
 LONGEST = 160
 """After how many letters a parser's message is cut."""
@@ -38,7 +40,7 @@ def answer(source: BinaryIO) -> bytes:
 def user_message(problem: str) -> str:
     """A parser's message in short; an unknown function with the names of those that exist."""
     if slip := _NO_FUNCTION.search(problem):
-        known = [*(f"capar:{each}" for each in sparql.FUNCTIONS), "those of SPARQL"]
+        known = [*(f"capar:{each}" for each in (*sparql.FUNCTIONS, *ARITIES)), "those of SPARQL"]
         return str(UnknownNameError("function", answers.short(slip[1]), known))
     first = problem.splitlines()[0] if problem else ""
     place, expected, listed = first.partition("expected ")
@@ -52,8 +54,10 @@ def user_message(problem: str) -> str:
 
 def _ask(request: dict[str, str], source: BinaryIO) -> tuple[str, bytes]:
     if request["address"]:
-        from kb.store.remote import post_query
+        from kb.store.remote import post_query, query_copy
 
+        if sparql.opens_tracks(request["query"]):
+            return answers.encode(query_copy(request["address"], request["query"]))
         return post_query(request["address"], request["query"])
     if request["folder"]:
         return read(Path(request["folder"]), lambda store: _evaluated(store, request["query"]))[0]
@@ -63,9 +67,8 @@ def _ask(request: dict[str, str], source: BinaryIO) -> tuple[str, bytes]:
 
 
 def _evaluated(store: Oxigraph, query: str) -> tuple[str, bytes]:
-    union = not sparql.names_graphs(query)
     try:
-        return answers.encode(store.query(query, use_default_graph_as_union=union))
+        return answers.encode(evaluated(store, query))
     except RuntimeError as error:
         if _NO_FUNCTION.search(str(error)):
             raise QueryError(str(error)) from None

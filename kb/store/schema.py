@@ -1,6 +1,7 @@
 """The version of the form in which statements are stored, checked whenever a store is opened.
 
-Version 1 stated no version. Version 2 states it, and gives each segment its address.
+Version 1 stated no version. Version 2 states it, and gives each segment its address. Version 3 has
+facts of a class each that refer to bodies, where version 2 had texts.
 """
 
 from collections.abc import Iterable
@@ -13,23 +14,11 @@ from kb.store.statements import TYPE
 from kb.store.stores import Store
 from ontology import CAPAR
 
-SCHEMA = 2
+SCHEMA = 3
 """The version that this program reads and writes."""
 
 FIRST = 1
 """The version of a store that states none."""
-
-_ADDRESSES = f"""INSERT {{ GRAPH ?graph {{ ?segment {CAPAR.address} ?address }} }}
-WHERE {{
-  GRAPH ?graph {{
-    ?graph {CAPAR.capture}/{CAPAR.name} ?capture ; {CAPAR.segment} ?segment .
-    ?segment {CAPAR.ee} ?ee ; {CAPAR.index} ?index .
-  }}
-  BIND(CONCAT(?capture, "/", ?ee, "/", STR(?index)) AS ?address)
-}}"""
-
-STEPS = {1: _ADDRESSES}
-"""The update that brings a store of each older version to the next one."""
 
 _STATED = f"SELECT ?version WHERE {{ {GRAPHS['ontology']} {CAPAR.schemaVersion} ?version }}"
 _WRITTEN = (
@@ -65,11 +54,6 @@ def version_of(quads: Iterable[Quad]) -> int | None:
 def _number(term: object) -> int:
     text = term.value if isinstance(term, Literal | NamedNode) else ""
     return int(text) if text.isascii() and text.isdecimal() else 0
-
-
-def migration(found: int) -> tuple[str, ...]:
-    """The updates that bring statements of an older version to this one."""
-    return tuple(STEPS[each] for each in range(found, SCHEMA))
 
 
 def check_current(store: Store) -> None:

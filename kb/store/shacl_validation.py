@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, TypeAlias
@@ -13,13 +13,16 @@ from kb.errors import ShapeError
 from kb.store.literals import LiteralError, nlt_of
 from kb.store.statements import TYPE, Statements
 from ontology import CAPAR
-from ontology.files import read, shape_files
+from ontology.files import classes_below, ontology_kinds, read, shape_files
 
 SH = "http://www.w3.org/ns/shacl#"
 UNIT_TOLERANCE = 1e-3
 """How far an NLT's quaternion may lie from unit length [1]."""
 
 Node = NamedNode | BlankNode | Literal
+Kinds: TypeAlias = Callable[[NamedNode], Iterable[object]]
+"""The classes of a thing."""
+
 Properties: TypeAlias = Mapping[NamedNode, Collection[Node]]
 """What is said of a thing, by property."""
 
@@ -39,6 +42,7 @@ class Rule:
     most: float
     datatype: NamedNode | None
     is_iri: bool
+    of_class: NamedNode | None
     among: frozenset[str]
     pattern: re.Pattern[str] | None
     lowest: float
@@ -87,6 +91,7 @@ def _rule(name: str, target: Node, said: dict[object, dict[str, list[Node]]], no
         most=float(one("maxCount", "inf")),
         datatype=term("datatype"),
         is_iri=one("nodeKind", "") == SH + "IRI",
+        of_class=term("class"),
         among=frozenset(_list(said, asked["in"][0])) if "in" in asked else frozenset(),
         pattern=re.compile(pattern) if pattern else None,
         lowest=float(one("minInclusive", "-inf")),
@@ -104,48 +109,74 @@ def _list(said: dict[object, dict[str, list[Node]]], node: Node) -> Iterable[str
 
 @cache
 def _rules_of() -> Mapping[object, tuple[Rule, ...]]:
-    """What is asked of the things of each class."""
+    """What is asked of the things of each class, and so of those of the classes below it."""
     found: dict[object, tuple[Rule, ...]] = {}
     for each in rules():
-        found[each.target] = (*found.get(each.target, ()), each)
+        for kind in (each.target, *classes_below(each.target)):
+            found[kind] = (*found.get(kind, ()), each)
     return found
 
 
-def violations(triples: Iterable[Triple | Quad]) -> tuple[str, ...]:
-    """What is wrong with statements by our shapes, a line each, sorted."""
+def violations(
+    triples: Iterable[Triple | Quad], *, elsewhere: Kinds = lambda thing: ()
+) -> tuple[str, ...]:
+    """What is wrong with statements by our shapes, a line each, sorted.
+
+    Args:
+        triples: The statements.
+        elsewhere: The classes of a thing that they refer to and do not state.
+    """
     said: dict[object, dict[NamedNode, list[Node]]] = {}
     for each in triples:
         assert not isinstance(each.object, Triple)
         said.setdefault(each.subject, {}).setdefault(each.predicate, []).append(each.object)
-    return _judged(said)
+    return _judged(said, elsewhere)
 
 
-def _judged(things: Mapping[Any, Properties]) -> tuple[str, ...]:
+def _judged(
+    things: Mapping[Any, Properties], elsewhere: Kinds = lambda thing: ()
+) -> tuple[str, ...]:
     asked = _rules_of()
+
+    def kinds(thing: NamedNode) -> Iterable[object]:
+        stated: Iterable[object] = things.get(thing, {}).get(TYPE, ())
+        return stated or ontology_kinds().get(thing, ()) or elsewhere(thing)
+
     found = {
         f"{_short(thing)}: {rule.message}"
         for thing, said in things.items()
         for kind in said.get(TYPE, ())
         for rule in asked.get(kind, ())
-        if not _obeys(said, rule)
+        if not _obeys(said, rule, kinds)
     }
     return tuple(sorted(found))
 
 
-def _obeys(said: Properties, rule: Rule) -> bool:
+def _obeys(said: Properties, rule: Rule, kinds: Kinds) -> bool:
     values = said.get(rule.path, ())
     if not rule.least <= len(values) <= rule.most:
         return False
-    return all(_fits(value, rule) for value in values) and (
+    return all(_fits(value, rule, kinds) for value in values) and (
         rule.at_most is None
         or all(_number(a) <= _number(b) for a in values for b in said.get(rule.at_most, ()))
     )
 
 
-def _fits(value: Node, rule: Rule) -> bool:
-    if rule.is_iri and not isinstance(value, NamedNode):
-        return False
-    if rule.datatype and not (isinstance(value, Literal) and value.datatype == rule.datatype):
+def _is_of_type(value: Node, rule: Rule, kinds: Kinds) -> bool:
+    """Whether a value is a thing of the class, or a literal of the datatype, that is asked."""
+    if rule.of_class or rule.is_iri:
+        named = isinstance(value, NamedNode)
+        return named and (rule.of_class is None or _is_of(value, rule.of_class, kinds))
+    return not rule.datatype or (isinstance(value, Literal) and value.datatype == rule.datatype)
+
+
+def _is_of(value: Node, asked: NamedNode, kinds: Kinds) -> bool:
+    below = classes_below(asked)
+    return isinstance(value, NamedNode) and any(e == asked or e in below for e in kinds(value))
+
+
+def _fits(value: Node, rule: Rule, kinds: Kinds) -> bool:
+    if not _is_of_type(value, rule, kinds):
         return False
     if rule.among and str(value) not in rule.among:
         return False

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import dropwhile, pairwise
 
 from kb.errors import QueryError
+from kb.store.track_functions import ARITIES
 from ontology import BASE, PREFIXES
 
 _TOKEN = re.compile(
@@ -127,8 +128,18 @@ def _prologue(pieces: list[Token]) -> str:
     return "".join(f"PREFIX {each}: <{PREFIXES[each]}> " for each in missing)
 
 
+def opens_tracks(query: str) -> bool:
+    """Whether a query calls a function that opens sampled tracks, which no server knows."""
+    if not any(each in query for each in ARITIES):
+        return False
+    pieces = [each for each in tokens(query) if each.kind != "space"]
+    return any(
+        after.text == "(" and _function(before) in ARITIES for before, after in pairwise(pieces)
+    )
+
+
 def _function(piece: Token) -> str | None:
-    for name in FUNCTIONS:
+    for name in (*FUNCTIONS, *ARITIES):
         if piece.text in {f"capar:{name}", f"<{BASE}{name}>"}:
             return name
     return None
@@ -142,7 +153,7 @@ def _expand(pieces: list[Token]) -> str:
         opening = _skip_space(pieces, at + 1)
         if name and opening < len(pieces) and pieces[opening].text == "(":
             arguments, at = _arguments(pieces, opening)
-            template, arity = FUNCTIONS[name]
+            template, arity = FUNCTIONS.get(name) or _called(name)
             if len(arguments) != arity:
                 raise QueryError(f"capar:{name} takes {arity} arguments, not {len(arguments)}")
             words = [_expand(each).strip() for each in arguments]
@@ -153,6 +164,12 @@ def _expand(pieces: list[Token]) -> str:
             out.append(pieces[at].text)
             at += 1
     return "".join(out)
+
+
+def _called(name: str) -> tuple[str, int]:
+    """A function that the engine calls, as an expression, and its arity."""
+    gaps = ", ".join("{}" for _ in range(ARITIES[name]))
+    return f"<{BASE}{name}>({gaps})", ARITIES[name]
 
 
 def _skip_space(pieces: list[Token], at: int) -> int:

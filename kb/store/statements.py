@@ -11,7 +11,7 @@ from ontology.vocabularies import RDF, RDFS
 
 Term: TypeAlias = NamedNode | Literal
 Value: TypeAlias = NamedNode | Literal | str | float | int | bool | None
-PropertyValues: TypeAlias = Mapping[NamedNode, Value | Iterable[NamedNode]]
+PropertyValues: TypeAlias = Mapping[NamedNode, Value | Iterable[NamedNode] | Iterable[Literal]]
 
 TYPE = NamedNode(RDF + "type")
 LABEL = NamedNode(RDFS + "label")
@@ -65,7 +65,7 @@ class Statements:
         ]
 
 
-def terms(value: Value | Iterable[NamedNode]) -> list[Term]:
+def terms(value: Value | Iterable[NamedNode] | Iterable[Literal]) -> list[Term]:
     """A value as terms; nothing and an empty text are none."""
     if value is None or value == "":
         return []

@@ -14,6 +14,7 @@ from capar.model.errors import FileError
 from capar.model.json_form import from_json
 from kb.errors import SchemaError, StoreError
 from kb.store.embedded import DATA_FOLDER
+from kb.store.schema import SCHEMA
 
 FIXTURE = Path(__file__).parents[1] / "fixtures" / "schema-1"
 RUNNER = CliRunner()
@@ -44,11 +45,11 @@ def test_the_command_that_the_refusal_names_mends_it(tmp_path: Path) -> None:
     place = old_folder(tmp_path / "known")
     done = RUNNER.invoke(app, ["migrate", "--actionary", str(place)])
     kept = tmp_path / "known.schema-1.nq"
-    assert done.output == f"{place}: migrated from schema 1 to 2; backup: {kept}\n"
+    assert done.output == f"{place}: migrated from schema 1 to {SCHEMA}; backup: {kept}\n"
     assert "drink_from_mug" in RUNNER.invoke(app, ["query", "observations", "--actionary",
                                                    str(place)]).output  # fmt: skip
     again = RUNNER.invoke(app, ["migrate", "--actionary", str(place)])
-    assert again.output == f"{place}: is of schema 2 already\n"
+    assert again.output == f"{place}: is of schema {SCHEMA} already\n"
     restored = tmp_path / "restored"
     assert RUNNER.invoke(app, ["import", str(kept), "--actionary", str(restored)]).exit_code == 0
 

@@ -19,9 +19,10 @@ from kb.errors import SchemaError, ShapeError
 from kb.exchange import bring_in, export, read
 from kb.migration import migrate
 from kb.queries.questions import questions
+from kb.schema_steps import STEPS
 from kb.store.embedded import DATA_FOLDER
 from kb.store.names import GRAPHS
-from kb.store.schema import SCHEMA, STEPS, version
+from kb.store.schema import SCHEMA, version
 from kb.store.stores import open_store
 from kb.store_checks import check
 from ontology import CAPAR
@@ -77,7 +78,7 @@ def test_a_migrated_folder_answers_every_question_as_before(older: Path, tmp_pat
     done = migrate(str(place))
     with Actionary.open(place) as actionary:
         answers = json.loads((older / "answers.json").read_text("utf-8"))
-        assert {each["question"] for each in answers} == set(questions())
+        assert {each["question"] for each in answers} <= set(questions())
         assert sum(bool(each["rows"]) for each in answers) > 10
         assert asked(actionary, older) == answers
         assert check(actionary.store, full=False) == ()
@@ -112,12 +113,13 @@ def test_an_export_of_an_older_schema_is_migrated_as_it_is_imported(older: Path)
 
 def test_a_failed_backup_leaves_the_folder_as_it_was(older: Path, tmp_path: Path) -> None:
     place = written(older, tmp_path / "old")
-    (tmp_path / "old.schema-1.nq").write_text("mine")
+    backup = tmp_path / f"old.{older.name}.nq"
+    backup.write_text("mine")
     with pytest.raises(FileError, match=r"exists already.*--backup"):
         migrate(str(place))
     store = open_store(place, read_only=True)
-    assert version(store) == 1
-    assert (tmp_path / "old.schema-1.nq").read_text() == "mine"
+    assert older.name == f"schema-{version(store)}"
+    assert backup.read_text() == "mine"
 
 
 @pytest.mark.parametrize(
@@ -183,7 +185,7 @@ def test_an_observation_as_json_of_another_schema_is_refused(schema: object, tol
 def test_facts_of_a_kind_that_is_no_longer_measured_are_left_out(
     older: Path, tmp_path: Path
 ) -> None:
-    from kb.lookup.changes import facts
+    from kb.lookup.facts import facts
 
     target = Actionary.in_memory()
     bring_in(target.store, read(stored(older), "nquads"))

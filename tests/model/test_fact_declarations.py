@@ -7,7 +7,7 @@ import pytest
 
 from capar.model import arrangement_facts, contact_facts, motion_facts, scene_facts
 from capar.model import facts as exported
-from capar.model.declarations import GENERIC, Declaration, Observed, Span, kinds_of
+from capar.model.declarations import Declaration, Observed, Span, kinds_of
 from capar.model.errors import FactError
 from capar.model.fact_intervals import FactIntervals
 from capar.model.facts import (
@@ -40,6 +40,7 @@ def test_a_kind_without_a_declaration_is_refused_where_it_is_defined() -> None:
 
 def declare(**changes: object) -> None:
     given: dict[str, object] = {"about": "body", "span": Span.INTERVAL, "border": False}
+    given["rdf"] = ("Touching", "body", "firstFrame", "lastFrame")
     declared = Declaration(**{**given, "has_sentence": False, **changes})  # type: ignore[arg-type]
 
     class Wrong(Observed):
@@ -59,6 +60,8 @@ def declare(**changes: object) -> None:
         {"others": ("other",)},
         {"stretch": "bears_{share}"},
         {"rdf": ("Touching", "body")},
+        {"powers": {"body": -3}},
+        {"powers": {"speed": -3}},
         {"span": Span.ALWAYS, "negated": "apart"},
     ],
     ids=str,
@@ -93,7 +96,7 @@ def test_the_ontology_has_the_declared_class_and_properties(kind: type[Observed]
 
 
 def test_no_two_kinds_share_a_class_of_their_own() -> None:
-    own = [kind.declaration.rdf[0] for kind in ALL_FACT_KINDS if kind.declaration.rdf != GENERIC]
+    own = [kind.declaration.rdf[0] for kind in ALL_FACT_KINDS]
     assert len(set(own)) == len(own)
 
 

@@ -16,7 +16,8 @@ HERE = Path(__file__).parent
 NAMES = [file.name.removesuffix(".ttl") for file in shape_files()]
 WORDS = {
     "path", "nodeKind", "datatype", "minCount", "maxCount", "minInclusive", "maxInclusive", "in",
-    "pattern", "lessThanOrEquals", "message", "property", "targetClass", "NodeShape", "IRI",
+    "pattern", "lessThanOrEquals", "class", "message", "property", "targetClass", "NodeShape",
+    "IRI",
 }  # fmt: skip
 """What of SHACL the fast judge reads."""
 
@@ -49,9 +50,8 @@ def test_each_thing_of_the_invalid_example_is_refused_alike(name: str) -> None:
     stated = triples(HERE / "invalid" / f"{name}.ttl")
     found = fast(stated)
     assert found == set(by_shacl(stated))
-    assert {thing for thing, _ in found} == {
-        str(e.subject).strip("<>").split("/")[-1] for e in stated
-    }
+    things = {str(e.subject).strip("<>").split("/")[-1] for e in stated}
+    assert {thing for thing, _ in found} == {e for e in things if not e.startswith("right_")}
     asked = {rule.message for rule in rules() if rule.shape.endswith(f"#{_shape(name)}>")}
     assert {message for _, message in found} == asked
 

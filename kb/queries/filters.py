@@ -1,0 +1,122 @@
+"""Filters that named questions share: which end-effector, whose, of which capture, when, with what.
+
+A question that takes them says where, in a comment of its own: ``# filters ?segment``, or
+``# filters ?seen``, ``?joint`` or ``?place`` where it asks of something else.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from pyoxigraph import Literal
+
+
+@dataclass(frozen=True, slots=True)
+class Filter:
+    """A restriction that a question puts on its segments or observations."""
+
+    kind: str
+    """``text`` or ``number``."""
+
+    meaning: str
+    patterns: Mapping[str, str]
+    """By the variable that it restricts: what must hold, with the value at ``@value@``."""
+
+
+_NAME = "(capar:name|rdfs:label)"
+FILTERS: Mapping[str, Filter] = {
+    "action": Filter(
+        "text",
+        "the name of an action, which stands for every kind of it",
+        {
+            each: f"?{each} capar:action/capar:kindOf/capar:name @value@ ."
+            for each in ("segment", "joint", "place")
+        },
+    ),
+    "ee": Filter(
+        "text",
+        "the name of the end-effector",
+        {
+            "segment": "?segment capar:ofLink/capar:ee @value@ .",
+            "place": "?place capar:ee @value@ .",
+        },
+    ),
+    "side": Filter(
+        "text",
+        "left, right or none",
+        {"segment": "?segment capar:ofLink/capar:side @value@ ."},
+    ),
+    "effector": Filter(
+        "text",
+        "the kind of end-effector: hand, foot and the like",
+        {"segment": "?segment capar:ofLink/capar:effectorType @value@ ."},
+    ),
+    "performer": Filter(
+        "text",
+        "the name of an agent",
+        {
+            "segment": f"?segment capar:ofLink/capar:agent/{_NAME} @value@ .",
+            "seen": f"?seen capar:agent/{_NAME} @value@ .",
+            "place": f"?place capar:agent/{_NAME} @value@ .",
+        },
+    ),
+    "capture": Filter(
+        "text",
+        "the name of a capture",
+        {
+            "segment": "?f_seen capar:segment ?segment ; capar:capture/capar:name @value@ .",
+            "seen": "?seen capar:capture/capar:name @value@ .",
+            "joint": "?f_seen capar:jointAction ?joint ; capar:capture/capar:name @value@ .",
+            "place": "?f_seen capar:location ?place ; capar:capture/capar:name @value@ .",
+        },
+    ),
+    "from": Filter(
+        "number",
+        "seconds since the first frame; what ends later counts",
+        {"segment": "?segment capar:end ?f_end . FILTER(?f_end > @value@)"},
+    ),
+    "until": Filter(
+        "number",
+        "seconds since the first frame; what starts earlier counts",
+        {"segment": "?segment capar:start ?f_start . FILTER(?f_start < @value@)"},
+    ),
+    "kind": Filter(
+        "text",
+        "a kind of object that takes part, or one's name",
+        {
+            "segment": "?segment capar:object ?f_object . "
+            "?f_object capar:name|(capar:kind/capar:isA/capar:name) @value@ .",
+            "seen": "?seen capar:object ?f_object . "
+            "?f_object capar:name|(capar:kind/capar:isA/capar:name) @value@ .",
+            "joint": "?joint capar:object ?f_object . "
+            "?f_object capar:name|(capar:kind/capar:isA/capar:name) @value@ .",
+        },
+    ),
+}
+"""Every filter by name."""
+
+_MARK = re.compile(r"^ *# filters \?(segment|seen|joint|place)$", re.MULTILINE)
+
+
+def filters_of(query: str) -> tuple[str, ...]:
+    """The names of the filters that a query takes; what it has a variable for it sets itself."""
+    marked = {each[1] for each in _MARK.finditer(query)}
+    return tuple(
+        name
+        for name, each in FILTERS.items()
+        if marked & each.patterns.keys() and f"VALUES ?{name} {{ UNDEF }}" not in query
+    )
+
+
+def filtered(query: str, given: Mapping[str, Literal]) -> str:
+    """A query with the filters set for which there is a value."""
+
+    def patterns(found: "re.Match[str]") -> str:
+        held = (
+            FILTERS[name].patterns[found[1]].replace("@value@", str(value))
+            for name, value in given.items()
+            if found[1] in FILTERS[name].patterns
+        )
+        return "\n".join(f"  {each}" for each in held)
+
+    return _MARK.sub(patterns, query)

@@ -1,0 +1,487 @@
+"""Twenty questions of knowledge engineers are answered as a plain computation answers them.
+
+They are asked of the shipped demo, of two unnamed performers, and where there are recordings of
+two takes from a kitchen.
+"""
+
+import os
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import motions
+import numpy as np
+import pytest
+from competency import QUERIES
+from observations import drink_from_mug, with_unknown
+
+from capar.model.capture import Agent, Capture
+from capar.model.facts import Fact, Leans, Lies, LookingAt, Moving, Touching
+from capar.model.observation import Observation, Segment
+from capar.pipelines.linguistic_report import primitive_files, primitive_words
+from capar.pipelines.observation import observe_measured
+from capar.pipelines.trials import trial_of
+from extractors.measure import Measurements, measure
+from kb.actionary import Actionary
+from kb.lexicon.links import class_links, sense_links, thesis_senses
+from kb.lexicon.loading import load_words
+from kb.lexicon.wordnet import wordnet
+from kb.queries.filters import FILTERS
+from kb.queries.questions import questions
+
+HERE = Path(__file__).parents[2]
+TAKES = ("take0", "take5")
+DEMO = HERE / "capar" / "demo" / "drink_from_mug"
+
+
+def recordings() -> Iterator[str]:
+    folder = Path(os.environ.get("CAPAR_DATA") or HERE.parent / "shared" / "data")
+    if (folder / "bimacs_optitrack").is_dir():
+        os.environ.setdefault("CAPAR_DATA", str(folder))
+        yield from (str(HERE / "examples" / "bimacs_optitrack") + f":{each}" for each in TAKES)
+
+
+def ambiguous(seen: Observation) -> Observation:
+    """The same with another name that fits each of its first segments as well."""
+    links = (
+        replace(
+            each,
+            segments=(replace(each.segments[0], candidates=("Hit", "Kick")), *each.segments[1:]),
+        )
+        for each in seen.links
+    )
+    return replace(seen, links=tuple(links))
+
+
+class World:
+    """What was observed, and the measurements that it rests on."""
+
+    def __init__(self) -> None:
+        self.captures: dict[str, Capture] = {}
+        self.measured: dict[str, Measurements] = {}
+        self.seen: list[Observation] = []
+        lifted = motions.pick_up_with_both_hands(motions.PERFORMERS[0]).capture
+        for place in (str(DEMO), *recordings(), lifted):
+            capture = trial_of(place)
+            measured = measure(capture)
+            self.captures[capture.name] = capture
+            self.measured[capture.name] = measured
+            self.seen.append(observe_measured(capture, measured))
+        unnamed = [replace(drink_from_mug(), agent=Agent(), capture=f"cup_{n}") for n in (1, 2)]
+        self.seen += [ambiguous(each) for each in unnamed]
+        self.seen.append(with_unknown())
+
+    def segments(self) -> Iterator[tuple[Observation, Segment, str]]:
+        """Every segment with its observation and its address."""
+        for seen in self.seen:
+            for each in seen.segments:
+                yield seen, each, f"{seen.capture}/{each.ee}/{each.index}"
+
+    def is_kind(self, segment: Segment, action: str) -> bool:
+        """Whether it is a case of an action, as any of the rule bases has it."""
+        above = {
+            general
+            for _, each, _ in self.segments()
+            if each.name == segment.name
+            for general in each.general
+        }
+        return segment.known and action in {segment.name, *above}
+
+    def performer(self, seen: Observation, segment: Segment) -> str:
+        name = seen.performer(segment.ee)
+        return f"agent of {seen.capture}" if name == "agent" else name
+
+    def facts(self, seen: Observation, kind: type[Fact]) -> list[Fact]:
+        return [each for each in seen.facts if isinstance(each, kind)]
+
+
+def step(seen: Observation) -> float:
+    return seen.duration_s / (seen.frames - 1)
+
+
+def side(seen: Observation, ee: str) -> str:
+    return next((each.side for each in seen.links if each.ee == ee), "")
+
+
+def rounded(rows: Iterable[Iterable[object]]) -> set[tuple[object, ...]]:
+    return {tuple(round(v, 4) if isinstance(v, float) else v for v in row) for row in rows}
+
+
+@pytest.fixture(scope="module")
+def world() -> World:
+    return World()
+
+
+@pytest.fixture(scope="module")
+def actionary(world: World) -> Iterator[Actionary]:
+    with Actionary.in_memory() as fresh:
+        for each in world.seen:
+            fresh.add(each)
+        load_words(fresh.store, primitive_words(primitive_files()))
+        yield fresh
+
+
+def asked(actionary: Actionary, name: str) -> set[tuple[object, ...]]:
+    from kb.store.sparql import prepare
+
+    rows = actionary.store.ask(prepare(QUERIES[name])).plain()
+    return rounded(row.values() for row in rows)
+
+
+def test_each_query_has_at_most_eight_lines() -> None:
+    assert all(len(each.strip().splitlines()) <= 8 for each in QUERIES.values())
+
+
+def test_when_the_whisk_was_held_while_the_bottle_was_tilted(
+    world: World, actionary: Actionary
+) -> None:
+    expected = set()
+    for seen in world.seen:
+        for held in world.facts(seen, Touching):
+            for tilt in world.facts(seen, Leans):
+                first, last = max(held.first, tilt.first), min(held.last, tilt.last)
+                right = side(seen, held.body) == "right" and held.other == "whisk"
+                if right and tilt.object == "bottle" and first < last:
+                    expected.add((seen.capture, first * step(seen), last * step(seen)))
+    assert asked(actionary, "held while tilted") == rounded(expected)
+    assert len({each[0] for each in expected}) == len(list(recordings()))
+
+
+def test_which_objects_were_ever_inside_a_container(world: World, actionary: Actionary) -> None:
+    expected = set()
+    for seen in world.seen:
+        kinds = {each.name: each.kind for each in seen.objects}
+        inside = [(e.body, e.other) for e in world.facts(seen, Lies) if e.how == "inside"]
+        inside += [(b, o) for s in seen.segments for p, b, o in s.prepositions if p == "in"]
+        for body, other in inside:
+            if "container" in actionary.kinds_above(kinds.get(other) or other):
+                expected.add((seen.capture, body))
+    assert asked(actionary, "inside") == expected
+    assert not any(body == "bottle" for _, body in expected)  # it is held above the bowl
+
+
+def test_what_was_done_between_two_times(world: World, actionary: Actionary) -> None:
+    for seen in world.seen:
+        start, end = 0.3 * seen.duration_s, 0.6 * seen.duration_s
+        rows = actionary.ask("segments", capture=seen.capture, **{"from": start, "until": end})
+        assert {row["address"] for row in rows} == {
+            f"{seen.capture}/{each.ee}/{each.index}"
+            for each in seen.segments
+            if each.end_s > start and each.start_s < end
+        }
+        assert rows
+
+
+@pytest.mark.parametrize("action", ["MoveObj", "Reach", "Touch"])
+def test_which_actions_are_kinds_of_one_and_by_whom_they_were_done(
+    action: str, world: World, actionary: Actionary
+) -> None:
+    expected = Counter(
+        (each.name, world.performer(seen, each))
+        for seen, each, _ in world.segments()
+        if world.is_kind(each, action)
+    )
+    rows = actionary.ask("kinds", action=action)
+    assert {(row["kind"], row["performer"]): row["times"] for row in rows} == expected
+    performers = actionary.ask("performers", action=action)
+    assert len(performers) == sum(expected.values())
+
+
+def test_average_duration_of_reach_for_each_performer(world: World, actionary: Actionary) -> None:
+    lasting = defaultdict(list)
+    for seen, each, _ in world.segments():
+        if world.is_kind(each, "Reach"):
+            lasting[world.performer(seen, each)].append(each.end_s - each.start_s)
+    rows = actionary.ask("durations", action="Reach")
+    assert {row["performer"]: row["seconds"] for row in rows} == {
+        who: pytest.approx(float(np.mean(times))) for who, times in lasting.items()
+    }
+    assert {"agent of cup_1", "agent of cup_2"} <= lasting.keys()
+
+
+def test_which_segments_are_unknown_and_what_they_match_partly(
+    world: World, actionary: Actionary
+) -> None:
+    rows = actionary.ask("unexplained")
+    expected = {(s.capture, e.ee, e.index) for s, e, _ in world.segments() if not e.known}
+    assert {(row["observation"], row["ee"], row["index"]) for row in rows} == expected
+    partly = {row["nearest"] for row in actionary.ask("unknown")} - {None}
+    assert partly == {n for _, e, _ in world.segments() if not e.known for n in e.candidates}
+    assert expected and partly
+
+
+def test_where_an_object_was_at_a_time(world: World, actionary: Actionary) -> None:
+    found = 0
+    for name, capture in world.captures.items():
+        for thing in capture.objects:
+            for time in (1.0, 2.0, 3.5, 7.0):
+                rows = actionary.ask("place", capture=name, body=thing.name, time=time)
+                frame = round(time * capture.rate_hz)
+                if frame >= len(capture.times) or np.isnan(thing.stream.positions[frame]).any():
+                    continue
+                (row,) = rows
+                place = np.array([row["x"], row["y"], row["z"]])
+                assert np.linalg.norm(place - thing.stream.positions[frame]) < 0.01
+                found += 1
+    assert found >= 4
+
+
+def test_what_comes_after_an_action_with_the_same_hand(world: World, actionary: Actionary) -> None:
+    for action in ("MoveObjTo", "Reach", "Lower"):
+        expected = Counter(
+            following.name
+            for seen in world.seen
+            for link in seen.links
+            if link.kind == "hand"
+            for each, following in zip(link.segments, link.segments[1:], strict=False)
+            if world.is_kind(each, action)
+        )
+        rows = actionary.ask("follows", action=action, effector="hand")
+        assert {row["next"]: row["times"] for row in rows} == expected
+
+
+def test_which_captures_have_a_touch_of_something_that_did_not_move(
+    world: World, actionary: Actionary
+) -> None:
+    expected = set()
+    for seen, each, _ in world.segments():
+        if each.name == "Touch" and each.objects:
+            moves = [e for e in world.facts(seen, Moving) if e.object == each.objects[0]]
+            if not any(e.first <= each.last and each.first <= e.last for e in moves):
+                expected.add((seen.capture,))
+    assert asked(actionary, "touched and unmoved") == expected
+
+
+def test_what_the_left_hand_did_during_the_right_hands_stirring_both_ways(
+    world: World, actionary: Actionary
+) -> None:
+    expected = set()
+    for seen, one, first in world.segments():
+        for two in seen.segments:
+            during = two.first < one.first and one.last < two.last
+            left = side(seen, one.ee) == "left" and side(seen, two.ee) == "right"
+            if left and during and world.is_kind(two, "Stir"):
+                expected.add((first, f"{seen.capture}/{two.ee}/{two.index}"))
+    rows = actionary.ask("relations", side="left", other="Stir", relation="during")
+    assert {(row["first"], row["second"]) for row in rows} == expected
+    back = actionary.ask("relations", action="Stir", side="right", other="MoveObj")
+    inverse = {(row["second"], row["first"]) for row in back if row["holds"] == "contains"}
+    forth = actionary.ask("relations", action="MoveObj", other="Stir", relation="during")
+    assert inverse == {(row["first"], row["second"]) for row in forth}
+    assert len({each.partition("/")[0] for each, _ in expected}) == len(list(recordings()))
+
+
+def test_every_pair_of_segments_stands_in_one_relation_and_its_inverse(
+    world: World, actionary: Actionary
+) -> None:
+    seen = world.seen[0]
+    rows = actionary.ask("relations", capture=seen.capture, other="MoveObj")
+    moves = [each for each in seen.segments if world.is_kind(each, "MoveObj")]
+    assert len(rows) == len(moves) * (len(seen.segments) - 1)
+    assert {row["holds"] for row in rows} >= {"before", "after", "meets", "metBy"}
+    for row in rows:
+        if row["holds"] == "before":
+            assert float(row["seconds"]) > 0.0
+
+
+def test_which_rule_named_a_segment_and_with_which_thresholds(
+    world: World, actionary: Actionary
+) -> None:
+    rows = actionary.ask("rule")
+    named = [(s, e, a) for s, e, a in world.segments() if e.known and s.naming]
+    rules = {seen.capture: {each.name: each for each in seen.naming} for seen in world.seen}
+    expected = {
+        (address, each.name, rules[seen.capture][each.name].file) for seen, each, address in named
+    }
+    assert {(row["address"], row["action"], row["file"]) for row in rows} == expected
+    for row in rows:
+        rule = rules[str(row["address"]).partition("/")[0]][str(row["action"])]
+        told = ", ".join(f"{each.name} = {each.value}" for each in rule.thresholds)
+        assert row["thresholds"] == told
+        assert f'"{row["action"]}"' in rule.text
+    assert any(row["thresholds"] for row in rows)
+
+
+def test_when_with_which_version_and_from_which_files(world: World, actionary: Actionary) -> None:
+    rows = actionary.ask("sources")
+    expected = {
+        (seen.capture, seen.version, seen.rules, each.path, each.sha256)
+        for seen in world.seen
+        for each in seen.sources
+    }
+    columns = ("observation", "version", "rules", "file", "sha256")
+    assert {tuple(row[c] for c in columns) for row in rows if row["file"]} == expected
+    assert all(row["observed"] for row in rows)
+
+
+def test_how_long_each_object_was_touched_and_by_which_hand(
+    world: World, actionary: Actionary
+) -> None:
+    lasting: Counter[tuple[str, str, str]] = Counter()
+    for seen in world.seen:
+        hands = {each.ee for each in seen.links}
+        for each in world.facts(seen, Touching):
+            if each.body in hands:
+                key = (seen.capture, each.body, each.other)
+                lasting[key] += (each.last - each.first) * step(seen)
+    rows = actionary.ask("held")
+    found = {(r["observation"], r["ee"], r["object"]): r["seconds"] for r in rows}
+    assert found == {key: pytest.approx(value) for key, value in lasting.items()}
+
+
+def test_when_bottle_and_table_touched(world: World, actionary: Actionary) -> None:
+    expected = {
+        (seen.capture, each.first * step(seen), each.last * step(seen))
+        for seen in world.seen
+        for each in world.facts(seen, Touching)
+        if (each.body, each.other) == ("bottle", "table")
+    }
+    assert asked(actionary, "in touch") == rounded(expected)
+    assert bool(expected) == bool(list(recordings()))
+
+
+def test_who_looked_at_an_object_before_grasping_it(world: World, actionary: Actionary) -> None:
+    expected = {}
+    for seen in world.seen:
+        hands = {each.ee: each for each in seen.links if each.kind == "hand"}
+        for look in world.facts(seen, LookingAt):
+            for grasp in world.facts(seen, Touching):
+                if grasp.body in hands and grasp.other == look.object and look.first < grasp.first:
+                    who = seen.performer(grasp.body)
+                    who = f"agent of {seen.capture}" if who == "agent" else who
+                    key = (seen.capture, who, look.object)
+                    before = (grasp.first - look.first) * step(seen)
+                    expected[key] = max(before, expected.get(key, 0.0))
+    rows = {(who, thing, before) for (_, who, thing), before in expected.items()}
+    assert asked(actionary, "looked before") == rounded(rows)
+    assert rows
+
+
+def test_highest_speed_of_the_right_hand_in_each_reach(world: World, actionary: Actionary) -> None:
+    found = {str(address): speed for address, speed in asked(actionary, "reaching speeds")}
+    expected = {}
+    for seen, each, address in world.segments():
+        if each.name == "Reach" and side(seen, each.ee) == "right" and seen.tracks:
+            speeds = world.measured[seen.capture].tracks[each.ee].speed_mps
+            expected[address] = float(np.nanmax(speeds[each.first : each.last + 1]))
+    assert expected
+    assert {k: v for k, v in found.items() if v is not None} == {
+        address: pytest.approx(speed, rel=0.05) for address, speed in expected.items()
+    }
+
+
+def test_what_a_kind_of_object_is_used_for_as_observed_and_as_declared(
+    world: World, actionary: Actionary
+) -> None:
+    actionary.add_ability("Wipe", kind="container")
+    expected = Counter(
+        each.name
+        for seen, each, _ in world.segments()
+        if each.known and each.objects and each.objects[0] == "mug"
+    )
+    rows = actionary.ask("uses", object="mug")
+    observed = {row["action"]: row["times"] for row in rows if row["evidence"] == "observed"}
+    assert observed == expected
+    assert [row["action"] for row in rows if row["evidence"] == "declared"] == ["Wipe"]
+
+
+def test_what_an_agent_can_do_as_observed_and_as_declared(
+    world: World, actionary: Actionary
+) -> None:
+    seen = world.seen[0]
+    actionary.add_ability("Juggle", agent=seen.agent.name)
+    rows = actionary.ask("abilities", performer=seen.agent.name)
+    observed = {row["action"] for row in rows if row["evidence"] == "observed"}
+    same = [each for each in world.seen if each.agent.name == seen.agent.name]
+    assert observed == {each.name for one in same for each in one.segments if each.known}
+    assert [row["action"] for row in rows if row["evidence"] == "declared"] == ["Juggle"]
+
+
+@pytest.mark.parametrize("lemma", ["raise", "move", "touch"])
+def test_which_segments_are_of_a_verb_that_wordnet_puts_under_another(
+    lemma: str, world: World, actionary: Actionary
+) -> None:
+    words = wordnet()
+    asked_for = {synset.offset for _, synset in words.of_lemma(lemma)}
+    stated = [link for each in primitive_words(primitive_files()) for link in sense_links(each)]
+    under = set()
+    for link in (*thesis_senses(), *stated):
+        own = words.of_key(link.key)
+        if asked_for & {each.offset for each in (own, *words.steps_above(own))}:
+            under.add(link.primitive)
+    expected = {
+        address
+        for _, each, address in world.segments()
+        if any(world.is_kind(each, name) for name in under)
+    }
+    assert expected
+    assert {row["address"] for row in actionary.ask("verb", lemma=lemma)} == expected
+
+
+def test_which_segments_are_of_a_class_of_levins(world: World, actionary: Actionary) -> None:
+    within = {
+        each.name
+        for each in primitive_words(primitive_files())
+        if any(number.split(".")[0] == "9" for number in class_links(each)[0])
+    }
+    expected = {
+        address
+        for _, each, address in world.segments()
+        if any(world.is_kind(each, name) for name in within)
+    }
+    assert {row["address"] for row in actionary.ask("levin", levin="9")} == expected
+
+
+def test_which_names_are_ambiguous_and_what_else_would_have_fitted(
+    world: World, actionary: Actionary
+) -> None:
+    expected = {
+        (address, each.name, other)
+        for _, each, address in world.segments()
+        if each.known
+        for other in each.candidates
+    }
+    rows = actionary.ask("ambiguous")
+    assert {(r["address"], r["action"], r["otherwise"]) for r in rows} == expected
+    assert expected
+
+
+def test_every_filter_leaves_exactly_what_it_says(world: World, actionary: Actionary) -> None:
+    kinds = {
+        (seen.capture, each.name): set(actionary.kinds_above(each.kind or each.name)) | {each.name}
+        for seen in world.seen
+        for each in seen.objects
+    }
+    first = world.seen[0].capture
+    fitting: dict[tuple[str, object], Callable[[Observation, Segment], bool]] = {
+        ("action", "MoveObj"): lambda seen, each: world.is_kind(each, "MoveObj"),
+        ("ee", "left_hand"): lambda seen, each: each.ee == "left_hand",
+        ("side", "left"): lambda seen, each: side(seen, each.ee) == "left",
+        ("effector", "hand"): lambda seen, each: each.features.end_effector == "hand",
+        ("performer", "tall_man"): lambda seen, each: seen.performer(each.ee) == "tall_man",
+        ("capture", first): lambda seen, each: seen.capture == first,
+        ("from", 2.0): lambda seen, each: each.end_s > 2.0,
+        ("until", 2.0): lambda seen, each: each.start_s < 2.0,
+        ("kind", "container"): lambda seen, each: any(
+            "container" in kinds.get((seen.capture, name), ()) for name in each.objects
+        ),
+    }
+    assert {name for name, _ in fitting} == FILTERS.keys()
+    for (name, value), fits in fitting.items():
+        expected = {address for seen, each, address in world.segments() if fits(seen, each)}
+        rows = actionary.ask("segments", **{name: value})
+        assert {row["address"] for row in rows} == expected, name
+        assert expected
+
+
+def test_every_question_of_segments_takes_the_same_filters() -> None:
+    exempt = {"allen", "before", "shared", "world"}  # of whole actions, conditions, or one time
+    other = {"notices", "observations", "sources", "held"}  # of observations
+    body = {"place", "both_hands", "looked_at"}
+    for name, each in questions().items():
+        taken = {parameter.name for parameter in each.parameters}
+        if name not in exempt | other | body:
+            assert taken >= FILTERS.keys(), name  # its own count, too
+        if name in other | {"both_hands", "looked_at"}:
+            assert {"performer", "capture"} & taken, name
