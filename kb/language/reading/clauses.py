@@ -189,7 +189,9 @@ def _state(reader: Reader, about: Noun | None, more: Helpers, *, negated: bool) 
     return Instruction(Call(action, objects), ee, person, "", told, "" if ee else "be", bool(ee))
 
 
-_EXACTLY = {("right",): "", ("just",): "", ("only",): "", ("shortly",): "", ("exactly",): ""}
+_EXACTLY: dict[tuple[str, ...], str] = {
+    (word,): word for word in ("right", "just", "only", "shortly", "exactly")
+}
 """Words before a relation that say how close in time it is."""
 
 

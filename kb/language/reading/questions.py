@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
-from kb.language.instruction import Instruction
+from kb.language.instruction import Condition, Instruction
 from kb.language.question import Ask, Question
 from kb.language.reading.adjuncts import Adjuncts, adjunct, window_at
 from kb.language.reading.clauses import conditions, helpers, predicate, same_agent, subject
@@ -30,7 +30,7 @@ def question(reader: Reader) -> Question | None:
     """
     cursor = reader.cursor
     before = cursor.at
-    window, first = window_at(cursor), ()
+    window, first = window_at(cursor), tuple[Condition, ...]()
     if window is None and is_next(cursor, "relation") and _asks_later(reader):
         first = conditions(reader)
     if window is not None or first:
