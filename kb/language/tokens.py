@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from kb.language.errors import SentenceError
 
-_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\w\'-]+|[^\w\s]')
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\d+\.\d+|[\w\'-]+|[^\w\s]')
 ARTICLES = frozenset({"the", "a", "an"})
 CONTRACTED = frozenset(
     {"what", "who", "where", "when", "how", "he", "she", "it", "that", "there", "here"}
