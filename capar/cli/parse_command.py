@@ -1,10 +1,14 @@
-"""Controlled English in; an instruction or a question out."""
+"""English in; instructions or the answer to a question out."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from capar.cli._options import Rules, opened
+
+if TYPE_CHECKING:
+    from kb.language import Question
+    from kb.store.stores import Store
 
 app = typer.Typer()
 
@@ -13,7 +17,7 @@ app = typer.Typer()
 def parse(
     sentence: Annotated[
         str,
-        typer.Argument(help="Such as: move the mug from the table to the head with the right hand"),
+        typer.Argument(help="Such as: pick up the mug with both hands and put it in the box"),
     ],
     actionary: Annotated[
         str | None, typer.Option(help="Folder or address; else CAPAR_ACTIONARY, else ./actionary.")
@@ -21,7 +25,7 @@ def parse(
     rules: Rules = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Read an instruction, or a question such as 'who moved the mug to the table?'.
+    """Read instructions, a description, or a question such as 'who moved the mug to the table?'.
 
     With an Actionary, objects and performers are those that it knows, and a question is answered;
     without one any noun will do.
@@ -35,54 +39,38 @@ def parse(
     words = rule_words(rules, opened(actionary))
     with open_words(actionary) as store:
         value = read(sentence, vocabulary(words, store))
-        if not isinstance(value, Question):
-            if json:
-                print_json(value, sort_keys=True)
-            else:
-                typer.echo(_instruction(value))
-            return
-        answers = list(store.ask(value.sparql).plain()) if store else None
-        if json:
-            print_json(
-                {
-                    "asks": value.ask.value,
-                    "about": value.about,
-                    "sparql": value.sparql,
-                    "answers": answers,
-                },
-                sort_keys=True,
-            )
-        elif answers is None:
-            typer.echo(value.sparql)
+        if isinstance(value, Question):
+            _ask(value, store, json=json)
+        elif json:
+            print_json(value, sort_keys=True)
         else:
-            _print_answers(answers)
+            from capar.views.readings import reading_lines
+
+            typer.echo("\n".join(reading_lines(value)))
 
 
-def _instruction(value: object) -> str:
-    from kb.language import Instruction
+def _ask(value: "Question", store: "Store | None", *, json: bool) -> None:
+    from capar.cli._output import print_json
+    from capar.views.readings import answer_lines, question_lines
 
-    assert isinstance(value, Instruction)
-    lines = [f"action   {value.call.action}", f"objects  {', '.join(value.call.objects) or 'none'}"]
-    said = {
-        "agent": value.agent,
-        "ee": value.ee,
-        "from": value.source,
-        "purpose": value.call.purpose,
-    }
-    return "\n".join([*lines, *(f"{name:<9}{each}" for name, each in said.items() if each)])
-
-
-def _print_answers(
-    answers: list[dict[str, object]] | list[dict[str, str | int | float | bool | None]],
-) -> None:
-    if not answers:
-        typer.echo("Nobody did, in any observation.")
-    for row in answers:
-        typer.echo(
-            "  ".join(f"{name}: {_short(each)}" for name, each in row.items() if each is not None)
-        )
-
-
-def _short(value: object) -> object:
-    """A number to milliseconds, for people."""
-    return round(value, 3) if isinstance(value, float) else value
+    queries = (value.sparql, *value.others)
+    answers: list[list[Any]] | None = None
+    if store is not None:
+        answers = [list(value.chosen(list(store.ask(each).plain()))) for each in queries]
+    if json:
+        told: dict[str, object] = {
+            "asks": value.ask.value,
+            "about": value.about,
+            "sparql": value.sparql,
+        }
+        told |= {"rank": value.rank, "others": (*value.alternatives, *value.also)}
+        told |= {"answers": None if answers is None else answers[0]}
+        told |= {"other_answers": None if answers is None else answers[1:]}
+        print_json(told, sort_keys=True)
+        return
+    typer.echo("\n".join(question_lines(value)))
+    if answers is None:
+        typer.echo("\n".join(queries))
+        return
+    for about, rows in zip((value.about, *value.alternatives, *value.also), answers, strict=True):
+        typer.echo("\n".join(answer_lines(value, about, rows)))

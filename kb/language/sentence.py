@@ -2,33 +2,14 @@
 
 import json
 import re
-from dataclasses import dataclass
 
 from capar.model.observation import Segment
 from capar.model.par import Call, Step
+from kb.language.instruction import Instruction
 from kb.language.vocabulary import EVERYTHING, Vocabulary
 from kb.lexicon.english import capital, name_of, the, words_of
 
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Instruction:
-    """An action to be done: what an IPAR leaves once its time is not bound."""
-
-    call: Call
-    ee: str = ""
-    """The end-effector, or empty where any will do."""
-
-    agent: str = ""
-    source: str = ""
-    """Where the dominant object is taken from, if it is said."""
-
-    @classmethod
-    def of(cls, step: Step | Segment) -> "Instruction":
-        """What a step or a segment does."""
-        name = step.action if isinstance(step, Step) else step.name
-        return cls(Call(name, step.objects, step.purpose), step.ee)
 
 
 def sentence(value: Instruction | Step | Segment, vocabulary: Vocabulary | None = None) -> str:

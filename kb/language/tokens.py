@@ -7,8 +7,12 @@ from dataclasses import dataclass
 
 from kb.language.errors import SentenceError
 
-_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\w\'-]+|[^\w\s]')
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\d+\.\d+|[\w\'-]+|[^\w\s]')
 ARTICLES = frozenset({"the", "a", "an"})
+CONTRACTED = frozenset(
+    {"what", "who", "where", "when", "how", "he", "she", "it", "that", "there", "here"}
+)
+"""Words that stand with a short form of ``is``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,13 +28,21 @@ class Token:
         return self.text.startswith('"') and len(self.text) > 1
 
 
+def _parts(token: Token) -> tuple[Token, ...]:
+    """A short form as the two words that it is: ``what's``."""
+    head, _, tail = token.text.lower().partition("'")
+    if tail != "s" or head not in CONTRACTED:
+        return (token,)
+    return Token(token.text[: len(head)], token.column), Token("is", token.column)
+
+
 class Cursor:
     """Reads a sentence from left to right."""
 
     def __init__(self, text: str) -> None:
         self.text = text.strip()
         found = (Token(each.group(), each.start()) for each in _TOKEN.finditer(self.text))
-        self.tokens = list(found)
+        self.tokens = [part for each in found for part in _parts(each)]
         while self.tokens and self.tokens[-1].text in {".", "?", "!"}:
             self.tokens.pop()
         self.at = 0

@@ -23,6 +23,7 @@ from kb.lexicon.wordnet import Synset, wordnet
 from kb.reports.linguistics import (
     ClassReport,
     Coverage,
+    Evidence,
     How,
     LinguisticReport,
     Proof,
@@ -148,6 +149,9 @@ class _Parts:
         key = (number, verb)
         how = next((each for each, found in self.how.items() if key in found), How.MISSING)
         primitives = self.how[how][key] if how in self.how else ()
+        own = primitives if how is How.ADDRESSED else ()
+        segments = total(each for each in self.seen if each.primitive in own)
+        cases = self._cases(number, own)
         return VerbReport(
             verb=verb,
             how=how,
@@ -155,7 +159,16 @@ class _Parts:
             lacks=_needs(number, verb, self.missing.get(key, ())),
             senses=self._senses(verb, primitives if how is How.ADDRESSED else ()),
             counts=counts,
+            evidence=_evidence(own, segments, cases),
+            segments=segments,
+            cases=cases,
         )
+
+    def _cases(self, number: str, primitives: Sequence[str]) -> tuple[str, ...]:
+        """The shipped cases that show the primitives."""
+        proofs = self.proofs.get(number, ())
+        tested = (each for each in proofs if each.kind == "tested")
+        return tuple(sorted({each.where for each in tested if each.primitive in primitives}))
 
     def _senses(self, verb: str, primitives: Sequence[str]) -> tuple[Synset, ...]:
         """The senses that the primitives have the verb in; without any, those as a motion."""
@@ -165,6 +178,15 @@ class _Parts:
             wordnet().of_key(each) for each in keys or motion_senses(verb) if each in wordnet()
         )
         return found or tuple(synset for _, synset in wordnet().of_lemma(verb)[:1])
+
+
+def _evidence(primitives: Sequence[str], segments: int, cases: Sequence[str]) -> Evidence:
+    """The strongest evidence of an addressed verb."""
+    if not primitives:
+        return Evidence.NONE
+    if segments:
+        return Evidence.OBSERVED
+    return Evidence.TESTED if cases else Evidence.RULE
 
 
 def _concerns(remark: str, number: str) -> bool:

@@ -105,7 +105,8 @@ def _thesis_boxes(each: ClassReport) -> list[Box]:
 def _own_boxes(each: ClassReport) -> list[Box]:
     found: dict[str, list[str]] = {}
     for verb in each.judged:
-        by = f" ({', '.join(verb.primitives)})" if verb.primitives else ""
+        shown = f"; {verb.evidence.value}" if verb.evidence else ""
+        by = f" ({', '.join(verb.primitives)}{shown})" if verb.primitives else ""
         found.setdefault(_OF_HOW[verb.how], []).append(f"{verb.verb}{by}")
     return [Box(style, _lines(found[style])) for style in STYLES if style in found]
 

@@ -40,10 +40,19 @@ class How(StrEnum):
         """The standing as people read it."""
         return {
             "addressed": "addressed",
-            "general": "not seen, only what is more general",
+            "general": "not addressed, only what is more general",
             "purpose": "only as a stated purpose",
-            "missing": "not seen",
+            "missing": "not addressed",
         }[self.value]
+
+
+class Evidence(StrEnum):
+    """What shows that a verb is addressed."""
+
+    OBSERVED = "observed"
+    TESTED = "tested"
+    RULE = "by rule only"
+    NONE = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +72,26 @@ class VerbReport:
 
     counts: bool
     """Whether the class is judged by it: the thesis names it, or a primitive has it."""
+
+    evidence: Evidence = Evidence.NONE
+    """What shows an addressed verb; nothing for any other."""
+
+    segments: int = 0
+    """Observed segments of the primitives that address it."""
+
+    cases: tuple[str, ...] = ()
+    """Shipped test cases of the primitives that address it, sorted."""
+
+    @property
+    def standing(self) -> str:
+        """How the system stands to it, with the evidence: ``addressed: tested (lifted)``."""
+        if self.evidence is Evidence.OBSERVED:
+            plural = "" if self.segments == 1 else "s"
+            return f"{self.how.words}: observed ({self.segments} segment{plural})"
+        if self.evidence is Evidence.TESTED:
+            return f"{self.how.words}: tested ({self.cases[0]})"
+        tail = f": {self.evidence.value}" if self.evidence else ""
+        return f"{self.how.words}{tail}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,10 +160,10 @@ def _about(verb: VerbReport) -> str:
     by = ", ".join(verb.primitives)
     lacks = f" Missing: {'; '.join(verb.lacks)}." if verb.lacks else ""
     if verb.how is How.GENERAL:
-        return f"{verb.verb}: not seen; only what is more general is: {by}.{lacks}"
+        return f"{verb.verb}: not addressed; only what is more general is: {by}.{lacks}"
     if verb.how is How.PURPOSE:
         return f"{verb.verb}: only as a purpose that the user states, of {by}.{lacks}"
-    return f"{verb.verb}: not seen.{lacks}"
+    return f"{verb.verb}: not addressed.{lacks}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +186,7 @@ class Coverage:
     verbs: int
     verbs_addressed: int
     verbs_general: int
-    """Verbs that are not seen, though something more general is."""
+    """Verbs that are not addressed, though something more general is."""
 
     verbs_purpose: int
     segments: int

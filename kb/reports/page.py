@@ -111,7 +111,7 @@ def _verb(each: VerbReport) -> str:
         f"{escape(sense.definition)} <code>{sense.ili or sense.offset}</code>"
         for sense in each.senses
     )
-    cells = (_tag(each.how.value, each.how.words), escape(", ".join(each.primitives)), glosses)
+    cells = (_tag(each.how.value, each.standing), escape(", ".join(each.primitives)), glosses)
     rest = "".join(f"<td>{cell}</td>" for cell in cells)
     return f'<tr><td class="verb">{escape(each.verb)}</td>{rest}</tr>'
 

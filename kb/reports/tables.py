@@ -56,7 +56,7 @@ def coverage(report: LinguisticReport) -> tuple[tuple[str, str], ...]:
         ("classes addressed", share(total.classes_addressed, total.classes)),
         ("classes addressed in part", share(total.classes_partly, total.classes)),
         (f"verbs addressed ({members})", share(total.verbs_addressed, total.verbs)),
-        ("verbs not seen, only what is more general", share(total.verbs_general, total.verbs)),
+        ("verbs not addressed, only what is more general", share(total.verbs_general, total.verbs)),
         ("verbs only as a purpose that the user states", share(total.verbs_purpose, total.verbs)),
         ("observed segments that a rule names", share(total.segments_named, total.segments)),
         ("observed segments in a class", share(total.segments_in_classes, total.segments)),
@@ -90,7 +90,7 @@ def _verb_rows(each: ClassReport) -> list[tuple[str, ...]]:
         (
             each.number,
             verb.verb,
-            verb.how.words,
+            verb.standing,
             ", ".join(verb.primitives),
             "; ".join(verb.lacks),
             " ".join(sense.ili or sense.offset for sense in verb.senses),

@@ -101,7 +101,7 @@ def test_other_ways_to_say_it_are_read(text: str, action: str, objects: tuple[st
     [
         ("mvoe the mug", "mvoe", "move"),
         ("move the mgu to the table", "mgu", "mug"),
-        ("move the mug under the table", "under", "move A to B"),
+        ("put the mug the table", "the", "put A on B"),
         ("move the mug to the table wiht the hand", "wiht", "with"),
         ("hit the mug with the left hand with the right hand", "with", None),
         ("hit the mug for luck", "luck", '"Drink"'),

@@ -32,7 +32,7 @@ def test_a_table_names_only_known_classes(name: str) -> None:
 
 
 def test_each_claim_has_its_sentence_and_reason() -> None:
-    assert len(thesis_claims()) == 23
+    assert len(thesis_claims()) == 24
     for claim in thesis_claims():
         assert claim.quote
         assert claim.reason

@@ -59,7 +59,7 @@ def test_the_table_of_verbs_is_csv(report: LinguisticReport) -> None:
     rows = list(csv.DictReader(io.StringIO(write(report, "csv"))))
     assert len(rows) == sum(len(each.verbs) for each in report.classes)
     touch = next(row for row in rows if (row["class"], row["verb"]) == ("20", "touch"))
-    assert touch["system"] == "addressed"
+    assert touch["system"] == "addressed: by rule only"
     assert touch["class: thesis"] == "direct, not"
 
 

@@ -9,7 +9,7 @@ from capar.model.par import FeatureSet
 from capar.pipelines.linguistic_report import linguistics, primitive_files
 from kb.actionary import Actionary
 from kb.lexicon.evidence import Case
-from kb.reports.linguistics import ClassReport, How, LinguisticReport
+from kb.reports.linguistics import ClassReport, Evidence, How, LinguisticReport
 from kb.reports.tables import coverage
 from kb.reports.writing import write
 
@@ -59,7 +59,8 @@ def test_what_came_next_is_no_purpose_that_somebody_stated(fidget: LinguisticRep
     put = of(fidget, "9.1")
     assert put.proofs == ()
     assert put.segments == 0
-    assert {each.verb: each.how for each in put.verbs}["rest"] is How.MISSING
+    spatial = of(fidget, "9.2")
+    assert {each.verb: each.how for each in spatial.verbs}["rest"] is not How.PURPOSE
 
 
 def test_a_stated_purpose_shows_the_class_by_its_own_segments_alone() -> None:
@@ -85,16 +86,43 @@ def test_a_segment_counts_in_a_class_by_a_verb_of_its_own_primitive() -> None:
 
 def test_nobody_reads_a_more_general_verb_as_seen(fidget: LinguisticReport) -> None:
     text = " ".join(write(fidget, "text").split())
-    assert "kiss: not seen; only what is more general is: Touch, TouchOneself, TouchWith." in text
+    assert (
+        "kiss: not addressed; only what is more general is: Touch, TouchOneself, TouchWith." in text
+    )
     figures = dict(coverage(fidget))
     general = [
         each for report in fidget.classes for each in report.verbs if each.how is How.GENERAL
     ]
-    assert figures["verbs not seen, only what is more general"].startswith(f"{len(general)} of")
+    assert figures["verbs not addressed, only what is more general"].startswith(
+        f"{len(general)} of"
+    )
     assert figures["verbs only as a purpose that the user states"].startswith("0 of")
     for form in ("text", "md", "html", "latex", "csv", "svg"):
         told = write(fidget, form)
         assert "seen only as" not in told
         assert "seen in general" not in told
         assert "in general only" not in told
-    assert "not seen, only what is more general" in write(fidget, "csv")
+    assert "not addressed, only what is more general" in write(fidget, "csv")
+
+
+def test_an_addressed_verb_says_what_shows_it(fidget: LinguisticReport) -> None:
+    verbs = [each for report in fidget.classes for each in report.verbs]
+    for each in verbs:
+        addressed = each.how is How.ADDRESSED
+        assert addressed == (each.evidence is not Evidence.NONE)
+        assert (each.evidence is Evidence.OBSERVED) == (addressed and each.segments > 0)
+        if each.evidence is Evidence.TESTED:
+            assert each.cases and each.cases[0] in each.standing
+    assert {each.evidence for each in verbs} >= {Evidence.OBSERVED, Evidence.NONE}
+    for kind in ("csv", "md", "html"):
+        assert "observed (" in write(fidget, kind)
+
+
+def test_with_an_empty_actionary_nothing_is_observed() -> None:
+    report = linguistics(primitive_files(), cases=[Case("Push", "a_push")])
+    verbs = [each for each in report.classes for each in each.verbs]
+    assert Evidence.OBSERVED not in {each.evidence for each in verbs}
+    assert "observed (" not in write(report, "csv")
+    push = next(each for each in verbs if each.verb == "push" and each.how is How.ADDRESSED)
+    assert push.evidence is Evidence.TESTED
+    assert push.standing == "addressed: tested (a_push)"

@@ -1,0 +1,226 @@
+"""Noun phrases: objects, hands and people, by name or by a pronoun."""
+
+from dataclasses import dataclass, replace
+
+from kb.language.reading.function_words import first_words, is_next, of_class
+from kb.language.reading.reader import RELATIVES, Reader
+from kb.language.tokens import ARTICLES
+from kb.language.vocabulary import SIDES
+from kb.lexicon.english import PEOPLE
+
+
+@dataclass(frozen=True)
+class Noun:
+    """A noun phrase as it stands."""
+
+    things: tuple[str, ...] = ()
+    """The objects that it may name; an empty text is any object."""
+
+    limb: str = ""
+    """The end-effector that it may name."""
+
+    person: str = ""
+    """Who it may name: an agent, or a kind of person."""
+
+    any_person: bool = False
+    at: int = 0
+    part: str = ""
+    """Which part of the thing is meant: ``left side``."""
+
+    none: bool = False
+    """Whether nobody is meant."""
+
+    unknown: bool = False
+    """Whether objects are known, and this is none of them."""
+
+    @property
+    def is_person(self) -> bool:
+        """Whether it is about somebody."""
+        return bool(self.person) or self.any_person
+
+
+def noun_phrase(reader: Reader, *, coordinate: bool = True) -> Noun | None:
+    """Read a noun phrase if one comes next."""
+    start = reader.cursor.at
+    found = _single(reader)
+    if found is None:
+        reader.cursor.at = start
+        return None
+    while coordinate and found.things and (more := _another(reader)) is not None:
+        found = Noun((*found.things, *more.things), at=found.at)
+    if len(found.things) > 1:
+        reader.several = found.things
+    return found
+
+
+def _another(reader: Reader) -> Noun | None:
+    """What is joined with a noun phrase by ``and``, where no new clause begins there."""
+    cursor = reader.cursor
+    start = cursor.at
+    comma = cursor.accept(",")
+    joined = cursor.accept("and") or cursor.accept("or")
+    if joined and reader.verb_forms() and cursor.peek() not in ARTICLES:
+        cursor.at = start
+        return None
+    if joined or (comma and cursor.peek() in {"the", "a"}):
+        found = _single(reader)
+        if found is not None and found.things and not reader.finite_ahead():
+            more_to_come = joined or cursor.peek() in {",", "and"}
+            if more_to_come and (not comma or joined or _list_goes_on(reader)):
+                return found
+    cursor.at = start
+    return None
+
+
+def _list_goes_on(reader: Reader) -> bool:
+    """Whether a list of things ends with ``and`` before a thing."""
+    cursor = reader.cursor
+    start = cursor.at
+    cursor.accept(",")
+    ends = cursor.accept("and") and cursor.peek() in {"the", "a"}
+    cursor.at = start
+    return ends
+
+
+def _single(reader: Reader) -> Noun | None:  # noqa: PLR0911 (each is one kind of noun phrase)
+    cursor = reader.cursor
+    at = cursor.at
+    if (known := _known(reader, at)) is not None:
+        return known
+    pronoun = _pronoun(reader, at)
+    if pronoun is not None:
+        return pronoun
+    article = cursor.longest(of_class("determiner"))
+    if article is not None:
+        cursor.accept("other")
+    if article in {"one", "the other"} and reader.stops():
+        cursor.at = at
+        return None
+    if (known := _known(reader, at)) is not None:
+        return known
+    if (limb := _limb(reader, at)) is not None:
+        return limb
+    if (person := _person(reader, at)) is not None:
+        return person
+    return _open(reader, at)
+
+
+def _known(reader: Reader, at: int) -> Noun | None:
+    """An object that there is, or a limb of the capture, by its full name."""
+    cursor, words = reader.cursor, reader.words
+    start = cursor.at
+    limb = cursor.longest(words.limbs)
+    after_limb, cursor.at = cursor.at, start
+    thing = cursor.longest(words.nouns) if words.nouns is not None else None
+    if limb is not None and after_limb > cursor.at:
+        thing, cursor.at = None, after_limb
+    if limb is not None and words.nouns is None:
+        thing = limb
+    if thing is None and limb is None:
+        return None
+    return Noun((thing,) if thing else (), limb or "", at=at)
+
+
+def _pronoun(reader: Reader, at: int) -> Noun | None:
+    cursor = reader.cursor
+    kind = cursor.longest(of_class("pronoun"))
+    bare = cursor.tokens[at].text.lower() in {"it", "them"} if kind is not None else False
+    if kind is not None and (bare or kind == "any" or reader.stops() or cursor.done):
+        things = {"one": (reader.thing,), "several": reader.several or (reader.thing,)}
+        return Noun(things.get(kind, ("",)), at=at)
+    cursor.at = at
+    if cursor.longest(of_class("person")) is None:
+        return None
+    last = cursor.tokens[cursor.at - 1].text.lower()
+    if last in {"other", "one"} and reader.limb and cursor.tokens[at].text.lower() != "each":
+        kind = reader.limb.rpartition("_")[2]
+        return Noun(limb=_other(reader.limb, f"other_{kind}"), at=at)
+    owned = cursor.peek() in {*SIDES, "own"} or is_next(cursor, "limb") or not reader.stops()
+    if cursor.tokens[at].text.lower() == "her" and owned and not cursor.done:
+        cursor.at = at
+        return None
+    none = cursor.tokens[at].text.lower() in {"nobody", "no"}
+    return Noun(any_person=True, at=at, none=none)
+
+
+def _limb(reader: Reader, at: int) -> Noun | None:
+    """A hand or a foot by a word that is not its name: ``fist``, ``the right``."""
+    cursor = reader.cursor
+    limb = cursor.longest(of_class("limb"))
+    if limb is None and cursor.peek() in SIDES:
+        before = cursor.at
+        side = cursor.take().text.lower()
+        cursor.accept("one")
+        limb = f"{side}_hand" if reader.stops() else None
+        cursor.at = cursor.at if limb else before
+    if limb is None:
+        return None
+    return Noun(limb=_other(reader.limb, limb), at=at)
+
+
+def _other(limb: str, said: str) -> str:
+    """Which hand or foot ``the other`` one is beside what was spoken of."""
+    kind = said.removeprefix("other_")
+    if said == kind or limb not in {f"{side}_{kind}" for side in SIDES}:
+        return said
+    return f"left_{kind}" if limb.startswith("right") else f"right_{kind}"
+
+
+def _person(reader: Reader, at: int) -> Noun | None:
+    """A performer by name, or somebody by kind: ``the tall man``."""
+    cursor = reader.cursor
+    start = cursor.at
+    names = {tuple(each.lower().split("_")): each for each in (*reader.words.agents, "agent")}
+    found = cursor.longest(names)
+    if found is None:
+        ahead = 0
+        while ahead < 3 and not reader.stops(ahead) and cursor.peek(ahead) not in PEOPLE:
+            ahead += 1
+        if cursor.peek(ahead) in PEOPLE:
+            words = [cursor.take().text.lower() for _ in range(ahead + 1)]
+            found = "_".join(words)
+    if found is None:
+        cursor.at = start
+        return None
+    return Noun(person=found, at=at)
+
+
+def _open(reader: Reader, at: int) -> Noun | None:
+    """Any name; where objects are known, one of them after adjectives."""
+    cursor, words = reader.cursor, reader.words
+    start = cursor.at
+    while not reader.stops() and cursor.peek() not in reader.literals:
+        if words.nouns is not None and (noun := cursor.longest(words.nouns)) is not None:
+            return Noun((noun,), at=at)
+        cursor.take()
+    name = [each.text for each in cursor.tokens[start : cursor.at]]
+    if not name and cursor.longest(of_class("part")) is None:
+        return None
+    return _with_part(reader, at, start)
+
+
+def _with_part(reader: Reader, at: int, start: int) -> Noun | None:
+    """A name, with what follows ``of``: a part of it, or the part alone."""
+    cursor, words = reader.cursor, reader.words
+    name = [each.text for each in cursor.tokens[start : cursor.at]]
+    if cursor.peek() == "of":
+        part = tuple(each.lower() for each in name) in of_class("part")
+        before = cursor.at
+        cursor.take()
+        whole = _single(reader)
+        if whole is not None and whole.things:
+            if part or words.nouns is not None:
+                return replace(whole, at=at, part=" ".join(name))
+            return Noun(("_".join([*name, "of", *whole.things[0].split("_")]),), at=at)
+        cursor.at = before
+    return Noun(("_".join(name),), at=at, unknown=words.nouns is not None)
+
+
+def begins_noun(reader: Reader, ahead: int = 0) -> bool:
+    """Whether a noun phrase may begin at a word to come."""
+    word = reader.cursor.peek(ahead)
+    if word in RELATIVES - {"whom"}:
+        return False
+    if word in first_words("determiner", "pronoun", "person", "limb"):
+        return True
+    return not reader.stops(ahead)

@@ -1,0 +1,148 @@
+"""What people say is read as they mean it, descriptions are read back, and questions are answered.
+
+``instructions_first.txt`` and ``instructions_second.txt`` were written by somebody who had not seen
+the grammar. ``*_run.md`` hold what was made of them at first, and are never changed; ``*_read.md``
+hold what is read now, each judged by us as ``right`` or ``wrong``.
+"""
+
+import re
+from itertools import groupby
+from pathlib import Path
+
+import pytest
+from motions import TALL_MAN, drink_from_mug
+
+from capar.model.errors import CaparError
+from capar.pipelines.linguistic_report import primitive_files, primitive_words
+from capar.pipelines.observation import observe
+from capar.views.readings import question_lines, reading_lines
+from kb.actionary import Actionary
+from kb.language import Instruction, Plan, Question, parse
+from kb.language.lexicalisation import in_past
+from kb.language.vocabulary import Vocabulary
+from kb.lexicon.english import past
+from kb.lexicon.tables import table
+
+HERE = Path(__file__).parent
+WORDS = Vocabulary(primitive_words(primitive_files()))
+GOLDEN = sorted((HERE / "golden").iterdir())
+SETS = {"first": (50, 40), "second": (25, 18)}
+"""How many lines each set has, and how many of them must be right at least."""
+
+
+def _judged(name: str) -> list[tuple[str, list[str], str]]:
+    """Lines of a set, each with what is read in it and our judgement."""
+    text = (HERE / f"instructions_{name}_read.md").read_text(encoding="utf-8")
+    blocks = [block.splitlines() for block in text.strip().split("\n\n")]
+    return [(block[0], [row[4:] for row in block[1:-1]], block[-1].strip()) for block in blocks]
+
+
+def _read(line: str) -> list[str]:
+    try:
+        value = parse(line, WORDS)
+    except CaparError as error:
+        return ["refused: " + str(error).split("; it could be", maxsplit=1)[0].splitlines()[0]]
+    return list(question_lines(value) if isinstance(value, Question) else reading_lines(value))
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_enough_of_what_was_written_unseen_is_read_rightly(name: str) -> None:
+    written = (HERE / f"instructions_{name}.txt").read_text(encoding="utf-8").splitlines()
+    judged = _judged(name)
+    count, least = SETS[name]
+    assert [line for line, _, _ in judged] == written
+    assert len(written) == count
+    assert sum(verdict == "right" for _, _, verdict in judged) >= least
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_each_line_is_read_as_it_was_when_we_judged_it(name: str) -> None:
+    for line, reading, _ in _judged(name):
+        assert _read(line) == reading, line
+
+
+def _steps(text: str) -> tuple[Instruction, ...]:
+    value = parse(text, WORDS)
+    assert not isinstance(value, Question)
+    return value.steps if isinstance(value, Plan) else (value,)
+
+
+ROWS = [row for name in ("phrases", "canonical") for row in table(name) if "{1}" in row["pattern"]]
+PATTERNS = {
+    pattern: {row["primitive"] for row in rows}
+    for pattern, rows in (
+        (key, list(rows))
+        for key, rows in groupby(
+            sorted(ROWS, key=lambda row: row["pattern"]), key=lambda row: row["pattern"]
+        )
+    )
+}
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_every_phrase_of_a_description_is_read_as_one_of_the_primitives_that_have_it(
+    pattern: str,
+) -> None:
+    spoken = in_past(pattern).replace("{1}", "the mug").replace("{2}", "the table")
+    (step,) = _steps(f"The agent {spoken.replace('{ee}', 'the right foot')}.")
+    plain = pattern.replace(" back", "").replace(" there", "")
+    also = {name for other, names in PATTERNS.items() if other == plain for name in names}
+    assert step.call.action in PATTERNS[pattern] | also
+    assert step.call.objects[0] == "mug"
+    assert "{2}" not in pattern or step.call.objects[1] == "table"
+
+
+VERBS = {past(row["pattern"].split()[0]) for row in table("phrases")}
+
+
+@pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
+def test_a_description_is_read_with_every_verb_that_it_has(path: Path) -> None:
+    for text in path.read_text(encoding="utf-8").strip().split("\n\n"):
+        told = [word for word in re.findall(r"[a-z]+", text) if word in VERBS]
+        steps = _steps(text)
+        assert len(steps) == len(told)
+        assert all(step.known and step.call.action for step in steps)
+        hands = [step.ee for step in steps if "hand" in text]
+        assert all(hands), "each step has the hand that was named last"
+
+
+@pytest.fixture(scope="module")
+def drinking() -> Actionary:
+    book = Actionary.in_memory()
+    book.add(observe(drink_from_mug(TALL_MAN).capture))
+    return book
+
+
+def _answers(book: Actionary, text: str) -> list[dict[str, object]]:
+    value = parse(text, WORDS)
+    assert isinstance(value, Question)
+    return [dict(row) for row in value.chosen(list(book.store.ask(value.sparql).plain()))]
+
+
+@pytest.mark.parametrize(
+    ("text", "variable", "expected"),
+    [
+        ("who drank?", "performer", {"tall_man"}),
+        ("who moved the mug?", "performer", {"tall_man"}),
+        ("who touched the mug?", "performer", {"tall_man"}),
+        ("who put down the mug?", "performer", {"tall_man"}),
+        ("who picked the mug up?", "performer", {"tall_man"}),
+        ("where was the mug put?", "place", {"table"}),
+        ("what did she drink from?", "object", {"mug"}),
+        ("what was the first thing that he picked up?", "object", {"mug"}),
+        ("how often did she drink?", "times", {1}),
+        ("how often did he touch the mug?", "times", {1}),
+        ("which hand moved the mug before it was put on the table?", "ee", {"right_hand"}),
+        ("what did the right hand do while the mug was being tilted?", "action", {"Drink"}),
+        ("who poured?", "performer", set()),
+        ("who held the mug with the left hand?", "performer", set()),
+        ("who drank within 0.1 s?", "performer", set()),
+        ("who drank before the mug was moved to the head?", "performer", set()),
+    ],
+)
+def test_a_question_is_answered_by_what_entails_it(
+    drinking: Actionary, text: str, variable: str, expected: set[object]
+) -> None:
+    assert {row[variable] for row in _answers(drinking, text)} >= expected
+    if not expected:
+        assert not _answers(drinking, text)
