@@ -17,6 +17,7 @@ from competency import QUERIES
 from observations import drink_from_mug, with_unknown
 
 from capar.model.capture import Agent, Capture
+from capar.model.errors import UnknownNameError
 from capar.model.facts import Fact, Leans, Lies, LookingAt, Moving, Touching
 from capar.model.observation import Observation, Segment
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
@@ -28,7 +29,7 @@ from kb.lexicon.links import class_links, sense_links, thesis_senses
 from kb.lexicon.loading import load_words
 from kb.lexicon.wordnet import wordnet
 from kb.queries.filters import FILTERS
-from kb.queries.questions import questions
+from kb.queries.questions import check_known, question, questions
 
 HERE = Path(__file__).parents[2]
 TAKES = ("take0", "take5")
@@ -485,3 +486,15 @@ def test_every_question_of_segments_takes_the_same_filters() -> None:
             assert taken >= FILTERS.keys(), name  # its own count, too
         if name in other | {"both_hands", "looked_at"}:
             assert {"performer", "capture"} & taken, name
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "near"),
+    [("verb", {"lemma": "raize"}, "raise"), ("levin", {"levin": "9.11"}, "9.1")],
+)
+def test_a_word_that_the_lexicon_lacks_is_told(
+    name: str, given: dict[str, str], near: str, actionary: Actionary
+) -> None:
+    assert actionary.ask(name, **given) == []
+    with pytest.raises(UnknownNameError, match=near):
+        check_known(actionary.store, question(name), given)

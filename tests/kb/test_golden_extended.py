@@ -71,8 +71,8 @@ def known(
         yield fresh
 
 
-def test_every_question_has_a_golden_answer_here() -> None:
-    assert set(questions()) == ASKED_HERE
+def test_every_question_that_is_asked_here_exists() -> None:
+    assert set(questions()) >= ASKED_HERE  # test_competency.py asks the others
 
 
 def test_an_action_is_one_and_the_same_whoever_performs_it(
@@ -149,8 +149,8 @@ def test_borders_say_what_happens_there(known: Actionary) -> None:
     """A Drink ends where the mug leaves the head; a Lift ends where the box turns back down."""
     query = (
         "SELECT DISTINCT ?action ?kind ?body ?other WHERE {{ ?s capar:action/capar:name ?action ; "
-        "capar:endsWith ?b . ?b capar:borderKind/capar:name ?kind ; capar:body ?body ; "
-        "capar:other ?other FILTER(?action = '{0}') }}"
+        "capar:endsWith ?b . ?b capar:borderKind/capar:name ?kind ; capar:body/capar:name ?body ; "
+        "capar:other/capar:name ?other FILTER(?action = '{0}') }}"
     )
     drink = [tuple(row.values()) for row in known.query(query.format("Drink")).plain()]
     assert drink == [("Drink", "ends", "mug", "head")]
