@@ -197,7 +197,7 @@ def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> in
     large = np.flatnonzero(grows >= reach)
     top = int(np.nanargmax(grows))
     far = min(max(int(large[0]), FEWEST_FRAMES), max(top, int(large[0]))) if large.size else top
-    if far < 1 or np.isnan(grows[: far + 1]).any() or grows[far] <= grows[0]:
+    if far < 1 or np.isnan(grows[: far + 1]).any() or grows[far] <= max(grows[0], LEAST):
         return 0
     largest = float(np.nanmax(grows))
     seen = np.maximum(grows[: far + 1], LEAST) / largest
