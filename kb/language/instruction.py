@@ -9,6 +9,9 @@ from capar.model.par import Call, Step
 Window = tuple[float, float]
 """From when to when [s], infinite where it is open."""
 
+GAP = "?"
+"""The object that a question asks for."""
+
 
 class Relation(StrEnum):
     """How one action stands to another in time."""

@@ -5,11 +5,10 @@ import math
 from collections.abc import Iterable, Iterator
 from importlib.resources import files
 
-from kb.language.instruction import Condition, Instruction, Relation
+from kb.language.instruction import GAP, Condition, Instruction, Relation
 from kb.lexicon.english import PEOPLE
 from kb.lexicon.tables import table
 
-GAP = "?"
 SOURCES = ("off", "out of", "away from")
 """Prepositions of what a thing is taken from, as observations state them."""
 

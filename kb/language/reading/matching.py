@@ -4,11 +4,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from capar.model.par import Call
-from kb.language.instruction import Circumstances, Instruction
+from kb.language.instruction import GAP, Circumstances, Instruction
 from kb.language.reading.noun_phrases import Noun
 from kb.language.reading.reader import Reader
 from kb.language.reading.verb_entries import EE, OTHER, Way
-from kb.language.reading.verb_phrases import FOR, GAP, TO, WITH, VerbPhrase
+from kb.language.reading.verb_phrases import FOR, TO, WITH, VerbPhrase
 from kb.lexicon.english import name_of
 
 ANY_VERB = "do"

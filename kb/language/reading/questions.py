@@ -1,25 +1,19 @@
 """Questions: what is asked for, and of which action."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
 from kb.language.instruction import Condition, Instruction
 from kb.language.question import Ask, Question
 from kb.language.reading.adjuncts import Adjuncts, adjunct, window_at
-from kb.language.reading.clauses import conditions, helpers, predicate, same_agent, subject
+from kb.language.reading.clauses import conditions
 from kb.language.reading.function_words import is_next, of_class, prepositions
+from kb.language.reading.inverted_clauses import inverted
 from kb.language.reading.matching import AFTER, matched
-from kb.language.reading.noun_phrases import Noun, noun_phrase
+from kb.language.reading.noun_phrases import noun_phrase
+from kb.language.reading.question_forms import FORMS
 from kb.language.reading.reader import Reader
-from kb.language.reading.verb_phrases import GAP, VerbPhrase, begin, complete
-from kb.lexicon.english import PEOPLE
-from kb.lexicon.inflection import Form
-
-HELPERS = ("did", "was", "were", "is", "does", "has", "had")
-GAP_THING, GAP_PERSON = Noun((GAP,)), Noun(any_person=True)
-DONE = frozenset({"do", "doing", "done"})
-HAPPEN = frozenset({"happened", "happens", "happen", "happening", "done", "going"})
+from kb.language.reading.verb_phrases import begin, complete
 
 
 def question(reader: Reader) -> Question | None:
@@ -46,7 +40,7 @@ def question(reader: Reader) -> Question | None:
 def _asks_later(reader: Reader) -> bool:
     """Whether a question begins after a comma."""
     words = [each.text.lower() for each in reader.cursor.tokens]
-    asking = {words[0] for words in (*_FORMS, *of_class("auxiliary"))}
+    asking = {words[0] for words in (*FORMS, *of_class("auxiliary"))}
     return any(one == "," and two in asking for one, two in pairwise(words))
 
 
@@ -56,14 +50,14 @@ def _question(reader: Reader) -> Question | None:
     fronted = cursor.peek(1) in {"which", "what", "whom", "where", "how"}
     if fronted and cursor.longest(prepositions()) is None:
         cursor.at = start
-    for words, form in _FORMS.items():
+    for words, form in FORMS.items():
         if cursor.accept(*words):
             found = form(reader)
             if found is not None:
                 return _finished(reader, found)
             cursor.at = start
     if is_next(cursor, "auxiliary") and not _command(reader):
-        return _finished(reader, Question(Ask.WHETHER, _inverted(reader)))
+        return _finished(reader, Question(Ask.WHETHER, inverted(reader)))
     return None
 
 
@@ -112,7 +106,7 @@ def _finished(reader: Reader, value: Question) -> Question:
 
 def _alternative(reader: Reader, value: Question) -> Instruction:
     if is_next(reader.cursor, "auxiliary"):
-        return _inverted(reader)
+        return inverted(reader)
     noun = noun_phrase(reader)
     if noun is None:
         raise reader.cursor.error("no other possibility", ("did",))
@@ -137,272 +131,3 @@ def _joined(reader: Reader) -> Instruction | None:
         cursor.at = start
         return None
     return matched(reader, complete(reader, phrase))
-
-
-def _inverted(reader: Reader, gap: Noun | None = None) -> Instruction:
-    """A helping verb, the subject, and what is said of it; the gap is its object."""
-    cursor = reader.cursor
-    while not is_next(cursor, "auxiliary") and adjunct(cursor, Adjuncts()):
-        pass
-    if cursor.peek() in {"do", "be"} or not is_next(cursor, "auxiliary"):
-        raise cursor.error(f"{cursor.peek()!r} cannot follow", HELPERS)
-    before = helpers(reader)
-    about = subject(reader)
-    if about is None and before.kinds[-1:] == ["be"]:
-        cursor.accept("there")
-        about = noun_phrase(reader)
-    if about is None:
-        raise cursor.error(f"nobody and nothing {cursor.peek()!r} could be asked about", HELPERS)
-    if gap is None:
-        return same_agent(reader, predicate(reader, about, before))
-    before.adjuncts.manner[:0] = helpers(reader).adjuncts.manner
-    phrase = begin(reader)
-    if phrase is None:
-        raise cursor.error(f"no verb {cursor.peek()!r}", reader.verbs.beginnings)
-    phrase.negated = before.negated
-    phrase.adjuncts.manner[:0] = before.adjuncts.manner
-    reader.gap = True
-    complete(reader, phrase)
-    return _with_gap(reader, phrase, about, gap)
-
-
-def _with_gap(reader: Reader, phrase: VerbPhrase, about: Noun, gap: Noun) -> Instruction:
-    """The instruction with what is asked for where an object or a preposition lacks it."""
-    asked = [*phrase.objects, *(noun for _, noun in phrase.places)]
-    reader.gap = False
-    objects = (
-        phrase.objects if any(each.things == (GAP,) for each in asked) else [gap, *phrase.objects]
-    )
-    return matched(reader, replace(phrase, objects=objects), agent=about.person, ee=about.limb)
-
-
-def _who(reader: Reader) -> Question | None:
-    cursor = reader.cursor
-    start = cursor.at
-    if is_next(cursor, "auxiliary") and cursor.peek() in {"did", "does"}:
-        before = cursor.at
-        cursor.take()
-        if subject(reader) is not None:
-            cursor.at = before
-            return Question(Ask.WHO, _inverted(reader, GAP_PERSON))
-        cursor.at = start
-    return Question(Ask.WHO, predicate(reader, GAP_PERSON))
-
-
-def _what(reader: Reader) -> Question | None:  # noqa: PLR0911 (each is one form of question)
-    cursor = reader.cursor
-    if cursor.peek() == "time":
-        cursor.take()
-        return _when(reader)
-    noun = _asked_noun(reader)
-    if noun is not None:
-        return noun
-    start = cursor.at
-    if not is_next(cursor, "auxiliary"):
-        if cursor.peek() in HAPPEN:
-            return _happened(reader)
-        return Question(Ask.WHAT, predicate(reader, GAP_THING))
-    before = helpers(reader)
-    if cursor.peek() in HAPPEN:
-        return _happened(reader)
-    ranked = _ranked(reader)
-    if ranked is not None:
-        return ranked
-    about = subject(reader) if cursor.peek() not in DONE else None
-    if about is not None:
-        if cursor.peek() in DONE:
-            return _done_by(reader, about)
-        cursor.at = start
-        return Question(Ask.WHAT, _inverted(reader, GAP_THING))
-    return Question(Ask.WHAT, predicate(reader, GAP_THING, before))
-
-
-def _happened(reader: Reader) -> Question:
-    """``what happened``, ``what was done to the mug``."""
-    cursor = reader.cursor
-    cursor.take()
-    cursor.accept("on")
-    phrase = begin(reader) if cursor.peek() in DONE else None
-    del phrase
-    return Question(Ask.ACTION, _anything(reader, Noun()))
-
-
-def _done_by(reader: Reader, about: Noun) -> Question:
-    reader.cursor.take()
-    return Question(Ask.ACTION, _anything(reader, about))
-
-
-def _anything(reader: Reader, about: Noun) -> Instruction:
-    """Any action of somebody, with what was said of it."""
-    phrase = complete(reader, VerbPhrase(("do",), reader.cursor.at))
-    objects = [each for each in phrase.objects if each.things != (GAP,)]
-    phrase.objects[:] = objects
-    return matched(reader, phrase, agent=about.person, ee=about.limb)
-
-
-def _ranked(reader: Reader) -> Question | None:
-    """``the first thing that she picked up``."""
-    cursor = reader.cursor
-    start = cursor.at
-    cursor.accept("the")
-    rank = cursor.peek()
-    if rank in {"first", "last", "next", "only"} and is_next(cursor, "thing", 1):
-        cursor.at += 2
-        if cursor.accept("that") or cursor.accept("which") or True:
-            about = subject(reader)
-        if about is not None and cursor.peek() not in {"was", "were"}:
-            told = _relative(reader, about)
-        else:
-            told = predicate(reader, GAP_THING)
-        return Question(Ask.WHAT, told, rank=rank)
-    cursor.at = start
-    return None
-
-
-def _relative(reader: Reader, about: Noun) -> Instruction:
-    """What somebody did to what is asked for."""
-    before = helpers(reader)
-    phrase = begin(reader)
-    if phrase is None:
-        raise reader.cursor.error(f"no verb {reader.cursor.peek()!r}", reader.verbs.beginnings)
-    phrase.negated = before.negated
-    reader.gap = True
-    complete(reader, phrase)
-    return _with_gap(reader, phrase, about, GAP_THING)
-
-
-def _asked_noun(reader: Reader) -> Question | None:
-    """``which hand``, ``which objects``, ``which person``, ``what kind of box``."""
-    cursor = reader.cursor
-    start = cursor.at
-    cursor.longest({("of", "the"): "", ("of", "the", "two"): ""})
-    if cursor.longest({("end-effector",): "", **of_class("limb")}) is not None:
-        return _which_hand(reader)
-    if cursor.peek() in {"capture", "recording", "observation", "take"}:
-        cursor.take()
-        return Question(Ask.WHERE_SEEN, _either(reader))
-    if cursor.peek() in PEOPLE or cursor.peek() in {"people", "one"}:
-        cursor.take()
-        return _who(reader)
-    if cursor.longest(of_class("thing")) is not None:
-        return _of_things(reader, ())
-    name: list[str] = []
-    while not reader.stops() and not reader.verb_forms() & {Form.PAST}:
-        name.append(cursor.take().text)
-    if name and (is_next(cursor, "auxiliary") or reader.finite_ahead()):
-        return _of_things(reader, ("_".join(name),))
-    cursor.at = start
-    return None
-
-
-def _of_things(reader: Reader, kinds: tuple[str, ...]) -> Question:
-    cursor = reader.cursor
-    if cursor.peek() in {"did", "does"}:
-        about = _inverted(reader, GAP_THING)
-    else:
-        about = predicate(reader, GAP_THING)
-    own = about.circumstances
-    told = replace(about, circumstances=replace(own, others=(*own.others, *kinds)))
-    return Question(Ask.WHAT, told)
-
-
-def _either(reader: Reader) -> Instruction:
-    """What is said with or without a helping verb before its subject."""
-    return _inverted(reader)
-
-
-def _which_hand(reader: Reader) -> Question:
-    """``which hand moved the mug``, ``which hand did she use to cut the bread``."""
-    cursor = reader.cursor
-    reader.limb = "any_hand"
-    if cursor.peek() not in {"did", "does"}:
-        return Question(Ask.WHICH_HAND, predicate(reader, Noun(limb="any_hand")))
-    start = cursor.at
-    cursor.take()
-    about = subject(reader)
-    if about is None or not cursor.accept("use"):
-        cursor.at = start
-        return Question(Ask.WHICH_HAND, _without_with(reader))
-    cursor.accept("to") or cursor.accept("for")
-    phrase = begin(reader)
-    if phrase is None:
-        raise cursor.error(f"no verb {cursor.peek()!r}", reader.verbs.beginnings)
-    complete(reader, phrase)
-    return Question(Ask.WHICH_HAND, matched(reader, phrase, agent=about.person))
-
-
-def _without_with(reader: Reader) -> Instruction:
-    told = _inverted(reader)
-    reader.cursor.accept("with")
-    return told
-
-
-def _when(reader: Reader) -> Question:
-    return Question(Ask.WHEN, _inverted(reader))
-
-
-def _where(reader: Reader) -> Question:
-    told = _inverted(reader)
-    source = reader.cursor.accept("from")
-    return Question(Ask.SOURCE if source else Ask.WHERE, told)
-
-
-def _how_long(reader: Reader) -> Question:
-    """``how long did she hold it``, ``how long did it take her to carry it``."""
-    cursor = reader.cursor
-    start = cursor.at
-    if cursor.accept("did", "it", "take") or cursor.accept("does", "it", "take"):
-        about = noun_phrase(reader) if is_next(cursor, "person") or cursor.peek() != "to" else None
-        if cursor.accept("to"):
-            phrase = begin(reader)
-            if phrase is not None:
-                complete(reader, phrase)
-                doer = about or Noun()
-                told = matched(reader, phrase, agent=doer.person, ee=doer.limb)
-                return Question(Ask.HOW_LONG, told)
-        cursor.at = start
-    return Question(Ask.HOW_LONG, _inverted(reader))
-
-
-def _how_often(reader: Reader) -> Question:
-    return Question(Ask.HOW_OFTEN, _inverted(reader))
-
-
-def _how_many(reader: Reader) -> Question:
-    cursor = reader.cursor
-    kinds: tuple[str, ...] = ()
-    if cursor.longest(of_class("thing")) is None:
-        if cursor.peek() in PEOPLE or cursor.peek() == "people":
-            cursor.take()
-            return Question(Ask.HOW_MANY_AGENTS, predicate(reader, GAP_PERSON))
-        if cursor.longest(of_class("limb")) is None:
-            kinds = (cursor.take().text,)
-    found = _of_things(reader, kinds)
-    return Question(Ask.HOW_MANY, found.about)
-
-
-def _how(reader: Reader) -> Question:
-    cursor = reader.cursor
-    if not is_next(cursor, "auxiliary"):
-        known = ("often", "long", "many times", "many", "did")
-        raise cursor.error(f"no question is known with 'how {cursor.peek()}'", known)
-    return Question(Ask.HOW, _inverted(reader))
-
-
-_FORMS: dict[tuple[str, ...], Callable[[Reader], Question | None]] = {
-    ("who",): _who,
-    ("whom",): _who,
-    ("what", "else"): _what,
-    ("what",): _what,
-    ("which",): _asked_noun,
-    ("where",): _where,
-    ("when",): _when,
-    ("how", "long"): _how_long,
-    ("how", "often"): _how_often,
-    ("how", "many", "times"): _how_often,
-    ("how", "many", "seconds"): _how_long,
-    ("how", "much", "time"): _how_long,
-    ("how", "many"): _how_many,
-    ("how",): _how,
-}
-"""What each beginning of a question reads."""

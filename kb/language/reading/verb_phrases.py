@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 
+from kb.language.instruction import GAP
 from kb.language.reading.adjuncts import Adjuncts, adjunct
 from kb.language.reading.function_words import is_next, of_class, prepositions
 from kb.language.reading.noun_phrases import Noun, begins_noun, noun_phrase
@@ -11,8 +12,6 @@ from kb.lexicon.english import name_of
 from kb.lexicon.inflection import Form
 
 FOR, TO, WITH = "for", "to", "with"
-GAP = "?"
-"""The object that a question asks for."""
 
 
 @dataclass
