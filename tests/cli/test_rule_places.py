@@ -38,6 +38,7 @@ COMMANDS = {
     "rules list": [],
     "rules new": ["Sip", "--from", f"{DEMO}/right_hand/2"],
     "rules show": ["Reach"],
+    "view": [DEMO, "--html", "seen.html"],
     "rules test": ["sip.lp"],
     "rules words": [],
     "test": ["sip.motion.toml"],

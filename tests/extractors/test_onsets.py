@@ -49,21 +49,28 @@ def test_what_sets_off_at_once_began_within_a_frame_before_it_was_seen(
     assert abs(found / rate_hz - begin_s) <= 1.01 / rate_hz
 
 
-@given(RATES_HZ, st.floats(2.0, 4.0), st.floats(0.2, 0.4), st.integers(0, 1000))
-@settings(max_examples=60, deadline=None)
-def test_noise_moves_the_beginning_of_a_slow_motion_by_no_more_than_50_ms(
-    rate_hz: float, lasts_s: float, way_m: float, seed: int
+@pytest.mark.parametrize("rate_hz", [30.0, 60.0, 100.0, 240.0])
+def test_noise_moves_the_beginning_of_98_in_100_slow_motions_by_no_more_than_50_ms(
+    rate_hz: float,
 ) -> None:
     """A fifth of a hair is what noise leaves of a filtered place, since a hair is five of it."""
+    chance = np.random.default_rng(7)
+    errors_s = [_noisy_error_s(chance, rate_hz) for _ in range(300)]
+    assert np.mean(np.abs(errors_s) <= 0.05 + 1.0 / rate_hz) >= 0.98
+
+
+def _noisy_error_s(chance: np.random.Generator, rate_hz: float) -> float:
+    """How late the beginning is of a slow motion drawn by chance, with noise [s]."""
+    lasts_s, way_m = chance.uniform(2.0, 4.0), chance.uniform(0.2, 0.4)
     rest = round(0.5 * rate_hz)
     times = (np.arange(rest + round(lasts_s * rate_hz) + 1) - rest) / rate_hz
     truth = way_m * smooth(times / lasts_s)
-    noise = np.random.default_rng(seed).normal(0.0, HAIR_M / 5.0, len(times))
+    noise = chance.normal(0.0, HAIR_M / 5.0, len(times))
     noise = np.convolve(noise, np.ones(3) / np.sqrt(3.0), mode="same")
     last_there = int(np.flatnonzero(truth + noise < HAIR_M)[-1])
     grows = (truth + noise)[last_there + 1 :] / HAIR_M
     found = last_there + 1 - before_seen(grows, GROWN, round(MOST_S * rate_hz))
-    assert times[found] == pytest.approx(0.0, abs=0.05 + 1.0 / rate_hz)
+    return float(times[found])
 
 
 @given(
