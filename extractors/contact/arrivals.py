@@ -98,5 +98,4 @@ def settled_ends(
     there = np.flatnonzero(~(opening > thresholds.rest_speed_mps))
     if not arrived.size or not there.size or arrived[0] >= there[-1]:
         return contact
-    # A speed is that of a window about its frame: it is settled from the window's begin to its end.
-    return max(first + int(arrived[0]) - half, first), min(first + int(there[-1]) + half, last)
+    return first + int(arrived[0]), first + int(there[-1])

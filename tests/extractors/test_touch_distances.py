@@ -96,8 +96,9 @@ def test_a_thing_that_is_held_and_never_moves_is_touched_where_the_distance_sett
     assert known.pair("right_hand", "bowl").found is Found.SETTLING
     assert known.pair("right_hand", "pot").found is Found.NEVER
     ((start_s, end_s),) = spans(capture, "right_hand", "bowl")
-    assert 1.2 <= start_s <= 1.6
-    assert 3.4 <= end_s <= 3.8
+    frame_s = 0.01  # the hand moves until 1.6 s and from 3.4 s on; a speed is known to a frame
+    assert 1.2 <= start_s <= 1.6 + 1.5 * frame_s
+    assert 3.4 - 1.5 * frame_s <= end_s <= 3.8
 
 
 def test_a_hand_that_only_rests_at_home_touches_nothing() -> None:
