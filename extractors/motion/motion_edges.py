@@ -185,8 +185,7 @@ def onset(
 def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> int:
     """How many frames before it is 1 a displacement that grows with a power of time was none.
 
-    The profile is the one of ``PROFILES`` that fits what was seen of it best; where none fits it
-    all, as people do not go on as they began, its first half is asked, and so on.
+    The profile is the one of ``PROFILES`` that fits all that was seen of it best.
 
     Args:
         grows: The displacement, from where it is about 1 on.
@@ -202,19 +201,11 @@ def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> in
         return 0
     largest = float(np.nanmax(grows))
     seen = np.maximum(grows[: far + 1], LEAST) / largest
-    lasted, stray = _best(seen)
-    while stray > AGREEMENT and len(seen) > 2 * FEWEST_FRAMES:
-        seen = seen[: len(seen) // 2 + 1]
-        lasted, stray = _best(seen)
+    tries = [_fitted(seen, *profile) for profile in PROFILES]
+    lasted, stray = min(tries, key=lambda each: each[1])
     if stray > AGREEMENT:
         most = round(most * UNSURE)
     return min(max(round(lasted), 0), most)
-
-
-def _best(seen: Float[np.ndarray, "some"]) -> tuple[float, float]:
-    """What the profile says that fits a displacement best."""
-    tries = [_fitted(seen, *profile) for profile in PROFILES]
-    return min(tries, key=lambda each: each[1])
 
 
 def _fitted(
