@@ -14,6 +14,7 @@ from capar.model.errors import CaparError, UnknownNameError
 from capar.model.facts import Touching
 from extractors.calibration import calibrate
 from extractors.measure import measure
+from extractors.thresholds import Thresholds
 from extractors.set_values import set_values
 
 TOUCHES_S, LEAVES_S = 1.1, 2.8
@@ -96,9 +97,10 @@ def test_a_thing_that_is_held_and_never_moves_is_touched_where_the_distance_sett
     assert known.pair("right_hand", "bowl").found is Found.SETTLING
     assert known.pair("right_hand", "pot").found is Found.NEVER
     ((start_s, end_s),) = spans(capture, "right_hand", "bowl")
-    frame_s = 0.01  # the hand moves until 1.6 s and from 3.4 s on; a speed is known to a frame
-    assert 1.2 <= start_s <= 1.6 + 1.5 * frame_s
-    assert 3.4 - 1.5 * frame_s <= end_s <= 3.8
+    # The hand moves until 1.6 s and from 3.4 s on; its speed is that of a window about a frame.
+    half_s = 0.5 * Thresholds().rest_window_s
+    assert 1.2 <= start_s <= 1.6 + half_s
+    assert 3.4 - half_s <= end_s <= 3.8
 
 
 def test_a_hand_that_only_rests_at_home_touches_nothing() -> None:
