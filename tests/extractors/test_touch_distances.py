@@ -14,8 +14,8 @@ from capar.model.errors import CaparError, UnknownNameError
 from capar.model.facts import Touching
 from extractors.calibration import calibrate
 from extractors.measure import measure
-from extractors.thresholds import Thresholds
 from extractors.set_values import set_values
+from extractors.thresholds import Thresholds
 
 TOUCHES_S, LEAVES_S = 1.1, 2.8
 """When the hand of ``pick_and_place`` truly touches the thing, and leaves it [s]."""
