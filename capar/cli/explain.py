@@ -150,11 +150,12 @@ def _rows(
 
 
 def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
-    from dataclasses import asdict
+    from dataclasses import asdict, replace
 
     segments = [e for e in seen.observation.segments if (e.ee, e.index) == (told.ee, told.index)]
     notices = [each.document() for each in _notices(segments, seen)]
-    return _placed(asdict(told), seen) | {"notices": notices}
+    whole = replace(told, reason=told.reason.expanded_once())
+    return _placed(asdict(whole), seen) | {"notices": notices}
 
 
 def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:

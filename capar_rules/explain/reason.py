@@ -23,15 +23,38 @@ class Reason:
 
     because: tuple["Reason", ...]
 
+    repeated: bool = False
+    """Whether what it was derived from stands where it is met first (``expanded_once``)."""
+
     def with_sentences(self) -> "Reason":
         """The tree of the nodes that have a sentence, each subtree only once."""
         return _with_sentences(self, set())
 
+    def expanded_once(self) -> "Reason":
+        """The tree in which what an atom was derived from stands only where it is met first.
+
+        A derivation shares its parts, so written out in full it may have 10,000 times as many
+        nodes as it has atoms.
+        """
+        return _expanded_once(self, set())
+
     def walk(self) -> Iterator["Reason"]:
-        """This node and all below it, from the top."""
-        yield self
-        for each in self.because:
-            yield from each.walk()
+        """This node and all below it, from the top, each once."""
+        passed, waiting = set[int](), [self]
+        while waiting:
+            each = waiting.pop()
+            if id(each) not in passed:
+                passed.add(id(each))
+                yield each
+                waiting += reversed(each.because)
+
+
+def _expanded_once(reason: Reason, known: set[str]) -> Reason:
+    if reason.because and reason.atom in known:
+        return replace(reason, because=(), repeated=True)
+    known.add(reason.atom)
+    below = tuple(_expanded_once(each, known) for each in reason.because)
+    return replace(reason, because=below)
 
 
 def _with_sentences(reason: Reason, known: set[str]) -> Reason:

@@ -98,4 +98,11 @@ def settled_ends(
     there = np.flatnonzero(~(opening > thresholds.rest_speed_mps))
     if not arrived.size or not there.size or arrived[0] >= there[-1]:
         return contact
-    return first + int(arrived[0]), first + int(there[-1])
+    # A speed is that of a window about its frame, so it tells of both some frames within.
+    here, gone = int(arrived[0]), int(there[-1])
+    within = apart[first : last + 1]
+    settled = within <= np.fmin.reduce(within[here : gone + 1]) + thresholds.edge_m
+    coming, going = np.flatnonzero(~settled[:here]), np.flatnonzero(~settled[gone + 1 :])
+    begins = int(coming[-1]) + 1 if coming.size else 0
+    ends = gone + int(going[0]) if going.size else len(within) - 1
+    return first + begins, first + ends

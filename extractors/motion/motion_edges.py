@@ -1,6 +1,5 @@
 """When a motion truly begins and ends, within the floor that separates motion from rest."""
 
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -21,34 +20,15 @@ No threshold: as displacement grows with the cube of time, that is twice as long
 """
 
 
-Profile = Callable[[Float[np.ndarray, "some"]], Float[np.ndarray, "some"]]
+POWERS = (1.0, 3.0)
+"""With which power of time a displacement grows [1]: at once, by a steady push, smoothly."""
 
-_TIMES = np.linspace(0.0, 1.0, 1001)
-_SMOOTH = _TIMES**3 * (10.0 - 15.0 * _TIMES + 6.0 * _TIMES**2)
-
-PROFILES: tuple[tuple[Profile, Profile], ...] = (
-    (lambda way: way, np.ones_like),
-    (
-        lambda way: np.interp(way, _SMOOTH, _TIMES),
-        lambda times: 30.0 * times**2 * (1.0 - times) ** 2,
-    ),
-)
-"""How a displacement grows from 0 to 1: at once, by a steady push, or smoothly (minimum jerk; Flash
-and Hogan 1985). Of each the time at a displacement, and the speed at a time."""
-
-AGREEMENT = 0.035
-"""A beginning is sure if the displacement strays from its profile by no larger share of itself [1].
-
-Noise of a fifth of a hair is a fortieth of the eight hairs that are looked at; the rest is for what
-the filter rounds.
-"""
+AGREEMENT = 0.1
+"""A beginning is sure if both estimates of how long ago it was differ by no larger share [1]."""
 
 UNSURE = 1.0 / 3.0
 """Share of the longest time by which a motion may have begun earlier if that is not sure [1]: what
 drifts, or is recorded at few frames, grows with no power of time."""
-
-FEWEST_FRAMES = 3
-"""For so many frames at least a displacement is followed [1]: two fit any profile."""
 
 LEAST = 0.01
 """A displacement is taken for at least this [1], since less is noise."""
@@ -185,7 +165,8 @@ def onset(
 def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> int:
     """How many frames before it is 1 a displacement that grows with a power of time was none.
 
-    The profile is the one of ``PROFILES`` that fits all that was seen of it best.
+    The power is the one of ``POWERS`` that agrees best with when it was half as large, in powers
+    of ten, as in the end.
 
     Args:
         grows: The displacement, from where it is about 1 on.
@@ -195,51 +176,25 @@ def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> in
     if not grows.size or np.isnan(grows[0]):
         return 0
     large = np.flatnonzero(grows >= reach)
-    top = int(np.nanargmax(grows))
-    far = min(max(int(large[0]), FEWEST_FRAMES), max(top, int(large[0]))) if large.size else top
-    if far < 1 or np.isnan(grows[: far + 1]).any() or grows[far] <= max(grows[0], LEAST):
+    far = int(large[0]) if large.size else int(np.nanargmax(grows))
+    begin, end = max(float(grows[0]), LEAST), float(grows[far])
+    if end <= begin:
         return 0
-    largest = float(np.nanmax(grows))
-    seen = np.maximum(grows[: far + 1], LEAST) / largest
-    tries = [_fitted(seen, *profile) for profile in PROFILES]
-    lasted, stray = min(tries, key=lambda each: each[1])
-    if stray > AGREEMENT:
+    middle = float(np.sqrt(begin * end))
+    half = int(np.flatnonzero(grows[: far + 1] >= middle)[0])
+    tries = [
+        (_lasted(begin, end, far, power), _lasted(begin, middle, half, power)) for power in POWERS
+    ]
+    whole, part = min(tries, key=lambda both: abs(1.0 - both[1] / both[0]))
+    if abs(1.0 - part / whole) > AGREEMENT:
         most = round(most * UNSURE)
-    return min(max(round(lasted), 0), most)
+    return min(round(whole), most)
 
 
-def _fitted(
-    seen: Float[np.ndarray, "some"], inverse: Profile, slope_at: Profile
-) -> tuple[float, float]:
-    """Since how many frames a displacement grows by a profile, and how far it strays from it.
-
-    A straight line is fitted to the times at which the profile is so far. Noise, alike at any
-    displacement, is the larger in them the slower the profile is there, which the weights undo.
-
-    Args:
-        seen: The displacement, as a share of the largest [1].
-        inverse: The time of a profile at a displacement, from 0 to 1.
-        slope_at: The speed of the profile at a time.
-
-    Returns:
-        The frames by which it began before the first one, and the root of the mean square of
-        what the profile leaves, as a share of the last displacement [1]; infinite if it does
-        not grow by the profile.
-    """
-    times = inverse(seen)
-    weights = slope_at(times)
-    total = float(np.sum(weights**2))
-    if total <= 0.0:
-        return 0.0, np.inf
-    shares = weights**2 / total
-    clock = np.arange(len(seen))
-    middle, centre = float(shares @ clock), float(shares @ times)
-    spread = float(shares @ (clock - middle) ** 2)
-    slope = float(shares @ ((clock - middle) * (times - centre))) / spread if spread > 0.0 else 0.0
-    if slope <= 0.0:
-        return 0.0, np.inf
-    left = (times - centre - slope * (clock - middle)) * weights
-    return centre / slope - middle, float(np.sqrt(np.mean(left**2))) / float(seen[-1])
+def _lasted(begin: float, end: float, frames: int, power: float) -> float:
+    """How many frames it took to ``begin`` if it then takes so many to ``end``."""
+    first, last = begin ** (1.0 / power), end ** (1.0 / power)
+    return frames * first / (last - first)
 
 
 def longest(poses: Poses, near: Floor, thresholds: Thresholds) -> int:

@@ -67,6 +67,20 @@ def test_json_has_the_whole_tree_with_every_atom():
     assert "touching(mug,head,243,268)" in atoms
 
 
+def test_json_says_once_what_an_atom_was_derived_from():
+    (told,) = json.loads(read("right_hand/1", "--json"))
+    nodes, waiting = [], [told["reason"]]
+    while waiting:
+        nodes.append(waiting.pop())
+        waiting += reversed(nodes[-1]["because"])
+    derived = [each["atom"] for each in nodes if each["because"]]
+    repeated = [each["atom"] for each in nodes if each["repeated"]]
+    assert len(set(derived)) == len(derived)
+    assert repeated
+    assert set(repeated) <= set(derived)
+    assert not any(each["because"] for each in nodes if each["repeated"])
+
+
 def test_the_picture_has_a_row_for_each_sentence(tmp_path):
     path = tmp_path / "why.svg"
     answered("right_hand/1", "--svg", str(path), *THESIS)

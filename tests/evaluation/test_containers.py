@@ -97,10 +97,6 @@ def test_landings_are_counted_by_what_is_told_and_what_is_true() -> None:
     assert (scores["told_wrongly"], scores["untold"]) == (1, 2)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="since ends of motion are fitted to a profile, a pudding is not told to go into the box",
-)
 def test_a_scene_is_scored_by_its_evaluation_file(monkeypatch: pytest.MonkeyPatch) -> None:
     """One object lies in the box from the beginning, and one ends above its rim."""
     monkeypatch.setenv("CAPAR_DATA", str(recordings_folder()))

@@ -15,7 +15,6 @@ from capar.model.facts import Touching
 from extractors.calibration import calibrate
 from extractors.measure import measure
 from extractors.set_values import set_values
-from extractors.thresholds import Thresholds
 
 TOUCHES_S, LEAVES_S = 1.1, 2.8
 """When the hand of ``pick_and_place`` truly touches the thing, and leaves it [s]."""
@@ -97,10 +96,8 @@ def test_a_thing_that_is_held_and_never_moves_is_touched_where_the_distance_sett
     assert known.pair("right_hand", "bowl").found is Found.SETTLING
     assert known.pair("right_hand", "pot").found is Found.NEVER
     ((start_s, end_s),) = spans(capture, "right_hand", "bowl")
-    # The hand moves until 1.6 s and from 3.4 s on; its speed is that of a window about a frame.
-    half_s = 0.5 * Thresholds().rest_window_s
-    assert 1.2 <= start_s <= 1.6 + half_s
-    assert 3.4 - half_s <= end_s <= 3.8
+    assert 1.2 <= start_s <= 1.6
+    assert 3.4 <= end_s <= 3.8
 
 
 def test_a_hand_that_only_rests_at_home_touches_nothing() -> None:
