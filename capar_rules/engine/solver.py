@@ -132,12 +132,12 @@ _CONTRADICTION = "the rules contradict each other over these facts: they have no
 def _grounded(files: Iterable[Path], texts: Iterable[str], option: str) -> clingo.Control:
     messages: list[str] = []
 
-    def note(code: clingo.MessageCode, message: str) -> None:
-        # Every rule file includes what it reads, so that a file is named twice is no fault.
-        if code is not clingo.MessageCode.FileIncluded:
-            messages.append(message.strip())
+    def note(_: clingo.MessageCode, message: str) -> None:
+        messages.append(message.strip())
 
-    control = clingo.Control([option], logger=note, message_limit=100)
+    # Every rule file includes what it reads, so that a file is named twice is no fault.
+    options = [option, "--warn=no-file-included"]
+    control = clingo.Control(options, logger=note, message_limit=100)
     try:
         for path in files:
             control.load(str(path))
