@@ -17,6 +17,7 @@ from capar.views.rows import (
     Lost,
     Row,
     Speeds,
+    is_detailed,
     rows,
     spoken,
     stand_ins,
@@ -41,6 +42,10 @@ TITLE_IN = 0.75
 NOTE_POINTS = 8.0
 NOTE_LINE_IN = 0.16
 
+MOST_SHAPES = 12
+"""So many stand-ins are listed; ``observe --json`` lists all."""
+
+MANY_NOTE = "of so many end-effectors those that handle objects stand first, without speeds."
 LOST_NOTE = "hatched: a body of that row was not tracked; a bar across it is inferred."
 
 LABEL_IN = 3.5
@@ -194,9 +199,13 @@ def _notes(observation: Observation, content: Sequence[Row], width: float) -> li
     ]
     shapes = stand_ins(observation)
     if shapes:
-        parts = ", ".join(f"{spoken(name)} ({shape})" for name, shape in shapes.items())
-        notes.append(f"{STAND_IN} stand-ins of stated size, not true shapes: {parts}.")
+        parts = [f"{spoken(name)} ({shape})" for name, shape in shapes.items()]
+        more = len(parts) - MOST_SHAPES
+        told = ", ".join(parts[:MOST_SHAPES]) + (f" and {more} more" if more > 0 else "")
+        notes.append(f"{STAND_IN} stand-ins of stated size, not true shapes: {told}.")
     if any(each.lost for each in content):
         notes.append(LOST_NOTE)
+    if not is_detailed(observation):
+        notes.append(MANY_NOTE)
     columns = max(int(width / width_in("n", points=NOTE_POINTS)), 40)
     return [line for note in notes for line in wrap(note, columns, subsequent_indent="   ")]

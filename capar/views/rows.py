@@ -31,6 +31,10 @@ ASSUMED, STAND_IN = "*", "†"
 MOST_NAMED = 4
 """So many who take part in one action are named one by one."""
 
+MOST_DETAILED = 8
+"""With more links than these speeds and zero crossings are left out, and those that handle objects
+stand first: a whole body with its fingers is looked at as a whole."""
+
 _Name = TypeVar("_Name", str, tuple[str, ...])
 
 
@@ -69,12 +73,26 @@ def rows(observation: Observation, speeds: Speeds, lost: Lost | None = None) -> 
     """Every row, from the top: each link, what several do as one action, objects, and gaze."""
     clock = frame_clock(observation, speeds)
     out: list[Row] = []
-    for link in observation.links:
+    for link in _links(observation):
         out += _link_rows(observation, link, speeds, clock)
     out += _joint_rows(observation, clock)
     out += _object_rows(observation, clock)
     out = [replace(each, lost=_lost(each.about, lost or {}, clock)) for each in out]
     return (*out, *_gaze_rows(observation, clock))
+
+
+def is_detailed(observation: Observation) -> bool:
+    """Whether there are so few links that each has its speed and its zero crossings."""
+    return len(observation.links) <= MOST_DETAILED
+
+
+def _links(observation: Observation) -> list[ObservedLink]:
+    """The links as they are, or, of many, those first that handle objects."""
+    if is_detailed(observation):
+        return list(observation.links)
+    return sorted(
+        observation.links, key=lambda link: not any(each.objects for each in link.segments)
+    )
 
 
 def _lost(about: Sequence[str], lost: Lost, clock: Callable[[int], float]) -> tuple[Span, ...]:
@@ -140,14 +158,14 @@ def _link_rows(
     )
     out = [Row(Kind.SEGMENTS, marked(observation, link.ee), spans, borders=borders)]
     ticks = tuple(clock(each) for each in crossings)
-    if ticks:
+    if ticks and is_detailed(observation):
         out.append(Row(Kind.TICKS, "zero crossings", ticks=ticks, borders=borders))
     touched = [each for each in _touching(observation) if each.body == link.ee]
     for name in _in_order(each.other for each in touched):
         bars = tuple(_span(each, clock) for each in touched if each.other == name)
         label = f"touches {marked(observation, name)}"
         out.append(Row(Kind.BARS, label, bars, borders=borders, about=(link.ee, name)))
-    if link.ee in speeds:
+    if link.ee in speeds and is_detailed(observation):
         out.append(Row(Kind.CURVE, "speed", curve=speeds[link.ee], borders=borders))
     return out
 

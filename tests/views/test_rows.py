@@ -7,7 +7,7 @@ import pytest
 from observations import drink_from_mug, pick_up_with_both_hands
 
 from capar.model.facts import Moving, Touching
-from capar.views.rows import Kind, frame_clock, rows
+from capar.views.rows import MOST_DETAILED, Kind, frame_clock, rows
 
 
 def test_a_link_shows_segments_crossings_contacts_and_speed_in_that_order() -> None:
@@ -87,3 +87,22 @@ def test_without_speeds_the_borders_keep_their_times() -> None:
     for each in seen.segments:
         assert clock(each.first) == pytest.approx(each.start_s)
         assert clock(each.last) == pytest.approx(each.end_s)
+
+
+def test_of_many_links_those_that_handle_objects_stand_first_and_none_has_a_curve() -> None:
+    seen = drink_from_mug()
+    (link,) = seen.links
+    idle = [
+        replace(
+            link,
+            ee=f"toe_{number}",
+            segments=tuple(replace(each, objects=()) for each in link.segments),
+        )
+        for number in range(MOST_DETAILED)
+    ]
+    speeds = {"right_hand": (np.array([0.0, 1.0]), np.array([0.0, 0.5]))}
+    out = rows(replace(seen, links=(*idle, link)), speeds)
+    kinds = {each.kind for each in out}
+    assert out[0].label == "right hand"
+    assert not kinds & {Kind.CURVE, Kind.TICKS}
+    assert len([each for each in out if each.kind is Kind.SEGMENTS]) == MOST_DETAILED + 1
