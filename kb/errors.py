@@ -77,3 +77,7 @@ class ShapeError(CaparError):
     def __init__(self, name: str, findings: tuple[str, ...]) -> None:
         self.findings = findings
         super().__init__(f"{name} breaks the model:\n  " + "\n  ".join(findings))
+
+
+class CorrectionError(CaparError):
+    """A claim about a segment that cannot be: of nobody, of no change, or outside its time."""

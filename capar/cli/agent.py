@@ -27,6 +27,7 @@ def new(
     ] = None,
     wait: Wait = 0.0,
     actionary: Place = None,
+    json: Json = False,
 ) -> None:
     """Declare an agent; it stays when observations are forgotten."""
     from kb import Actionary
@@ -34,7 +35,10 @@ def new(
     require_actionary(actionary, observed=True)
     with Actionary.open(actionary, wait_s=wait) as opened:
         opened.declare_agent(name, kind=kind, can=can or ())
-    typer.echo(f"declared {name}")
+    if json:
+        print_json({"declared": name})
+    else:
+        typer.echo(f"declared {name}")
 
 
 @app.command("list")
@@ -66,6 +70,7 @@ def same(
     other: Annotated[str, typer.Argument(help="The agent that is the same one.")],
     wait: Wait = 0.0,
     actionary: Place = None,
+    json: Json = False,
 ) -> None:
     """Make two agents one: what OTHER did, and will be observed to do, is NAME's."""
     from kb import Actionary
@@ -73,4 +78,7 @@ def same(
     require_actionary(actionary, observed=True)
     with Actionary.open(actionary, wait_s=wait) as opened:
         opened.same_agent(name, other)
-    typer.echo(f"{other} is {name}")
+    if json:
+        print_json({"agent": name, "joined": other})
+    else:
+        typer.echo(f"{other} is {name}")

@@ -56,6 +56,10 @@ def query(
     time_limit: Annotated[
         float, typer.Option(metavar="SECONDS", help="How long the question may take.")
     ] = 30.0,
+    corrected: Annotated[
+        bool,
+        typer.Option("--corrected", help="Ask what persons say of segments (`capar correct`)."),
+    ] = False,
     actionary: Place = None,
 ) -> None:
     """Ask the Actionary a QUESTION; see --list. It can neither write nor run for ever."""
@@ -72,13 +76,15 @@ def query(
     raw = _raw(question)
     text = _text(question, raw, given)
     from kb import Actionary
+    from kb.corrected_view import corrected as corrected_view
     from kb.queries.questions import check_known
     from kb.queries.questions import question as named
 
     with Actionary.open(actionary, read_only=True) as opened:
-        answer = opened.store.ask_within(text, seconds=time_limit)
+        store = corrected_view(opened.store) if corrected else opened.store
+        answer = store.ask_within(text, seconds=time_limit)
         if raw is None and not answer.rows:
-            check_known(opened.store, named(question), given)
+            check_known(store, named(question), given)
     _print(answer, chosen)
 
 
