@@ -197,7 +197,7 @@ def correct(store: Store, address: SegmentAddress, change: Correction, *, by: st
 def _stated(span: Span, capture: str, number: int, made: str) -> list[Quad]:
     node = names.shared("correction", capture, number)
     person = names.shared("person", span.by)
-    told = [
+    told: list[tuple[NamedNode, NamedNode, NamedNode | Literal]] = [
         (node, TYPE, CAPAR.Correction),
         (node, LABEL, Literal(f"{span.by} on {capture}: {span.name}")),
         (node, CAPAR.ofCapture, Literal(capture)),

@@ -25,7 +25,7 @@ class DamagedError(StoreError):
     def __init__(self, place: str, reason: str) -> None:
         super().__init__(
             f"{place}: its database is damaged ({reason}); move the folder away, then restore it "
-            "from an export (capar import FILE) or observe the captures again"
+            "from a backup or export (capar import FILE) or observe the captures again"
         )
 
 
