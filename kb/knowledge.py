@@ -163,7 +163,9 @@ class Knowledge:
         Raises:
             StoreError: There is one of that name.
         """
-        agents.declare(self.store, name, kind=kind, can=can)
+        agents.declare(self.store, name, kind=kind)
+        for action in can:
+            self.add_ability(action, agent=name)
 
     def agents(self) -> tuple[str, ...]:
         """Every agent, declared or seen, by name; an unnamed one by the capture that it is of."""

@@ -1,12 +1,12 @@
 """Agents: declared ones, those that performed, and which of them are one person."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from pyoxigraph import Literal, NamedNode, Quad
 
 from capar.model.errors import UnknownNameError
 from kb.errors import StoreError
-from kb.lookup import abilities, kinds
+from kb.lookup import kinds
 from kb.store import names
 from kb.store.sparql import fill
 from kb.store.statements import LABEL, TYPE
@@ -59,8 +59,8 @@ def node_of(store: Store, name: str) -> NamedNode:
     return joined[given]
 
 
-def declare(store: Store, name: str, *, kind: str = "", can: Iterable[str] = ()) -> None:
-    """State that there is an agent, of what kind it is, and what it is able to do.
+def declare(store: Store, name: str, *, kind: str = "") -> None:
+    """State that there is an agent, and of what kind it is.
 
     Raises:
         StoreError: There is one of that name.
@@ -77,8 +77,6 @@ def declare(store: Store, name: str, *, kind: str = "", can: Iterable[str] = ())
     if kind:
         quads += [*kinds.described(kind), Quad(node, CAPAR.kind, names.shared("kind", kind), GRAPH)]
     store.insert(quads)
-    for action in can:
-        abilities.declare(store, action, (), agent=name, kind="")
 
 
 def same(store: Store, first: str, second: str) -> None:
