@@ -4,7 +4,7 @@
 PYTHON ?= python3
 VENV := .venv
 TESTED := .make/venv
-CORES ?= 2
+WORKERS ?= 3
 SOURCES := $(shell find capar extractors capar_rules kb ontology -type f -not -name '*.pyc' 2>/dev/null)
 
 .PHONY: demo test check bench docs develop clean
@@ -15,7 +15,7 @@ demo: $(VENV)/ready  ## Observe the shipped capture: six steps of drinking from 
 test: $(TESTED)/ready  ## Build the wheel, install it, and test it from another folder.
 	mkdir -p .make/elsewhere
 	cd .make/elsewhere && ../venv/bin/python -m pytest -c $(CURDIR)/pyproject.toml --rootdir $(CURDIR) \
-		-n $(CORES) --dist worksteal $(CURDIR)/tests $(ARGS)
+		-n $(WORKERS) --dist worksteal $(CURDIR)/tests $(ARGS)
 
 check: $(VENV)/developing  ## Style, types and the import contract, as the tests check them too.
 	$(VENV)/bin/ruff format --check .

@@ -2,6 +2,8 @@
 
 # ruff: noqa: N815  (the terms of an ontology are in mixed case)
 
+from functools import cache
+
 from pyoxigraph import NamedNode
 
 from ontology.closed import Closed
@@ -392,6 +394,7 @@ class CAPAR(metaclass=Closed):
     arguments: NamedNode
 
 
+@cache
 def terms() -> tuple[str, ...]:
     """Names of every term, sorted."""
     return tuple(sorted(CAPAR.__annotations__))

@@ -40,7 +40,7 @@ def solve_batch(files: Iterable[Path], cases: Sequence[Sequence[Fact]]) -> list[
     """
     statements: list[AST] = []
     parse_files([str(path) for path in files], statements.append, logger=_ignore)
-    control = clingo.Control(["--models=2"], logger=_ignore)
+    control = clingo.Control(["--models=2", "--warn=none"], logger=_ignore)
     numbered = _Numbered(statements)
     with ProgramBuilder(control) as builder:
         for statement in statements:

@@ -13,6 +13,8 @@ import typer
 from capar.model.errors import FileError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
     from rich.console import Console
 
 REMEDIES = {
@@ -86,6 +88,21 @@ def console() -> "Console":
     from rich.console import Console
 
     return Console(width=None if sys.stdout.isatty() else PIPE_COLUMNS)
+
+
+def progress(doing: str) -> "Callable[[Sequence[Any]], Iterable[Any]]":
+    """Goes through a sequence with a bar on standard error, if that is a terminal."""
+    import sys
+
+    from rich.console import Console
+    from rich.progress import track
+
+    def tracked(steps: "Sequence[Any]") -> "Iterable[Any]":
+        if len(steps) < 2 or not sys.stderr.isatty():
+            return steps
+        return track(steps, description=doing, console=Console(stderr=True), transient=True)
+
+    return tracked
 
 
 def check_writable(path: Path, *, suffixes: Collection[str] = ()) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from capar.cli._options import Beside, Rules, Steady, rule_base
-from capar.cli._output import check_writable, console, print_json, written
+from capar.cli._output import check_writable, console, print_json, progress, written
 from capar.evaluation.kinds import Contradictions, Kind
 from capar.model.errors import CaparError
 
@@ -98,7 +98,7 @@ def evaluate(
     from capar.evaluation.evaluations import report
     from capar.evaluation.running import evaluate as carry_out
 
-    found = carry_out(plan, rules=base)
+    found = carry_out(plan, rules=base, progress=progress("observing"))
     drawn = _draw(found, plot) if plot else []
     result = report(found)
     if as_json:

@@ -48,3 +48,5 @@ def export(
         return
     with written(file) as draft:
         draft.write_bytes(data)
+    what = f"observation {observation}" if observation else "everything"
+    typer.echo(f"wrote {what} to {file}: {len(data):,} bytes of {chosen}", err=True)

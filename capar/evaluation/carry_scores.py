@@ -13,7 +13,7 @@ from capar.evaluation.comparisons import Channel
 from capar.evaluation.evaluations import Evaluation, Scored, summed
 from capar.evaluation.labels import Kind, Label, Labels, check_known, check_span
 from capar.evaluation.metrics import SAME_S, Interval, errors_ms, rounded
-from capar.evaluation.plan import Pair, Plan
+from capar.evaluation.plan import Pair, Plan, Progress
 from capar.evaluation.plan_schema import CarryOptions
 from capar.evaluation.scoring import read_case_labels
 from capar.model.capture import Capture, Stream
@@ -80,7 +80,7 @@ class CarryCounts:
         }
 
 
-def score_carries(plan: Plan, base: Profile) -> Evaluation:
+def score_carries(plan: Plan, base: Profile, progress: Progress) -> Evaluation:
     """Observe captures and compare printed carries with labelled ones.
 
     A printed carry of an object is a run of segments, one after the other, of which the object is
@@ -91,7 +91,7 @@ def score_carries(plan: Plan, base: Profile) -> Evaluation:
     """
     one = _recorded if plan.carries.presence_of else _labelled
     return Evaluation(
-        Kind.CARRIES, tuple(one(pair, plan, base) for pair in plan.pairs), plan.groups
+        Kind.CARRIES, tuple(one(pair, plan, base) for pair in progress(plan.pairs)), plan.groups
     )
 
 

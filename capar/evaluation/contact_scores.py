@@ -12,7 +12,7 @@ from capar.evaluation.contact_arrays import read_contact_arrays
 from capar.evaluation.evaluations import Evaluation, Scored, summed
 from capar.evaluation.labels import Kind, Labels, check_known, check_span
 from capar.evaluation.metrics import Interval, errors_ms, rounded
-from capar.evaluation.plan import Pair, Plan
+from capar.evaluation.plan import Pair, Plan, Progress
 from capar.evaluation.scoring import read_case_labels
 from capar.model.capture import Capture
 from capar.model.facts import Fact, Touching
@@ -71,7 +71,7 @@ class ContactCounts:
         }
 
 
-def score_contacts(plan: Plan, base: Profile) -> Evaluation:
+def score_contacts(plan: Plan, base: Profile, progress: Progress) -> Evaluation:
     """Measure captures and compare their contacts with labels, frame by frame.
 
     Contacts are those that ``capar facts`` prints: what rules read and an Actionary keeps. Each
@@ -81,7 +81,9 @@ def score_contacts(plan: Plan, base: Profile) -> Evaluation:
         CaparError: A capture or a label file has a fault.
     """
     return Evaluation(
-        Kind.CONTACTS, tuple(_scored(pair, plan, base) for pair in plan.pairs), plan.groups
+        Kind.CONTACTS,
+        tuple(_scored(pair, plan, base) for pair in progress(plan.pairs)),
+        plan.groups,
     )
 
 

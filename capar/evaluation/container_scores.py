@@ -8,7 +8,7 @@ from capar.evaluation.containers import Landing, halved, landings
 from capar.evaluation.evaluations import Evaluation, Scored, summed
 from capar.evaluation.kinds import Kind
 from capar.evaluation.metrics import rounded
-from capar.evaluation.plan import Pair, Plan
+from capar.evaluation.plan import Pair, Plan, Progress
 from capar_rules.engine.profiles import Profile
 from extractors.readers.bundle.capture_toml import read_capture
 
@@ -53,14 +53,16 @@ class LandingCounts:
         }
 
 
-def score_containers(plan: Plan, base: Profile) -> Evaluation:
+def score_containers(plan: Plan, base: Profile, progress: Progress) -> Evaluation:
     """Observe captures and compare the preposition *into* with the objects' first and last poses.
 
     Raises:
         CaparError: A capture has a fault, or no such container.
     """
     return Evaluation(
-        Kind.CONTAINERS, tuple(_scored(pair, plan, base) for pair in plan.pairs), plan.groups
+        Kind.CONTAINERS,
+        tuple(_scored(pair, plan, base) for pair in progress(plan.pairs)),
+        plan.groups,
     )
 
 

@@ -9,7 +9,7 @@ from capar.evaluation.evaluations import Evaluation, Scored, summed
 from capar.evaluation.grasps import KINDS, changes
 from capar.evaluation.labels import Kind, Label, Labels, check_known, check_span
 from capar.evaluation.metrics import Interval, errors_ms, rounded
-from capar.evaluation.plan import Pair, Plan
+from capar.evaluation.plan import Pair, Plan, Progress
 from capar.evaluation.scoring import known_names, read_case_labels
 from capar.model.capture import Capture
 from capar.model.observation import Observation
@@ -78,14 +78,14 @@ class EventCounts:
         }
 
 
-def score_events(plan: Plan, base: Profile) -> Evaluation:
+def score_events(plan: Plan, base: Profile, progress: Progress) -> Evaluation:
     """Observe captures and look for what was seen among segments and changes of hands.
 
     Raises:
         CaparError: A capture or a label file has a fault, or an event is none that can be found.
     """
     return Evaluation(
-        Kind.EVENTS, tuple(_scored(pair, plan, base) for pair in plan.pairs), plan.groups
+        Kind.EVENTS, tuple(_scored(pair, plan, base) for pair in progress(plan.pairs)), plan.groups
     )
 
 

@@ -1,10 +1,11 @@
 """What is to be evaluated: captures paired with their labels, by an evaluation file or patterns."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import Any, TypeAlias
 
 from capar.evaluation.labels import Contradictions, Kind
 from capar.evaluation.mapping import LabelMapping, read_mapping
@@ -17,6 +18,9 @@ from capar.evaluation.plan_schema import (
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from extractors.readers.bundle.location import FILE, find_place, take_words
 from extractors.readers.schema.document import expanded, read_toml, substituted, validated
+
+Progress: TypeAlias = Callable[[Sequence[Any]], Iterable[Any]]
+"""Goes through a sequence in order, and may show how far it is: ``iter`` shows nothing."""
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from capar.evaluation.container_scores import score_containers
 from capar.evaluation.evaluations import Evaluation
 from capar.evaluation.event_scores import score_events
 from capar.evaluation.labels import Kind
-from capar.evaluation.plan import Plan
+from capar.evaluation.plan import Plan, Progress
 from capar.evaluation.scoring import score_actions
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 
@@ -19,15 +19,18 @@ SCORERS = {
 }
 
 
-def evaluate(plan: Plan, *, rules: Profile | str = DEFAULT) -> Evaluation:
+def evaluate(
+    plan: Plan, *, rules: Profile | str = DEFAULT, progress: Progress = iter
+) -> Evaluation:
     """Observe the captures of a plan and compare what is printed or stored with their labels.
 
     Args:
         plan: Captures, labels, and what the labels are about.
         rules: The rule profile to observe with, or its name.
+        progress: Goes through the captures, one after the other, and may show how far it is.
 
     Raises:
         CaparError: A capture, a label file or the mapping has a fault.
     """
     base = profile(rules) if isinstance(rules, str) else rules
-    return SCORERS[plan.kind](plan, base)
+    return SCORERS[plan.kind](plan, base, progress)

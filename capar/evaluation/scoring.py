@@ -12,7 +12,7 @@ from capar.evaluation.label_files import read_labels
 from capar.evaluation.labels import Kind, Labels, check_known, check_span, in_seconds
 from capar.evaluation.mapping import LabelMapping, check_names, labelled
 from capar.evaluation.metrics import Interval, tally
-from capar.evaluation.plan import Pair, Plan
+from capar.evaluation.plan import Pair, Plan, Progress
 from capar.model.capture import Capture
 from capar.model.observation import Observation
 from capar.model.par import UNKNOWN
@@ -35,7 +35,7 @@ class Case:
     """What it is called; the capture's name if empty."""
 
 
-def score_actions(plan: Plan, base: Profile) -> Evaluation:
+def score_actions(plan: Plan, base: Profile, progress: Progress) -> Evaluation:
     """Observe captures and compare the names of their segments with labels.
 
     Raises:
@@ -45,7 +45,7 @@ def score_actions(plan: Plan, base: Profile) -> Evaluation:
     read = [(pair, _prepared(pair, plan, plan.mapping)) for pair in plan.pairs]
     cases = [
         Case(observe(capture, rules=base), labels, capture.times, pair.name)
-        for pair, (labels, capture) in read
+        for pair, (labels, capture) in progress(read)
     ]
     notices = check_names(
         plan.mapping,

@@ -3,13 +3,17 @@
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
+from hashlib import sha256
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.spatial.transform import RigidTransform
 
 from capar.model import geometry
 from capar.model.errors import CaptureError
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import RigidTransform
 
 
 class TagType(StrEnum):
@@ -72,7 +76,7 @@ class Stream:
         """Where the pose is not known."""
         return np.isnan(self.positions[:, 0])
 
-    def pose(self, frame: int) -> RigidTransform:
+    def pose(self, frame: int) -> "RigidTransform":
         """``T_world_body`` at a frame."""
         return geometry.transforms(self.positions[frame], self.orientations[frame])
 
@@ -104,6 +108,11 @@ class Shape:
     def bounds(self) -> Float[np.ndarray, "2 3"]:
         """Lowest and highest corner of the box along the body's axes [m]."""
         return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+    @cached_property
+    def digest(self) -> bytes:
+        """The same for equal triangles, and otherwise another."""
+        return sha256(self.vertices.tobytes() + b"/" + self.faces.tobytes()).digest()
 
     @property
     def size(self) -> Float[np.ndarray, "3"]:

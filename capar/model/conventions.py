@@ -2,30 +2,41 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from capar.model.errors import UnknownNameError
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 UNITS: Mapping[str, float] = {
     "m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048,
 }  # fmt: skip
 """Metres per unit, by the names that headers and capture.toml use."""
 
-UP: Mapping[str, Rotation] = {
-    "z": Rotation.identity(),
-    "y": Rotation.from_euler("x", 90.0, degrees=True),
-    "x": Rotation.from_euler("y", -90.0, degrees=True),
-    "-z": Rotation.from_euler("x", 180.0, degrees=True),
-    "-y": Rotation.from_euler("x", -90.0, degrees=True),
-    "-x": Rotation.from_euler("y", 90.0, degrees=True),
+UP: Mapping[str, tuple[str, float]] = {
+    "z": ("x", 0.0),
+    "y": ("x", 90.0),
+    "x": ("y", -90.0),
+    "-z": ("x", 180.0),
+    "-y": ("x", -90.0),
+    "-x": ("y", 90.0),
 }
-"""The rotation that brings each axis to z."""
+"""The rotation that brings each axis to z: about which axis, and by how much [degrees]."""
 
 AXIS_COSINE = 0.9
 """A direction is an axis's if the cosine of the angle between them is at least this [1]."""
+
+
+def upward(axis: str) -> "Rotation":
+    """The rotation that brings an axis of ``UP`` to z."""
+    from scipy.spatial.transform import Rotation
+
+    about, angle_deg = UP[axis]
+    return Rotation.from_euler(about, angle_deg, degrees=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +58,8 @@ class Conventions:
 
     def axis(self, direction: Float[np.ndarray, "3"]) -> str | None:
         """The axis of the file along a direction of the world; None where none is near it."""
-        for name, turn in UP.items():
-            along = (UP[self.up] * turn.inv()).apply(np.array([0.0, 0.0, 1.0]))
+        for name in UP:
+            along = (upward(self.up) * upward(name).inv()).apply(np.array([0.0, 0.0, 1.0]))
             if float(along @ direction) >= AXIS_COSINE * float(np.linalg.norm(direction)):
                 return name
         return None

@@ -1,29 +1,37 @@
 """Rigid motion in a right-handed world whose z axis points up: metres, and quaternions w x y z."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from jaxtyping import Bool, Float
-from scipy.spatial.transform import RigidTransform, Rotation, Slerp
 
 from capar.model.errors import CaptureError
+
+if TYPE_CHECKING:  # it takes half a second to import, and who asks an Actionary turns nothing
+    from scipy.spatial.transform import RigidTransform, Rotation
 
 UNIT_TOLERANCE = 0.01
 """How far a quaternion's norm may lie from one before it is an error [1]."""
 
 
-def rotations(quaternions: Float[np.ndarray, "*frames 4"]) -> Rotation:
+def rotations(quaternions: Float[np.ndarray, "*frames 4"]) -> "Rotation":
     """The rotations that unit quaternions (w x y z) stand for."""
+    from scipy.spatial.transform import Rotation
+
     return Rotation.from_quat(quaternions, scalar_first=True)
 
 
-def quaternions(rotation: Rotation) -> Float[np.ndarray, "*frames 4"]:
+def quaternions(rotation: "Rotation") -> Float[np.ndarray, "*frames 4"]:
     """Unit quaternions (w x y z) of rotations."""
     return rotation.as_quat(scalar_first=True)
 
 
 def transforms(
     positions: Float[np.ndarray, "*frames 3"], orientations: Float[np.ndarray, "*frames 4"]
-) -> RigidTransform:
+) -> "RigidTransform":
     """Poses as transforms that compose with ``*`` and act on points: ``T_world_body.apply(p)``."""
+    from scipy.spatial.transform import RigidTransform
+
     return RigidTransform.from_components(positions, rotations(orientations))
 
 
@@ -68,12 +76,14 @@ def angle_between(
 
 def fit_rigid(
     local: Float[np.ndarray, "markers 3"], world: Float[np.ndarray, "markers 3"]
-) -> tuple[RigidTransform, float]:
+) -> tuple["RigidTransform", float]:
     """The transform that takes marker places in the body to the world, by least squares.
 
     Returns:
         ``T_world_body`` and the root mean square of what is left [m].
     """
+    from scipy.spatial.transform import RigidTransform, Rotation
+
     centre_local, centre_world = local.mean(axis=0), world.mean(axis=0)
     rotation, _ = Rotation.align_vectors(world - centre_world, local - centre_local)
     transform = RigidTransform.from_components(
@@ -95,6 +105,8 @@ def slerp(
     wanted: Float[np.ndarray, "frames"],
 ) -> Float[np.ndarray, "frames 4"]:
     """Orientations at other times [s], along great arcs; times outside are held at the ends."""
+    from scipy.spatial.transform import Slerp
+
     if times.size == 1:
         return np.repeat(orientations, wanted.size, axis=0)
     inside = np.clip(wanted, times[0], times[-1])

@@ -269,6 +269,9 @@ KINDS: Mapping[str, NoticeKind] = {
     "sides-exchanged": NoticeKind(
         SIDES_EXCHANGED, "pairs of right and left that are exchanged", fault=True
     ),
+    "nothing-acts": NoticeKind(
+        'no sensor acts, so no action is told; state role = "acts" for the hands and feet that do'
+    ),
     "contact-tolerance": NoticeKind(_contact_tolerance),
     "doubled-stamps": NoticeKind("{samples} samples repeat a stamp; the last of each is kept"),
     "flicker": NoticeKind(_flicker),

@@ -11,6 +11,9 @@ from capar_rules.engine.syntax import Signature
 Atom = tuple[str, tuple[Term, ...]]
 """Predicate and arguments."""
 
+ERRORS_ONLY = "--warn=none"
+"""Remarks on predicates without a rule mean nothing where only a part of the rules is solved."""
+
 
 def worlds(text: str) -> list[tuple[str, ...]]:
     """The shown atoms of every answer, each as a fact's text; answers in order.
@@ -55,11 +58,10 @@ def understand(text: str) -> None:
 def _grounded(text: str, options: Sequence[str], *, part: str = "base") -> clingo.Control:
     messages: list[str] = []
 
-    def note(code: clingo.MessageCode, message: str) -> None:
-        if code is clingo.MessageCode.RuntimeError:
-            messages.append(message.strip())
+    def note(_: clingo.MessageCode, message: str) -> None:
+        messages.append(message.strip())
 
-    control = clingo.Control(list(options), logger=note)
+    control = clingo.Control([ERRORS_ONLY, *options], logger=note)
     try:
         control.add("base", [], text)
         control.ground([(part, [])])

@@ -93,10 +93,10 @@ def text_of(term: Term) -> str:
 
 def fingerprint(files: Iterable[Path]) -> str:
     """SHA-256 over the rule files and all that they include, in the order of their names."""
-    seen = {str(path): content for path, content in _contents(files).items()}
+    contents = _contents(files)
     digest = sha256()
-    for path_name in sorted(seen, key=lambda each: (Path(each).name, seen[each])):
-        digest.update(Path(path_name).name.encode() + b"\0" + seen[path_name] + b"\0")
+    for path in sorted(contents, key=lambda path: (path.name, contents[path])):
+        digest.update(path.name.encode() + b"\0" + contents[path] + b"\0")
     return digest.hexdigest()
 
 
@@ -113,16 +113,17 @@ def _contents(files: Iterable[Path]) -> dict[Path, bytes]:
         if path not in seen:
             about = path.stat()
             seen[path], included = _read(path, about.st_mtime_ns, about.st_size)
-            waiting += [path.parent / name for name in included]
+            waiting += included
     return seen
 
 
 @lru_cache(maxsize=512)
-def _read(path: Path, changed_ns: int, size: int) -> tuple[bytes, tuple[str, ...]]:
-    """What a file holds that was changed then, and the names of the files that it includes."""
+def _read(path: Path, changed_ns: int, size: int) -> tuple[bytes, tuple[Path, ...]]:
+    """What a file holds that was changed then, and the files that it includes."""
     content = path.read_bytes()
     lines = (line.strip() for line in content.decode().splitlines())
-    return content, tuple(line.split('"')[1] for line in lines if line.startswith("#include "))
+    names = (line.split('"')[1] for line in lines if line.startswith("#include "))
+    return content, tuple(path.parent / name for name in names)
 
 
 _CONTRADICTION = "the rules contradict each other over these facts: they have no answer"
@@ -131,12 +132,12 @@ _CONTRADICTION = "the rules contradict each other over these facts: they have no
 def _grounded(files: Iterable[Path], texts: Iterable[str], option: str) -> clingo.Control:
     messages: list[str] = []
 
-    def note(code: clingo.MessageCode, message: str) -> None:
-        # Every rule file includes what it reads, so that a file is named twice is no fault.
-        if code is not clingo.MessageCode.FileIncluded:
-            messages.append(message.strip())
+    def note(_: clingo.MessageCode, message: str) -> None:
+        messages.append(message.strip())
 
-    control = clingo.Control([option], logger=note, message_limit=100)
+    # Every rule file includes what it reads, so that a file is named twice is no fault.
+    options = [option, "--warn=no-file-included"]
+    control = clingo.Control(options, logger=note, message_limit=100)
     try:
         for path in files:
             control.load(str(path))

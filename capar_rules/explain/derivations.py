@@ -10,6 +10,7 @@ import clingo
 
 from capar.model.errors import RuleError
 from capar.model.facts import Fact
+from capar_rules.engine.search import ERRORS_ONLY
 from capar_rules.engine.slicing import firing, towards
 from capar_rules.engine.syntax import Literal, Place, Signature, Statement
 
@@ -59,7 +60,9 @@ class Recorder:
             RuleError: The rules have an error over these facts, or no answer.
         """
         messages: list[str] = []
-        control = clingo.Control(["--models=1"], logger=lambda _, text: messages.append(text))
+        control = clingo.Control(
+            [ERRORS_ONLY, "--models=1"], logger=lambda _, text: messages.append(text)
+        )
         try:
             symbols = [fact.symbol() for fact in facts]
             measured = frozenset((each.name, len(each.arguments)) for each in symbols)

@@ -1,6 +1,8 @@
 """The direction in which two bodies press on each other where they touch."""
 
 from itertools import product
+from typing import TypeAlias
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from jaxtyping import Float
@@ -13,16 +15,33 @@ from extractors.thresholds import Thresholds
 SLACK_M = 1e-6
 """By so much the box is larger in which triangles are sought, since turning it rounds [m]."""
 
+_Normals: TypeAlias = dict[tuple[int, float], Float[np.ndarray, "3"] | None]
+_KEPT: WeakKeyDictionary[BodyGeometry, WeakKeyDictionary[BodyGeometry, _Normals]] = (
+    WeakKeyDictionary()
+)
+
 
 def contact_normal(
     body: BodyGeometry, other: BodyGeometry, frame: int, thresholds: Thresholds
 ) -> Float[np.ndarray, "3"] | None:
     """The unit normal of a contact, from the other to the body, in the world; None if unknown.
 
+    Contacts and seats ask for the same ones, so they are kept as long as both bodies are.
+
     It is the mean normal of the patch where the true surfaces meet: what stands in a bowl lies on
     the bowl's bottom, however high the bowl's rim. Where either body has no shape, or the patch
     has no direction, it is the axis along which their outlines are furthest apart.
     """
+    kept = _KEPT.setdefault(body, WeakKeyDictionary()).setdefault(other, {})
+    key = frame, thresholds.patch_m
+    if key not in kept:
+        kept[key] = _contact_normal(body, other, frame, thresholds)
+    return kept[key]
+
+
+def _contact_normal(
+    body: BodyGeometry, other: BodyGeometry, frame: int, thresholds: Thresholds
+) -> Float[np.ndarray, "3"] | None:
     offset = body.middles[frame] - other.middles[frame]
     if np.isnan(offset).any():
         return None

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 
 from extractors.bodies.poses import rotation_matrices
-from extractors.contact.proximity import Body, nearest
+from extractors.contact.proximity import Body, distance, nearest
 from extractors.signals.intervals import Interval
 
 ASKED_FRAMES = 5
@@ -78,14 +78,14 @@ def _between(one: Body, two: Body, third: Body, frame: int, reach_m: float) -> b
     """Whether the line that joins two bodies' nearest points goes through a third at a frame."""
     if any(np.isnan(each.positions[frame]).any() for each in (one, two, third)):
         return False
-    distance, on_one, on_two = nearest(one, two, frame)
-    if distance <= 0.0 or any(nearest(each, third, frame)[0] > distance for each in (one, two)):
+    apart_m, on_one, on_two = nearest(one, two, frame)
+    if apart_m <= 0.0 or any(distance(each, third, frame) > apart_m for each in (one, two)):
         return False
     begin, end = _local(third, one, on_one, frame), _local(third, two, on_two, frame)
     middle = 0.5 * (begin + end)
     if third.surface.contains(middle[None])[0]:
         return True
-    beyond = reach_m / distance * (end - begin)
+    beyond = reach_m / apart_m * (end - begin)
     begin, end = begin - beyond, end + beyond
     way = (end - begin)[None]
     places, _, _ = third.surface.mesh.ray.intersects_location(begin[None], way)

@@ -3,7 +3,6 @@
 from collections import OrderedDict
 from dataclasses import dataclass
 from functools import cached_property
-from hashlib import sha256
 
 import fcl
 import numpy as np
@@ -118,9 +117,8 @@ _MOST_KEPT = 256
 
 def surface(shape: Shape) -> Surface:
     """The surface of a shape; equal triangles share one, with its trees and offset surfaces."""
-    digest = sha256(shape.vertices.tobytes() + b"/" + shape.faces.tobytes()).digest()
-    found = _KEPT.pop(digest, None) or Surface(shape)
-    _KEPT[digest] = found
+    found = _KEPT.pop(shape.digest, None) or Surface(shape)
+    _KEPT[shape.digest] = found
     while len(_KEPT) > _MOST_KEPT:
         _KEPT.popitem(last=False)
     return found

@@ -1,4 +1,4 @@
-"""All faults of a recording that it shows by itself, as notices with the likely remedy."""
+"""All faults that a recording shows by itself, as notices with the likely remedy."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -32,6 +32,8 @@ def faults(
         motions: When each object moves.
         thresholds: What separates odd from impossible.
     """
+    if not capture.acting:
+        yield Notice("nothing-acts")
     sized = is_sized(capture, thresholds)
     falls = list(gravity_notices(capture, bodies, thresholds, sized=sized))
     yield from falls

@@ -14,7 +14,6 @@ from kb.store import timed_query as bounded
 from kb.store.answers import Answer
 from kb.store.lock import WriterLock
 from kb.store.readonly_folder import check_whole, open_reader, read, unusable
-from kb.store.track_functions import track_functions
 
 _T = TypeVar("_T")
 
@@ -155,8 +154,14 @@ def evaluated(store: Oxigraph, query: str) -> Any:
     return store.query(
         query,
         use_default_graph_as_union=not sparql.names_graphs(query),
-        custom_functions=track_functions(store),
+        custom_functions=_functions(store) if sparql.opens_tracks(query) else None,
     )
+
+
+def _functions(store: Oxigraph) -> dict[NamedNode, Any]:
+    from kb.store.track_functions import track_functions  # most of a second, for few queries
+
+    return dict(track_functions(store))
 
 
 def _read_all(store: Oxigraph) -> None:

@@ -14,7 +14,6 @@ from kb.errors import QueryError, StoreError
 from kb.store import answers, sparql
 from kb.store.embedded import evaluated
 from kb.store.readonly_folder import read
-from kb.store.track_functions import ARITIES
 
 LONGEST = 160
 """After how many letters a parser's message is cut."""
@@ -40,7 +39,8 @@ def answer(source: BinaryIO) -> bytes:
 def user_message(problem: str) -> str:
     """A parser's message in short; an unknown function with the names of those that exist."""
     if slip := _NO_FUNCTION.search(problem):
-        known = [*(f"capar:{each}" for each in (*sparql.FUNCTIONS, *ARITIES)), "those of SPARQL"]
+        ours = [f"capar:{each}" for each in (*sparql.FUNCTIONS, *sparql.ARITIES)]
+        known = [*ours, "those of SPARQL"]
         return str(UnknownNameError("function", answers.short(slip[1]), known))
     first = problem.splitlines()[0] if problem else ""
     place, expected, listed = first.partition("expected ")

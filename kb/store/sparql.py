@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from itertools import dropwhile, pairwise
 
 from kb.errors import QueryError
-from kb.store.track_functions import ARITIES
 from ontology import BASE, PREFIXES
 
 _TOKEN = re.compile(
@@ -41,6 +40,10 @@ ELEMENT_KNOWN = (
 ELEMENTS = '(STRLEN(REPLACE(STR({0}), "[^ ]", "")) + 1)'
 FUNCTIONS = {"element": (ELEMENT, 2), "elements": (ELEMENTS, 1)}
 """Our functions as expressions of plain SPARQL, which every server knows, with their arity."""
+
+ARITIES = {"position": 3, "speed": 3, "distance": 4, "highestSpeed": 4, "pathLength": 4}
+"""How many arguments the functions of ``track_functions`` take: observation and body first, times
+in seconds last. They stand here, as that module takes most of a second to import."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 The engine calls them with terms, and a term that fits nothing gives no value, as in SPARQL.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -17,15 +17,6 @@ from ontology import BASE, CAPAR
 
 Place: TypeAlias = Float[np.ndarray, "3"]
 Function: TypeAlias = Callable[..., NamedNode | BlankNode | Literal | Triple | None]
-
-ARITIES: Mapping[str, int] = {
-    "position": 3,
-    "speed": 3,
-    "distance": 4,
-    "highestSpeed": 4,
-    "pathLength": 4,
-}
-"""How many arguments each function takes, observation and body first, times in seconds last."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from write_demo import write_tables
 
 from capar.cli import app
-from capar.model.conventions import UP
+from capar.model.conventions import upward
 
 BUNDLE = """\
 name = "thrown"
@@ -44,7 +44,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name in ("CAPAR_ACTIONARY", "CAPAR_RULES"):
         monkeypatch.delenv(name, raising=False)
     capture = throw(TALL_MAN, noise_m=0.0005).capture
-    sound = turned(UP["y"].inv())
+    sound = turned(upward("y").inv())
     write_tables(changed(capture, lambda stream: scaled(10.0)(sound(stream))), tmp_path / "thrown")
     return tmp_path / "thrown"
 

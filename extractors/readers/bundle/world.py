@@ -9,8 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from capar.model.capture import Notice, Source, Stream
-from capar.model.conventions import UP as UP
-from capar.model.conventions import Conventions
+from capar.model.conventions import Conventions, upward
 from capar.model.errors import CaptureError
 from extractors.faults.quaternion_order import order_notices
 from extractors.readers.recording import UNITS, Recording
@@ -48,7 +47,7 @@ def to_world(recording: Recording, *, unit_m: float, up: str, left_handed: bool)
     Raises:
         CaptureError: The recording then spans what no room spans: a wrong unit.
     """
-    turn = UP[up]
+    turn = upward(up)
     bodies = {
         name: _moved(each, unit_m, turn, left_handed) for name, each in recording.bodies.items()
     }

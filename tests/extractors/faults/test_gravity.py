@@ -12,7 +12,7 @@ from motions.performers import CHILD, PERFORMERS, TALL_MAN, Performer
 from motions.trials import Trial
 from scipy.spatial.transform import Rotation
 
-from capar.model.conventions import UP, Conventions
+from capar.model.conventions import UP, Conventions, upward
 
 Motion = Callable[..., Trial]
 PERFORMED = st.sampled_from([throw, catch])
@@ -41,7 +41,7 @@ def test_a_wrong_axis_is_noticed_with_the_right_one(
     motion: Motion, performer: Performer, right: str, declared: str, seed: int
 ) -> None:
     sound = motion(performer, noise_m=0.001, noise_rad=0.01, seed=seed).capture
-    read = changed(sound, turned(UP[declared] * UP[right].inv()), Conventions(up=declared))
+    read = changed(sound, turned(upward(declared) * upward(right).inv()), Conventions(up=declared))
     axes = [dict(each.values)["up"] for each in found(read) if each.code == "up-contradicted"]
     assert axes == ([] if right == declared else [right] * len(axes))
     assert bool(axes) == (right != declared)

@@ -11,7 +11,7 @@ from measured_bodies import ball, box, pick_and_place, stream
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Capture, Role, Sensor, TagObject, TagType
-from capar.model.conventions import UNITS, UP, Conventions
+from capar.model.conventions import UNITS, UP, Conventions, upward
 
 AHEAD = Rotation.from_euler("z", 30.0, degrees=True)
 PLACES = {
@@ -84,7 +84,7 @@ def test_a_mirrored_person_is_noticed_and_a_sound_one_is_not(yaw_deg: float) -> 
 @pytest.mark.parametrize("noise_m", [0.0, 0.001])
 def test_things_under_or_beside_their_table_show_the_axis(right: str, noise_m: float) -> None:
     sound = pick_and_place(noise_m=noise_m)
-    read = changed(sound, turned(UP[right].inv()))
+    read = changed(sound, turned(upward(right).inv()))
     axes = [each["up"] for each in found(read) if each.code == "up-contradicted"]
     assert axes == ([right] if right in ("y", "-y", "-z") else [])
 
@@ -92,4 +92,4 @@ def test_things_under_or_beside_their_table_show_the_axis(right: str, noise_m: f
 def test_things_against_one_wall_at_one_height_show_no_axis() -> None:
     """Read with x upward, the box is moved along the table's face at one height, as on a floor."""
     for right in ("x", "-x"):
-        assert found(changed(pick_and_place(), turned(UP[right].inv()))) == []
+        assert found(changed(pick_and_place(), turned(upward(right).inv()))) == []

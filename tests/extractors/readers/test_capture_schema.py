@@ -13,9 +13,9 @@ from typer.testing import CliRunner
 
 from capar.cli import app
 from capar.model.capture import Role, TagType
+from capar.model.conventions import UP
 from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture
-from extractors.readers.bundle.world import UP
 from extractors.readers.recording import UNITS
 from extractors.readers.registry import READER_OPTIONS
 from extractors.readers.schema.bodies import ObjectEntry, SensorEntry
