@@ -11,6 +11,7 @@ from capar.cli._output import console
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
+    from kb.store.stores import Store
 
 app = typer.Typer()
 
@@ -76,16 +77,21 @@ def query(
     raw = _raw(question)
     text = _text(question, raw, given)
     from kb import Actionary
-    from kb.corrected_view import corrected as corrected_view
     from kb.queries.questions import check_known
     from kb.queries.questions import question as named
 
     with Actionary.open(actionary, read_only=True) as opened:
-        store = corrected_view(opened.store) if corrected else opened.store
+        store = _corrected(opened.store) if corrected else opened.store
         answer = store.ask_within(text, seconds=time_limit)
         if raw is None and not answer.rows:
             check_known(store, named(question), given)
     _print(answer, chosen)
+
+
+def _corrected(store: "Store") -> "Store":
+    from kb.corrected_view import corrected
+
+    return corrected(store)
 
 
 def _given(parameters: list[str]) -> dict[str, str]:
