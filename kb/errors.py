@@ -25,7 +25,7 @@ class DamagedError(StoreError):
     def __init__(self, place: str, reason: str) -> None:
         super().__init__(
             f"{place}: its database is damaged ({reason}); move the folder away, then restore it "
-            "from an export (capar import FILE) or observe the captures again"
+            "from a backup or export (capar import FILE) or observe the captures again"
         )
 
 
@@ -77,3 +77,7 @@ class ShapeError(CaparError):
     def __init__(self, name: str, findings: tuple[str, ...]) -> None:
         self.findings = findings
         super().__init__(f"{name} breaks the model:\n  " + "\n  ".join(findings))
+
+
+class CorrectionError(CaparError):
+    """A claim about a segment that cannot be: of nobody, of no change, or outside its time."""

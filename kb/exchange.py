@@ -19,6 +19,7 @@ from pyoxigraph import (
 
 from capar.model.errors import FileError, UnknownNameError
 from kb.errors import SchemaError, ShapeError
+from kb.lookup.agents import aliases, joined
 from kb.lookup.stored import observations
 from kb.schema_steps import STEPS, migration
 from kb.store import names, schema, shacl_validation
@@ -230,6 +231,7 @@ def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -
             and each.graph_name.value.startswith(names.OBSERVATION)
         }
     )
+    taken = joined(taken, aliases(store))
     if taken:
         removals = [writing.removal(NamedNode(each)) for each in seen]
         store.change(" ;\n".join([*removals, insertion(taken)]))

@@ -12,7 +12,17 @@ from capar.model.par import (
     Upar,
 )
 from kb.findings import Ability, FeatureRow, FoundLocation, FoundStyle, Stored
-from kb.lookup import abilities, feature_table, kinds, locations, recognition, stored_pars, styles
+from kb.lookup import (
+    abilities,
+    agents,
+    feature_table,
+    kinds,
+    locations,
+    profiles,
+    recognition,
+    stored_pars,
+    styles,
+)
 from kb.store.stores import Store
 
 
@@ -146,6 +156,49 @@ class Knowledge:
         """An agent's style of doing an action, from the first observation by name."""
         found = self.styles(agent=agent, action=action, purpose=purpose, ee=ee)
         return found[0].style if found else None
+
+    def declare_agent(self, name: str, *, kind: str = "", can: Iterable[str] = ()) -> None:
+        """State that there is an agent, of what kind it is, and which actions it is able to do.
+
+        Raises:
+            StoreError: There is one of that name.
+        """
+        agents.declare(self.store, name, kind=kind)
+        for action in can:
+            self.add_ability(action, agent=name)
+
+    def agents(self) -> tuple[str, ...]:
+        """Every agent, declared or seen, by name; an unnamed one by the capture that it is of."""
+        return tuple(agents.known(self.store))
+
+    def same_agent(self, first: str, second: str) -> None:
+        """State that two agents are one: what the second did is the first one's from now on.
+
+        Raises:
+            UnknownNameError: There is no such agent.
+            StoreError: They are one already.
+        """
+        agents.same(self.store, first, second)
+
+    def agent_profile(self, name: str) -> profiles.Fields:
+        """What is known of an agent, by the fields of thesis Fig 4.2; of some nothing is.
+
+        Raises:
+            UnknownNameError: There is no such agent.
+        """
+        return profiles.agent(self.store, name)
+
+    def object_kinds(self) -> tuple[str, ...]:
+        """Every kind of object that was observed or declared, by name."""
+        return tuple(profiles.kinds(self.store))
+
+    def object_profile(self, name: str) -> profiles.Fields:
+        """What is known of a kind of object, by the fields of thesis Fig 4.3.
+
+        Raises:
+            UnknownNameError: There is no object and no kind of that name.
+        """
+        return profiles.kind(self.store, name)
 
     def add_ability(
         self, action: str, *, agent: str = "", kind: str = "", conditions: Iterable[Condition] = ()

@@ -341,6 +341,9 @@ class CAPAR(metaclass=Closed):
     ofObservation: NamedNode
     host: NamedNode
     readFrom: NamedNode
+    # corrections.ttl
+    Correction: NamedNode
+    ofCapture: NamedNode
     # functions.ttl
     SparqlFunction: NamedNode
     element: NamedNode

@@ -1,5 +1,6 @@
 """The options that several commands take, and what follows from them: rules, words, a store."""
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -25,6 +26,10 @@ Place = Annotated[
 
 Wait = Annotated[
     float, typer.Option(metavar="SECONDS", help="How long to wait for another writer.")
+]
+
+New = Annotated[
+    bool, typer.Option("--new", help="Make the Actionary if it is not there, without asking.")
 ]
 
 Rules = Annotated[
@@ -134,6 +139,49 @@ def require_actionary(actionary: str | None, *, observed: bool = False) -> None:
             f"`capar observe CAPTURE --actionary {place}` makes one; --rules FOLDER keeps rules "
             "without one.",
         )  # fmt: skip
+
+
+def confirm_new(actionary: str | None, *, new: bool) -> None:
+    """Ask before an Actionary is made, so that a typing mistake makes none.
+
+    Where nobody can be asked, one is made unless its name is nearly that of one beside it, or its
+    parent folder is not there.
+
+    Args:
+        actionary: Its place; None for the usual one.
+        new: Whether to make it without asking.
+
+    Raises:
+        FileError: It is likely a typing mistake, or the answer was no.
+    """
+    from difflib import get_close_matches
+
+    from capar.model.errors import FileError
+    from kb.store.embedded import DATA_FOLDER
+    from kb.store.stores import is_address
+
+    place = opened(actionary)
+    if new or is_address(place) or Path(place).exists():
+        return
+    folder = Path(place).absolute()
+    beside = {each.parent.name for each in folder.parent.glob(f"*/{DATA_FOLDER}")}
+    near = get_close_matches(folder.name, sorted(beside), n=1, cutoff=0.75)
+    meant = f"Did you mean {folder.with_name(near[0])}? " if near else ""
+    if _asks():
+        if typer.confirm(f"{place} is no Actionary. {meant}Make a new one?", err=True):
+            return
+    elif folder.parent.is_dir() and not near:
+        return
+    raise FileError(
+        place, "is no Actionary.",
+        f"{meant}To make a new one there{'' if folder.parent.is_dir() else ' and its folder'}, "
+        "add --new.",
+    )  # fmt: skip
+
+
+def _asks() -> bool:
+    """Whether somebody is there who can answer."""
+    return sys.stdin.isatty() and sys.stderr.isatty()
 
 
 def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[PrimitiveWords, ...]":

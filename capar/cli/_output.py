@@ -2,7 +2,7 @@
 
 import errno
 import os
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import copymode
@@ -56,6 +56,16 @@ def print_json(value: Any, *, sort_keys: bool = False) -> None:
 
     text = json.dumps(_plain(value), ensure_ascii=False, indent=2, sort_keys=sort_keys, default=str)
     typer.echo(text)
+
+
+def print_fields(title: str, fields: Mapping[str, Collection[str]], *, json: bool) -> None:
+    """Fields with their values, a line each; a field without any is said to be empty."""
+    if json:
+        print_json({"name": title, **{name: list(values) for name, values in fields.items()}})
+        return
+    typer.echo(title)
+    for name, values in fields.items():
+        typer.echo(f"  {name}: {', '.join(values) or '(empty: nothing is recorded)'}")
 
 
 def _plain(value: Any) -> Any:

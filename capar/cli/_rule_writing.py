@@ -140,7 +140,7 @@ def print_audit(found: "Audit") -> None:
     for name in found.shadowed:
         typer.echo(f"shadowed: {name}")
     for name in found.unreachable:
-        typer.echo(f"never fits in the audit's world: {name}")
+        typer.echo(f"never fits in the worlds of the audit: {name} (`capar rules check` says why)")
     typer.echo("the rules are clean" if found.clean else "the rules are not clean")
 
 

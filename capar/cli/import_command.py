@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._options import Place, Wait
+from capar.cli._options import New, Place, Wait, confirm_new
 
 app = typer.Typer()
 
@@ -19,6 +19,7 @@ def import_(
         typer.Option("--format", help="turtle, trig, nquads or jsonld; else by the file's name."),
     ] = None,
     wait: Wait = 0.0,
+    new: New = False,
     actionary: Place = None,
 ) -> None:
     """Take in Turtle, TriG, N-Quads or JSON-LD, all of it or none, checked by the shapes.
@@ -29,6 +30,7 @@ def import_(
     from kb.exchange import bring_in, format_of, read
 
     chosen = format_of(file, format_)
+    confirm_new(actionary, new=new)
     quads = read(_bytes(file), chosen, path=file)
     with Actionary.open(actionary, wait_s=wait) as opened:
         statements, observations = bring_in(opened.store, quads, source=file)

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._options import Rules, opened
+from capar.cli._options import New, Rules, confirm_new, opened
 
 app = typer.Typer(no_args_is_help=True, help="Words in an Actionary: WordNet, Levin, VerbNet.")
 
@@ -15,12 +15,13 @@ Where = Annotated[
 
 
 @app.command()
-def load(actionary: Where = None, rules: Rules = None) -> None:
+def load(actionary: Where = None, rules: Rules = None, new: New = False) -> None:
     """Put WordNet's verbs, Levin's classes and the primitives' links into the Actionary, once."""
     from capar.cli._options import rule_words
     from kb.actionary import Actionary
     from kb.lexicon.loading import load_words
 
+    confirm_new(actionary, new=new)
     words = rule_words(rules, opened(actionary))
     with Actionary.open(actionary) as book:
         loaded = load_words(book.store, words)
@@ -32,6 +33,7 @@ def import_words(
     source: Annotated[str, typer.Argument(help="What to import: verbnet.")],
     folder: Annotated[Path, typer.Argument(help="The folder with VerbNet's XML files.")],
     actionary: Where = None,
+    new: New = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Read VerbNet 3.x from your own copy into the Actionary, in place of an earlier one."""
@@ -44,6 +46,7 @@ def import_words(
 
     if source != "verbnet":
         raise UnknownNameError("source of words", source, ("verbnet",))
+    confirm_new(actionary, new=new)
     classes = read_verbnet(folder)
     rate = key_rate(classes, wordnet())
     with Actionary.open(actionary) as book:

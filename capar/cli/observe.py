@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._options import Rules, Set, Steady, Wait, rule_base
+from capar.cli._options import New, Rules, Set, Steady, Wait, confirm_new, rule_base
 from capar.model.errors import FileError
 
 if TYPE_CHECKING:
@@ -66,6 +66,7 @@ def observe(
         ),
     ] = None,
     wait: Wait = 0.0,
+    new: New = False,
 ) -> None:
     """Say what was done in CAPTURE: segments of each link, and the complex PAR they make."""
     import sys
@@ -75,6 +76,8 @@ def observe(
     _check_output(json=json, script=script, pars=pars, plot=plot)
     if actionary and Path(actionary).is_file():
         raise FileError(actionary, "is a file; an Actionary is a folder.", "Name a folder.")
+    if actionary:
+        confirm_new(actionary, new=new)
     base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
 

@@ -11,6 +11,7 @@ from capar.cli._output import console
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
+    from kb.store.stores import Store
 
 app = typer.Typer()
 
@@ -56,6 +57,10 @@ def query(
     time_limit: Annotated[
         float, typer.Option(metavar="SECONDS", help="How long the question may take.")
     ] = 30.0,
+    corrected: Annotated[
+        bool,
+        typer.Option("--corrected", help="Ask what persons say of segments (`capar correct`)."),
+    ] = False,
     actionary: Place = None,
 ) -> None:
     """Ask the Actionary a QUESTION; see --list. It can neither write nor run for ever."""
@@ -76,10 +81,17 @@ def query(
     from kb.queries.questions import question as named
 
     with Actionary.open(actionary, read_only=True) as opened:
-        answer = opened.store.ask_within(text, seconds=time_limit)
+        store = _corrected(opened.store) if corrected else opened.store
+        answer = store.ask_within(text, seconds=time_limit)
         if raw is None and not answer.rows:
-            check_known(opened.store, named(question), given)
+            check_known(store, named(question), given)
     _print(answer, chosen)
+
+
+def _corrected(store: "Store") -> "Store":
+    from kb.corrected_view import corrected
+
+    return corrected(store)
 
 
 def _given(parameters: list[str]) -> dict[str, str]:

@@ -12,11 +12,11 @@ from capar.model.segment_address import find_segment, split_capture
 from capar.pipelines.observation import facts_program
 from capar_rules.authoring.examples import Example, try_examples, written
 from capar_rules.authoring.user_primitives import new_rule, rules_of, telling
-from capar_rules.engine.profiles import Profile
+from capar_rules.engine.profiles import Profile, profile
 from capar_rules.engine.syntax import parse, parse_text
 from capar_rules.lint.admission import admitted_profile
+from capar_rules.lint.name_checks import rivals
 from capar_rules.lint.text_checks import known
-from capar_rules.lint.world_checks import rivals
 from capar_rules.pars.inference import infer
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
@@ -152,5 +152,7 @@ def _ordered(
 ) -> str:
     """A rule that is more specific than everything that it shares a segment with."""
     text = new_rule(name, features, definition=definition, general=over, verb=verb)
-    others = rivals(name, parse_text(text), known(parse(rules.files)))
+    base = known(parse(profile(rules.name).files))
+    mine = parse(rules.added) if rules.added else ()
+    others = rivals(name, parse_text(text), base, mine)
     return new_rule(name, features, definition=definition, general=over, verb=verb, besides=others)

@@ -21,6 +21,10 @@ ASKED: tuple[Signature, ...] = (
     ("excused", 5),
 )
 
+BATCH = 30
+"""Worlds for each call of the solver, when much is asked of each: with fewer the rules are grounded
+more often, with more the search takes longer; of 10 to 200 this was the fastest."""
+
 Features = tuple[str, str, str, str]
 """Relations at the start and at the end, change of location, and force."""
 
@@ -57,9 +61,12 @@ class Audit:
 
     @property
     def clean(self) -> bool:
-        """Whether nothing is ambiguous or shadowed, and every uncovered case has a reason."""
-        reasoned = {features for features, _ in self.excused}
-        return not (self.ambiguous or self.shadowed or set(self.uncovered) - reasoned)
+        """Whether each name fits some segment, wins one without a rival, and no case lacks one.
+
+        A case without a name that has a reason lacks none.
+        """
+        unreasoned = set(self.uncovered) - {features for features, _ in self.excused}
+        return not (self.ambiguous or self.shadowed or self.unreachable or unreasoned)
 
 
 def audit(profile: Profile) -> Audit:
@@ -100,6 +107,7 @@ def evaluate(
     asked: Iterable[Signature],
     *,
     limbs: Container[str] | None = None,
+    batch: int = BATCH,
 ) -> frozenset[Atom]:
     """What rules derive in some possible segment; a call of the solver holds many at a time.
 
@@ -107,6 +115,7 @@ def evaluate(
         rules: A rule base.
         asked: The predicates that are wanted.
         limbs: Ask only the worlds of these end-effectors; each world has one of its own.
+        batch: How many worlds each call of the solver holds.
 
     Raises:
         RuleError: The rules have an error.
@@ -118,10 +127,10 @@ def evaluate(
     stated = heads_of(_own("space.lp")) - heads_of(words)
     kept = towards([*base, *words, *questions], asked, given=stated)
     program = "\n".join(each.text for each in kept)
-    texts = [text for limb, text in _worlds().items() if limbs is None or limb in limbs]
+    texts = [text for limb, text in world_facts().items() if limbs is None or limb in limbs]
     found: set[Atom] = set()
-    for at in range(0, len(texts), BATCH):
-        facts = "\n".join(texts[at : at + BATCH])
+    for at in range(0, len(texts), batch):
+        facts = "\n".join(texts[at : at + batch])
         found |= brave(f"{program}\n{facts}\n{{ force_transfer }}.", asked)
     return frozenset(found)
 
@@ -144,8 +153,15 @@ def physics() -> tuple[Statement, ...]:
     return _own("physical.lp")
 
 
+def premises() -> tuple[Statement, ...]:
+    """Every rule that says which worlds there are, and what can hold in them."""
+    return tuple(
+        each for name in ("space", "physical", "scene", "words") for each in _own(f"{name}.lp")
+    )
+
+
 @cache
-def _worlds() -> Mapping[str, str]:
+def world_facts() -> Mapping[str, str]:
     """Every world as facts about an end-effector of its own, by its name."""
     rules = (*_own("space.lp"), *_own("physical.lp"))
     fixed = "\n".join(each.text for each in rules if not each.body and each.head_kind == "atom")
@@ -155,10 +171,6 @@ def _worlds() -> Mapping[str, str]:
         texts[f"limb{number}"] = _LIMB.sub(f"limb{number}", f"{own} {fixed}")
     return texts
 
-
-BATCH = 30
-"""Worlds for each call of the solver: with fewer the rules are grounded more often, with more the
-search takes longer; of 10 to 200 this was the fastest."""
 
 _LIMB = re.compile(r"\blimb\b")
 

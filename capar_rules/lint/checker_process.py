@@ -22,7 +22,7 @@ from capar_rules.lint.file_checks import Message, Request, base_of, findings_of
 from capar_rules.lint.findings import Finding
 
 CPU_S = 30
-"""Limit of processor time of one request [s]: a sound file needs about 5 s, at most 10 s."""
+"""Limit of processor time of one request [s]: a sound file needs 2 to 4 s, at most 10 s."""
 
 MEMORY_BYTES = 1 << 30
 """Limit of memory beyond what the process holds when it has read the rule base [bytes]."""

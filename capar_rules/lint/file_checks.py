@@ -15,10 +15,11 @@ from capar_rules.engine.syntax import Statement, parse
 from capar_rules.lint.cycles import cycle_findings
 from capar_rules.lint.findings import Finding, errors
 from capar_rules.lint.rule_text import Reading, read_rules
+from capar_rules.lint.solver_messages import safety_findings, unsafe_findings
 from capar_rules.lint.termination import growth_findings
 from capar_rules.lint.text_checks import Known, known, static_findings
 from capar_rules.lint.word_checks import fitting_findings, single_findings, slip_findings
-from capar_rules.lint.world_checks import safety_findings, unsafe_findings, world_findings
+from capar_rules.lint.world_checks import world_findings
 
 Message = Finding | Path
 """What a check yields: a finding, or the file that it turns to next."""
@@ -80,7 +81,7 @@ def findings_of(request: Request) -> Iterator[Message]:
             yield from found
     if sound and not request.by_text_alone:
         yield Path(readings[0].file)
-        yield from _solver_findings(readings[0], with_files(base, readings[1:]))
+        yield from _solver_findings(readings[0], base, readings[1:])
 
 
 def read_all(paths: Iterable[Path]) -> Iterator[Reading | Path]:
@@ -120,9 +121,10 @@ def text_findings(reading: Reading, base: Known) -> Iterator[Finding]:
             return
 
 
-def _solver_findings(reading: Reading, base: Known) -> Iterator[Finding]:
+def _solver_findings(reading: Reading, base: Known, others: Sequence[Reading]) -> Iterator[Finding]:
     """What only the solver can say of a file whose text has no error."""
     found = tuple(safety_findings(reading.text, reading.file))
     yield from found
     if not errors(found):
-        yield from world_findings(reading.statements, base)
+        beside = [rule for each in others for rule in each.statements]
+        yield from world_findings(reading.statements, base, beside)

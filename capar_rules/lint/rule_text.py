@@ -9,7 +9,7 @@ from capar.model.errors import RuleError
 from capar.model.facts import LARGEST
 from capar_rules.engine.syntax import LARGEST_BYTES, Place, Statement, parse_text
 from capar_rules.lint.findings import Finding
-from capar_rules.lint.world_checks import solver_findings
+from capar_rules.lint.solver_messages import solver_findings
 
 DEEPEST = 100
 """Greatest depth of nested brackets: deeper ones overflow the parser's stack."""

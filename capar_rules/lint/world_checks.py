@@ -1,256 +1,136 @@
-"""Checks that ask the solver: safety, and what a file's rules do over every possible segment."""
+"""What a file's rules do over every possible segment: whether they fire, clash or shadow."""
 
-import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from capar.model.errors import RuleError
-from capar_rules.engine.search import Atom as Answered
-from capar_rules.engine.search import brave, understand
-from capar_rules.engine.slicing import heads_of, signatures_below, towards
-from capar_rules.engine.syntax import Atom, Place, Signature, Statement, parse_text, split_arguments
-from capar_rules.lint.audit import (
-    ASKED,
-    Audit,
-    chosen_in_audit,
-    evaluate,
-    given_in_audit,
-    summarise,
-)
+from capar_rules.engine.search import Atom
+from capar_rules.engine.slicing import FITS
+from capar_rules.engine.syntax import Statement, split_arguments
+from capar_rules.lint.audit import chosen_in_audit
+from capar_rules.lint.candidates import primitive_in, worlds_of
+from capar_rules.lint.extents import every_world
 from capar_rules.lint.findings import NOTE, Finding
+from capar_rules.lint.name_checks import clashes, shadows
+from capar_rules.lint.probes import (
+    ASKED,
+    FIRED,
+    HELD,
+    firing_probes,
+    holding_probes,
+    naming_probes,
+    plain_conditions,
+)
+from capar_rules.lint.siblings import overlaps
 from capar_rules.lint.text_checks import Known
-from capar_rules.lint.word_places import STRING
+from capar_rules.lint.trials import Trial
 
-FIRED, IDLE, HELD = ("fired", 1), ("idle", 1), ("held", 3)
-FITTED, POSSIBLE, FEATURE_ROW = ("fitted", 1), ("possible", 4), ("feature_row", 6)
-
-MOST_RIVALS = 5
-"""How many rivals an ambiguity lists."""
-
-_MESSAGE = re.compile(r"[^:\n]*:(\d+):(\d+)(?:-[\d:]+)?: (?:error|info): (.*)")
-_COMPUTES = re.compile(r"[-+*/\\|&?^~;]|\.\.")
-_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\b_*[A-Z]\w*')
-_UNSAFE = re.compile(r": note: '(\w+)' is unsafe")
+Rules = Mapping[int, Statement]
+"""Rules by their index in the file."""
 
 
-def safety_findings(text: str, file: str) -> Iterator[Finding]:
-    """What the solver reports when it grounds a file by itself."""
-    try:
-        brave(text, ())
-    except RuleError as error:
-        yield from solver_findings(str(error), file)
+def world_findings(
+    own: Sequence[Statement], base: Known, beside: Sequence[Statement] = ()
+) -> Iterator[Finding]:
+    """Rules that can never fire or always do, and names that clash with others or shadow them.
 
-
-def unsafe_findings(text: str, file: str) -> Iterator[Finding]:
-    """What the solver reports when it only reads a file: unsafe variables above all."""
-    try:
-        understand(text)
-    except RuleError as error:
-        yield from solver_findings(str(error), file)
-
-
-def solver_findings(message: str, file: str) -> Iterator[Finding]:
-    """The solver's messages as findings."""
-    variables = _UNSAFE.findall(message)
-    found = False
-    for line in message.splitlines():
-        match = _MESSAGE.match(line)
-        if match is None:
-            continue
-        found = True
-        place = Place(file, int(match[1]), int(match[2]))
-        if "unsafe" in match[3]:
-            names = ", ".join(dict.fromkeys(variables)) or "a variable"
-            yield Finding(
-                place, "unsafe-variable", f"nothing says which values {names} may take.",
-                "Name it in a condition without not, such as segment(Segment, From, To).",
-            )  # fmt: skip
-        elif "syntax error" in match[3] or "lexer error" in match[3]:
-            wrong = match[3].split("error, ")[-1]
-            yield Finding(
-                place, "syntax", f"this is no rule: {wrong}.",
-                "A rule reads head :- condition, condition. and ends with a full stop.",
-            )  # fmt: skip
-        else:
-            yield Finding(place, "refused", f"the solver refuses it: {match[3]}.", "Rewrite it.")
-    if not found:
-        yield Finding(
-            Place(file, 1, 1), "refused", f"the solver refuses it: {message.strip()[:200]}.",
-            "Rewrite it.",
-        )  # fmt: skip
-
-
-def world_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
-    """Rules that can never fire or always do, and names that clash with others."""
-    rules = [each for each in own if each.kind == "rule" and each.heads]
-    judged = [rule for rule in rules if not _beyond(rule, own, base)]
-    for rule in rules:
-        if rule not in judged:
-            words = ", ".join(f"{name}/{arity}" for name, arity in _beyond(rule, own, base))
-            yield _not_judged(rule, f"{words}, which the worlds of the audit do not contain")
-    atoms, limbs = _fitted(own, base, _probes(judged))
-    yield from _firing(judged, atoms, lambda number: _missing(number, judged, own, base, atoms))
-    yield from _clashes(own, _named(own, base, limbs))
-
-
-def _fitted(
-    own: Sequence[Statement], base: Known, probes: Iterable[Statement] = ()
-) -> tuple[frozenset[Answered], frozenset[str]]:
-    """Which rules fire, and the end-effectors in whose worlds a primitive of one's own fits."""
-    marks = "".join(f'fitted(Hand) :- fits(seg(Hand,_), "{name}").\n' for name in _primitives(own))
-    rules = [*base.rules, *own, *probes, *parse_text(marks)]
-    atoms = evaluate(rules, (FIRED, IDLE, HELD, POSSIBLE, FITTED))
-    return atoms, frozenset(str(row[0]) for name, row in atoms if name == "fitted")
-
-
-def _named(own: Sequence[Statement], base: Known, limbs: frozenset[str]) -> Audit:
-    """The audit of the worlds in which a primitive of one's own fits: it clashes in no other."""
-    return summarise(evaluate([*base.rules, *own], (*ASKED, FEATURE_ROW), limbs=limbs))
+    Args:
+        own: The rules of the file.
+        base: The shipped rule base.
+        beside: The rules of the user's other files.
+    """
+    trial = Trial(own, base, beside)
+    rules = {at: each for at, each in enumerate(own) if each.kind == "rule" and each.heads}
+    beyond = {at: trial.beyond(rule) for at, rule in rules.items()}
+    judged = {at: rule for at, rule in rules.items() if not beyond[at]}
+    for at, words in beyond.items():
+        if words:
+            yield _not_judged(rules[at], ", ".join(f"{name}/{arity}" for name, arity in words))
+    watched = {*trial.names, *(over for each in trial.generals.values() for over in each)}
+    probes = [*firing_probes(judged), *naming_probes(sorted(watched), sorted(watched))]
+    atoms = trial.ask(probes, ASKED, trial.worlds)
+    unfired = _unfired(trial, judged, atoms)
+    missing = _missing(trial, unfired) if unfired else {}
+    yield from _firing(trial, judged, atoms, {at: missing.get(at, "") for at in unfired})
+    yield from clashes(trial, atoms)
+    yield from shadows(trial, atoms)
+    yield from overlaps(trial, set(missing.values()))
 
 
 def _not_judged(rule: Statement, what: str) -> Finding:
     return Finding(
-        rule.place, "not-judged", f"whether it can fire was not checked: it depends on {what}.",
+        rule.place, "not-judged", f"whether it can fire was not checked: it depends on {what}, "
+        "which the worlds of the audit do not contain.",
         "Give the file examples that it must and must not match.", NOTE,
     )  # fmt: skip
 
 
-def _probes(rules: Sequence[Statement]) -> Iterator[Statement]:
-    for number, rule in enumerate(rules):
-        if rule.body:
-            body = "; ".join(each.text for each in rule.body)
-            text = f"fired({number}) :- {body}.\n"
-            if rule.heads[0].signature == ("fits", 2):
-                segment = split_arguments(rule.heads[0].text)[0]
-                text += f"fired({number},{segment}) :- {body}.\n"
-                text += f"idle({number}) :- segment(S,_,_); not fired({number},S).\n"
-            for place, atom in _plain(rule):
-                name, arity = atom.signature
-                text += f"held({number},{place},so) :- {_loosened(atom.text)}.\n"
-                if arity:
-                    text += f"held({number},{place},any) :- {name}({','.join('_' * arity)}).\n"
-            yield from parse_text(text)
-
-
-def _plain(rule: Statement) -> Iterator[tuple[int, Atom]]:
-    """The positive conditions of a rule without arithmetic, each with its index."""
-    for place, literal in enumerate(rule.body):
-        if literal.kind == "atom" and literal.sign == 0:
-            atom = literal.atoms[0]
-            if not _COMPUTES.search(STRING.sub("", atom.text)):
-                yield place, atom
-
-
-def _loosened(text: str) -> str:
-    """An atom's text with its variables anonymous."""
-    return _TOKEN.sub(lambda found: found[0] if found[0].startswith('"') else "_", text)
-
-
-def _missing(
-    number: int,
-    judged: Sequence[Statement],
-    own: Sequence[Statement],
-    base: Known,
-    atoms: frozenset[Answered],
-) -> str:
-    """A condition that no world fulfils though a real segment may; else an empty text.
-
-    No world has such a relation, or the relation depends on one chosen over few arguments only.
-    """
-    held = {row[1:] for name, row in atoms if name == "held" and row[0] == number}
-    for place, atom in _plain(judged[number]):
-        if (place, "so") not in held and (
-            (place, "any") not in held or _below([atom.signature], own, base) & chosen_in_audit()
-        ):
-            return atom.text
-    return ""
-
-
 def _firing(
-    rules: Sequence[Statement], atoms: frozenset[Answered], missing: Callable[[int], str]
+    trial: Trial, rules: Rules, atoms: frozenset[Atom], unfired: Mapping[int, str]
 ) -> Iterator[Finding]:
-    fired = {row[0] for name, row in atoms if name == "fired" and len(row) == 1}
-    idle = {row[0] for name, row in atoms if name == "idle"}
-    possible = {tuple(map(str, row)) for name, row in atoms if name == "possible"}
-    for number, rule in enumerate(rules):
-        head = rule.heads[0]
-        arguments = [each.strip('"') for each in split_arguments(head.text)]
-        row = head.signature == ("feature_row", 6) and tuple(arguments[2:]) not in possible
-        unfired = bool(rule.body) and number not in fired
-        if unfired and (beyond := missing(number)):
-            yield _not_judged(rule, f"{beyond}, which the worlds of the audit do not contain")
-        elif unfired or row:
-            what = f"the features {', '.join(arguments[2:])}" if row else "what it asks for"
+    idle = _numbers(atoms, "_idle")
+    for at, rule in rules.items():
+        if unfired.get(at):
+            yield _not_judged(rule, unfired[at])
+        elif at in unfired or _impossible_row(at, rule, atoms):
+            arguments = [each.strip('"') for each in split_arguments(rule.heads[0].text)]
+            what = "what it asks for" if rule.body else f"the features {', '.join(arguments[2:])}"
             yield Finding(
                 rule.place, "never-fires",
                 f"this rule can never fire: no segment has {what}.",
                 "`capar rules audit` lists the feature sets that segments can have.",
             )  # fmt: skip
-        elif rule.body and head.signature == ("fits", 2) and number not in idle:
+        elif rule.body and _is_fits(rule) and at not in idle and _everywhere(trial, rule):
             yield Finding(
                 rule.place, "always-fires", "this rule always fires: every segment fits it.",
                 "Add a condition, such as features(Segment, Start, End, Change, Force).",
             )  # fmt: skip
 
 
-def rivals(name: str, own: Sequence[Statement], base: Known) -> tuple[str, ...]:
-    """The primitives that are ambiguous with one of a file's, most shared feature sets first."""
-    return _rivals(name, _named(own, base, _fitted(own, base)[1]))
+def _unfired(trial: Trial, rules: Rules, atoms: frozenset[Atom]) -> dict[int, Statement]:
+    """The rules that fire in no world; one that no primitive needs may fire in any."""
+    fired = _numbers(atoms, "_fired")
+    unfired = {at: rule for at, rule in rules.items() if rule.body and at not in fired}
+    helpers = {at: rule for at, rule in unfired.items() if not _is_fits(rule)}
+    if helpers:
+        rest = every_world() - trial.worlds
+        fired |= _numbers(trial.ask(firing_probes(helpers), (FIRED,), rest), "_fired")
+    return {at: rule for at, rule in unfired.items() if at not in fired}
 
 
-def _rivals(name: str, audit: Audit) -> tuple[str, ...]:
-    """The same of an audit."""
-    shared = {
-        pair.second if pair.first == name else pair.first: len(pair.features)
-        for pair in audit.ambiguous
-        if name in (pair.first, pair.second)
+def _missing(trial: Trial, rules: Rules) -> dict[int, str]:
+    """For rules that never fire, a condition that no world fulfils though a real segment may.
+
+    No world has such a relation, or the relation depends on one chosen over few arguments only.
+    """
+    conditions = {(at, place): atom for at in rules for place, atom in plain_conditions(rules[at])}
+    held: set[tuple[object, ...]] = {
+        (*key, "so")
+        for key, atom in conditions.items()
+        if atom.signature == FITS and trial.extents.fits.get(primitive_in(atom))
     }
-    return tuple(sorted(shared, key=lambda rival: (-shared[rival], rival)))
+    for worlds in (trial.worlds, every_world() - trial.worlds):
+        unheld = {key: atom for key, atom in conditions.items() if (*key, "so") not in held}
+        held |= {row for _, row in trial.ask(holding_probes(unheld), (HELD,), worlds)}
+    found: dict[int, str] = {}
+    for key, atom in conditions.items():
+        chosen = trial.below([atom.signature]) & chosen_in_audit()
+        if (*key, "so") not in held and (chosen or (*key, "any") not in held):
+            found.setdefault(key[0], atom.text)
+    return found
 
 
-def _clashes(own: Sequence[Statement], audit: Audit) -> Iterator[Finding]:
-    for name, place in _primitives(own).items():
-        others = _rivals(name, audit)
-        if others:
-            pairs = [pair for pair in audit.ambiguous if name in (pair.first, pair.second)]
-            where = ", ".join(bit or "none" for bit in pairs[0].features[0])
-            told = ", ".join(others[:MOST_RIVALS])
-            rest = len(others) - MOST_RIVALS
-            yield Finding(
-                place, "ambiguous",
-                f"{name} and {told}{f' and {rest} more' if rest > 0 else ''} name the same "
-                f"segments, such as those with features {where}, and neither is the more specific.",
-                f"If {name} is a kind of {others[0]}, say "
-                f'specialises("{name}", "{others[0]}"); if not, add a condition that keeps them '
-                f'apart, such as not fits(Segment, "{others[0]}").',
-            )  # fmt: skip
-        if name in audit.shadowed:
-            yield Finding(
-                place, "shadowed", f"{name} never names a segment: others are always more "
-                "specific.", "Remove what specialises it, or add a case of its own.",
-            )  # fmt: skip
+def _impossible_row(at: int, rule: Statement, atoms: frozenset[Atom]) -> bool:
+    """Whether it is a row of the feature table that no segment has."""
+    row = rule.heads[0].signature == ("feature_row", 6)
+    return row and not rule.body and at not in _numbers(atoms, "_row")
 
 
-def _primitives(own: Sequence[Statement]) -> dict[str, Place]:
-    """The names of a file's primitives, and where they are declared."""
-    return {
-        split_arguments(head.text)[0].strip('"'): head.place
-        for each in own
-        for head in each.heads
-        if head.signature == ("primitive", 1)
-    }
+def _everywhere(trial: Trial, rule: Statement) -> bool:
+    return worlds_of(rule, trial.candidates, trial.extents) == every_world()
 
 
-def _beyond(rule: Statement, own: Sequence[Statement], base: Known) -> tuple[Signature, ...]:
-    """The measurements that a rule depends on and no world of the audit contains."""
-    read = _below((atom.signature for each in rule.body for atom in each.atoms), own, base)
-    defined = heads_of([*base.rules, *own])
-    return tuple(sorted((read & base.measured) - given_in_audit() - defined))
+def _is_fits(rule: Statement) -> bool:
+    return rule.heads[0].signature == FITS
 
 
-def _below(
-    signatures: Iterable[Signature], own: Sequence[Statement], base: Known
-) -> frozenset[Signature]:
-    """Predicates and what they depend on, down to what the worlds of the audit define."""
-    below, given = frozenset(signatures), given_in_audit()
-    slice_ = towards([*base.rules, *own], below - given, given=given)
-    return below | signatures_below(each for each in slice_ if each.kind == "rule")
+def _numbers(atoms: Iterable[Atom], predicate: str) -> set[object]:
+    return {row[0] for name, row in atoms if name == predicate and len(row) == 1}

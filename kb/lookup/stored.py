@@ -10,7 +10,7 @@ from kb.encode.run import run, run_removal
 from kb.encode.scene import identity
 from kb.errors import ExistsError
 from kb.findings import Added, Stored
-from kb.lookup import recognition
+from kb.lookup import agents, recognition
 from kb.store import names
 from kb.store import updates as writing
 from kb.store.consistency import check_consistent
@@ -51,7 +51,7 @@ def add(store: Store, observation: "Observation", *, name: str | None, replace: 
     called = name or observation.complex_par.name or recognised or observation.capture
     statements = encode(observation, name=called)
     validate_statements(observation.capture, statements)
-    quads = statements.quads
+    quads = agents.joined(statements.quads, agents.aliases(store))
     check_consistent(observation.capture, quads)
     if there or is_address(store.place):
         change = writing.replacement(graph, [*quads, *run(observation)])

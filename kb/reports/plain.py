@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from kb.reports.linguistics import ClassReport, LinguisticReport, named
-from kb.reports.tables import DOUBTS, Table, coverage, shown_by, tables
+from kb.reports.tables import DOUBTS, EVIDENCE, NOTES, Table, coverage, shown_by, tables
 
 TITLE = "Verbs that the system addresses"
 WIDTH = 96
@@ -18,6 +18,7 @@ def as_text(report: LinguisticReport) -> str:
     """For a terminal: figures, then a paragraph for each class, then senses and remarks."""
     lines = [TITLE, "=" * len(TITLE), ""]
     lines += [f"{what}: {much}" for what, much in coverage(report)]
+    lines += ["", *textwrap.wrap(EVIDENCE, WIDTH)]
     for each in report.classes:
         lines += ["", *_class_text(each)]
     lines += ["", "Senses", "------"]
@@ -61,7 +62,8 @@ def as_markdown(report: LinguisticReport) -> str:
     parts = [f"# {TITLE}\n"]
     for title, heads, rows in tables(report):
         lines = [_md_row(heads), _md_row(["---"] * len(heads)), *map(_md_row, rows)]
-        parts.append(f"## {title}\n\n" + "\n".join(lines) + "\n")
+        note = f"{NOTES[title]}\n\n" if title in NOTES else ""
+        parts.append(f"## {title}\n\n{note}" + "\n".join(lines) + "\n")
     return "\n".join(parts)
 
 
@@ -91,12 +93,13 @@ def as_latex(report: LinguisticReport) -> str:
 
 def _latex_table(table: Table) -> str:
     title, heads, rows = table
+    caption = f"{title}. {NOTES[title]}" if title in NOTES else title
     width = f"p{{{0.92 / len(heads):.3f}\\linewidth}}"
     body = [" & ".join(map(_latex, row)) + r" \\" for row in rows]
     return "\n".join(
         [
             rf"\begin{{longtable}}{{{width * len(heads)}}}",
-            rf"\caption{{{_latex(title)}}}\\",
+            rf"\caption{{{_latex(caption)}}}\\",
             r"\toprule",
             " & ".join(map(_latex, heads)) + r" \\",
             r"\midrule",

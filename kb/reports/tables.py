@@ -6,6 +6,20 @@ from kb.reports.linguistics import ClassReport, LinguisticReport, SenseRow, shar
 Table = tuple[str, tuple[str, ...], tuple[tuple[str, ...], ...]]
 """Title, heads of columns, rows."""
 
+EVIDENCE = (
+    "Observed: stored segments of captures bear a primitive's name; tested: a shipped test case "
+    "does, and no stored segment; by rule only: a rule says so, and nothing shows it yet."
+)
+"""What counts as evidence, for the captions of the tables that tell it."""
+
+NOTES = {
+    "Coverage": "Counts what rules address, whatever the evidence.",
+    "Classes": f"Shown by: stored captures and shipped test cases. {EVIDENCE}",
+    "Verbs": EVIDENCE,
+    "Claims of the thesis": "What the thesis says, in its own words; no evidence of the system's.",
+}
+"""What stands below a table's title."""
+
 DOUBTS = "Doubts about what rule files state"
 
 

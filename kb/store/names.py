@@ -22,6 +22,7 @@ GRAPHS = {
     "links": NamedNode(DATA + "graph/lexicon/links"),
     "imported": NamedNode(DATA + "graph/imported"),
     "runs": NamedNode(DATA + "graph/runs"),
+    "corrections": NamedNode(DATA + "graph/corrections"),
 }
 """The named graphs that are no observation's, by what they hold."""
 
@@ -40,6 +41,8 @@ _OF_FOLDER = {
     "rule": "actions",
     "threshold": "actions",
     "run": "runs",
+    "correction": "corrections",
+    "person": "corrections",
     "graph": "ontology",
     "synset": "wordnet",
     "sense": "wordnet",

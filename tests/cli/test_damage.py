@@ -110,5 +110,5 @@ def test_a_damaged_answer_to_a_users_query_says_so_too(whole: Path, tmp_path: Pa
     place = Path(shutil.copytree(whole, tmp_path / "known"))
     with Actionary.open(place, read_only=True) as actionary:
         flipped(0.5)(chosen(place, "MANIFEST-*"))
-        with pytest.raises(StoreError, match="restore it from an export"):
+        with pytest.raises(StoreError, match="restore it from a backup or export"):
             actionary.query("SELECT ?s { ?s ?p ?o }")

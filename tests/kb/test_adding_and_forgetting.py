@@ -13,13 +13,15 @@ from capar.model.observation import Observation
 from capar.model.par import Nlt
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
+from kb.encode.run import ENDED
 from kb.errors import ExistsError, ShapeError
 from kb.store import names
 from kb.store_checks import check
 
 
 def statements(actionary: Actionary) -> set[str]:
-    return {str(each) for each in actionary.store.quads()}
+    """All but when an observation was made, which is another second each time."""
+    return {str(each) for each in actionary.store.quads() if each.predicate != ENDED}
 
 
 def by(agent: str, capture: str, *, name: str = "") -> Observation:

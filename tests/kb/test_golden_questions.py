@@ -26,6 +26,9 @@ ASKED_OF_RECORDINGS = {
 }  # fmt: skip
 """The questions that test_competency.py asks."""
 
+ASKED_OF_PERSONS = {"corrections"}
+"""The questions that test_corrections.py asks."""
+
 
 @pytest.fixture(scope="module", params=STORES)
 def known(
@@ -42,7 +45,7 @@ def known(
 
 
 def test_every_question_has_a_golden_answer_here_or_is_asked_of_recordings() -> None:
-    assert set(questions()) == ASKED_HERE | ASKED_OF_RECORDINGS
+    assert set(questions()) == ASKED_HERE | ASKED_OF_RECORDINGS | ASKED_OF_PERSONS
 
 
 def test_which_actions_touch_a_mug(known: Actionary) -> None:

@@ -14,6 +14,7 @@ import pytest
 from capar.model.errors import UnknownNameError
 from capar.pipelines.linguistic_report import linguistics
 from kb.reports.linguistics import LinguisticReport
+from kb.reports.tables import NOTES
 from kb.reports.writing import FORMATS, write
 
 FLAGS = (
@@ -82,6 +83,20 @@ def test_latex_leaves_no_sign_of_its_own_unescaped(report: LinguisticReport) -> 
         if line.startswith("\\"):
             continue
         assert not re.search(r"(?<!\\)[%#$_]", line)
+
+
+@pytest.mark.parametrize("form", ["text", "md", "latex"])
+def test_it_is_said_what_counts_as_evidence(report: LinguisticReport, form: str) -> None:
+    plain = " ".join(write(report, form).split())
+    for word in ("Observed: stored segments", "tested: a shipped", "by rule only: a rule says so"):
+        assert word in plain
+
+
+def test_every_caption_of_latex_that_has_a_note_holds_it(report: LinguisticReport) -> None:
+    captions = re.findall(r"\\caption\{(.*)\}\\\\", write(report, "latex"))
+    assert len(captions) >= len(NOTES)
+    for title, note in NOTES.items():
+        assert f"{title}. {note}" in captions
 
 
 def test_an_unknown_format_is_answered_with_the_known(report: LinguisticReport) -> None:

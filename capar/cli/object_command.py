@@ -1,0 +1,44 @@
+"""Show what is known of the kinds of objects."""
+
+from typing import Annotated
+
+import typer
+
+from capar.cli._options import Place
+from capar.cli._output import print_fields, print_json
+
+app = typer.Typer(no_args_is_help=True)
+
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+@app.callback()
+def _root() -> None:
+    """Say what is known of objects, which is kept by their kinds."""
+
+
+@app.command("list")
+def list_objects(actionary: Place = None, json: Json = False) -> None:
+    """List every kind of object that was observed or declared."""
+    from kb import Actionary
+
+    with Actionary.open(actionary, read_only=True) as opened:
+        found = opened.object_kinds()
+    if json:
+        print_json(list(found))
+        return
+    for each in found:
+        typer.echo(each)
+
+
+@app.command()
+def show(
+    name: Annotated[str, typer.Argument(help="A kind of object, or the name of an object.")],
+    actionary: Place = None,
+    json: Json = False,
+) -> None:
+    """Show what is known of a kind of object, field by field, and which fields are empty."""
+    from kb import Actionary
+
+    with Actionary.open(actionary, read_only=True) as opened:
+        print_fields(name, opened.object_profile(name), json=json)
