@@ -1,0 +1,1 @@
+"""Observation while it happens: frames in, segments out, provisional first and settled soon."""
