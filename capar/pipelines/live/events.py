@@ -20,7 +20,11 @@ class Status(StrEnum):
     """What was announced as ended goes on, or is part of another segment."""
 
     SETTLED = "settled"
-    """It is told for good."""
+    """It is told for good: name, objects, begin and end."""
+
+    PURPOSE = "purpose"
+    """What a settled segment was for, now that the next one is settled: where nobody states a
+    purpose, it is the action that follows."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -121,8 +121,10 @@ class LiveResult:
     def segments(self, done: Sequence[SettledSegment], inference: Inference) -> None:
         """Take the segments that an answer of the rules settles, and what several do jointly."""
         for each in done:
-            self._settled[each.segment.ee, each.segment.index] = each
-            self._waiting.append(each)
+            key = each.segment.ee, each.segment.index
+            if key not in self._settled:
+                self._waiting.append(each)
+            self._settled[key] = each
         by_place = {
             (key[0], each.segment.first, each.segment.last): each.segment
             for key, each in self._settled.items()
@@ -168,7 +170,7 @@ class LiveResult:
         steadied = steady(facts) if self._rules.steady else tuple(facts)
         moved = () if self._rules.crossings_only else movers(steadied)
         ordered = [segment for link in inference.links for segment in link.segments]
-        details = [self._details[each.ee, each.index] for each in ordered]
+        details = [_for_purpose(self._details[each.ee, each.index], each) for each in ordered]
         rate_hz = self._rate_mhz / 1000.0
         guides = {} if self._rules.crossings_only else self._last.guides
         objects = self._last.bodies.objects
@@ -296,6 +298,15 @@ class LiveResult:
         assert self._last is not None
         for name, pose in sorted(self._last.bodies.poses.items()):
             yield track_of(name, np.concatenate(self._tracks[name]), times, rests=pose.rests)
+
+
+def _for_purpose(details: _Details, segment: Segment) -> _Details:
+    """Details with the purpose of their segment, which is known later than they may be."""
+    location = details.location
+    if location is not None:
+        location = replace(location, purpose=segment.purpose)
+    style_of_it = replace(details.style, purpose=segment.purpose)
+    return _Details(details.measured, location, style_of_it)
 
 
 def _flicker_notices(facts: Sequence[Fact], rate_hz: float) -> list[Notice]:

@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from capar.model.observation import Border, ObservedLink, Segment
+from capar.model.observation import ObservedLink, Segment
 from capar.pipelines.live.events import SegmentEvent, Status
 from capar_rules.pars.inference import Conditions, Inference
 
@@ -30,6 +30,8 @@ class Contradictions:
 class _Link:
     count: int = 0
     end: int = 0
+    """The last frame of the last settled segment."""
+
     recent: deque[SettledSegment] = field(default_factory=deque)
     announced: dict[int, Segment] = field(default_factory=dict)
 
@@ -75,6 +77,11 @@ class SegmentLedger:
             own = self._links.setdefault(link.ee, _Link())
             found = list(self._unsettled(own, link, rate_hz))
             settled = 0
+            if found and found[0][1].last <= frontier and own.recent:
+                amended = self._with_purpose(own, link)
+                if amended is not None:
+                    events.append(SegmentEvent(Status.PURPOSE, amended.segment, time_s))
+                    done.append(amended)
             for local, segment in found:
                 if segment.last > frontier:
                     break
@@ -87,6 +94,16 @@ class SegmentLedger:
             ended = {each.index: each for _, each in found[settled:] if each.last < now}
             events += _announced(own, ended, time_s)
         return events, done
+
+    def _with_purpose(self, own: _Link, link: ObservedLink) -> SettledSegment | None:
+        """The last settled segment with what it was for, where that was not known before."""
+        known = own.recent[-1]
+        for each in link.segments:
+            if _same(each, known.segment) and each.purpose != known.segment.purpose:
+                amended = replace(known, segment=replace(known.segment, purpose=each.purpose))
+                own.recent[-1] = amended
+                return amended
+        return None
 
     def _settle(self, own: _Link, each: SettledSegment) -> None:
         own.announced.pop(each.segment.index, None)
@@ -105,13 +122,12 @@ class SegmentLedger:
                 self._compare(own, segment)
                 continue
             borders = segment.begins
-            if own.count and index == own.count and segment.first != begin:
-                borders = own.recent[-1].segment.ends if own.recent else (Border("first"),)
-                if segment.first > begin or segment.first < begin:
-                    self.contradictions.borders += int(segment.first > begin)
-            first = begin
-            yield local, replace(
-                segment, index=index, first=first, start_s=first / rate_hz, begins=borders
+            if own.recent and segment.first != begin:
+                borders = own.recent[-1].segment.ends
+            start_s = begin / rate_hz
+            yield (
+                local,
+                replace(segment, index=index, first=begin, start_s=start_s, begins=borders),
             )
             index, begin = index + 1, segment.last
 
@@ -123,6 +139,10 @@ class SegmentLedger:
                 self.contradictions.names += int(known.name != segment.name)
                 self.contradictions.borders += int(known.last != segment.last)
                 return
+
+
+def _same(one: Segment, other: Segment) -> bool:
+    return (one.name, one.objects, one.last) == (other.name, other.objects, other.last)
 
 
 def _mostly(segment: Segment, end: int) -> bool:
