@@ -1,19 +1,20 @@
 """The live observer: frames in, announcements out, and at the end an observation."""
 
-from collections import deque
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture
 from capar.model.facts import Fact, Frames, Observed, RateMhz
 from capar.model.observation import Observation
+from capar.pipelines.live.carried_sums import CarriedSums
 from capar.pipelines.live.events import SegmentEvent
 from capar.pipelines.live.fact_ledger import FactLedger
 from capar.pipelines.live.frames import FrameBuffer, Poses, Window
 from capar.pipelines.live.horizons import LiveHorizons, horizons_of
 from capar.pipelines.live.result import LiveResult
-from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger, SettledSegment
+from capar.pipelines.live.rule_memory import RuleMemory
+from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
 from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.pars.inference import Inference, infer
@@ -62,7 +63,8 @@ class LiveObserver:
         self._rate_mhz = round(1000.0 / self._step_s)
         self._buffer = FrameBuffer(rig, self._frames(self.horizons.whole_s) + 1)
         self._facts = FactLedger()
-        self._kept: deque[Observed] = deque()
+        self._sums = CarriedSums()
+        self._memory = RuleMemory()
         self._segments = SegmentLedger(self.horizons.segments)
         self._result = (
             LiveResult(rig, calibration, self.rules, name or rig.name, self._rate_mhz)
@@ -113,7 +115,7 @@ class LiveObserver:
         if self._result is None:
             return events, None
         window = self._buffer.window(self._frames(self.horizons.whole_s) + 1)
-        self._result.block(window, measure(window.capture, self.calibration), window.last)
+        self._result.block(window, window.last)
         return events, self._result.observation(window)
 
     def _settle_block(self) -> None:
@@ -123,7 +125,7 @@ class LiveObserver:
         window = self._buffer.window(self._frames(self.horizons.whole_s) + 1)
         frontier = window.last - self._frames(self.horizons.margin_s)
         if frontier > self._result.frontier:
-            self._result.block(window, measure(window.capture, self.calibration), frontier)
+            self._result.block(window, frontier)
 
     def _evaluate(self, *, last: bool) -> list[SegmentEvent]:
         """Measure the short window, and ask the rules over the last few segments."""
@@ -131,13 +133,12 @@ class LiveObserver:
         window = self._buffer.window(self._frames(self.horizons.window_s) + 1)
         if len(window.capture.times) < 4:
             return []
-        measurements = measure(window.capture, self.calibration)
-        recent = self._facts.stitched(measurements.facts, window.first)
         frontier = window.last - (0 if last else self._frames(self.horizons.settle_s))
-        begin = self._rules_begin(window)
-        inference, count = self._inferred(measurements, recent, begin, window)
-        self._kept.extend(self._facts.settle(recent, max(frontier, self._facts.frontier)))
-        self._forget(begin)
+        measurements = measure(window.capture, self.calibration, self._sums.since(window))
+        self._sums.advance(window, measurements, frontier)
+        recent = self._facts.stitched(measurements.facts, window.first)
+        inference, count = self._inferred(measurements, recent, window.last)
+        self._memory.add(self._facts.settle(recent, max(frontier, self._facts.frontier)))
         time_s = self._buffer.time_s(window.last)
         events, done = self._segments.take(
             inference,
@@ -146,24 +147,25 @@ class LiveObserver:
             rate_hz=self._rate_mhz / 1000.0,
             time_s=time_s,
         )
+        self._memory.forget(self._rules_begin(window), self._segments.ends(), self._frames(1.0))
         self.work = Work(len(window.capture.times), count, len(done))
         if self._result is not None:
             self._result.segments(done, inference)
         return events
 
     def _inferred(
-        self, measurements: Measurements, recent: list[Observed], begin: int, window: Window
+        self, measurements: Measurements, recent: list[Observed], last: int
     ) -> tuple[Inference, int]:
-        """What the rules say from a frame on, and over how many facts."""
+        """What the rules say up to a frame, and over how many facts."""
         always = [
             each
             for each in measurements.facts
-            if isinstance(each, Observed) and not each.ends() and not isinstance(each, Frames)
+            if isinstance(each, Observed)
+            and not each.ends()
+            and not isinstance(each, Frames | RateMhz)
         ]
-        facts: list[Fact] = [Frames(begin, window.last)]
-        facts += (replace(each, rate=self._rate_mhz) if isinstance(each, RateMhz) else each
-                  for each in always)
-        facts += (each for each in self._kept if each.ends()[-1] >= begin)
+        facts: list[Fact] = [Frames(0, last), RateMhz(self._rate_mhz), *always]
+        facts += self._memory
         facts += recent
         chosen = steady(facts) if self.rules.steady else tuple(facts)
         return infer(chosen, profile=self.rules), len(chosen)
@@ -172,15 +174,5 @@ class LiveObserver:
         oldest = window.last - self._frames(self.horizons.rules_s)
         return max(0, oldest, self._segments.first_needed(window.last))
 
-    def _forget(self, begin: int) -> None:
-        """Drop settled facts that rules do not see again."""
-        margin = self._frames(1.0)
-        self._kept = deque(each for each in self._kept if each.ends()[-1] >= begin - margin)
-
     def _frames(self, duration_s: float) -> int:
         return max(1, round(duration_s / self._step_s))
-
-
-def settled(done: Iterable[SettledSegment]) -> list[str]:
-    """The names of settled segments."""
-    return [each.segment.name for each in done]

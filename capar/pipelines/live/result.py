@@ -15,6 +15,7 @@ from capar.model.locations import ConstraintLocation
 from capar.model.observation import JointAction, Observation, ObservedLink, ObservedObject, Segment
 from capar.model.par import Style
 from capar.model.sampled_track import SampledTrack
+from capar.pipelines.live.carried_sums import CarriedSums
 from capar.pipelines.live.fact_ledger import FactLedger
 from capar.pipelines.live.frames import Window
 from capar.pipelines.live.segment_ledger import SettledSegment
@@ -28,7 +29,7 @@ from capar_rules.pars.naming_rules import naming_rules
 from capar_rules.pars.primitive_pars import Measured, ipars, upars
 from extractors.bodies.observed_objects import observed_object
 from extractors.calibration import thresholds_of
-from extractors.measure import Measurements
+from extractors.measure import Measurements, measure
 from extractors.relations.guide_locations import guide_location
 from extractors.segments.locations import constraint_location
 from extractors.segments.motion_kinds import moved_path
@@ -83,6 +84,7 @@ class LiveResult:
         self._notices: dict[object, Notice] = {}
         self._tracks: dict[str, list[np.ndarray]] = {}
         self._times: list[np.ndarray] = []
+        self._sums = CarriedSums()
         self._last: Measurements | None = None
         self.inexact = Inexact()
 
@@ -91,14 +93,15 @@ class LiveResult:
         """The last frame whose facts are settled."""
         return self._ledger.frontier
 
-    def block(self, window: Window, measurements: Measurements, frontier: int) -> None:
-        """Take from a measured window what is settled up to a frame.
+    def block(self, window: Window, frontier: int) -> None:
+        """Measure a window, and take from it what is settled up to a frame.
 
         Args:
             window: The last frames.
-            measurements: What was measured in them.
             frontier: The frame; beyond it nothing is taken.
         """
+        measurements = measure(window.capture, self._calibration, self._sums.since(window))
+        self._sums.advance(window, measurements, frontier)
         before = self._ledger.frontier
         found = self._ledger.stitched(measurements.facts, window.first)
         self._facts += self._ledger.settle(found, frontier)

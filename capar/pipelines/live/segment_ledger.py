@@ -52,6 +52,10 @@ class SegmentLedger:
         """The last settled segments of a link, in time."""
         return self._links[ee].recent if ee in self._links else ()
 
+    def ends(self) -> list[int]:
+        """The last frame of the last settled segment of each link: the next one begins there."""
+        return sorted({link.end for link in self._links.values()})
+
     def first_needed(self, now: int) -> int:
         """The frame from which rules have to see, so that every link's last segments are told."""
         starts = [
