@@ -63,9 +63,7 @@ def distances(
 
 def turned_and_gone(
     body: BodyGeometry, since: Sums = FROM_THE_BEGINNING
-) -> tuple[
-    Float[np.ndarray, "frames"], Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]
-]:
+) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
     """Path [m], rotation [rad] and turn about the vertical [rad] up to each frame."""
     steps = np.linalg.norm(np.diff(body.middles, axis=0), axis=1)
     angles = geometry.angle_between(body.orientations[1:], body.orientations[:-1])

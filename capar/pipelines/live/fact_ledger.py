@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, cast
 
-from capar.model.facts import Fact, Observed, ReleaseSpeed, Rides
 from capar.model.declarations import Span
+from capar.model.facts import Fact, Observed, ReleaseSpeed, Rides
 
 Key = tuple[object, ...]
 """What an interval is of: its kind and its bodies, whenever it is."""
@@ -61,12 +61,8 @@ class FactLedger:
                 if place in ended or (place in continued and not isinstance(each, AT_THE_END)):
                     continue
                 out.append(_begun(each, firsts.get(place)))
-        for key, first in continued:
-            out += [
-                each
-                for each in self._open[key].named
-                if not isinstance(each, AT_THE_END)
-            ]
+        for key, _ in continued:
+            out += [each for each in self._open[key].named if not isinstance(each, AT_THE_END)]
         return list(dict.fromkeys(out))
 
     def settle(self, stitched: Sequence[Observed], frontier: int) -> list[Observed]:

@@ -88,9 +88,7 @@ class FrameBuffer:
     @property
     def bodies(self) -> tuple[str, ...]:
         """The bodies of a frame's rows, in order; of one that is two things, its first name."""
-        return tuple(dict((row, name) for name, row in reversed(self.streams.items())).values())[
-            ::-1
-        ]
+        return body_names(self.rig)
 
     def time_s(self, frame: int) -> float:
         """The time of a frame that is still held [s]."""
@@ -118,6 +116,14 @@ class FrameBuffer:
         self._filled = self._longest
 
 
+def body_names(rig: Capture) -> tuple[str, ...]:
+    """The bodies of a frame's rows, in order, as ``sensor NAME`` or ``object NAME``."""
+    firsts: dict[int, str] = {}
+    for name, row in _distinct(rig).items():
+        firsts.setdefault(row, name)
+    return tuple(firsts[row] for row in sorted(firsts))
+
+
 def with_streams(rig: Capture, streams: Mapping[str, Stream]) -> Capture:
     """A rig whose bodies move as some streams say, by ``sensor NAME`` and ``object NAME``."""
     sensors = tuple(replace(each, stream=streams[_key(each)]) for each in rig.sensors)
@@ -125,12 +131,10 @@ def with_streams(rig: Capture, streams: Mapping[str, Stream]) -> Capture:
     return replace(rig, sensors=sensors, objects=objects)
 
 
-def replayed(capture: Capture) -> "list[Poses]":
+def replayed(capture: Capture) -> list[Poses]:
     """The frames of a recorded capture, as a tracker would have given them."""
-    rows = _distinct(capture)
-    firsts = {row: name for name, row in reversed(rows.items())}
-    everything = {_key(each): each.stream for each in (*capture.sensors, *capture.objects)}
-    streams = [everything[firsts[row]] for row in sorted(firsts)]
+    everything = {_key(each): each.stream for each in _bodies(capture)}
+    streams = [everything[name] for name in body_names(capture)]
     positions = np.stack([each.positions for each in streams], axis=1)
     orientations = np.stack([each.orientations for each in streams], axis=1)
     return [
@@ -142,10 +146,11 @@ def replayed(capture: Capture) -> "list[Poses]":
 def _distinct(rig: Capture) -> dict[str, int]:
     """The row of each body's stream; an object that is also a sensor shares its row."""
     rows: dict[int, int] = {}
-    return {
-        _key(each): rows.setdefault(id(each.stream), len(rows))
-        for each in (*rig.sensors, *rig.objects)
-    }
+    return {_key(each): rows.setdefault(id(each.stream), len(rows)) for each in _bodies(rig)}
+
+
+def _bodies(rig: Capture) -> tuple[Sensor | TagObject, ...]:
+    return (*rig.sensors, *rig.objects)
 
 
 def _key(body: Sensor | TagObject) -> str:

@@ -22,7 +22,7 @@ class LiveHorizons:
     """After its end a segment is settled [s]: more than half the filter (0.63 s), so that no later
     frame changes a smoothed pose in it, and longer than dropped and closed intervals (0.1 s)."""
 
-    window_s: float = 6.0
+    window_s: float = 4.0
     """Length of the short window [s]: a motion that began earlier is known from before."""
 
     rules_s: float = 20.0

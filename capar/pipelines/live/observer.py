@@ -1,7 +1,7 @@
 """The live observer: frames in, announcements out, and at the end an observation."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture
@@ -15,6 +15,7 @@ from capar.pipelines.live.horizons import LiveHorizons, horizons_of
 from capar.pipelines.live.result import LiveResult
 from capar.pipelines.live.rule_memory import RuleMemory
 from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
+from capar.pipelines.live.sentences import Teller
 from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.pars.inference import Inference, infer
@@ -41,6 +42,7 @@ class LiveObserver:
         horizons: How far it looks back and how long it waits; None for what the calibration asks.
         keep_result: Whether facts, segments and places are kept for ``finish``; without, memory
             does not grow.
+        sentences: Whether each announcement says in plain English what was done.
 
     Raises:
         CaparError: The rules have a fault, or the horizons do not fit.
@@ -55,6 +57,7 @@ class LiveObserver:
         name: str = "",
         horizons: LiveHorizons | None = None,
         keep_result: bool = True,
+        sentences: bool = False,
     ) -> None:
         self.horizons = horizons or horizons_of(calibration)
         self.calibration = calibration
@@ -71,6 +74,7 @@ class LiveObserver:
             if keep_result
             else None
         )
+        self._teller = Teller(rig, self.rules) if sentences else None
         self._measured = 0
         self._finished = False
         self.work: Work = Work(0, 0, 0)
@@ -100,6 +104,8 @@ class LiveObserver:
         for poses in frames:
             self._buffer.push(poses)
             self._settle_block()
+            if self.frames - self._measured >= self._frames(self.horizons.window_s) // 2:
+                events += self._evaluate(last=False)
         if self.frames - self._measured >= self._frames(self.horizons.stride_s):
             events += self._evaluate(last=False)
         return events
@@ -151,7 +157,16 @@ class LiveObserver:
         self.work = Work(len(window.capture.times), count, len(done))
         if self._result is not None:
             self._result.segments(done, inference)
-        return events
+        return self._told(events, recent)
+
+    def _told(self, events: list[SegmentEvent], recent: list[Observed]) -> list[SegmentEvent]:
+        """The announcements with their sentences, where they are asked for."""
+        if self._teller is None or not events:
+            return events
+        facts = (*self._memory, *recent)
+        return [
+            replace(each, sentence=self._teller.sentence(each.segment, facts)) for each in events
+        ]
 
     def _inferred(
         self, measurements: Measurements, recent: list[Observed], last: int

@@ -117,9 +117,9 @@ class LiveResult:
         self._last = measurements
         ready = [each for each in self._waiting if each.segment.last <= frontier]
         self._waiting = [each for each in self._waiting if each.segment.last > frontier]
-        for each in ready:
-            key = each.segment.ee, each.segment.index
-            self._details[key] = self._detailed(window, measurements, each)
+        for settled in ready:
+            key = settled.segment.ee, settled.segment.index
+            self._details[key] = self._detailed(window, measurements, settled)
 
     def segments(self, done: Sequence[SettledSegment], inference: Inference) -> None:
         """Take the segments that an answer of the rules settles, and what several do jointly."""

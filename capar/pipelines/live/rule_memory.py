@@ -37,7 +37,8 @@ class RuleMemory:
             borders: Frames at which segments begin that go on; what ends near them is kept.
             margin: How many frames away is near.
         """
-        kept, gone = [], []
+        kept: list[Observed] = []
+        gone: list[Observed] = []
         for each in self._facts:
             ends = each.ends()
             near = any(abs(end - border) <= margin for end in ends for border in borders)
@@ -55,7 +56,7 @@ class RuleMemory:
                 touching[each.body].append(each)
         for (body, frame), place in places.items():
             if frame == 0:
-                self._postures.setdefault((body, "first"), (place, *touching[body][:0]))
+                self._postures.setdefault((body, "first"), (place,))
         for each in gone:
             if isinstance(each, Resting) and (each.ee, each.last) in places:
                 place = places[each.ee, each.last]

@@ -136,8 +136,11 @@ class SegmentLedger:
             index, begin = index + 1, segment.last
 
     def _compare(self, own: _Link, segment: Segment) -> None:
-        """Count where a later answer tells of a settled segment otherwise."""
-        for each in own.recent:
+        """Count where a later answer tells of one of the last two settled segments otherwise.
+
+        Of what is farther back, rules are told too little to say anything.
+        """
+        for each in list(own.recent)[-2:]:
             known = each.segment
             if known.first <= (segment.first + segment.last) // 2 <= known.last:
                 self.contradictions.names += int(known.name != segment.name)
