@@ -52,7 +52,9 @@ class FrameBuffer:
         self.rig = rig
         self.streams = _distinct(rig)
         bodies = len(set(self.streams.values()))
-        self._longest = longest
+        self.longest = longest
+        """Most frames that a window holds."""
+
         self._times = np.empty(2 * longest)
         self._positions = np.empty((2 * longest, bodies, 3))
         self._orientations = np.empty((2 * longest, bodies, 4))
@@ -96,7 +98,7 @@ class FrameBuffer:
 
     def window(self, frames: int) -> Window:
         """The last frames, as many as there are of those asked for."""
-        begin = self._filled - min(frames, self._filled, self._longest)
+        begin = self._filled - min(frames, self._filled, self.longest)
         part = slice(begin, self._filled)
         rows: dict[int, Stream] = {}
         for row in set(self.streams.values()):
@@ -110,10 +112,10 @@ class FrameBuffer:
 
     def _forget(self) -> None:
         """Keep the last frames only."""
-        kept = slice(self._filled - self._longest, self._filled)
+        kept = slice(self._filled - self.longest, self._filled)
         for each in (self._times, self._positions, self._orientations):
-            each[: self._longest] = each[kept].copy()
-        self._filled = self._longest
+            each[: self.longest] = each[kept].copy()
+        self._filled = self.longest
 
 
 def body_names(rig: Capture) -> tuple[str, ...]:

@@ -28,7 +28,7 @@ class LiveHorizons:
     rules_s: float = 20.0
     """How far back rules see at most [s]; flicker is resolved in windows of 10 s."""
 
-    segments: int = 8
+    segments: int = 5
     """So many settled segments of a link are told to the rules again, so that these know what a
     segment follows; fewer where they last longer than ``rules_s``."""
 

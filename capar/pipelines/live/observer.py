@@ -89,6 +89,10 @@ class LiveObserver:
         """How many frames were pushed."""
         return self._buffer.count
 
+    def held(self) -> int:
+        """How many frames are held at most, however many were pushed."""
+        return self._buffer.longest
+
     @property
     def contradictions(self) -> Contradictions:
         """How often a later answer of the rules differed from what was settled."""
