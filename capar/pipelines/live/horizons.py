@@ -15,7 +15,7 @@ class LiveHorizons:
     ``extractors.calibration`` proves.
     """
 
-    stride_s: float = 0.25
+    stride_s: float = 0.2
     """Between two measurements of the short window [s]: by so much more a segment may be late."""
 
     settle_s: float = 0.75
@@ -24,6 +24,14 @@ class LiveHorizons:
 
     window_s: float = 4.0
     """Length of the short window [s]: a motion that began earlier is known from before."""
+
+    rest_s: float = 30.0
+    """By how much of its rest the place of a resting body is told [s]: the median of a longer one
+    is that of its last part."""
+
+    handing_s: float = 2.0
+    """While two end-effectors hold one thing, so long it is awaited who lets go of it [s]: whether
+    the other one takes it over depends on that."""
 
     rules_s: float = 20.0
     """How far back rules see at most [s]; flicker is resolved in windows of 10 s."""
@@ -60,7 +68,7 @@ class LiveHorizons:
         return 2.0 * self.margin_s + self.block_s
 
 
-def horizons_of(calibration: Calibration, *, stride_s: float = 0.25) -> LiveHorizons:
+def horizons_of(calibration: Calibration, *, stride_s: float = 0.2) -> LiveHorizons:
     """The horizons that a calibration calls for: its margin, and a settling beyond its filter."""
     known = calibration.horizons
     return LiveHorizons(

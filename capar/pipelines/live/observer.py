@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture
-from capar.model.facts import Fact, Frames, Observed, RateMhz
+from capar.model.facts import Fact, Frames, Observed, RateMhz, Touching
 from capar.model.observation import Observation
+from capar.pipelines.live.carried_poses import CarriedPoses
 from capar.pipelines.live.carried_sums import CarriedSums
 from capar.pipelines.live.events import SegmentEvent
 from capar.pipelines.live.fact_ledger import FactLedger
@@ -17,9 +18,10 @@ from capar.pipelines.live.rule_memory import RuleMemory
 from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
 from capar.pipelines.live.sentences import Teller
 from capar_rules.borders.deflicker import steady
+from capar_rules.borders.times import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.pars.inference import Inference, infer
-from extractors.measure import Measurements, measure
+from extractors.measure import Measurements, measured
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +69,18 @@ class LiveObserver:
         self._buffer = FrameBuffer(rig, self._frames(self.horizons.whole_s) + 1)
         self._facts = FactLedger()
         self._sums = CarriedSums()
+        self._poses = CarriedPoses(calibration, self._frames(self.horizons.rest_s))
         self._memory = RuleMemory()
         self._segments = SegmentLedger(self.horizons.segments)
         self._result = (
-            LiveResult(rig, calibration, self.rules, name or rig.name, self._rate_mhz)
+            LiveResult(
+                rig,
+                calibration,
+                self.rules,
+                name or rig.name,
+                rate_mhz=self._rate_mhz,
+                rest_frames=self._frames(self.horizons.rest_s),
+            )
             if keep_result
             else None
         )
@@ -144,8 +154,10 @@ class LiveObserver:
         if len(window.capture.times) < 4:
             return []
         frontier = window.last - (0 if last else self._frames(self.horizons.settle_s))
-        measurements = measure(window.capture, self.calibration, self._sums.since(window))
+        bodies = self._poses.bodies(window)
+        measurements = measured(window.capture, self.calibration, bodies, self._sums.since(window))
         self._sums.advance(window, measurements, frontier)
+        self._poses.advance(window, bodies, frontier)
         recent = self._facts.stitched(measurements.facts, window.first)
         inference, count = self._inferred(measurements, recent, window.last)
         self._memory.add(self._facts.settle(recent, max(frontier, self._facts.frontier)))
@@ -154,6 +166,7 @@ class LiveObserver:
             inference,
             now=window.last,
             frontier=frontier,
+            undecided=self._undecided(recent, window.last),
             rate_hz=self._rate_mhz / 1000.0,
             time_s=time_s,
         )
@@ -188,6 +201,31 @@ class LiveObserver:
         facts += recent
         chosen = steady(facts) if self.rules.steady else tuple(facts)
         return infer(chosen, profile=self.rules), len(chosen)
+
+    def _undecided(self, recent: list[Observed], last: int) -> dict[str, int]:
+        """Of each end-effector that has come to share a thing, before when segments may settle.
+
+        Who takes it over is known once one of the two lets go of it, or is taken not to.
+        """
+        longest = self._frames(self.horizons.handing_s)
+        margin = round(in_frames(times().merge_ms, self._rate_mhz / 1000.0))
+        acting = {each.name for each in self._buffer.rig.acting}
+        going = [
+            each
+            for each in (*self._memory, *recent)
+            if isinstance(each, Touching) and each.body in acting and each.last >= last - margin
+        ]
+        out: dict[str, int] = {}
+        for own in going:
+            joined = any(
+                each.other == own.other
+                and each.body != own.body
+                and each.first < own.first - margin
+                for each in going
+            )
+            if joined and last - own.first <= longest:
+                out[own.body] = min(out.get(own.body, own.first), own.first)
+        return {ee: frame - margin for ee, frame in out.items()}
 
     def _rules_begin(self, window: Window) -> int:
         oldest = window.last - self._frames(self.horizons.rules_s)

@@ -15,6 +15,7 @@ from capar.model.locations import ConstraintLocation
 from capar.model.observation import JointAction, Observation, ObservedLink, ObservedObject, Segment
 from capar.model.par import Style
 from capar.model.sampled_track import SampledTrack
+from capar.pipelines.live.carried_poses import CarriedPoses
 from capar.pipelines.live.carried_sums import CarriedSums
 from capar.pipelines.live.fact_ledger import FactLedger
 from capar.pipelines.live.frames import Window
@@ -29,7 +30,7 @@ from capar_rules.pars.naming_rules import naming_rules
 from capar_rules.pars.primitive_pars import Measured, ipars, upars
 from extractors.bodies.observed_objects import observed_object
 from extractors.calibration import thresholds_of
-from extractors.measure import Measurements, measure
+from extractors.measure import Measurements, measured
 from extractors.relations.guide_locations import guide_location
 from extractors.segments.locations import constraint_location
 from extractors.segments.motion_kinds import moved_path
@@ -63,10 +64,18 @@ class LiveResult:
         rules: The rule base.
         name: What the whole action is called.
         rate_mhz: Frames in a thousand seconds.
+        rest_frames: By how many frames of its rest the place of a body is told.
     """
 
     def __init__(
-        self, rig: Capture, calibration: Calibration, rules: Profile, name: str, rate_mhz: int
+        self,
+        rig: Capture,
+        calibration: Calibration,
+        rules: Profile,
+        name: str,
+        *,
+        rate_mhz: int,
+        rest_frames: int,
     ) -> None:
         self._rig, self._calibration, self._rules, self._name = rig, calibration, rules, name
         self._rate_mhz = rate_mhz
@@ -85,6 +94,7 @@ class LiveResult:
         self._tracks: dict[str, list[np.ndarray]] = {}
         self._times: list[np.ndarray] = []
         self._sums = CarriedSums()
+        self._poses = CarriedPoses(calibration, rest_frames)
         self._last: Measurements | None = None
         self.inexact = Inexact()
 
@@ -100,7 +110,10 @@ class LiveResult:
             window: The last frames.
             frontier: The frame; beyond it nothing is taken.
         """
-        measurements = measure(window.capture, self._calibration, self._sums.since(window))
+        bodies = self._poses.bodies(window)
+        since = self._sums.since(window)
+        measurements = measured(window.capture, self._calibration, bodies, since)
+        self._poses.advance(window, bodies, frontier)
         self._sums.advance(window, measurements, frontier)
         before = self._ledger.frontier
         found = self._ledger.stitched(measurements.facts, window.first)

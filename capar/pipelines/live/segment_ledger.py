@@ -1,8 +1,9 @@
 """Which segments of a link were announced, and which are settled and are never told again."""
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 from capar.model.observation import ObservedLink, Segment
 from capar.pipelines.live.events import SegmentEvent, Status
@@ -64,7 +65,14 @@ class SegmentLedger:
         return min(starts, default=now if self._links else 0)
 
     def take(
-        self, inference: Inference, *, now: int, frontier: int, rate_hz: float, time_s: float
+        self,
+        inference: Inference,
+        *,
+        now: int,
+        frontier: int,
+        rate_hz: float,
+        time_s: float,
+        undecided: Mapping[str, int] = MappingProxyType({}),
     ) -> tuple[list[SegmentEvent], list[SettledSegment]]:
         """What an answer says that was not said before, and which segments it settles.
 
@@ -74,6 +82,7 @@ class SegmentLedger:
             frontier: Segments that end no later are settled; at the recording's end, ``now``.
             rate_hz: Frames a second [Hz].
             time_s: Time of the newest frame [s].
+            undecided: Of a link, the frame from which on no segment ends that may be settled yet.
         """
         events: list[SegmentEvent] = []
         done: list[SettledSegment] = []
@@ -81,13 +90,13 @@ class SegmentLedger:
             own = self._links.setdefault(link.ee, _Link())
             found = list(self._unsettled(own, link, rate_hz))
             settled = 0
-            if found and found[0][1].last <= frontier and own.recent:
+            if found and own.recent and found[0][1].last <= frontier:
                 amended = self._with_purpose(own, link)
                 if amended is not None:
                     events.append(SegmentEvent(Status.PURPOSE, amended.segment, time_s))
                     done.append(amended)
             for local, segment in found:
-                if segment.last > frontier:
+                if segment.last > frontier or segment.last >= undecided.get(link.ee, now + 1):
                     break
                 settled += 1
                 key = (link.ee, local)
