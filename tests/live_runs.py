@@ -27,7 +27,6 @@ CAPTURES: dict[str, Callable[[], Capture]] = {
     "touch": lambda: motions.touch(motions.WOMAN).capture,
     "hit": lambda: motions.hit(motions.TALL_MAN).capture,
     "slide": lambda: motions.slide_object(motions.WOMAN).capture,
-    "roll": lambda: motions.roll_object(motions.CHILD).capture,
     "both hands": lambda: motions.pick_up_with_both_hands(motions.WOMAN).capture,
     "one leg": lambda: motions.stand_on_one_leg(motions.WOMAN).capture,
     "sliding on and on": lambda: repeated(motions.slide_object(motions.WOMAN).capture, 5),
@@ -49,7 +48,7 @@ class LiveRun:
 
 
 @cache
-def live_run(name: str, *, stride_s: float = 0.25) -> LiveRun:
+def live_run(name: str, *, stride_s: float = 0.2) -> LiveRun:
     """A capture played to the end; a frame is destroyed as soon as the next one follows."""
     capture = CAPTURES[name]()
     known = calibrate(capture)

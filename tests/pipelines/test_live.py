@@ -9,7 +9,7 @@ from live_runs import live_run
 from capar.model.json_form import to_json
 from capar.pipelines.live.events import SegmentEvent, Status
 
-SHORT = ("demo", "touch", "hit", "slide", "roll", "both hands", "one leg")
+SHORT = ("demo", "touch", "hit", "slide", "both hands", "one leg")
 LONG = "sliding on and on"
 
 
