@@ -24,8 +24,6 @@ DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 
 CAPTURES: dict[str, Callable[[], Capture]] = {
     "demo": lambda: trial_of(DEMO),
-    "touch": lambda: motions.touch(motions.WOMAN).capture,
-    "hit": lambda: motions.hit(motions.TALL_MAN).capture,
     "slide": lambda: motions.slide_object(motions.WOMAN).capture,
     "both hands": lambda: motions.pick_up_with_both_hands(motions.WOMAN).capture,
     "one leg": lambda: motions.stand_on_one_leg(motions.WOMAN).capture,

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from capar.model.calibration import Calibration
-from capar.model.capture import Capture
+from capar.model.capture import Capture, TagType
 from capar.model.facts import Fact, Frames, Observed, RateMhz, Touching
 from capar.model.observation import Observation
 from capar.pipelines.live.carried_poses import CarriedPoses
@@ -210,10 +210,14 @@ class LiveObserver:
         longest = self._frames(self.horizons.handing_s)
         margin = round(in_frames(times().merge_ms, self._rate_mhz / 1000.0))
         acting = {each.name for each in self._buffer.rig.acting}
+        mobile = {e.name for e in self._buffer.rig.objects if e.tag is TagType.MOBILE}
         going = [
             each
             for each in (*self._memory, *recent)
-            if isinstance(each, Touching) and each.body in acting and each.last >= last - margin
+            if isinstance(each, Touching)
+            and each.body in acting
+            and each.other in mobile
+            and each.last >= last - margin
         ]
         out: dict[str, int] = {}
         for own in going:
