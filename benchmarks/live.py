@@ -2,10 +2,10 @@
 
 Run by hand: ``python benchmarks/live.py [--events 10000] [--minutes 1] [--json]``.
 
-Two figures. *Work per event*: two bodies that meet again and again, for as many events as asked for;
-the processor time of each tenth of them, and what is held in memory. *A heavy scene*: twelve sensors
-and eight objects with meshes at 103.3 Hz; seconds of recording per second of processor time on one
-core, how late segments are settled, and how many of them the offline run tells otherwise.
+Two figures. *Work per event*: two bodies that meet again and again, for as many events as asked
+for; the processor time of each tenth of them, and what is held in memory. *A heavy scene*: twelve
+sensors and eight objects with meshes at 103.3 Hz; seconds of recording per second of processor time
+on one core, how late segments are settled, and how many of them the offline run tells otherwise.
 """
 
 import argparse

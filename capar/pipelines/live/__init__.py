@@ -6,10 +6,10 @@ never told otherwise. The long one gives the facts of the result, which ``finish
 with the settled segments; no frame is read again, and no more of them are held than the long window
 holds.
 
-Measured with the same calibration, all facts of the result are those of the offline run, as long as
-no motion, contact or rest within which something else is sought is longer than the long window. Where
-the two part, and how much it came to in recordings of half a minute with noise of 0.3 mm, each with
-40 to 85 segments:
+Measured with the same calibration, all facts of the result are those of the offline run, as long
+as no motion, contact or rest within which something else is sought is longer than the long window.
+Where the two part, and how much it came to in recordings of half a minute with noise of 0.3 mm,
+each with 40 to 85 segments:
 
 * *Where an object comes to rest* is told by the median of its whole rest, which is not over when
   the segment before it is settled. That moves such a border by one frame (10 ms), at most four
