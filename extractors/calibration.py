@@ -6,15 +6,16 @@ zero crossings and pauses, contacts and their gaps, normals and closing speeds, 
 falls, rolling, and how bodies are arranged. It does not hold for these:
 
 * ``Moving``, ``Displaced``, ``Resting`` and ``Bears``: a place of rest is the median pose of a
-  whole standstill, and holds for as long as the body is within the floor of it. It would take the
-  places of rest that hold at the beginning of a window, handed over from the window before.
+  whole standstill, and holds for as long as the body is within the floor of it. A window that is
+  given the poses from longer ago (``Poses.longer``) tells it by them, as live observation does;
+  a rest that goes on after a window has no end yet.
 * ``Reverses``, ``DrawsBack``, ``Swings`` and ``Lengthwise``: all are sought within a motion from
   its beginning, so they need what ``Moving`` needs.
 * ``Guided``, ``Opening`` and what turns back on a guide: a hinge or rail is fitted to every motion
   of the recording. It would take the guide as part of the calibration.
 * ``Place``, ``Posture``, ``Distance``, ``Travelled`` and ``SweptAzimuth``: their frames are
-  those of the facts above; and ways and angles are summed up from the first frame. It would take
-  sums per segment instead.
+  those of the facts above; and ways and angles are summed up from the first frame: they agree
+  where a window is given the sums before it (``extractors.relations.running_sums``).
 * Which mobile objects are measured at all: those that an end-effector touches in the window.
 * ``Lies`` of a shifted grip: it compares all pauses of one contact, however long.
 * Contacts across a loss or a stay within the release distance that is longer than the margin: the

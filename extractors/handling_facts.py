@@ -53,6 +53,7 @@ from extractors.relations.guides import Guide, turns_on_guide
 from extractors.relations.loads import rides
 from extractors.relations.places import distances, places
 from extractors.relations.rooms import rooms
+from extractors.relations.running_sums import FROM_THE_BEGINNING, Sums
 from extractors.relations.seated import seated
 from extractors.relations.weight_bearing import bearing
 from extractors.sample_frames import boundary_frames
@@ -76,6 +77,7 @@ def handling(
     calibration: Calibration,
     thresholds: Thresholds,
     guides: Mapping[str, Guide],
+    since: Sums = FROM_THE_BEGINNING,
 ) -> tuple[Fact, ...]:
     """Rest, turning points, leaning, falls, arrangements and places of handled bodies.
 
@@ -88,6 +90,7 @@ def handling(
         calibration: What was decided for the whole recording.
         thresholds: What the measurements decide by.
         guides: The hinge or rail of each object that moves on one.
+        since: Ways and turns before, of which this capture is the continuation.
     """
     seen = list(known)
     touches = [fact for fact in seen if isinstance(fact, Touching)]
@@ -113,11 +116,11 @@ def handling(
     others = (things[body.name] for body in mobile if body.name not in hands)
     for one in (*hands.values(), *others):
         frames = tuple(borders.get(one.name, ()))
-        out += places(one, upright[one.name], frames)
+        out += places(one, upright[one.name], frames, since)
         out += _openings(one.name, guides, frames)
         for other in things.values():
             if other.name != one.name:
-                out += distances(one, other, frames)
+                out += distances(one, other, frames, since)
                 out += _arranged(one, other, touches, thresholds)
         out += _between(one, [other for other in things.values() if other is not one], thresholds)
     for touch in touches:

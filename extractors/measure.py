@@ -50,6 +50,7 @@ from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.relations.attention import Attention, attention, seeing
 from extractors.relations.company import company
 from extractors.relations.guides import Guide, guide_of
+from extractors.relations.running_sums import FROM_THE_BEGINNING, Sums
 from extractors.signals.filters import speed
 from extractors.signals.intervals import Interval
 from extractors.signals.zero_crossings import horizon_frames, pauses, zero_crossings
@@ -95,12 +96,17 @@ class Measurements:
     """The hinge or rail of each object that moves on one, by object."""
 
 
-def measure(capture: Capture, calibration: Calibration | None = None) -> Measurements:
+def measure(
+    capture: Capture,
+    calibration: Calibration | None = None,
+    since: Sums = FROM_THE_BEGINNING,
+) -> Measurements:
     """Measure a capture: zero crossings, contacts, motions and looks, as facts.
 
     Args:
         capture: The trial, or a part of it.
         calibration: What was decided for the whole recording; None decides it by this capture.
+        since: Ways and turns before, where the capture is a later part of a recording.
 
     Raises:
         CaptureError: The calibration is for another rate.
@@ -111,10 +117,15 @@ def measure(capture: Capture, calibration: Calibration | None = None) -> Measure
     else:
         check_clock(capture, calibration)
         bodies = bodies_of(capture, thresholds_of(calibration), calibration)
-    return measured(capture, calibration, bodies)
+    return measured(capture, calibration, bodies, since)
 
 
-def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Measurements:
+def measured(
+    capture: Capture,
+    calibration: Calibration,
+    bodies: Bodies,
+    since: Sums = FROM_THE_BEGINNING,
+) -> Measurements:
     """The same with bodies that were made by the calibration."""
     limits = thresholds_of(calibration)
     tracks = {
@@ -149,7 +160,7 @@ def measured(capture: Capture, calibration: Calibration, bodies: Bodies) -> Meas
     ]
     facts += company(capture, bodies, calibration, limits)
     guides = dict(_guides(capture, bodies, calibration, limits))
-    facts += handling(capture, bodies, facts, calibration, limits, guides)
+    facts += handling(capture, bodies, facts, calibration, limits, guides, since)
     own = [notice for notice in capture.notices if notice.code != LOSS]
     notices = (
         *own,

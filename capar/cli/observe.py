@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from capar.cli._live_options import Device, LeadIn, Live, Rig, Speed, StoredCalibration
 from capar.cli._options import New, Rules, Set, Steady, Wait, confirm_new, rule_base
-from capar.model.errors import FileError
+from capar.model.errors import CaparError, FileError
 
 if TYPE_CHECKING:
     from capar.model.capture import Capture
@@ -29,8 +30,12 @@ class OnUnknown(StrEnum):
 def observe(
     capture: Annotated[
         str,
-        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
-    ],
+        typer.Argument(
+            help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take. "
+            "Not with --device.",
+            show_default=False,
+        ),
+    ] = "",
     profile: Annotated[
         str, typer.Option(help="The rules to reason with: extended, or thesis to the letter.")
     ] = "extended",
@@ -67,17 +72,45 @@ def observe(
     ] = None,
     wait: Wait = 0.0,
     new: New = False,
+    live: Live = False,
+    device: Device = "",
+    rig: Rig = "",
+    calibration: StoredCalibration = None,
+    lead_in: LeadIn = 0.0,
+    speed: Speed = 1.0,
 ) -> None:
-    """Say what was done in CAPTURE: segments of each link, and the complex PAR they make."""
-    import sys
+    """Say what was done in CAPTURE: segments of each link, and the complex PAR they make.
 
-    from extractors.readers.bundle.capture_toml import read_capture
+    With --live it is told while it happens, provisional when a segment ends and then settled;
+    Ctrl-C ends it.
+    """
+    import sys
 
     _check_output(json=json, script=script, pars=pars, plot=plot)
     if actionary and Path(actionary).is_file():
         raise FileError(actionary, "is a file; an Actionary is a folder.", "Name a folder.")
     if actionary:
         confirm_new(actionary, new=new)
+    if live or device:
+        from capar.cli._live import LiveOptions, observe_live
+
+        if plot or set_ or on_unknown:
+            raise CaparError("--plot, --set and --on-unknown are not for --live; use its recording")
+        options = LiveOptions(
+            capture, device, rig, calibration, lead_in, speed, json=json, name=name
+        )
+        seen = observe_live(options, rule_base(profile, rules, actionary, steady=steady))
+        stored = _store(seen, actionary, name=name, wait_s=wait) if actionary else ""
+        if not json:
+            typer.echo()
+            _print(seen, json=False, script=script, pars=pars)
+        if stored:
+            typer.echo(stored, err=True)
+        return
+    if not capture:
+        raise CaparError("expected a CAPTURE, or --live with --device ADDRESS")
+    from extractors.readers.bundle.capture_toml import read_capture
+
     base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
 
@@ -112,7 +145,6 @@ def observe(
 def _check_output(*, json: bool, script: bool, pars: bool, plot: Path | None) -> None:
     """Check that the requested output can be written, before anything is computed."""
     from capar.cli._output import check_writable
-    from capar.model.errors import CaparError
 
     forms = {"--json": json, "--script": script, "--pars": pars}
     named = [name for name, given in forms.items() if given]

@@ -1,8 +1,10 @@
 """A body as seen from outside: its middle, its outermost points and its box in the world."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import trimesh
@@ -64,9 +66,7 @@ class BodyGeometry:
         """Its outermost points from its middle [m], in its own axes; one point without a shape."""
         if self.shape is None:
             return np.zeros((1, 3))
-        points = np.asarray(self.shape.vertices) - self.shape.bounds.mean(axis=0)
-        best = np.argmax(_directions() @ points.T, axis=1)
-        return points[np.unique(best)]
+        return _once(_CORNERS, self.shape, _corners)
 
     @cached_property
     def planes(self) -> Float[np.ndarray, "planes 4"] | None:
@@ -77,15 +77,7 @@ class BodyGeometry:
         """
         if self.shape is None:
             return None
-        points = np.asarray(self.shape.vertices) - self.shape.bounds.mean(axis=0)
-        try:
-            equations = ConvexHull(points).equations
-        except (QhullError, ValueError):
-            return None
-        planes = np.unique(equations.round(6), axis=0)
-        if len(planes) <= len(AROUND):
-            return planes
-        return np.hstack([AROUND, -(points @ AROUND.T).max(axis=0)[:, None]])
+        return _once(_PLANES, self.shape, _planes)
 
     @cached_property
     def boxes(self) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
@@ -125,3 +117,36 @@ def _directions() -> Float[np.ndarray, "directions 3"]:
     ball = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
     return np.concatenate([ball, np.eye(3), -np.eye(3), corners / np.sqrt(3.0)])
+
+
+_CORNERS: WeakKeyDictionary[Shape, Float[np.ndarray, "corners 3"]] = WeakKeyDictionary()
+_PLANES: WeakKeyDictionary[Shape, Float[np.ndarray, "planes 4"] | None] = WeakKeyDictionary()
+"""Of shapes that were asked for before: every window of a live recording asks again."""
+
+_Found = TypeVar("_Found")
+
+
+def _once(
+    known: WeakKeyDictionary[Shape, _Found], shape: Shape, find: Callable[[Shape], _Found]
+) -> _Found:
+    if shape not in known:
+        known[shape] = find(shape)
+    return known[shape]
+
+
+def _corners(shape: Shape) -> Float[np.ndarray, "corners 3"]:
+    points = np.asarray(shape.vertices) - shape.bounds.mean(axis=0)
+    best = np.argmax(_directions() @ points.T, axis=1)
+    return np.asarray(points[np.unique(best)])
+
+
+def _planes(shape: Shape) -> Float[np.ndarray, "planes 4"] | None:
+    points = np.asarray(shape.vertices) - shape.bounds.mean(axis=0)
+    try:
+        equations = ConvexHull(points).equations
+    except (QhullError, ValueError):
+        return None
+    planes = np.unique(equations.round(6), axis=0)
+    if len(planes) <= len(AROUND):
+        return np.asarray(planes)
+    return np.hstack([AROUND, -(points @ AROUND.T).max(axis=0)[:, None]])

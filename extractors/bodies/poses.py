@@ -35,6 +35,10 @@ class Poses:
     fixed: FixedPose | None = None
     """Of a fixed object, the pose at which it is taken to stand."""
 
+    longer: "Stream | None" = None
+    """Of a window of a recording, the low-passed poses from longer ago up to the window's end:
+    where the body rests is told by the whole of its rest."""
+
     @property
     def rests(self) -> bool:
         """Whether ``settled`` is one pose throughout."""

@@ -96,10 +96,10 @@ def lean(
     return np.arccos(np.clip(up, -1.0, 1.0))
 
 
-def spin(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames"]:
-    """Angle by which a body has turned about the vertical since the first frame [rad].
+def spin_steps(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "steps"]:
+    """Angle by which a body turns about the vertical from each frame to the next [rad].
 
-    Each step's turn about the vertical is the twist of its rotation; lost frames add nothing.
+    It is the twist of the step's rotation; lost frames add nothing.
     """
     (w0, x0, y0, z0), (w1, x1, y1, z1) = orientations[:-1].T, orientations[1:].T
     # The step's quaternion: the later orientation times the inverse of the earlier one.
@@ -113,4 +113,4 @@ def spin(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "fram
         steps = np.where(length > 0.0, angle * z / length, 0.0)
     lost = np.isnan(orientations[:, 0])
     steps[lost[1:] | lost[:-1]] = 0.0
-    return np.concatenate(([0.0], np.cumsum(steps)))
+    return np.asarray(steps)

@@ -68,7 +68,7 @@ def rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Rest
     """
     known = _CACHE.setdefault(poses, {})
     if (floor, thresholds) not in known:
-        known[floor, thresholds] = _rest_poses(poses, floor, thresholds)
+        known[floor, thresholds] = _window_rests(poses, floor, thresholds)
     return known[floor, thresholds]
 
 
@@ -78,11 +78,24 @@ _CACHE: WeakKeyDictionary[Poses, dict[tuple[Floor, Thresholds], tuple[RestPose, 
 """Where bodies rest, by their poses: three measurements ask for it."""
 
 
-def _rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[RestPose, ...]:
-    stream = poses.smooth
+def _window_rests(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[RestPose, ...]:
+    """The places of rest in a window, told by the poses from longer ago where they are known."""
+    if poses.longer is None:
+        return _rest_poses(poses.smooth, poses.noise, floor, thresholds)
+    before = len(poses.longer.times) - len(poses.smooth.times)
+    return tuple(
+        replace(each, interval=(max(each.interval[0] - before, 0), each.interval[1] - before))
+        for each in _rest_poses(poses.longer, poses.noise, floor, thresholds)
+        if each.interval[1] >= before
+    )
+
+
+def _rest_poses(
+    stream: Stream, noise: Noise, floor: Floor, thresholds: Thresholds
+) -> tuple[RestPose, ...]:
     times = stream.times
     rate_hz = frame_rate(times)
-    calm = slow_frames(stream, poses.noise, rate_hz, thresholds)
+    calm = slow_frames(stream, noise, rate_hz, thresholds)
     found: list[RestPose] = []
     for first, last in intervals(calm, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
         if found and last <= found[-1].interval[1]:

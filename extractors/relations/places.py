@@ -1,19 +1,23 @@
 """Where bodies are, how far they have gone and turned, at the frames that matter."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from capar.model import geometry
 from capar.model.facts import Distance, Fact, Place, Posture, SweptAzimuth, Travelled
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.motion.leaning import lean, spin
+from extractors.motion.leaning import lean, spin_steps
 from extractors.relations.arrangement import beyond_shadow
+from extractors.relations.running_sums import FROM_THE_BEGINNING, Sums, summed
 
 
 def places(
-    body: BodyGeometry, upright: Float[np.ndarray, "3"], frames: tuple[int, ...]
+    body: BodyGeometry,
+    upright: Float[np.ndarray, "3"],
+    frames: tuple[int, ...],
+    since: Sums = FROM_THE_BEGINNING,
 ) -> Iterator[Fact]:
     """Place, way, turn and posture of a body at some frames; lost frames are left out.
 
@@ -21,16 +25,16 @@ def places(
         body: The body.
         upright: The axis that points up while it stands, in its own frame.
         frames: Frames, ascending.
+        since: How far it had gone and turned before.
     """
     if not frames:
         return
-    way, turn = _cumulated(body)
+    way, turn, spin = turned_and_gone(body, since)
     at = np.asarray(frames)
     at = at[~np.isnan(body.middles[at]).any(axis=1)]
     middles = _thousandths(body.middles[at])
     ways = _thousandths(np.stack([way[at], turn[at]], axis=1))
-    orientations = body.orientations
-    postures = np.stack([lean(orientations[at], upright), spin(orientations)[at]], axis=1)
+    postures = np.stack([lean(body.orientations[at], upright), spin[at]], axis=1)
     rows = zip(at.tolist(), middles, ways, _thousandths(postures), strict=True)
     for frame, middle, travelled, posture in rows:
         yield Place(body.name, frame, *middle)
@@ -38,48 +42,78 @@ def places(
         yield Posture(body.name, frame, *posture)
 
 
-def distances(body: BodyGeometry, other: BodyGeometry, frames: tuple[int, ...]) -> Iterator[Fact]:
+def distances(
+    body: BodyGeometry,
+    other: BodyGeometry,
+    frames: tuple[int, ...],
+    since: Sums = FROM_THE_BEGINNING,
+) -> Iterator[Fact]:
     """Distance of two bodies' middles, and the angle by which one has gone about the other."""
     if not frames:
         return
-    offset = body.middles - other.middles
-    wound = _wound(offset, beyond_shadow(body.middles, *other.boxes) > 0.0)
+    gone_about = wound(body, other, since)
     at = np.asarray(frames)
-    apart = np.linalg.norm(offset[at], axis=1)
+    apart = np.linalg.norm((body.middles - other.middles)[at], axis=1)
     known = ~np.isnan(apart)
-    values = _thousandths(np.stack([apart[known], wound[at[known]]], axis=1))
+    values = _thousandths(np.stack([apart[known], gone_about[at[known]]], axis=1))
     for frame, (millimetres, milliradians) in zip(at[known].tolist(), values, strict=True):
         yield Distance(body.name, other.name, frame, millimetres)
         yield SweptAzimuth(body.name, other.name, frame, milliradians)
+
+
+def turned_and_gone(
+    body: BodyGeometry, since: Sums = FROM_THE_BEGINNING
+) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
+    """Path [m], rotation [rad] and turn about the vertical [rad] up to each frame."""
+    steps = np.linalg.norm(np.diff(body.middles, axis=0), axis=1)
+    angles = geometry.angle_between(body.orientations[1:], body.orientations[:-1])
+    parts = (steps, angles, spin_steps(body.orientations))
+    way, turn, spin = (
+        summed(np.nan_to_num(part), since.anchor, known)
+        for part, known in zip(parts, since.way(body.name), strict=True)
+    )
+    return way, turn, spin
+
+
+def wound(
+    body: BodyGeometry, other: BodyGeometry, since: Sums = FROM_THE_BEGINNING
+) -> Float[np.ndarray, "frames"]:
+    """Unwrapped azimuth of a body about another [rad].
+
+    Nothing is added where it is lost, nor above or below the other, where it goes about nothing.
+    """
+    offset = body.middles - other.middles
+    outside = beyond_shadow(body.middles, *other.boxes) > 0.0
+    azimuth = np.arctan2(offset[:, 1], offset[:, 0])
+    steps = np.nan_to_num(np.diff(azimuth))
+    turns = (steps + np.pi) % (2.0 * np.pi) - np.pi
+    known = since.wind(body.name, other.name)
+    return summed(np.where(outside[1:] & outside[:-1], turns, 0.0), since.anchor, known)
+
+
+def sums_at(
+    bodies: Iterable[BodyGeometry], others: Iterable[BodyGeometry], frame: int, since: Sums
+) -> Sums:
+    """What is summed up to a later frame of a window, which becomes the anchor.
+
+    Args:
+        bodies: Whose ways count.
+        others: What they may go about.
+        frame: The frame.
+        since: What is known.
+    """
+    own, about = list(bodies), list(others)
+    ways, winds = {}, {}
+    for one in own:
+        way, turn, spin = turned_and_gone(one, since)
+        ways[one.name] = float(way[frame]), float(turn[frame]), float(spin[frame])
+        for other in about:
+            if other.name != one.name:
+                winds[one.name, other.name] = float(wound(one, other, since)[frame])
+    return Sums(frame, ways, winds)
 
 
 def _thousandths(values: Float[np.ndarray, "rows columns"]) -> list[list[int]]:
     """Metres as whole millimetres, radians as milliradians, row by row."""
     rounded: list[list[int]] = np.rint(1000.0 * values).astype(np.int64).tolist()
     return rounded
-
-
-def _cumulated(
-    body: BodyGeometry,
-) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
-    """Length of the path [m] and sum of the rotation [rad] up to each frame."""
-    steps = np.linalg.norm(np.diff(body.middles, axis=0), axis=1)
-    angles = geometry.angle_between(body.orientations[1:], body.orientations[:-1])
-    return _sum(steps), _sum(angles)
-
-
-def _sum(steps: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "frames"]:
-    return np.concatenate(([0.0], np.cumsum(np.nan_to_num(steps))))
-
-
-def _wound(
-    offset: Float[np.ndarray, "frames 3"], outside: Bool[np.ndarray, "frames"]
-) -> Float[np.ndarray, "frames"]:
-    """Unwrapped azimuth of a body about another [rad].
-
-    Nothing is added where it is lost, nor above or below the other, where it goes about nothing.
-    """
-    azimuth = np.arctan2(offset[:, 1], offset[:, 0])
-    steps = np.nan_to_num(np.diff(azimuth))
-    turns = (steps + np.pi) % (2.0 * np.pi) - np.pi
-    return _sum(np.where(outside[1:] & outside[:-1], turns, 0.0))

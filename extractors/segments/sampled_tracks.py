@@ -7,7 +7,6 @@ from jaxtyping import Float
 
 from capar.model.sampled_track import SampledTrack, sampled_track
 from extractors.bodies.bodies import Bodies
-from extractors.bodies.poses import Poses
 
 RATE_HZ = 50.0
 """Samples a second of a capture that has half as many frames again, or more [Hz]."""
@@ -15,9 +14,33 @@ RATE_HZ = 50.0
 
 def sampled_tracks(bodies: Bodies, times: Float[np.ndarray, "frames"]) -> Iterator[SampledTrack]:
     """The track of each sensor and object, by name; an object that is a sensor stands once."""
-    clock = _clock(times)
     for name, pose in sorted(bodies.poses.items()):
-        yield _track(name, pose, times, clock)
+        places = pose.settled if pose.rests else pose.smooth
+        yield track_of(name, places.positions, times, rests=pose.rests)
+
+
+def track_of(
+    name: str,
+    places: Float[np.ndarray, "frames 3"],
+    times: Float[np.ndarray, "frames"],
+    *,
+    rests: bool,
+) -> SampledTrack:
+    """The track of a body.
+
+    Args:
+        name: The body.
+        places: Its low-passed places [m]; NaN where it was lost.
+        times: Clock [s].
+        rests: Whether it is at one place throughout: one sample tells it.
+    """
+    known = places[~np.isnan(places[:, 0])] if rests else places[:0]
+    if len(known):
+        return sampled_track(name, 0.0, known[:1])
+    clock = _clock(times)
+    columns = [np.interp(clock, times, places[:, axis]) for axis in range(3)]
+    step = float(clock[1] - clock[0]) if len(clock) > 1 else 0.0
+    return sampled_track(name, step, np.stack(columns, axis=1))
 
 
 def _clock(times: Float[np.ndarray, "frames"]) -> Float[np.ndarray, "samples"]:
@@ -26,18 +49,3 @@ def _clock(times: Float[np.ndarray, "frames"]) -> Float[np.ndarray, "samples"]:
     frames = len(times) - 1
     steps = frames if frames < 1.5 * RATE_HZ * duration else int(np.ceil(RATE_HZ * duration))
     return np.linspace(times[0], times[-1], steps + 1)
-
-
-def _track(
-    name: str,
-    pose: Poses,
-    times: Float[np.ndarray, "frames"],
-    clock: Float[np.ndarray, "samples"],
-) -> SampledTrack:
-    if pose.rests and not pose.settled.lost.all():
-        known = pose.settled.positions[~pose.settled.lost]
-        return sampled_track(name, 0.0, known[:1])
-    places = pose.smooth.positions
-    columns = [np.interp(clock, times, places[:, axis]) for axis in range(3)]
-    step = float(clock[1] - clock[0]) if len(clock) > 1 else 0.0
-    return sampled_track(name, step, np.stack(columns, axis=1))

@@ -1,0 +1,168 @@
+"""Work, delay and agreement of live observation.
+
+Run by hand: ``python benchmarks/live.py [--events 10000] [--minutes 1] [--json]``.
+
+Two figures. *Work per event*: two bodies that meet again and again, for as many events as asked
+for; the processor time of each tenth of them, and what is held in memory. *A heavy scene*: twelve
+sensors and eight objects with meshes at 103.3 Hz; seconds of recording per second of processor time
+on one core, how late segments are settled, and how many of them the offline run tells otherwise.
+"""
+
+import argparse
+import json
+import resource
+import time
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import scene
+
+from capar.model.bodies import Stream
+from capar.model.capture import Capture, Role, Sensor
+from capar.pipelines.live.events import Status
+from capar.pipelines.live.frames import Poses, body_names, replayed
+from capar.pipelines.live.observer import LiveObserver
+from capar.pipelines.observation import observe_measured
+from extractors.calibration import calibrate
+from extractors.measure import measure
+
+RATE_HZ = 103.3
+TENTHS = 10
+
+
+def heavy(minutes: float, *, faces: int) -> Capture:
+    """The scene of the other benchmarks with more sensors on the trunk and the limbs."""
+    capture = scene.capture(minutes, rate_hz=RATE_HZ, faces=faces)
+    times = capture.times
+    random = np.random.default_rng(1)
+    more = []
+    for index in range(12 - len(capture.sensors)):
+        places = np.array([0.0, 0.05 * index, 1.0]) + 0.02 * np.sin(
+            np.outer(times, [0.3 + 0.1 * index, 0.5, 0.2])
+        )
+        places += random.normal(0.0, 0.0002, places.shape)
+        turns = np.tile([1.0, 0.0, 0.0, 0.0], (len(times), 1))
+        stream = Stream(times, places, turns)
+        more.append(Sensor(f"trunk{index}", "spine", "none", "trunk", stream, role=Role.ATTENDS))
+    return replace(capture, sensors=(*capture.sensors, *more))
+
+
+def heavy_figures(minutes: float, *, faces: int) -> dict[str, Any]:
+    """Real-time factor, delay and agreement in the heavy scene."""
+    capture = heavy(minutes, faces=faces)
+    known = calibrate(capture)
+    observer = LiveObserver(capture, known)
+    frames = replayed(capture)
+    events, start = [], time.process_time()
+    for each in frames:
+        events += observer.push([each])
+    at_the_end, result = observer.finish()
+    spent = time.process_time() - start
+    assert result is not None
+    late = [each.late_s for each in events if each.status is Status.SETTLED]
+    offline = observe_measured(capture, measure(capture, known))
+    told = {(each.ee, each.first, each.last, each.name, each.objects) for each in result.segments}
+    whole = {(each.ee, each.first, each.last, each.name, each.objects) for each in offline.segments}
+    ours, theirs = set(result.facts), set(offline.facts)
+    kinds: dict[str, int] = {}
+    for fact in ours ^ theirs:
+        kinds[type(fact).__name__] = kinds.get(type(fact).__name__, 0) + 1
+    return {
+        "sensors": len(capture.sensors),
+        "objects": len(capture.objects),
+        "faces": faces,
+        "recording [s]": float(capture.times[-1]),
+        "processor time [s]": spent,
+        "times real time": float(capture.times[-1]) / spent,
+        "events": len(events) + len(at_the_end),
+        "processor time per event [ms]": 1000.0 * spent / max(len(events) + len(at_the_end), 1),
+        "settled late, median [s]": float(np.median(late)),
+        "settled late, p99 [s]": float(np.percentile(late, 99)),
+        "segments": len(told),
+        "segments told otherwise than offline": len(told - whole),
+        "facts": len(theirs),
+        "facts that differ, by kind": dict(sorted(kinds.items())),
+        "peak memory [MB]": _memory_mb(),
+    }
+
+
+def work_figures(events: int) -> dict[str, Any]:
+    """Processor time per event over very many events, without a result that grows."""
+    period_s = 1.0
+    short = _meeting(60.0, period_s)
+    observer = LiveObserver(short, calibrate(short), keep_result=False)
+    names = body_names(short)
+    frames = replayed(short)
+    length, done, tenths, sizes = len(frames), 0, [], []
+    start, number = time.process_time(), 0
+    while done < events:
+        source = frames[number % length]
+        told = observer.push([Poses(number / 100.0, source.positions, source.orientations)])
+        done += len(told)
+        number += 1
+        if done >= (len(tenths) + 1) * events / TENTHS:
+            now = time.process_time()
+            tenths.append(now - start)
+            sizes.append(_memory_mb())
+            start = now
+    each = events / TENTHS
+    return {
+        "bodies": len(names),
+        "events": done,
+        "recording [s]": number / 100.0,
+        "processor time per event, by tenths [ms]": [1000.0 * spent / each for spent in tenths],
+        "last tenth / first": tenths[-1] / tenths[0],
+        "times real time": number / 100.0 / sum(tenths),
+        "peak memory by tenths [MB]": sizes,
+    }
+
+
+def _meeting(seconds: float, period_s: float) -> Capture:
+    """A hand without a mesh of many faces that touches a box once a period."""
+    count = round(seconds * 100.0)
+    times = np.arange(count) / 100.0
+    random = np.random.default_rng(0)
+    down = 0.5 - 0.5 * np.cos(2.0 * np.pi * times / period_s)
+    hand = np.stack([0.0 * times, 0.0 * times, 0.30 - 0.215 * down], axis=1)
+    hand += random.normal(0.0, 0.0002, hand.shape)
+    turns = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+    small = scene.shape(scene.trimesh.creation.box((0.08, 0.08, 0.08)))
+    table = scene.shape(scene.trimesh.creation.box((0.4, 0.4, 0.1)))
+    still = Stream(times, np.zeros((count, 3)), turns)
+    return Capture(
+        "meeting",
+        (Sensor("right_hand", "hand", "right", "arm", Stream(times, hand, turns), small),),
+        (scene.TagObject("table", scene.TagType.FIXED, still, table),),
+        contact_tolerance_m=0.005,
+    )
+
+
+def _memory_mb() -> float:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**10
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--events", type=int, default=10_000)
+    parser.add_argument("--minutes", type=float, default=1.0)
+    parser.add_argument("--faces", type=int, default=10_000)
+    parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+    options = parser.parse_args()
+    found = {}
+    if options.events:
+        found["work per event"] = work_figures(options.events)
+    if options.minutes:
+        found["a heavy scene"] = heavy_figures(options.minutes, faces=options.faces)
+    if options.json:
+        print(json.dumps(found, indent=2))
+        return
+    for title, figures in found.items():
+        print(title)
+        for name, value in figures.items():
+            shown = f"{value:.4g}" if isinstance(value, float) else value
+            print(f"  {name:42}{shown}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,78 @@
+"""Every horizon of live observation in one place: which quantity, how many seconds, and why."""
+
+from dataclasses import dataclass
+
+from capar.model.calibration import Calibration
+from capar.model.errors import CaparError
+
+
+@dataclass(frozen=True, slots=True)
+class LiveHorizons:
+    """How far live observation looks back, and how long it waits before it settles anything.
+
+    Two windows slide over the frames. A short one is measured often and names segments; a long
+    one is measured seldom and gives the facts of the result, with the margin on both sides that
+    ``extractors.calibration`` proves.
+    """
+
+    stride_s: float = 0.2
+    """Between two measurements of the short window [s]: by so much more a segment may be late."""
+
+    settle_s: float = 0.75
+    """After its end a segment is settled [s]: more than half the filter (0.63 s), so that no later
+    frame changes a smoothed pose in it, and longer than dropped and closed intervals (0.1 s)."""
+
+    window_s: float = 4.0
+    """Length of the short window [s]: a motion that began earlier is known from before."""
+
+    rest_s: float = 30.0
+    """By how much of its rest the place of a resting body is told [s]: the median of a longer one
+    is that of its last part."""
+
+    handing_s: float = 2.0
+    """While two end-effectors hold one thing, so long it is awaited who lets go of it [s]: whether
+    the other one takes it over depends on that."""
+
+    rules_s: float = 20.0
+    """How far back rules see at most [s]; flicker is resolved in windows of 10 s."""
+
+    segments: int = 5
+    """So many settled segments of a link are told to the rules again, so that these know what a
+    segment follows; fewer where they last longer than ``rules_s``."""
+
+    block_s: float = 5.0
+    """Between two measurements of the long window [s]."""
+
+    margin_s: float = 9.0
+    """What the long window holds on either side of the block that it settles [s]: the calibration's
+    own margin. Nearly all of it is the horizon of extrema of speed, 4 s, twice."""
+
+    def __post_init__(self) -> None:
+        """Check that the windows hold what they are to settle.
+
+        Raises:
+            CaparError: A window is shorter than what it must hold.
+        """
+        if min(self.stride_s, self.settle_s, self.block_s) <= 0.0:
+            raise CaparError("live horizons: expected stride, settle and block longer than 0 s")
+        if self.window_s < 2.0 * (self.settle_s + self.stride_s):
+            raise CaparError(
+                f"live horizons: a window of {self.window_s:g} s cannot settle what ended "
+                f"{self.settle_s:g} s ago every {self.stride_s:g} s; expected at least "
+                f"{2.0 * (self.settle_s + self.stride_s):g} s"
+            )
+
+    @property
+    def whole_s(self) -> float:
+        """Length of the long window [s]."""
+        return 2.0 * self.margin_s + self.block_s
+
+
+def horizons_of(calibration: Calibration, *, stride_s: float = 0.2) -> LiveHorizons:
+    """The horizons that a calibration calls for: its margin, and a settling beyond its filter."""
+    known = calibration.horizons
+    return LiveHorizons(
+        stride_s=stride_s,
+        settle_s=max(0.75, known.filter_s + known.gap_s),
+        margin_s=known.margin_s,
+    )

@@ -1,0 +1,239 @@
+"""The live observer: frames in, announcements out, and at the end an observation."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from capar.model.calibration import Calibration
+from capar.model.capture import Capture, TagType
+from capar.model.facts import Fact, Frames, Observed, RateMhz, Touching
+from capar.model.observation import Observation
+from capar.pipelines.live.carried_poses import CarriedPoses
+from capar.pipelines.live.carried_sums import CarriedSums
+from capar.pipelines.live.events import SegmentEvent
+from capar.pipelines.live.fact_ledger import FactLedger
+from capar.pipelines.live.frames import FrameBuffer, Poses, Window
+from capar.pipelines.live.horizons import LiveHorizons, horizons_of
+from capar.pipelines.live.result import LiveResult
+from capar.pipelines.live.rule_memory import RuleMemory
+from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
+from capar.pipelines.live.sentences import Teller
+from capar_rules.borders.deflicker import steady
+from capar_rules.borders.times import in_frames, times
+from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from capar_rules.pars.inference import Inference, infer
+from extractors.measure import Measurements, measured
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What one measurement of the short window cost and held, for those who watch over it."""
+
+    frames: int
+    facts: int
+    segments: int
+
+
+class LiveObserver:
+    """Observes frames as they come.
+
+    Args:
+        rig: Bodies, shapes, agents and purposes, as a capture; its poses are not read.
+        calibration: What was decided before, from a lead-in or from an earlier take of the rig.
+        rules: A rule profile or its name.
+        name: What the whole action is called; the rig's name if empty.
+        horizons: How far it looks back and how long it waits; None for what the calibration asks.
+        keep_result: Whether facts, segments and places are kept for ``finish``; without, memory
+            does not grow.
+        sentences: Whether each announcement says in plain English what was done.
+
+    Raises:
+        CaparError: The rules have a fault, or the horizons do not fit.
+    """
+
+    def __init__(
+        self,
+        rig: Capture,
+        calibration: Calibration,
+        *,
+        rules: Profile | str = DEFAULT,
+        name: str = "",
+        horizons: LiveHorizons | None = None,
+        keep_result: bool = True,
+        sentences: bool = False,
+    ) -> None:
+        self.horizons = horizons or horizons_of(calibration)
+        self.calibration = calibration
+        self.rules = profile(rules) if isinstance(rules, str) else rules
+        self._step_s = calibration.step_s
+        self._rate_mhz = round(1000.0 / self._step_s)
+        self._buffer = FrameBuffer(rig, self._frames(self.horizons.whole_s) + 1)
+        self._facts = FactLedger()
+        self._sums = CarriedSums()
+        self._poses = CarriedPoses(calibration, self._frames(self.horizons.rest_s))
+        self._memory = RuleMemory()
+        self._segments = SegmentLedger(self.horizons.segments)
+        self._result = (
+            LiveResult(
+                rig,
+                calibration,
+                self.rules,
+                name or rig.name,
+                rate_mhz=self._rate_mhz,
+                rest_frames=self._frames(self.horizons.rest_s),
+            )
+            if keep_result
+            else None
+        )
+        self._teller = Teller(rig, self.rules) if sentences else None
+        self._measured = 0
+        self._finished = False
+        self.work: Work = Work(0, 0, 0)
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The bodies of a frame's rows, in order."""
+        return self._buffer.bodies
+
+    @property
+    def frames(self) -> int:
+        """How many frames were pushed."""
+        return self._buffer.count
+
+    def held(self) -> int:
+        """How many frames are held at most, however many were pushed."""
+        return self._buffer.longest
+
+    @property
+    def contradictions(self) -> Contradictions:
+        """How often a later answer of the rules differed from what was settled."""
+        return self._segments.contradictions
+
+    def push(self, frames: Iterable[Poses]) -> list[SegmentEvent]:
+        """Take frames, oldest first, and say what they show; measured once for all of them.
+
+        Raises:
+            CaptureError: A frame is of other bodies, or not later than the one before.
+        """
+        events: list[SegmentEvent] = []
+        for poses in frames:
+            self._buffer.push(poses)
+            self._settle_block()
+            if self.frames - self._measured >= self._frames(self.horizons.window_s) // 2:
+                events += self._evaluate(last=False)
+        if self.frames - self._measured >= self._frames(self.horizons.stride_s):
+            events += self._evaluate(last=False)
+        return events
+
+    def finish(self) -> tuple[list[SegmentEvent], Observation | None]:
+        """Settle everything; no frame follows.
+
+        Raises:
+            CaptureError: Fewer than two frames were pushed.
+        """
+        self._finished = True
+        events = self._evaluate(last=True)
+        if self._result is None:
+            return events, None
+        window = self._buffer.window(self._frames(self.horizons.whole_s) + 1)
+        self._result.block(window, window.last)
+        return events, self._result.observation(window)
+
+    def _settle_block(self) -> None:
+        """Measure the long window once a block, and take what lies in the middle of it."""
+        if self._result is None or self.frames % self._frames(self.horizons.block_s):
+            return
+        window = self._buffer.window(self._frames(self.horizons.whole_s) + 1)
+        frontier = window.last - self._frames(self.horizons.margin_s)
+        if frontier > self._result.frontier:
+            self._result.block(window, frontier)
+
+    def _evaluate(self, *, last: bool) -> list[SegmentEvent]:
+        """Measure the short window, and ask the rules over the last few segments."""
+        self._measured = self.frames
+        window = self._buffer.window(self._frames(self.horizons.window_s) + 1)
+        if len(window.capture.times) < 4:
+            return []
+        frontier = window.last - (0 if last else self._frames(self.horizons.settle_s))
+        bodies = self._poses.bodies(window)
+        measurements = measured(window.capture, self.calibration, bodies, self._sums.since(window))
+        self._sums.advance(window, measurements, frontier)
+        self._poses.advance(window, bodies, frontier)
+        recent = self._facts.stitched(measurements.facts, window.first)
+        inference, count = self._inferred(measurements, recent, window.last)
+        self._memory.add(self._facts.settle(recent, max(frontier, self._facts.frontier)))
+        time_s = self._buffer.time_s(window.last)
+        events, done = self._segments.take(
+            inference,
+            now=window.last,
+            frontier=frontier,
+            undecided=self._undecided(recent, window.last),
+            rate_hz=self._rate_mhz / 1000.0,
+            time_s=time_s,
+        )
+        self._memory.forget(self._rules_begin(window), self._segments.ends(), self._frames(1.0))
+        self.work = Work(len(window.capture.times), count, len(done))
+        if self._result is not None:
+            self._result.segments(done, inference)
+        return self._told(events, recent)
+
+    def _told(self, events: list[SegmentEvent], recent: list[Observed]) -> list[SegmentEvent]:
+        """The announcements with their sentences, where they are asked for."""
+        if self._teller is None or not events:
+            return events
+        facts = (*self._memory, *recent)
+        return [
+            replace(each, sentence=self._teller.sentence(each.segment, facts)) for each in events
+        ]
+
+    def _inferred(
+        self, measurements: Measurements, recent: list[Observed], last: int
+    ) -> tuple[Inference, int]:
+        """What the rules say up to a frame, and over how many facts."""
+        always = [
+            each
+            for each in measurements.facts
+            if isinstance(each, Observed)
+            and not each.ends()
+            and not isinstance(each, Frames | RateMhz)
+        ]
+        facts: list[Fact] = [Frames(0, last), RateMhz(self._rate_mhz), *always]
+        facts += self._memory
+        facts += recent
+        chosen = steady(facts) if self.rules.steady else tuple(facts)
+        return infer(chosen, profile=self.rules), len(chosen)
+
+    def _undecided(self, recent: list[Observed], last: int) -> dict[str, int]:
+        """Of each end-effector that has come to share a thing, before when segments may settle.
+
+        Who takes it over is known once one of the two lets go of it, or is taken not to.
+        """
+        longest = self._frames(self.horizons.handing_s)
+        margin = round(in_frames(times().merge_ms, self._rate_mhz / 1000.0))
+        acting = {each.name for each in self._buffer.rig.acting}
+        mobile = {e.name for e in self._buffer.rig.objects if e.tag is TagType.MOBILE}
+        going = [
+            each
+            for each in (*self._memory, *recent)
+            if isinstance(each, Touching)
+            and each.body in acting
+            and each.other in mobile
+            and each.last >= last - margin
+        ]
+        out: dict[str, int] = {}
+        for own in going:
+            joined = any(
+                each.other == own.other
+                and each.body != own.body
+                and each.first < own.first - margin
+                for each in going
+            )
+            if joined and last - own.first <= longest:
+                out[own.body] = min(out.get(own.body, own.first), own.first)
+        return {ee: frame - margin for ee, frame in out.items()}
+
+    def _rules_begin(self, window: Window) -> int:
+        oldest = window.last - self._frames(self.horizons.rules_s)
+        return max(0, oldest, self._segments.first_needed(window.last))
+
+    def _frames(self, duration_s: float) -> int:
+        return max(1, round(duration_s / self._step_s))

@@ -1,0 +1,340 @@
+"""The observation of a live recording, put together block by block as it is settled."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from capar import __version__
+from capar.model.calibration import Calibration
+from capar.model.capture import Capture, Notice, notice
+from capar.model.errors import CaptureError
+from capar.model.facts import MEASURED, Fact, FlickerCorrection, Frames, Observed, RateMhz
+from capar.model.locations import ConstraintLocation
+from capar.model.observation import JointAction, Observation, ObservedLink, ObservedObject, Segment
+from capar.model.par import Style
+from capar.model.sampled_track import SampledTrack
+from capar.pipelines.live.carried_poses import CarriedPoses
+from capar.pipelines.live.carried_sums import CarriedSums
+from capar.pipelines.live.fact_ledger import FactLedger
+from capar.pipelines.live.frames import Window
+from capar.pipelines.live.segment_ledger import SettledSegment
+from capar.pipelines.movers import unmoved_notices
+from capar_rules.borders.deflicker import steady
+from capar_rules.engine.profiles import Profile
+from capar_rules.movers.movers import movers
+from capar_rules.pars.complex_pars import compose
+from capar_rules.pars.inference import Inference, Key
+from capar_rules.pars.naming_rules import naming_rules
+from capar_rules.pars.primitive_pars import Measured, ipars, upars
+from extractors.bodies.observed_objects import observed_object
+from extractors.calibration import thresholds_of
+from extractors.measure import Measurements, measured
+from extractors.relations.guide_locations import guide_location
+from extractors.segments.locations import constraint_location
+from extractors.segments.motion_kinds import moved_path
+from extractors.segments.sampled_tracks import track_of
+from extractors.segments.styles import style
+
+
+@dataclass(frozen=True, slots=True)
+class _Details:
+    """What is measured of a settled segment, once its zero crossings are settled too."""
+
+    measured: Measured
+    location: ConstraintLocation | None
+    style: Style
+
+
+@dataclass
+class Inexact:
+    """How much of the result is known to be taken from less than the offline run has."""
+
+    clipped_segments: int = 0
+    """Segments longer than the long window: path and style are those of their last part."""
+
+
+class LiveResult:
+    """Facts, segments and places as they are settled; no frame is read a second time.
+
+    Args:
+        rig: Bodies, agents and purposes.
+        calibration: What was decided before.
+        rules: The rule base.
+        name: What the whole action is called.
+        rate_mhz: Frames in a thousand seconds.
+        rest_frames: By how many frames of its rest the place of a body is told.
+    """
+
+    def __init__(
+        self,
+        rig: Capture,
+        calibration: Calibration,
+        rules: Profile,
+        name: str,
+        *,
+        rate_mhz: int,
+        rest_frames: int,
+    ) -> None:
+        self._rig, self._calibration, self._rules, self._name = rig, calibration, rules, name
+        self._rate_mhz = rate_mhz
+        self._limits = thresholds_of(calibration)
+        self._ledger = FactLedger()
+        self._facts: list[Observed] = []
+        self._always: dict[Fact, None] = {}
+        self._settled: dict[Key, SettledSegment] = {}
+        self._waiting: list[SettledSegment] = []
+        self._details: dict[Key, _Details] = {}
+        self._joint: list[JointAction] = []
+        self._common: frozenset[Key] = frozenset()
+        self._violations: dict[str, None] = {}
+        self._objects: dict[str, ObservedObject] = {}
+        self._notices: dict[object, Notice] = {}
+        self._tracks: dict[str, list[np.ndarray]] = {}
+        self._times: list[np.ndarray] = []
+        self._sums = CarriedSums()
+        self._poses = CarriedPoses(calibration, rest_frames)
+        self._last: Measurements | None = None
+        self.inexact = Inexact()
+
+    @property
+    def frontier(self) -> int:
+        """The last frame whose facts are settled."""
+        return self._ledger.frontier
+
+    def block(self, window: Window, frontier: int) -> None:
+        """Measure a window, and take from it what is settled up to a frame.
+
+        Args:
+            window: The last frames.
+            frontier: The frame; beyond it nothing is taken.
+        """
+        bodies = self._poses.bodies(window)
+        since = self._sums.since(window)
+        measurements = measured(window.capture, self._calibration, bodies, since)
+        self._poses.advance(window, bodies, frontier)
+        self._sums.advance(window, measurements, frontier)
+        before = self._ledger.frontier
+        found = self._ledger.stitched(measurements.facts, window.first)
+        self._facts += self._ledger.settle(found, frontier)
+        for each in measurements.facts:
+            if isinstance(each, Observed) and not each.ends():
+                self._always.setdefault(each)
+        for thing in window.capture.objects:
+            if thing.name not in self._objects and not thing.stream.lost.all():
+                self._objects[thing.name] = observed_object(thing)
+        for told in measurements.notices:
+            self._notices[told.code, told.bodies] = told
+        self._keep_places(window, measurements, before + 1, frontier)
+        self._last = measurements
+        ready = [each for each in self._waiting if each.segment.last <= frontier]
+        self._waiting = [each for each in self._waiting if each.segment.last > frontier]
+        for settled in ready:
+            key = settled.segment.ee, settled.segment.index
+            self._details[key] = self._detailed(window, measurements, settled)
+
+    def segments(self, done: Sequence[SettledSegment], inference: Inference) -> None:
+        """Take the segments that an answer of the rules settles, and what several do jointly."""
+        for each in done:
+            key = each.segment.ee, each.segment.index
+            if key not in self._settled:
+                self._waiting.append(each)
+            self._settled[key] = each
+        by_place = {
+            (key[0], each.segment.first, each.segment.last): each.segment
+            for key, each in self._settled.items()
+        }
+        local = {
+            (segment.ee, segment.index): segment
+            for link in inference.links
+            for segment in link.segments
+        }
+        known: dict[Key, Segment] = {}
+        for key, segment in local.items():
+            same = by_place.get((segment.ee, segment.first, segment.last))
+            if same is not None:
+                known[key] = same
+        self._common = frozenset(
+            (known[key].ee, known[key].index) for key in inference.common if key in known
+        )
+        for joint in inference.joint:
+            keys = list(zip(joint.ees, joint.segments, strict=True))
+            if all(key in known for key in keys):
+                numbers = tuple(known[key].index for key in keys)
+                self._add_joint(replace(joint, segments=numbers))
+        for violation in inference.violations:
+            self._violations.setdefault(violation)
+
+    def observation(self, window: Window) -> Observation:
+        """The whole, once everything is settled.
+
+        Args:
+            window: The last frames: the last of them ends the recording.
+
+        Raises:
+            CaptureError: Fewer than two frames.
+        """
+        assert self._last is not None
+        if window.last < 1:
+            raise CaptureError("a live recording of fewer than two frames: nothing can be observed")
+        times = np.concatenate(self._times)
+        duration_s = float(times[-1])
+        inference = self._inference()
+        measured = {key: each.measured for key, each in self._details.items()}
+        facts = self._all_facts(window.last)
+        steadied = steady(facts) if self._rules.steady else tuple(facts)
+        moved = () if self._rules.crossings_only else movers(steadied)
+        ordered = [segment for link in inference.links for segment in link.segments]
+        details = [_for_purpose(self._details[each.ee, each.index], each) for each in ordered]
+        rate_hz = self._rate_mhz / 1000.0
+        guides = {} if self._rules.crossings_only else self._last.guides
+        objects = self._last.bodies.objects
+        return Observation(
+            capture=self._rig.name,
+            profile=self._rules.name,
+            rules=self._rules.fingerprint,
+            version=__version__,
+            agent=self._rig.agent,
+            duration_s=duration_s,
+            rate_hz=1.0 / float(np.median(np.diff(times))),
+            frames=len(times),
+            objects=tuple(
+                self._objects.get(each.name) or observed_object(each)
+                for each in window.capture.objects
+            ),
+            links=inference.links,
+            facts=(*steadied, *moved),
+            upars=upars(inference, measured, name=self._name),
+            ipars=ipars(inference, measured, agent=self._rig.agent.name, name=self._name),
+            complex_par=compose(
+                inference, name=self._name, frames=window.last, duration_s=duration_s
+            ),
+            locations=tuple(each.location for each in details if each.location is not None),
+            styles=tuple(each.style for each in details),
+            sources=self._rig.sources,
+            notices=(
+                *self._notices.values(),
+                *_flicker_notices(steadied, rate_hz),
+                *unmoved_notices((*steadied, *moved), times),
+                *(notice("rule-violation", violation=each) for each in self._violations),
+            ),
+            joint=inference.joint,
+            others=self._rig.others,
+            calibration=self._calibration,
+            guides=tuple(
+                guide_location(objects[name], objects[guide.base], guide)
+                for name, guide in sorted(guides.items())
+            ),
+            naming=naming_rules(self._rules, (each.name for each in ordered)),
+            tracks=tuple(self._sampled(times)),
+        )
+
+    def _inference(self) -> Inference:
+        """What the rules said of every segment, as one answer."""
+        links = []
+        for sensor in self._rig.acting:
+            own = sorted(
+                (each.segment for each in self._settled.values() if each.segment.ee == sensor.name),
+                key=lambda each: each.index,
+            )
+            agent = self._rig.agent_of(sensor) if self._rig.others else ""
+            links.append(
+                ObservedLink(sensor.name, sensor.end_effector, sensor.side, tuple(own), agent)
+            )
+        links.sort(key=lambda each: (each.ee, each.kind, each.side))
+        return Inference(
+            tuple(links),
+            {key: each.conditions for key, each in self._settled.items()},
+            self._common,
+            frozenset(key for key, each in self._settled.items() if each.no_step),
+            tuple(self._violations),
+            tuple(sorted(self._joint, key=lambda each: (each.first, each.last, each.objects))),
+        )
+
+    def _all_facts(self, last: int) -> list[Fact]:
+        """Every settled fact, in the order in which facts are written."""
+        always: list[Fact] = [Frames(0, last), RateMhz(self._rate_mhz)]
+        always += (each for each in self._always if not isinstance(each, Frames | RateMhz))
+        groups: dict[type[Fact], set[Fact]] = {}
+        for each in (*always, *self._facts):
+            groups.setdefault(type(each), set()).add(each)
+        return [each for kind in MEASURED for each in sorted(groups.get(kind, ()))]
+
+    def _add_joint(self, joint: JointAction) -> None:
+        """Keep the widest form of a joint action."""
+        own = set(zip(joint.ees, joint.segments, strict=True))
+        for place, each in enumerate(self._joint):
+            known = set(zip(each.ees, each.segments, strict=True))
+            if own & known and each.objects[:1] == joint.objects[:1]:
+                if known < own:
+                    self._joint[place] = joint
+                return
+        self._joint.append(joint)
+
+    def _detailed(
+        self, window: Window, measurements: Measurements, settled: SettledSegment
+    ) -> _Details:
+        """Motion, places and style of a settled segment, from a window in which it lies."""
+        segment = settled.segment
+        first = max(segment.first - window.first, 0)
+        self.inexact.clipped_segments += int(segment.first < window.first)
+        part = replace(segment, first=first, last=segment.last - window.first)
+        capture = window.capture
+        motion, path = moved_path(capture, measurements, part, self._limits)
+        first_object, second = settled.conditions.colliding
+        location = None
+        if second >= 0 and "1" in segment.features.rel_end:
+            location = constraint_location(
+                capture,
+                measurements.bodies,
+                measurements.attention,
+                part,
+                dominant=segment.objects[first_object] if first_object >= 0 else "",
+                goal=segment.objects[second],
+            )
+            location = replace(location, frame=segment.last)
+        track = measurements.tracks[segment.ee]
+        return _Details(
+            Measured(motion, path), location, style(part, track, capture.times, self._limits)
+        )
+
+    def _keep_places(
+        self, window: Window, measurements: Measurements, first: int, last: int
+    ) -> None:
+        """Add the smoothed places of some frames to those that are kept; of what rests, one."""
+        part = slice(first - window.first, last - window.first + 1)
+        self._times.append(window.capture.times[part].copy())
+        for name, pose in measurements.bodies.poses.items():
+            places = pose.settled if pose.rests else pose.smooth
+            self._tracks.setdefault(name, []).append(places.positions[part].copy())
+
+    def _sampled(self, times: Float[np.ndarray, "frames"]) -> Iterator[SampledTrack]:
+        """The track of each body, from the smoothed places that were kept."""
+        assert self._last is not None
+        for name, pose in sorted(self._last.bodies.poses.items()):
+            yield track_of(name, np.concatenate(self._tracks[name]), times, rests=pose.rests)
+
+
+def _for_purpose(details: _Details, segment: Segment) -> _Details:
+    """Details with the purpose of their segment, which is known later than they may be."""
+    location = details.location
+    if location is not None:
+        location = replace(location, purpose=segment.purpose)
+    style_of_it = replace(details.style, purpose=segment.purpose)
+    return _Details(details.measured, location, style_of_it)
+
+
+def _flicker_notices(facts: Sequence[Fact], rate_hz: float) -> list[Notice]:
+    return [
+        notice(
+            "flicker",
+            *dict.fromkeys((each.body, each.other)),
+            start_s=each.first / rate_hz,
+            end_s=each.last / rate_hz,
+            length_s=(each.last - each.first + 1) / rate_hz,
+            taken=each.taken,
+        )
+        for each in facts
+        if isinstance(each, FlickerCorrection)
+    ]

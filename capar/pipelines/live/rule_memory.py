@@ -1,0 +1,69 @@
+"""The settled facts that rules are still told of: few, however long a recording lasts."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+
+from capar.model.facts import Observed, Place, Resting, Touching
+
+SAME_PLACE_MM = 10
+"""Postures at rest nearer to each other than this along every axis are one [mm]."""
+
+
+class RuleMemory:
+    """Facts of the last few segments, and of the places where an end-effector rested before.
+
+    Rules ask whether a hand is back where it was before it acted, however long ago: the first
+    frame, and rests at other places than those that are known, stay.
+    """
+
+    def __init__(self) -> None:
+        self._facts: list[Observed] = []
+        self._postures: dict[tuple[object, ...], tuple[Observed, ...]] = {}
+
+    def __iter__(self) -> Iterator[Observed]:
+        """The facts, each once."""
+        remembered = (each for facts in self._postures.values() for each in facts)
+        return iter(dict.fromkeys((*remembered, *self._facts)))
+
+    def add(self, facts: Iterable[Observed]) -> None:
+        """Take facts that were settled."""
+        self._facts += facts
+
+    def forget(self, begin: int, borders: Sequence[int], margin: int) -> None:
+        """Drop what rules do not need again.
+
+        Args:
+            begin: The frame from which on everything is kept.
+            borders: Frames at which segments begin that go on; what ends near them is kept.
+            margin: How many frames away is near.
+        """
+        kept: list[Observed] = []
+        gone: list[Observed] = []
+        for each in self._facts:
+            ends = each.ends()
+            near = any(abs(end - border) <= margin for end in ends for border in borders)
+            (kept if near or ends[-1] >= begin - margin else gone).append(each)
+        self._facts = kept
+        if gone:
+            self._remember(gone)
+
+    def _remember(self, gone: Sequence[Observed]) -> None:
+        """Keep the places of an end-effector at rest, with what it touched meanwhile."""
+        places = {(each.body, each.frame): each for each in gone if isinstance(each, Place)}
+        touching: dict[str, list[Touching]] = defaultdict(list)
+        for each in gone:
+            if isinstance(each, Touching):
+                touching[each.body].append(each)
+        for (body, frame), place in places.items():
+            if frame == 0:
+                self._postures.setdefault((body, "first"), (place,))
+        for each in gone:
+            if isinstance(each, Resting) and (each.ee, each.last) in places:
+                place = places[each.ee, each.last]
+                met = (
+                    touch
+                    for touch in touching[each.ee]
+                    if touch.first <= each.last and each.first <= touch.last
+                )
+                cell = tuple(round(axis / SAME_PLACE_MM) for axis in (place.x, place.y, place.z))
+                self._postures.setdefault((each.ee, *cell), (each, place, *met))

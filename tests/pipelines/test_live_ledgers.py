@@ -1,0 +1,155 @@
+"""What sliding windows see is put together as if the whole had been seen at once."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from live_runs import rig_of
+from measured_bodies import pick_and_place
+
+from capar.model.errors import CaparError, CaptureError, DeviceError
+from capar.model.facts import Gap, Pause, Place, Resting, Touching
+from capar.pipelines.live.device_frames import DeviceFrames
+from capar.pipelines.live.fact_ledger import FactLedger
+from capar.pipelines.live.frames import FrameBuffer, Poses, body_names, replayed
+from capar.pipelines.live.horizons import LiveHorizons
+from capar.pipelines.live.lead_in import lead_in
+from capar.pipelines.live.rule_memory import RuleMemory
+from extractors.devices.tracker import Description, Frame
+from extractors.relations.running_sums import summed
+
+FRAMES = 400
+
+
+@st.composite
+def contacts(draw: st.DrawFn) -> list[Touching]:
+    """Contacts of one hand with two things, disjoint for each, at least a frame apart."""
+    found = []
+    for other in ("cup", "box"):
+        ends = draw(st.lists(st.integers(0, FRAMES - 1), max_size=12, unique=True).map(sorted))
+        pairs = zip(ends[::2], ends[1::2], strict=False)
+        found += [Touching("hand", other, first, last) for first, last in pairs]
+    return found
+
+
+@given(contacts(), st.integers(5, 60), st.integers(1, 30), st.integers(0, 40))
+@settings(max_examples=150, deadline=None)
+def test_intervals_that_windows_cut_are_put_together_whole(
+    whole: list[Touching], step: int, margin: int, more: int
+) -> None:
+    length = step + 2 * margin + more
+    named = [Gap(each.body, each.other, each.first, 7 * each.first) for each in whole]
+    instants = [Pause("hand", each.last) for each in whole]
+    ledger, done = FactLedger(), []
+    for now in [*range(step, FRAMES - 1, step), FRAMES - 1]:
+        begin = max(0, now - length)
+        seen = [_cut(each, begin, now) for each in whole if each.first <= now]
+        seen = [each for each in seen if each.first <= each.last]
+        gaps = [
+            replace(gap, first=gap.first - begin)
+            if gap.first >= begin
+            else Gap(gap.body, gap.other, 0, -1)
+            for gap, each in zip(named, whole, strict=True)
+            if each.first <= now and each.last >= begin
+        ]
+        pauses = [
+            Pause("hand", each.frame - begin) for each in instants if begin <= each.frame <= now
+        ]
+        stitched = ledger.stitched([*seen, *gaps, *pauses], begin)
+        frontier = now if now == FRAMES - 1 else max(now - margin, ledger.frontier)
+        done += ledger.settle(stitched, frontier)
+    assert sorted(map(str, done)) == sorted(map(str, {*whole, *named, *instants}))
+
+
+def _cut(each: Touching, begin: int, now: int) -> Touching:
+    return replace(each, first=max(each.first, begin) - begin, last=min(each.last, now) - begin)
+
+
+@given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=60), st.data())
+def test_sums_go_on_from_an_anchor_to_the_last_bit(steps: list[float], data: st.DataObject) -> None:
+    whole = summed(np.array(steps), 0, 0.0)
+    begin = data.draw(st.integers(0, len(steps) - 1))
+    anchor = data.draw(st.integers(begin, len(steps)))
+    part = summed(np.array(steps[begin:]), anchor - begin, float(whole[anchor]))
+    assert (part[anchor - begin :] == whole[anchor:]).all()
+    assert part == pytest.approx(whole[begin:], abs=1e-9)
+
+
+def test_the_memory_of_rules_stays_bounded_however_long_they_are_told_facts() -> None:
+    memory, sizes = RuleMemory(), []
+    for round_ in range(400):
+        at = 100 * round_
+        memory.add([Touching("hand", "cup", at, at + 40), Resting("hand", at + 50, at + 90)])
+        memory.add([Place("hand", at + 90, 10 * (round_ % 7), 0, 0)])
+        memory.forget(at - 500, [at], 100)
+        sizes.append(len(list(memory)))
+    assert max(sizes[200:]) <= max(sizes[:200])
+    assert Resting("hand", 50, 90) in list(memory)
+
+
+def test_only_the_last_frames_are_held() -> None:
+    capture = pick_and_place()
+    buffer = FrameBuffer(rig_of(capture), 50)
+    frames = replayed(capture)
+    for each in frames:
+        buffer.push(each)
+    window = buffer.window(1000)
+    assert len(window.capture.times) == 50
+    assert window.last == len(frames) - 1
+    for name, body in window.capture.bodies.items():
+        expected = capture.bodies[name].stream.positions[-50:]
+        np.testing.assert_array_equal(body.stream.positions, expected)
+
+
+def test_a_frame_of_other_bodies_or_of_an_earlier_time_is_refused() -> None:
+    capture = pick_and_place()
+    buffer = FrameBuffer(rig_of(capture), 50)
+    frame = replayed(capture)[0]
+    buffer.push(frame)
+    with pytest.raises(CaptureError, match="does not follow"):
+        buffer.push(frame)
+    with pytest.raises(CaptureError, match="the rig has 3 bodies"):
+        buffer.push(Poses(1.0, np.zeros((2, 3)), np.zeros((2, 4))))
+
+
+def test_horizons_that_cannot_settle_anything_are_refused() -> None:
+    with pytest.raises(CaparError, match="cannot settle"):
+        LiveHorizons(window_s=1.0)
+    with pytest.raises(CaparError, match="longer than 0 s"):
+        LiveHorizons(stride_s=0.0)
+
+
+def test_a_lead_in_of_half_a_second_is_refused() -> None:
+    with pytest.raises(CaptureError, match="at least 1 s"):
+        lead_in(pick_and_place(), 0.5)
+
+
+def described(*names: str) -> Description:
+    return Description("flock", "simulated", names, 100.0)
+
+
+def frame_of(names: int, cycle: int) -> Frame:
+    return Frame(0.0, None, np.full((names, 3), float(cycle)), np.ones((names, 4)), cycle)
+
+
+def test_lost_cycles_of_a_tracker_are_lost_frames_on_an_even_clock() -> None:
+    rig = pick_and_place()
+    frames = DeviceFrames(rig, body_names(rig), described("thing", "right_hand"), 0.01)
+    got = [each for cycle in (5, 6, 9, 2) for each in frames.poses(frame_of(2, cycle))]
+    assert [each.time_s for each in got] == pytest.approx([0.0, 0.01, 0.02, 0.03, 0.04, 0.05])
+    moving = [name for name in body_names(rig) if "table" not in name]
+    row = body_names(rig).index(moving[0])
+    assert [bool(np.isnan(each.positions[row]).any()) for each in got] == [
+        False, False, True, True, False, False
+    ]  # fmt: skip
+    assert frames.filled == 2
+    table = next(index for index, name in enumerate(body_names(rig)) if "table" in name)
+    assert not any(np.isnan(each.positions[table]).any() for each in got)
+
+
+def test_a_tracker_without_a_moving_body_of_the_rig_is_refused() -> None:
+    rig = pick_and_place()
+    with pytest.raises(DeviceError, match="thing"):
+        DeviceFrames(rig, body_names(rig), described("right_hand"), 0.01)
