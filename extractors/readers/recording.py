@@ -125,13 +125,13 @@ def unrounded(
 ) -> Float[np.ndarray, "frames"]:
     """Time stamps without the rounding to milliseconds of a steady clock.
 
-    The clock has the stated rate or, where that does not fit, the mean one. Time stamps that no
+    The clock has the stated rate or, where that does not fit, the one that fits best. Time stamps that no
     steady clock explains stay as they are.
     """
     if len(times) < 3 or not np.isfinite(times).all() or not times[-1] > times[0]:
         return times
-    mean_hz = (len(times) - 1) / float(times[-1] - times[0])
-    for rate_hz in (stated_hz, mean_hz):
+    fitted_hz = 1.0 / float(np.polyfit(np.arange(len(times)), times, 1)[0])
+    for rate_hz in (stated_hz, fitted_hz):
         if rate_hz and rate_hz > 0.0:
             steady = np.arange(len(times)) / rate_hz
             steady += float(np.mean(times - steady))
