@@ -10,7 +10,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.body.anthropometry import Measures, estimate_measures
-from capar.body.conventions import Convention
+from extractors.readers.body_names.conventions import Convention
 from capar.body.fitting import LARGEST_STEP, SOLVER
 from capar.body.human import Human
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH

@@ -8,7 +8,7 @@ import pytest
 from virtual_bodies.moving import swinging
 
 from capar.body.anthropometry import ready_made
-from capar.body.conventions import ConventionError, convention, conventions, recognise
+from extractors.readers.body_names.conventions import ConventionError, convention, conventions, recognise
 from capar.body.human import Human
 from capar.body.skeleton_fitting import SkeletonError, fit_skeleton, measures_from_points
 from capar.model.errors import UnknownNameError

@@ -46,7 +46,7 @@ def _rigid_sets(
     rigid = {
         frozenset(pair)
         for pair in combinations(names, 2)
-        if _keeps_distance(markers[pair[0]], markers[pair[1]])
+        if keeps_distance(markers[pair[0]], markers[pair[1]])
     }
     left, sets = list(names), []
     while left:
@@ -60,9 +60,10 @@ def _rigid_sets(
     return sets
 
 
-def _keeps_distance(
+def keeps_distance(
     first: Float[np.ndarray, "frames 3"], second: Float[np.ndarray, "frames 3"]
 ) -> bool:
+    """Whether two markers are near each other and stay as far apart as they are."""
     apart = np.linalg.norm(first - second, axis=1)
     apart = apart[~np.isnan(apart)]
     if not apart.size or float(np.median(apart)) > NEAR_M:
