@@ -10,11 +10,11 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.body.anthropometry import Measures, estimate_measures
-from extractors.readers.body_names.conventions import Convention
 from capar.body.fitting import LARGEST_STEP, SOLVER
 from capar.body.human import Human
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
 from capar.model.errors import CaparError
+from extractors.readers.body_names.conventions import Convention
 
 LENGTHS = {
     "upper_arm": ("upper_arm", "forearm"),

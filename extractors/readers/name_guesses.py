@@ -142,6 +142,11 @@ class Standing:
     """Whether the height is the person's stature, not that of the head above the feet."""
 
     @property
+    def what(self) -> str:
+        """What has this height."""
+        return "the person" if self.whole else "the head above the feet"
+
+    @property
     def range_m(self) -> tuple[float, float]:
         """What this height is of people of 1.0 to 2.2 m [m]."""
         return STATURE_M if self.whole else HEIGHT_M

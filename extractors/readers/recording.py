@@ -125,8 +125,8 @@ def unrounded(
 ) -> Float[np.ndarray, "frames"]:
     """Time stamps without the rounding to milliseconds of a steady clock.
 
-    The clock has the stated rate or, where that does not fit, the one that fits best. Time stamps that no
-    steady clock explains stay as they are.
+    The clock has the stated rate or, where that does not fit, the one that fits best. Time stamps
+    that no steady clock explains stay as they are.
     """
     if len(times) < 3 or not np.isfinite(times).all() or not times[-1] > times[0]:
         return times

@@ -8,10 +8,15 @@ import pytest
 from virtual_bodies.moving import swinging
 
 from capar.body.anthropometry import ready_made
-from extractors.readers.body_names.conventions import ConventionError, convention, conventions, recognise
 from capar.body.human import Human
 from capar.body.skeleton_fitting import SkeletonError, fit_skeleton, measures_from_points
 from capar.model.errors import UnknownNameError
+from extractors.readers.body_names.conventions import (
+    ConventionError,
+    convention,
+    conventions,
+    recognise,
+)
 from extractors.readers.registry import read_recording
 
 DATA = Path(os.environ.get("CAPAR_DATA", Path(__file__).parents[3] / "shared" / "data"))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cache
 from importlib.resources import files
+from itertools import pairwise
 from typing import Any
 
 from extractors.readers.body_names.conventions import Convention, conventions
@@ -125,9 +126,10 @@ def _by_words(names: Iterable[str]) -> Iterator[tuple[str, BodyName]]:
 def _place(bare: str) -> str:
     """The place that a name's words tell of; an empty string if none does."""
     bare = re.sub(r"\d+$", "", bare)
-    words = words_of(re.sub(r"^([LR])(?=[A-Z][a-z])", r"\1_", bare))
-    pairs = {a + b for a, b in zip(words, words[1:], strict=False)}
-    side = side_of(bare)
+    bare = re.sub(r"^([LRlr])(?=[A-Z][A-Za-z])", r"\1_", bare)
+    words = words_of(bare)
+    pairs = {a + b for a, b in pairwise(words)}
+    side = next((each for each in SIDES if each[0] in words), side_of(bare))
     for word, place in _table("words")["words"].items():
         if word in words or word in pairs:
             sided = "{side}" in place

@@ -10,12 +10,19 @@ from capar.model.conventions import UP
 from extractors.readers.body_names.body_names import BodyName, body_names, computed
 from extractors.readers.body_names.conventions import conventions
 from extractors.readers.drafting.marker_sets import keeps_distance, marker_sets
+from extractors.readers.drafting.sides import sided
 from extractors.readers.drafting.stance import points_of, standing_by_parts, up_beside
 from extractors.readers.name_guesses import Standing, standing
 from extractors.readers.recording import Recording
 
 LEAST_PARTS = 3
 """A body is in a file if so many of its parts have a joint or marker."""
+
+RIDING_M = 0.020
+"""The distance of two markers on the skin of one segment varies by no more than this [m]."""
+
+SEGMENT_M = 0.3
+"""... and they are no further apart than this [m]."""
 
 FIXED_M = 0.02
 """What never goes further than this from where it usually is does not move [m]."""
@@ -47,8 +54,8 @@ class Contents:
 
 def contents(recording: Recording) -> Contents:
     """What of a file is of a body."""
-    found = body_names([*recording.bodies, *recording.markers])
     points = points_of(recording)
+    found = sided(body_names([*recording.bodies, *recording.markers]), points)
     if len({each.part for each in found.values()}) < LEAST_PARTS or not _one_clock(points):
         return Contents(recording, {}, standing(recording), None)
     stands = standing(recording)
@@ -122,7 +129,9 @@ def _carrier(
     """The part of the body to two of whose markers a marker keeps its distance."""
     near: dict[str, int] = {}
     for other, each in body.items():
-        if other in markers and keeps_distance(markers[name], markers[other]):
+        if other in markers and keeps_distance(
+            markers[name], markers[other], near_m=SEGMENT_M, rigid_m=RIDING_M
+        ):
             part = f"{each.side} {each.part}".removeprefix("none ")
             near[part] = near.get(part, 0) + 1
     best = max(near, key=lambda part: near[part], default="")
@@ -139,9 +148,7 @@ def _set_name(name: str, members: Iterable[str]) -> str:
     return shared if len(shared) > 2 else name
 
 
-def _stays(
-    markers: Mapping[str, Float[np.ndarray, "frames 3"]], members: Iterable[str]
-) -> bool:
+def _stays(markers: Mapping[str, Float[np.ndarray, "frames 3"]], members: Iterable[str]) -> bool:
     for name in members:
         places = markers[name][~np.isnan(markers[name]).any(axis=1)]
         if np.abs(places - np.median(places, axis=0)).max() > FIXED_M:

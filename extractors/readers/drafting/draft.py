@@ -179,9 +179,7 @@ def _gaze(file: _File, name: str) -> tuple[float, float, float] | None:
     return mean_forward(stream.orientations, _in_file(file, ways))
 
 
-def _in_file(
-    file: _File, ways: Float[np.ndarray, "frames 3"]
-) -> Float[np.ndarray, "frames 3"]:
+def _in_file(file: _File, ways: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames 3"]:
     """Directions of the world along the file's axes."""
     own, world = (
         np.stack([each[n] for n in file.contents.recording.bodies])

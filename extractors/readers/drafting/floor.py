@@ -42,6 +42,9 @@ class Floor:
     size: tuple[float, float]
     """Where it is and how large, along x and y [m]."""
 
+    rests: bool
+    """Whether any foot stands; else the floor is under the lowest point of a foot."""
+
     @property
     def tolerance_m(self) -> float:
         """Distance at which feet touch it: what their heights differ by [m]."""
@@ -51,8 +54,8 @@ class Floor:
 
 def floor(
     points: Points, feet: Mapping[str, Sequence[str]], rate_hz: float, radius_m: float = RADIUS_M
-) -> Floor | None:
-    """The floor under some feet; None if none of them ever stands.
+) -> Floor:
+    """The floor under some feet.
 
     Args:
         points: In the world: metres, z up.
@@ -61,17 +64,22 @@ def floor(
         radius_m: How far the surface of a foot's stand-in is from its points.
     """
     standing = [_standing_heights(points, names, rate_hz) for names in feet.values()]
-    heights = np.concatenate(standing) if standing else np.empty(0)
-    heights = heights[heights <= heights.min() + LOW_M] if heights.size else heights
-    if not heights.size:
-        return None
+    heights = np.concatenate(standing)
+    rests = bool(heights.size)
+    if not rests:
+        heights = np.array([np.nanmin(points[n][:, 2]) for group in feet.values() for n in group])
+    heights = heights[heights <= heights.min() + (LOW_M if rests else 0.0)]
     low, high = np.quantile(heights, SHARES)
     ground = np.concatenate([points[name] for names in feet.values() for name in names])
     ground = ground[~np.isnan(ground).any(axis=1), :2]
     first, last = ground.min(axis=0) - MARGIN_M, ground.max(axis=0) + MARGIN_M
     (x, y), (long, wide) = (first + last) / 2, last - first
     return Floor(
-        float(low) - radius_m, float(high - low), (float(x), float(y)), (float(long), float(wide))
+        float(low) - radius_m,
+        float(high - low),
+        (float(x), float(y)),
+        (float(long), float(wide)),
+        rests,
     )
 
 

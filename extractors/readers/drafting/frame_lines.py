@@ -95,7 +95,6 @@ def _doubts(held: Sequence[Contents]) -> list[str]:
             likely = f"; {person.unit} would make it {person.height * UNITS[person.unit]:.2f} m"
             out.append(
                 f"{EDIT} by the unit that {each.recording.source.path.rsplit('/', 1)[-1]} states, "
-                f"{person.evidence.split(' is ')[0]} is {person.height * unit_m:.3g} m"
-                + (likely if person.unit else "")
+                f"{person.what} is {person.height * unit_m:.3g} m" + (likely if person.unit else "")
             )
     return out

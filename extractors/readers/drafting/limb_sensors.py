@@ -26,7 +26,12 @@ STRETCH = 1.5
 """The stated limit is the measured residual times this [1]."""
 
 STAGES: Mapping[str, Sequence[Sequence[str]]] = {
-    "hand": (("hand",), ("wrist_radial", "wrist_ulnar"), ("forearm",), ("upper_arm",)),
+    "hand": (
+        ("hand",),
+        ("wrist_radial", "wrist_ulnar"),
+        ("forearm",),
+        ("elbow", "elbow_lateral", "elbow_medial"),
+    ),
     "foot": (("foot",), ("ankle_lateral", "ankle_medial"), ("shank",)),
     "head": (("head",),),
 }

@@ -179,13 +179,14 @@ def floor_lines(ground: Floor, used: set[str]) -> list[str]:
     """The table of the floor that feet stand on."""
     x, y = ground.middle
     long, wide = ground.size
+    where = "where the feet stand lowest" if ground.rests else "under the lowest point of the feet"
     return [
         "",
         "[[object]]",
         f"name = {quoted(free_name('floor', used))}",
         'kind = "floor"',
         'tag = "fixed"',
-        'assumed = "no floor is recorded; a level one is put where the feet stand lowest"',
+        f'assumed = "no floor is recorded; a level one is put {where}"',
         f"position = [{x:.2f}, {y:.2f}, {ground.top_m - THICK_M / 2:.3f}]",
         f"shape = {{ box = [{long:.1f}, {wide:.1f}, {THICK_M:g}] }}",
     ]
