@@ -53,6 +53,15 @@ class BodyName:
         """The part of the body: ``hand``, ``foot``, ``head``, ``pelvis``, ``shank`` ..."""
         return parts()[without_side(self.place)]
 
+    @property
+    def height(self) -> float | None:
+        """How high it usually is on somebody who stands [share of stature]; None for arms."""
+        table = _table("places")
+        usual: float | None = table["middles"].get(self.part)
+        if self.exact and usual is not None:
+            usual = table["heights"].get(without_side(self.place), usual)
+        return usual
+
 
 def without_side(place: str) -> str:
     """A place's name without its side."""

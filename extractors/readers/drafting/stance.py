@@ -15,11 +15,8 @@ from extractors.readers.recording import Recording
 
 Points = Mapping[str, Float[np.ndarray, "frames 3"]]
 
-HEIGHTS = {"head": 0.94, "trunk": 0.78, "pelvis": 0.55, "thigh": 0.40, "shank": 0.18, "foot": 0.03}
-"""How high markers on a part usually are on somebody who stands [share of stature]."""
-
 SPREAD = 0.2
-"""Parts tell how somebody stands if their usual heights differ by so much [share of stature]."""
+"""Places tell how somebody stands if their usual heights differ by so much [share of stature]."""
 
 BREADTH = ("trunk", "pelvis", "thigh", "upper_arm", "head")
 """Parts whose right and left lie beside each other, whatever hands and feet do."""
@@ -44,21 +41,23 @@ def mean_of(points: Points, names: Iterable[str]) -> Float[np.ndarray, "frames 3
 def standing_by_parts(points: Points, names: Mapping[str, BodyName]) -> Standing | None:
     """How a person stands by the heights of the parts that are there; None if they do not tell.
 
-    The vector from which every part is off by its usual height, by least squares in each frame, is
-    that of the whole person from the ground to the top of the head.
+    In each frame the places of joints and markers are fitted by a line over their usual heights;
+    its slope is the vector from the ground to the top of the head.
     """
-    groups = {part: [n for n, each in names.items() if each.part == part] for part in HEIGHTS}
-    known = {part: group for part, group in groups.items() if group}
-    if len(known) < 2:
+    groups: dict[float, list[str]] = {}
+    for name, each in names.items():
+        if each.height is not None:
+            groups.setdefault(each.height, []).append(name)
+    if len(groups) < 2:
         return None
-    usual = np.array([HEIGHTS[part] for part in known])
-    places = np.stack([mean_of(points, group) for group in known.values()])
-    way = _slopes(usual, places)
+    places = np.stack([mean_of(points, group) for group in groups.values()])
+    way = _slopes(np.array(list(groups)), places)
     if way is None:
         return None
     axis = int(np.argmax(np.abs(way)))
     lengths = np.sort(np.abs(way))
     up = f"{'-' if way[axis] < 0.0 else ''}{'xyz'[axis]}"
+    known = {names[name].part: None for group in groups.values() for name in group}
     evidence = f"by how high {_listed(known)} are the person is {lengths[2]:.4g} tall"
     return Standing(
         up, float(lengths[2]), bool(lengths[2] > CLEAR * lengths[1]), evidence, whole=True
@@ -66,7 +65,7 @@ def standing_by_parts(points: Points, names: Mapping[str, BodyName]) -> Standing
 
 
 def _slopes(
-    usual: Float[np.ndarray, "parts"], places: Float[np.ndarray, "parts frames 3"]
+    usual: Float[np.ndarray, "heights"], places: Float[np.ndarray, "heights frames 3"]
 ) -> Float[np.ndarray, "3"] | None:
     """The median over frames of the place's slope over usual height."""
     seen = ~np.isnan(places).any(axis=2)

@@ -125,8 +125,8 @@ def test_a_unit_that_makes_no_person_is_doubted(tmp_path: Path) -> None:
     write_trc(tmp_path / "walk.trc", {name: at * 100.0 for name, at in walker().items()})
     text, _ = drafted(tmp_path / "walk.trc", tmp_path)
     (line,) = [each for each in text.splitlines() if EDIT in each]
-    assert "0.165 m" in line
-    assert "cm would make it 1.6" in line
+    assert "the person is 0.17" in line
+    assert "cm would make it 1.7" in line
 
 
 @pytest.mark.parametrize(
