@@ -15,7 +15,7 @@ from extractors.readers.recording import Recording
 
 Points = Mapping[str, Float[np.ndarray, "frames 3"]]
 
-SPREAD = 0.2
+SPREAD = 0.25
 """Places tell how somebody stands if their usual heights differ by so much [share of stature]."""
 
 BREADTH = ("trunk", "pelvis", "thigh", "upper_arm", "head")
