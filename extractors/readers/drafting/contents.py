@@ -55,7 +55,8 @@ class Contents:
 def contents(recording: Recording) -> Contents:
     """What of a file is of a body."""
     points = points_of(recording)
-    found = sided(body_names([*recording.bodies, *recording.markers]), points)
+    metres = {name: each * (recording.unit_m or 1.0) for name, each in points.items()}
+    found = sided(body_names([*recording.bodies, *recording.markers]), metres)
     if len({each.part for each in found.values()}) < LEAST_PARTS or not _one_clock(points):
         return Contents(recording, {}, standing(recording), None)
     stands = standing(recording)

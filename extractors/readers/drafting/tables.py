@@ -114,16 +114,17 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _limb_shape(sensor: LimbSensor, body: Mapping[str, BodyName]) -> str:
-    """A stand-in: a foot along its markers, a ball for a hand; heads touch nothing."""
+    """A stand-in along a hand's or foot's markers; heads touch nothing."""
     if sensor.limb == "head":
         return "# shape = { sphere = 0.1 }      # a stand-in: contact needs one"
-    if sensor.limb == "hand" or len(sensor.own) < 2:
-        return f"shape = {{ sphere = {HAND_RADIUS_M:g} }}     # a stand-in; contact needs one"
+    radius_m = HAND_RADIUS_M if sensor.limb == "hand" else FOOT_RADIUS_M
+    if len(sensor.own) < 2:
+        return f"shape = {{ sphere = {radius_m:g} }}     # a stand-in"
     start = next((n for n in sensor.own if without_side(body[n].place) == "heel"), sensor.own[0])
     pairs = [[start, each] for each in sensor.own if each != start]
     return (
         f"shape = {{ capsules = [{', '.join(map(_listed, pairs))}], "
-        f"radius_m = {FOOT_RADIUS_M:g} }}   # a stand-in"
+        f"radius_m = {radius_m:g} }}   # a stand-in"
     )
 
 

@@ -145,6 +145,15 @@ def test_words_that_may_mean_other_things_are_of_a_body_only_beside_one() -> Non
     assert not body_names(["shelf_back", "middle", "ring", "box_arm"])
 
 
+@pytest.mark.skipif(not DATA.exists(), reason=f"no recordings at {DATA}")
+def test_left_and_right_markers_of_one_hand_are_no_two_hands(tmp_path: Path) -> None:
+    source = DATA / "hand_embodiment_pillow" / "recording.tsv"
+    _, capture = drafted(source, tmp_path / "drafted")
+    (hand,) = capture.sensors
+    assert (hand.name, hand.side) == ("right_hand", "right")
+    assert [each.name for each in capture.objects] == ["pillow"]
+
+
 @recorded
 @pytest.mark.parametrize("file", SENSORS)
 def test_a_recorded_file_is_drafted_as_a_person_of_a_persons_size(
@@ -189,7 +198,7 @@ def test_who_stands_is_observed_to_stand(tmp_path: Path) -> None:
 def test_with_two_wheels_added_every_stroke_of_a_wheelchair_is_counted(
     file: str, tmp_path: Path
 ) -> None:
-    wheels = WHEELS.format(side="right", at=-0.125) + WHEELS.format(side="left", at=0.49)
+    wheels = WHEELS.format(side="right", at=-0.11) + WHEELS.format(side="left", at=0.475)
     _, capture = drafted(FOREIGN / file, tmp_path / "drafted", wheels)
     seen = observe(capture)
     for side in ("right", "left"):
