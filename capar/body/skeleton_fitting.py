@@ -14,6 +14,7 @@ from capar.body.fitting import LARGEST_STEP, SOLVER
 from capar.body.human import Human
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
 from capar.model.errors import CaparError
+from extractors.readers.body_names.body_names import parts, without_side
 from extractors.readers.body_names.conventions import Convention
 
 LENGTHS = {
@@ -136,27 +137,31 @@ def _followed(
     named: Mapping[str, str],
     convention: Convention,
 ) -> Float[np.ndarray, "frames posture"]:
+    tasks = {name: _task(human, place, POINT_COST) for name, place in named.items()}
     costs = {name: POINT_COST * convention.weight(place) for name, place in named.items()}
-    tasks = {name: _task(human, place, costs[name]) for name, place in named.items()}
-    start = _start(human, spots, named)
+    for name, task in tasks.items():
+        task.set_position_cost(costs[name])
+    seen = np.array([np.isfinite(spots[n]).all(axis=1) & (costs[n] > 0.0) for n in tasks])
+    best = int(np.argmax(seen.sum(axis=0)))
+    start = _start(human, spots, named, best)
     ease = mink.PostureTask(human.model, cost=np.r_[np.zeros(6), np.full(60, EASE_COST)])
     ease.set_target(start)
     damping = mink.DampingTask(human.model, cost=DAMPING_COST)
     speeds = dict.fromkeys(human.joints, LARGEST_STEP)
     limits = [mink.ConfigurationLimit(human.model), mink.VelocityLimit(human.model, speeds)]
     configuration = mink.Configuration(human.model)
-    configuration.update(start)
-    frames = len(next(iter(spots.values())))
-    out = np.empty((frames, len(start)))
-    for frame in range(frames):
-        seen = [n for n in tasks if np.isfinite(spots[n][frame]).all() and costs[n] > 0.0]
-        active = [*(tasks[name] for name in seen), ease, damping]
-        for _ in range(ITERATIONS if frame else SETTLING):
-            for name in seen:
-                _aim(configuration, tasks[name], spots[name][frame])
-            step = mink.solve_ik(configuration, active, 1.0, SOLVER, limits=limits)
-            configuration.integrate_inplace(step, 1.0)
-        out[frame] = configuration.q
+    out = np.empty((seen.shape[1], len(start)))
+    for frames in (range(best, len(out)), range(best - 1, -1, -1)):
+        configuration.update(start if frames.step == 1 else out[best])
+        for frame in frames:
+            now = [name for name, there in zip(tasks, seen[:, frame], strict=True) if there]
+            active = [*(tasks[name] for name in now), ease, damping]
+            for _ in range((ITERATIONS if frame != best else SETTLING) if now else 0):
+                for name in now:
+                    _aim(configuration, tasks[name], spots[name][frame])
+                step = mink.solve_ik(configuration, active, 1.0, SOLVER, limits=limits)
+                configuration.integrate_inplace(step, 1.0)
+            out[frame] = configuration.q
     return out
 
 
@@ -172,21 +177,27 @@ def _aim(configuration: mink.Configuration, task: mink.FrameTask, spot: np.ndarr
 
 
 def _start(
-    human: Human, spots: Mapping[str, np.ndarray], named: Mapping[str, str]
+    human: Human, spots: Mapping[str, np.ndarray], named: Mapping[str, str], frame: int
 ) -> Float[np.ndarray, "posture"]:
-    """The standing posture, moved and turned as a whole to the first frame's points."""
+    """The standing posture, moved and turned as a whole to the points of one frame."""
     bent = {f"{side}_{joint}": angle for joint, angle in BENT.items() for side in SIDES}
     standing = human.posture(bent)
     where = human.sites(standing[None], set(named.values()))
-    known = [name for name in named if np.isfinite(spots[name][0]).all()]
-    trunk = [n for n in known if named[n].split("_")[-1] in {"thigh", "arm", "neck", "c7"}]
+    known = [name for name in named if np.isfinite(spots[name][frame]).all()]
+    trunk = [n for n in known if _steady(named[n])]
     used = trunk if len(trunk) >= 3 else known
     if len(used) < 3:
-        raise SkeletonError(f"{len(used)} points in the first frame; three or more place the body")
+        raise SkeletonError(f"{len(used)} points at once; three or more place the body")
     body = np.array([where[named[name]][0][0] for name in used])
-    world = np.array([spots[name][0] for name in used])
+    world = np.array([spots[name][frame] for name in used])
     turn, _ = Rotation.align_vectors(world - world.mean(axis=0), body - body.mean(axis=0))
     out = standing.copy()
     out[:3] = world.mean(axis=0) + turn.apply(standing[:3] - body.mean(axis=0))
     out[3:7] = turn.as_quat(scalar_first=True)
     return out
+
+
+def _steady(place: str) -> bool:
+    """Whether a place is on the trunk, or is where a limb hangs on it."""
+    joint = without_side(place) in {"thigh", "upper_arm"}
+    return joint or parts().get(without_side(place)) in {"trunk", "pelvis"}

@@ -45,9 +45,12 @@ class Convention:
     units_m: tuple[float, ...] = ()
     """Units that its files are in without stating them [m]."""
 
+    whole_names: bool = False
+    """Whether prefixes up to a colon belong to its names."""
+
     def named(self, names: Iterable[str]) -> dict[str, str]:
         """The place of each name that it knows; prefixes up to a colon are left out."""
-        short = {name: name.rpartition(":")[2] for name in names}
+        short = {name: name if self.whole_names else name.rpartition(":")[2] for name in names}
         return {name: self.points[bare] for name, bare in short.items() if bare in self.points}
 
     def weight(self, place: str) -> float:
