@@ -10,7 +10,13 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
 from capar.body.human import Human
 from capar.body.model import body_spec
-from capar.body.skeleton_fitting import SkeletonError, SkeletonFit, fit_skeleton
+from capar.body.skeleton_fitting import (
+    SkeletonError,
+    SkeletonFit,
+    fit_skeleton,
+    trunk_share,
+    with_trunk,
+)
 from extractors.readers.body_names.body_names import BodyName
 from extractors.readers.body_names.conventions import Convention
 from extractors.readers.drafting.stance import Points, standing_by_parts
@@ -126,9 +132,12 @@ def measures_from_markers(points: Points, names: Mapping[str, BodyName]) -> Meas
         if known and USUAL_SHARE[0] < float(np.mean(known[:2])) < USUAL_SHARE[1]:
             found[measure] = usual[measure] * float(np.mean(known[:2]))
     try:
-        return estimate_measures(given=given | found)
+        made = estimate_measures(given=given | found)
     except MeasuresError:
-        return usual
+        made = usual
+    places = {place: points[group[0]] for place, group in by_place.items()}
+    share = trunk_share(places, Human.of(made))
+    return made if share is None else with_trunk(made, share)
 
 
 def _pairs() -> dict[str, list[tuple[str, str]]]:

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from capar.body.anthropometry import Measures, estimate_measures
+from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
 from capar.body.fitting import LARGEST_STEP, SOLVER
 from capar.body.human import Human
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
@@ -31,12 +31,24 @@ BREADTHS = {
 }
 """The paired joint, and the share of the measure that lies between its two sides."""
 
+TRUNKS = (("thigh", "upper_arm"),)
+"""Paired joints at the lower and upper end of the trunk; skin moves too much over bones there."""
+
 SIDES = ("right", "left")
 BENT = {"elbow_flexion": 0.4, "knee_flexion": 0.1, "hip_flexion": 0.05}
 """Where the search begins [rad]: a straight limb does not tell which way it bends."""
 
 POINT_COST = 10.0
 EASE_COST = 0.05
+"""Weight of a radian away from standing."""
+
+SPINE_EASE_COST = 0.5
+"""... of a hinge of spine, neck and shoulder girdle: few points see so many hinges, which
+would bend to and fro for millimetres."""
+
+SPINE = ("lumbar", "thorax", "neck", "head", "clavicle")
+"""What names of such hinges begin with, without their side."""
+
 DAMPING_COST = 0.3
 """Points slightly out of reach would throw a straight limb about: large damping keeps it calm."""
 
@@ -94,7 +106,49 @@ def measures_from_points(
         raise SkeletonError(f"no limb has both its joints among {sorted(points)}")
     usual = estimate_measures(sex=sex, age=age)
     scale = sum(found[name] for name in limbs) / sum(usual[name] for name in limbs)
-    return estimate_measures(sex=sex, age=age, given={"stature": scale * usual["stature"], **found})
+    given = {"stature": scale * usual["stature"], **found}
+    made = estimate_measures(sex=sex, age=age, given=given)
+    share = trunk_share(places, Human.of(made))
+    return made if share is None else with_trunk(made, share)
+
+
+def trunk_share(places: Mapping[str, Float[np.ndarray, "frames 3"]], body: Human) -> float | None:
+    """Length of somebody's trunk as a share of a body's [1]; None where it is not seen.
+
+    Args:
+        places: Joints and landmarks by the body's own names for them.
+        body: Of the same stature.
+    """
+    for ends in TRUNKS:
+        names = [f"{side}_{end}" for end in ends for side in SIDES]
+        if all(name in places for name in names):
+            own = body.sites(body.posture()[None], names)
+            seen, usual = (
+                _apart((a + b) / 2, (c + d) / 2)
+                for a, b, c, d in (
+                    [places[name] for name in names],
+                    [own[name][0] for name in names],
+                )
+            )
+            return None if np.isnan(seen) else seen / usual
+    return None
+
+
+def with_trunk(measures: Measures, share: float) -> Measures:
+    """The same body with a trunk longer by a factor; the same if no body has such a trunk.
+
+    Legs, arms and the head keep their sizes, so that the stature changes by as much as the trunk.
+    """
+    hip = measures.hip_height
+    names = ("acromial_height", "suprasternale_height", "cervicale_height")
+    heights = {name: hip + share * (measures[name] - hip) for name in names}
+    longer = heights["cervicale_height"] - measures["cervicale_height"]
+    heights |= {name: measures[name] + longer for name in ("eye_height", "stature")}
+    given = {name: measures[name] for name in measures.given} | heights
+    try:
+        return estimate_measures(sex=measures.sex, age=measures.age, given=given)
+    except MeasuresError:
+        return measures
 
 
 def _apart(first: np.ndarray, second: np.ndarray) -> float:
@@ -144,7 +198,7 @@ def _followed(
     seen = np.array([np.isfinite(spots[n]).all(axis=1) & (costs[n] > 0.0) for n in tasks])
     best = int(np.argmax(seen.sum(axis=0)))
     start = _start(human, spots, named, best)
-    ease = mink.PostureTask(human.model, cost=np.r_[np.zeros(6), np.full(60, EASE_COST)])
+    ease = mink.PostureTask(human.model, cost=_ease_costs(human))
     ease.set_target(start)
     damping = mink.DampingTask(human.model, cost=DAMPING_COST)
     speeds = dict.fromkeys(human.joints, LARGEST_STEP)
@@ -163,6 +217,12 @@ def _followed(
                 configuration.integrate_inplace(step, 1.0)
             out[frame] = configuration.q
     return out
+
+
+def _ease_costs(human: Human) -> Float[np.ndarray, "dofs"]:
+    """Weight of each hinge's angle; none for the pelvis's pose."""
+    spine = np.array([without_side(each).startswith(SPINE) for each in human.joints])
+    return np.r_[np.zeros(6), np.where(spine, SPINE_EASE_COST, EASE_COST)]
 
 
 def _task(human: Human, place: str, cost: float) -> mink.FrameTask:
