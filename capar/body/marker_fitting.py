@@ -10,6 +10,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
 from capar.body.human import Human
 from capar.body.model import body_spec
+from capar.body.skeleton import skeleton
 from capar.body.skeleton_fitting import (
     SkeletonError,
     SkeletonFit,
@@ -19,7 +20,7 @@ from capar.body.skeleton_fitting import (
 )
 from extractors.readers.body_names.body_names import BodyName
 from extractors.readers.body_names.conventions import Convention
-from extractors.readers.drafting.stance import Points, standing_by_parts
+from extractors.readers.drafting.stance import Points, mean_of, standing_by_parts
 
 SAMPLES = 60
 """Frames by which sizes and places of markers are found."""
@@ -29,6 +30,12 @@ LEAST_EXACT = 6
 
 ROUNDS = 2
 """Times that the places of markers are found anew from postures, and postures from them."""
+
+LEAST_CLUSTER = 2
+"""So many markers on one segment at least tell where its middle is."""
+
+MIDDLE_WEIGHT = 0.2
+"""Weight of the middle of a segment by the markers that ride on it [1]."""
 
 CLUSTER_WEIGHT = 0.7
 """Weight of markers whose places are found from the motion itself [1]."""
@@ -76,23 +83,54 @@ def fit_markers(points: Points, names: Mapping[str, BodyName]) -> MarkerFit:
     """
     seen = {n: each for n, each in names.items() if n in points and not np.isnan(points[n]).all()}
     exact = {name: each for name, each in seen.items() if each.exact and _is_sided(each)}
-    if len(exact) < LEAST_EXACT:
+    clusters = _clusters(seen)
+    if len(exact) + len(clusters) < LEAST_EXACT:
         raise SkeletonError(
-            f"{len(exact)} markers at known places of the body ({', '.join(sorted(exact))}); "
-            f"{LEAST_EXACT} or more place it"
+            f"{len(exact)} markers at known places of the body ({', '.join(sorted(exact))}) and "
+            f"{len(clusters)} segments with clusters of them; {LEAST_EXACT} or more place it"
         )
-    human = Human.of(measures_from_markers(points, exact))
-    frames = _samples(points, exact)
+    human = Human.of(measures_from_markers(points, exact, seen))
+    frames = _samples(points, seen)
     sampled = {name: points[name][frames] for name in seen}
-    first = fit_skeleton(sampled, _convention({n: e.place for n, e in exact.items()}), human=human)
+    first = _by_landmarks(human.measures, sampled, exact, clusters)
     local = _local(first, sampled, seen)
     for _ in range(ROUNDS):
         human = _with_markers(human.measures, local, seen)
-        own = _convention({name: f"marker_{name}" for name in local}, seen)
+        own = _own_places(local, seen)
         local = _local(fit_skeleton(sampled, own, human=human), sampled, seen)
     human = _with_markers(human.measures, local, seen)
-    own = _convention({name: f"marker_{name}" for name in local}, seen)
+    own = _own_places(local, seen)
     return MarkerFit(fit_skeleton({n: points[n] for n in local}, own, human=human), local)
+
+
+def _clusters(names: Mapping[str, BodyName]) -> dict[str, list[str]]:
+    """Markers that ride on a segment, by the segment, where it has three or more."""
+    out: dict[str, list[str]] = {}
+    for name, each in names.items():
+        if _is_sided(each) and not each.exact:
+            out.setdefault(each.place, []).append(name)
+    return {segment: group for segment, group in out.items() if len(group) >= LEAST_CLUSTER}
+
+
+def _by_landmarks(
+    measures: Measures,
+    points: Points,
+    exact: Mapping[str, BodyName],
+    clusters: Mapping[str, list[str]],
+) -> SkeletonFit:
+    """A first fit: landmarks to where they usually are, clusters to the middles of segments."""
+    spec, bones = body_spec(measures), skeleton(measures)
+    places = {name: each.place for name, each in exact.items()}
+    known = {name: points[name] for name in exact}
+    for segment in (each for each in clusters if each in bones):
+        bone = bones[segment]
+        middle = 0.5 * (bone.tip - bone.origin)
+        spec.body(segment).add_site(name=f"middle_{segment}", pos=middle, size=[0.006, 0.0, 0.0])
+        known[f"middle_{segment}"] = mean_of(points, clusters[segment])
+        places[f"middle_{segment}"] = f"middle_{segment}"
+    weights = {each: MIDDLE_WEIGHT for each in places.values() if each.startswith("middle_")}
+    human = Human(measures, spec.compile())
+    return fit_skeleton(known, _convention(places, weights), human=human)
 
 
 def _is_sided(each: BodyName) -> bool:
@@ -114,9 +152,11 @@ def _samples(points: Points, names: Mapping[str, BodyName]) -> np.ndarray:
     return known[np.unique(np.linspace(0, len(known) - 1, SAMPLES).round().astype(int))]
 
 
-def measures_from_markers(points: Points, names: Mapping[str, BodyName]) -> Measures:
+def measures_from_markers(
+    points: Points, names: Mapping[str, BodyName], every: Mapping[str, BodyName]
+) -> Measures:
     """Measures by the distances of landmarks, the stature by the heights of all."""
-    stands = standing_by_parts(points, names)
+    stands = standing_by_parts(points, every)
     stature = min(max(stands.height, 1.0), 2.2) if stands and stands.clear else None
     given = {"stature": stature} if stature else {}
     usual = estimate_measures(given=given)
@@ -169,19 +209,21 @@ def _share(
     return float(np.nanmedian(apart)) / own
 
 
-def _convention(
-    places: Mapping[str, str], names: Mapping[str, BodyName] | None = None
-) -> Convention:
+def _convention(places: Mapping[str, str], weights: Mapping[str, float]) -> Convention:
     """Names of a file with their places on the body, as a convention of its own."""
-    weights = {
-        places[name]: CLUSTER_WEIGHT
-        for name, each in (names or {}).items()
-        if name in places and not each.exact
-    }
     return Convention(
         "file", "the file's own markers", "", oriented=False, markers=True,
         points=dict(places), weights=weights, whole_names=True,
     )  # fmt: skip
+
+
+def _own_places(
+    local: Mapping[str, Float[np.ndarray, "3"]], names: Mapping[str, BodyName]
+) -> Convention:
+    """Every marker at the site that was made for it."""
+    riding = [f"marker_{name}" for name in local if not names[name].exact]
+    places = {name: f"marker_{name}" for name in local}
+    return _convention(places, dict.fromkeys(riding, CLUSTER_WEIGHT))
 
 
 def segment_of(human: Human, each: BodyName) -> str:

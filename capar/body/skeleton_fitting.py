@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import mink
-import mujoco
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
@@ -12,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
 from capar.body.fitting import LARGEST_STEP, SOLVER
 from capar.body.human import Human
+from capar.body.point_task import PointTask
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
 from capar.model.errors import CaparError
 from extractors.readers.body_names.body_names import parts, without_side
@@ -33,6 +33,10 @@ BREADTHS = {
 
 TRUNKS = (("thigh", "upper_arm"),)
 """Paired joints at the lower and upper end of the trunk; skin moves too much over bones there."""
+
+TRUNK_TRUST = 0.5
+"""Weight of a trunk's length as it is seen against that by stature [1]: shoulders rise and fall by
+as much as trunks of one stature differ."""
 
 SIDES = ("right", "left")
 BENT = {"elbow_flexion": 0.4, "knee_flexion": 0.1, "hip_flexion": 0.05}
@@ -113,7 +117,7 @@ def measures_from_points(
 
 
 def trunk_share(places: Mapping[str, Float[np.ndarray, "frames 3"]], body: Human) -> float | None:
-    """Length of somebody's trunk as a share of a body's [1]; None where it is not seen.
+    """Likely length of somebody's trunk as a share of a body's [1]; None where it is not seen.
 
     Args:
         places: Joints and landmarks by the body's own names for them.
@@ -130,7 +134,7 @@ def trunk_share(places: Mapping[str, Float[np.ndarray, "frames 3"]], body: Human
                     [own[name][0] for name in names],
                 )
             )
-            return None if np.isnan(seen) else seen / usual
+            return None if np.isnan(seen) else 1.0 + TRUNK_TRUST * (seen / usual - 1.0)
     return None
 
 
@@ -191,29 +195,25 @@ def _followed(
     named: Mapping[str, str],
     convention: Convention,
 ) -> Float[np.ndarray, "frames posture"]:
-    tasks = {name: _task(human, place, POINT_COST) for name, place in named.items()}
-    costs = {name: POINT_COST * convention.weight(place) for name, place in named.items()}
-    for name, task in tasks.items():
-        task.set_position_cost(costs[name])
-    seen = np.array([np.isfinite(spots[n]).all(axis=1) & (costs[n] > 0.0) for n in tasks])
-    best = int(np.argmax(seen.sum(axis=0)))
+    costs = [POINT_COST * convention.weight(place) for place in named.values()]
+    targets = np.stack([spots[name] for name in named], axis=1)
+    seen = np.isfinite(targets).all(axis=2) & (np.array(costs) > 0.0)
+    best = int(np.argmax(seen.sum(axis=1)))
     start = _start(human, spots, named, best)
+    task = PointTask(human.model, list(named.values()), costs)
     ease = mink.PostureTask(human.model, cost=_ease_costs(human))
     ease.set_target(start)
-    damping = mink.DampingTask(human.model, cost=DAMPING_COST)
+    tasks = [task, ease, mink.DampingTask(human.model, cost=DAMPING_COST)]
     speeds = dict.fromkeys(human.joints, LARGEST_STEP)
     limits = [mink.ConfigurationLimit(human.model), mink.VelocityLimit(human.model, speeds)]
     configuration = mink.Configuration(human.model)
-    out = np.empty((seen.shape[1], len(start)))
+    out = np.empty((len(seen), len(start)))
     for frames in (range(best, len(out)), range(best - 1, -1, -1)):
         configuration.update(start if frames.step == 1 else out[best])
         for frame in frames:
-            now = [name for name, there in zip(tasks, seen[:, frame], strict=True) if there]
-            active = [*(tasks[name] for name in now), ease, damping]
-            for _ in range((ITERATIONS if frame != best else SETTLING) if now else 0):
-                for name in now:
-                    _aim(configuration, tasks[name], spots[name][frame])
-                step = mink.solve_ik(configuration, active, 1.0, SOLVER, limits=limits)
+            task.aim(targets[frame])
+            for _ in range((ITERATIONS if frame != best else SETTLING) * bool(seen[frame].any())):
+                step = mink.solve_ik(configuration, tasks, 1.0, SOLVER, limits=limits)
                 configuration.integrate_inplace(step, 1.0)
             out[frame] = configuration.q
     return out
@@ -223,17 +223,6 @@ def _ease_costs(human: Human) -> Float[np.ndarray, "dofs"]:
     """Weight of each hinge's angle; none for the pelvis's pose."""
     spine = np.array([without_side(each).startswith(SPINE) for each in human.joints])
     return np.r_[np.zeros(6), np.where(spine, SPINE_EASE_COST, EASE_COST)]
-
-
-def _task(human: Human, place: str, cost: float) -> mink.FrameTask:
-    site = mujoco.mj_name2id(human.model, mujoco.mjtObj.mjOBJ_SITE, place) >= 0
-    return mink.FrameTask(place, "site" if site else "body", cost, 0.0)
-
-
-def _aim(configuration: mink.Configuration, task: mink.FrameTask, spot: np.ndarray) -> None:
-    """Draw a place to a point; it may turn as it likes, so the target turns with it."""
-    now = configuration.get_transform_frame_to_world(task.frame_name, task.frame_type)
-    task.set_target(mink.SE3.from_rotation_and_translation(now.rotation(), spot))
 
 
 def _start(

@@ -13,7 +13,11 @@ from capar.body.marker_fitting import LEAST_EXACT, fit_markers
 from capar.body.skeleton_fitting import SkeletonFit, fit_skeleton
 from capar.model.capture import Capture
 from extractors.readers.body_names.body_names import BodyName, body_names
-from extractors.readers.body_names.conventions import ConventionError, recognise
+from extractors.readers.body_names.conventions import (
+    ConventionError,
+    conventions,
+    recognise,
+)
 from extractors.readers.bundle.capture_toml import files_of
 from extractors.readers.drafting.sides import sided
 
@@ -54,8 +58,8 @@ def whole_body(place: str | Path) -> Places | None:
 
 def _places_it(names: dict[str, BodyName]) -> bool:
     """Whether names are of a body's joints or markers by a convention, and of enough of them."""
-    exact = [each for each in names.values() if each.exact and each.by != "its words"]
-    return len(exact) >= LEAST_EXACT
+    known = {each.place for each in names.values() if each.by != "its words"}
+    return len(known) >= LEAST_EXACT
 
 
 def fit_body(place: str | Path, capture: Capture) -> Fit:
@@ -84,11 +88,11 @@ def fit_places(found: Places) -> Fit:
 
 
 def _skeleton(found: Places) -> SkeletonFit:
-    """By the skeleton's convention, if it is one of joints; else by the markers' places."""
-    try:
-        convention = recognise(found.names)
-    except ConventionError:
-        convention = None
-    if convention is not None and not convention.markers:
-        return fit_skeleton(found.points, convention)
+    """By the skeleton's convention, if its names are of joints only; else by the places of markers."""
+    titles = {each.title for each in conventions().values() if each.markers}
+    if not any(each.by in titles for each in found.names.values()):
+        try:
+            return fit_skeleton(found.points, recognise(found.names))
+        except ConventionError:
+            pass
     return fit_markers(found.points, found.names).skeleton
