@@ -88,7 +88,7 @@ def fit_places(found: Places) -> Fit:
 
 
 def _skeleton(found: Places) -> SkeletonFit:
-    """By the skeleton's convention, if its names are of joints only; else by the places of markers."""
+    """By the convention of a skeleton, where there are joints only; else by places of markers."""
     titles = {each.title for each in conventions().values() if each.markers}
     if not any(each.by in titles for each in found.names.values()):
         try:

@@ -1,11 +1,14 @@
 """The command that fits a body to a capture's sensors."""
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from capar.body.fitting import Fit
 
 app = typer.Typer()
@@ -18,16 +21,56 @@ def fit(
         typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+    bvh: Annotated[
+        Path | None, typer.Option(help="Write the skeleton's motion: BVH, y up, centimetres.")
+    ] = None,
+    glb: Annotated[
+        Path | None, typer.Option(help="Write the moving mannequin: binary glTF, y up, metres.")
+    ] = None,
+    npz: Annotated[
+        Path | None, typer.Option(help="Write postures, joint angles and poses as NumPy arrays.")
+    ] = None,
+    csv: Annotated[
+        Path | None, typer.Option(help="Write the pelvis's pose and joint angles as a table.")
+    ] = None,
+    mjcf: Annotated[
+        Path | None, typer.Option(help="Write the body as a MuJoCo model; --npz has its qpos.")
+    ] = None,
 ) -> None:
     """Fit a human body to the joints, markers or sensors of CAPTURE and say what is left."""
     from capar.body.whole_bodies import fit_body
     from extractors.readers.bundle.capture_toml import read_capture
 
     made = fit_body(capture, read_capture(capture))
+    _write(made, {"bvh": bvh, "glb": glb, "npz": npz, "csv": csv, "mjcf": mjcf})
     if as_json:
         typer.echo(json.dumps(_answer(made), indent=2))
     else:
         _tell(made)
+
+
+def _write(made: "Fit", wanted: "Mapping[str, Path | None]") -> None:
+    """Write the files that are wanted, each whole or not at all."""
+    from capar.cli._output import written
+    from capar.export.bvh import bvh_text
+    from capar.export.glb import glb_bytes
+    from capar.export.motion_tables import csv_text, mjcf_text, write_npz
+
+    motion = (made.human, made.times, made.motion)
+    makers = {
+        "bvh": lambda: bvh_text(*motion).encode(),
+        "glb": lambda: glb_bytes(*motion),
+        "csv": lambda: csv_text(*motion).encode(),
+        "mjcf": lambda: mjcf_text(made.human).encode(),
+    }
+    for form, path in wanted.items():
+        if path is not None:
+            with written(path) as draft:
+                if form == "npz":
+                    write_npz(draft, *motion)
+                else:
+                    draft.write_bytes(makers[form]())
+            typer.echo(f"wrote {path}", err=True)
 
 
 def _answer(made: "Fit") -> dict[str, Any]:
