@@ -10,7 +10,7 @@ from jaxtyping import Float
 from capar.model.errors import UnknownNameError
 
 
-class PointTask(mink.Task):  # type: ignore[misc]
+class PointTask(mink.Task):
     """Draws sites and segments' origins to points, whichever way they turn.
 
     It is what a frame task of each place without a cost of orientation is, in one Jacobian: with

@@ -112,8 +112,8 @@ def measures_from_points(
     scale = sum(found[name] for name in limbs) / sum(usual[name] for name in limbs)
     given = {"stature": scale * usual["stature"], **found}
     made = estimate_measures(sex=sex, age=age, given=given)
-    share = trunk_share(places, Human.of(made))
-    return made if share is None else with_trunk(made, share)
+    trunk = trunk_share(places, Human.of(made))
+    return made if trunk is None else with_trunk(made, trunk)
 
 
 def trunk_share(places: Mapping[str, Float[np.ndarray, "frames 3"]], body: Human) -> float | None:

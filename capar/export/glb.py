@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import trimesh
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from capar.body.body_shapes import Form, forms
 from capar.body.data_files import table
+from capar.body.form_meshes import form_mesh, joined
 from capar.body.human import Human
 from capar.body.segment_poses import Poses, poses_of
 from capar.body.skeleton import skeleton
@@ -135,7 +135,7 @@ def _meshes(
     meshes = []
     for name, by_colour in parts.items():
         primitives = [
-            _primitive([_mesh(form) for form in group], numbers[colour], buffer)
+            _primitive([form_mesh(form) for form in group], numbers[colour], buffer)
             for colour, group in by_colour.items()
         ]
         meshes.append({"name": name, "primitives": primitives})
@@ -143,7 +143,7 @@ def _meshes(
 
 
 def _primitive(group: list[trimesh.Trimesh], material: int, buffer: _Buffer) -> dict[str, Any]:
-    mesh = trimesh.util.concatenate(group)
+    mesh = joined(group)
     normals = np.array(mesh.vertex_normals)
     return {
         "attributes": {
@@ -153,23 +153,6 @@ def _primitive(group: list[trimesh.Trimesh], material: int, buffer: _Buffer) -> 
         "indices": buffer.add(np.array(mesh.faces).reshape(-1), "SCALAR", target=INDICES),
         "material": material,
     }
-
-
-def _mesh(form: Form) -> trimesh.Trimesh:
-    """A primitive of the mannequin in its segment's frame."""
-    if form.kind == "box":
-        mesh = trimesh.creation.box(extents=2.0 * form.half)
-    elif form.kind == "ellipsoid":
-        mesh = trimesh.creation.icosphere(subdivisions=2, radius=1.0)
-        mesh.vertices = np.array(mesh.vertices) * form.half
-    else:
-        radius, half = form.half[:2]
-        mesh = trimesh.creation.capsule(height=2.0 * half, radius=radius, count=[16, 12])
-        mesh.apply_translation(-mesh.bounds.mean(axis=0))
-        turn, _ = Rotation.align_vectors([form.axis / np.linalg.norm(form.axis)], [[0.0, 0.0, 1.0]])
-        mesh.vertices = turn.apply(np.array(mesh.vertices))
-    mesh.apply_translation(form.centre)
-    return mesh
 
 
 def _packed(document: Mapping[str, Any], data: bytes) -> bytes:
