@@ -12,7 +12,7 @@ from capar.body.fitting import Fit
 from capar.body.marker_fitting import LEAST_EXACT, fit_markers
 from capar.body.skeleton_fitting import SkeletonFit, fit_skeleton
 from capar.model.capture import Capture
-from extractors.readers.body_names.body_names import BodyName, body_names
+from extractors.readers.body_names.body_names import BY_WORDS, BodyName, body_names
 from extractors.readers.body_names.conventions import (
     ConventionError,
     conventions,
@@ -51,14 +51,17 @@ def whole_body(place: str | Path) -> Places | None:
         first = max(dict.fromkeys(subjects), key=subjects.count, default="")
         names = {name: each for name, each in found.items() if each.subject == first}
         times = file.marker_times if file.markers else next(iter(file.bodies.values())).times
-        if _places_it(names) and (best is None or len(names) > len(best.names)):
+        if _places_it(names, set(file.markers)) and (best is None or len(names) > len(best.names)):
             best = Places(times - start_s, {name: points[name] for name in names}, names)
     return best
 
 
-def _places_it(names: dict[str, BodyName]) -> bool:
-    """Whether names are of a body's joints or markers by a convention, and of enough of them."""
-    known = {each.place for each in names.values() if each.by != "its words"}
+def _places_it(names: dict[str, BodyName], markers: set[str]) -> bool:
+    """Whether enough names are of a body's markers, or of its joints by a convention.
+
+    Words alone do not tell joints from trackers that are strapped on.
+    """
+    known = {e.place for name, e in names.items() if name in markers or e.by != BY_WORDS}
     return len(known) >= LEAST_EXACT
 
 

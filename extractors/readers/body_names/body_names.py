@@ -25,6 +25,9 @@ LEAST_SHARE = 0.2
 
 SIDES = ("right", "left")
 
+BY_WORDS = "its words"
+"""What a name is known by that no convention knows."""
+
 
 @dataclass(frozen=True, slots=True)
 class BodyName:
@@ -38,7 +41,7 @@ class BodyName:
     """Whether the name is of that very place; else it rides somewhere on the segment."""
 
     by: str
-    """The convention's title, or ``its words``."""
+    """The convention's title, or ``BY_WORDS``."""
 
     subject: str = ""
     """Whose body it is, where names begin with a subject and a colon."""
@@ -129,7 +132,7 @@ def _by_words(names: Iterable[str]) -> Iterator[tuple[str, BodyName]]:
         place = _place(bare)
         if place:
             exact = not any(each.isdigit() for each in bare)
-            yield name, BodyName(name, place, exact, "its words", subject)
+            yield name, BodyName(name, place, exact, BY_WORDS, subject)
 
 
 def _place(bare: str) -> str:
