@@ -66,7 +66,7 @@ def joint_rows(measures: Measures) -> list[dict[str, Any]]:
 
 def site_rows() -> list[dict[str, Any]]:
     """Every site, those of the left side mirrored."""
-    right = table("sites")["site"]
+    right = [*table("sites")["site"], *table("landmarks")["site"]]
     return [*right, *(_mirror_site(row) for row in right if is_right(row["name"]))]
 
 

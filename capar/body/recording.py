@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-import trimesh
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.body_shapes import Form, forms
+from capar.body.body_shapes import forms
+from capar.body.form_meshes import form_mesh
 from capar.body.gaze import lines_of_sight
 from capar.body.mounting import Mount
 from capar.body.performing import TOUCH_M, Performance
@@ -207,21 +207,11 @@ def _surface(made: Performance, segments: tuple[str, ...], frame: RigidTransform
     parts = []
     for form in forms(made.human.measures, bones):
         if form.body in segments:
-            mesh = _mesh(form)
+            mesh = form_mesh(form)
             mesh.apply_translation(bones[form.body].origin - frame.translation)
             parts.append(mesh)
     mesh = sum(parts[1:], parts[0])
     return Shape(np.array(mesh.vertices), np.array(mesh.faces), description=" and ".join(segments))
-
-
-def _mesh(form: Form) -> trimesh.Trimesh:
-    if form.kind == "box":
-        mesh: trimesh.Trimesh = trimesh.creation.box(extents=2.0 * form.half)
-    else:
-        mesh = trimesh.creation.icosphere(subdivisions=2, radius=1.0)
-        mesh.vertices = np.array(mesh.vertices) * form.half
-    mesh.apply_translation(form.centre)
-    return mesh
 
 
 def _moved(shape: Shape, pose: RigidTransform) -> Shape:

@@ -1,11 +1,14 @@
 """The command that fits a body to a capture's sensors."""
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from capar.body.fitting import Fit
 
 app = typer.Typer()
@@ -18,20 +21,60 @@ def fit(
         typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+    bvh: Annotated[
+        Path | None, typer.Option(help="Write the skeleton's motion: BVH, y up, centimetres.")
+    ] = None,
+    glb: Annotated[
+        Path | None, typer.Option(help="Write the moving mannequin: binary glTF, y up, metres.")
+    ] = None,
+    npz: Annotated[
+        Path | None, typer.Option(help="Write postures, joint angles and poses as NumPy arrays.")
+    ] = None,
+    csv: Annotated[
+        Path | None, typer.Option(help="Write the pelvis's pose and joint angles as a table.")
+    ] = None,
+    mjcf: Annotated[
+        Path | None, typer.Option(help="Write the body as a MuJoCo model; --npz has its qpos.")
+    ] = None,
 ) -> None:
-    """Fit a human body to the sensors of CAPTURE and say what is left."""
-    from capar.body.capture_fitting import fit_capture
+    """Fit a human body to the joints, markers or sensors of CAPTURE and say what is left."""
+    from capar.body.whole_bodies import fit_body
     from extractors.readers.bundle.capture_toml import read_capture
 
-    made = fit_capture(read_capture(capture))
+    made = fit_body(capture, read_capture(capture))
+    _write(made, {"bvh": bvh, "glb": glb, "npz": npz, "csv": csv, "mjcf": mjcf})
     if as_json:
         typer.echo(json.dumps(_answer(made), indent=2))
     else:
         _tell(made)
 
 
+def _write(made: "Fit", wanted: "Mapping[str, Path | None]") -> None:
+    """Write the files that are wanted, each whole or not at all."""
+    from capar.cli._output import written
+    from capar.export.bvh import bvh_text
+    from capar.export.glb import glb_bytes
+    from capar.export.motion_tables import csv_text, mjcf_text, write_npz
+
+    motion = (made.human, made.times, made.motion)
+    makers = {
+        "bvh": lambda: bvh_text(*motion).encode(),
+        "glb": lambda: glb_bytes(*motion),
+        "csv": lambda: csv_text(*motion).encode(),
+        "mjcf": lambda: mjcf_text(made.human).encode(),
+    }
+    for form, path in wanted.items():
+        if path is not None:
+            with written(path) as draft:
+                if form == "npz":
+                    write_npz(draft, *motion)
+                else:
+                    draft.write_bytes(makers[form]())
+            typer.echo(f"wrote {path}", err=True)
+
+
 def _answer(made: "Fit") -> dict[str, Any]:
-    """Residuals by sensor, shares of time at joint limits, and how long it took."""
+    """Residuals by sensor, joint or marker, shares of time at joint limits, and the time taken."""
     import numpy as np
 
     return {
@@ -39,11 +82,13 @@ def _answer(made: "Fit") -> dict[str, Any]:
             place: {
                 "median_mm": round(1e3 * float(np.nanmedian(metres)), 3),
                 "p95_mm": round(1e3 * float(np.nanpercentile(metres, 95)), 3),
-                "median_deg": round(float(np.degrees(np.nanmedian(made.residuals_rad[place]))), 4),
+                "median_deg": _median_deg(made, place),
                 "lost_frames": int(made.bridged[place].sum()),
             }
             for place, metres in made.residuals_m.items()
         },
+        "median_mm": round(1e3 * float(np.nanmedian([*made.residuals_m.values()])), 3),
+        "stature_m": round(made.human.measures["stature"], 4),
         "at_limit": _at_limit(made),
         "measures_given": sorted(made.human.measures.given),
         "frames": len(made.times),
@@ -52,15 +97,27 @@ def _answer(made: "Fit") -> dict[str, Any]:
     }
 
 
+def _median_deg(made: "Fit", place: str) -> float | None:
+    """Median angle from a sensor; None for joints and markers, which are points."""
+    import numpy as np
+
+    if place not in made.residuals_rad:
+        return None
+    return round(float(np.degrees(np.nanmedian(made.residuals_rad[place]))), 4)
+
+
 def _tell(made: "Fit") -> None:
     """Print the same for people."""
     answer = _answer(made)
-    typer.echo("sensor          median [mm]  95 % [mm]  median [deg]  lost [frames]")
+    wide = max(14, *map(len, answer["sensors"]))
+    typer.echo(f"{'followed':{wide}}  median [mm]  95 % [mm]  median [deg]  lost [frames]")
     for place, row in answer["sensors"].items():
+        angle = "-" if row["median_deg"] is None else f"{row['median_deg']:.2f}"
         typer.echo(
-            f"{place:14}  {row['median_mm']:11.1f}  {row['p95_mm']:9.1f}"
-            f"  {row['median_deg']:12.2f}  {row['lost_frames']:13}"
+            f"{place:{wide}}  {row['median_mm']:11.1f}  {row['p95_mm']:9.1f}"
+            f"  {angle:>12}  {row['lost_frames']:13}"
         )
+    typer.echo(f"median of all: {answer['median_mm']:.1f} mm, stature {answer['stature_m']:.2f} m")
     for joint, share in answer["at_limit"].items():
         typer.echo(f"{joint} is at its limit for {share:.0%} of the time")
     given = ", ".join(answer["measures_given"]) or "none"

@@ -28,6 +28,10 @@ def view(
         str, typer.Option(help="The rules that name what the timeline shows: extended or thesis.")
     ] = "extended",
     rules: Rules = None,
+    fit: Annotated[
+        bool,
+        typer.Option("--fit", help="Fit a human body to the recording and show it too."),
+    ] = False,
     only_bodies: Annotated[
         bool,
         typer.Option("--only-bodies", help="Show what the recording holds, without observing it."),
@@ -49,6 +53,11 @@ def view(
         raise CaparError("nothing to write: give --html FILE, or --png FILE with --at SECONDS")
     trial = read_capture(capture)
     shown = stage(trial)
+    if fit:
+        from capar.body.whole_bodies import fit_body
+        from capar.views.viewer.mannequin import with_mannequin
+
+        shown = with_mannequin(shown, fit_body(capture, trial))
     if png is not None:
         from capar.views.viewer.snapshot import snapshot
 

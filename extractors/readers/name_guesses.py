@@ -15,6 +15,12 @@ HEIGHT_M = (0.85, 2.0)
 USUAL_M = 1.4
 """That height of an adult of whom nothing is known [m]."""
 
+STATURE_M = (1.0, 2.2)
+"""How tall people are, from children of four years on [m]."""
+
+USUAL_STATURE_M = 1.7
+"""How tall an adult is of whom nothing is known [m]."""
+
 CLEAR = 2.0
 """The upward axis is clear if the body is so many times longer along it than along another."""
 
@@ -129,16 +135,36 @@ class Standing:
     clear: bool
     """Whether the body is much longer along this axis than along the others."""
 
+    evidence: str
+    """What shows the height, in the file's unit."""
+
+    whole: bool = False
+    """Whether the height is the person's stature, not that of the head above the feet."""
+
+    @property
+    def what(self) -> str:
+        """What has this height."""
+        return "the person" if self.whole else "the head above the feet"
+
+    @property
+    def range_m(self) -> tuple[float, float]:
+        """What this height is of people of 1.0 to 2.2 m [m]."""
+        return STATURE_M if self.whole else HEIGHT_M
+
+    def is_persons(self, unit_m: float) -> bool:
+        """Whether somebody has this height in a unit [m]."""
+        low, high = self.range_m
+        return low <= self.height * unit_m <= high
+
     @property
     def unit(self) -> str:
         """The unit in which somebody has this height; empty if none makes it so."""
-        low, high = HEIGHT_M
-        return next((n for n in UNITS if low <= self.height * UNITS[n] <= high), "")
+        return next((name for name in UNITS if self.is_persons(UNITS[name])), "")
 
     @property
     def scale_m(self) -> float:
         """Metres per unit with which the person has the usual height."""
-        return USUAL_M / self.height
+        return (USUAL_STATURE_M if self.whole else USUAL_M) / self.height
 
 
 def standing(recording: Recording) -> Standing | None:
@@ -158,4 +184,5 @@ def standing(recording: Recording) -> Standing | None:
         return None
     sign = "-" if way[axis] < 0.0 else ""
     clear = bool(lengths[2] > CLEAR * lengths[1])
-    return Standing(f"{sign}{'xyz'[axis]}", float(lengths[2]), clear)
+    evidence = f"the head is {lengths[2]:.4g} above the feet"
+    return Standing(f"{sign}{'xyz'[axis]}", float(lengths[2]), clear, evidence)

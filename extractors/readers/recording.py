@@ -116,6 +116,30 @@ def uniform_clock(frames: int, rate_hz: float) -> Float[np.ndarray, "frames"]:
     return np.arange(frames) / rate_hz
 
 
+ROUNDED_S = 0.0006
+"""Time stamps that differ less from a steady clock are that clock, rounded to milliseconds [s]."""
+
+
+def unrounded(
+    times: Float[np.ndarray, "frames"], stated_hz: float | None
+) -> Float[np.ndarray, "frames"]:
+    """Time stamps without the rounding to milliseconds of a steady clock.
+
+    The clock has the stated rate or, where that does not fit, the one that fits best. Time stamps
+    that no steady clock explains stay as they are.
+    """
+    if len(times) < 3 or not np.isfinite(times).all() or not times[-1] > times[0]:
+        return times
+    fitted_hz = 1.0 / float(np.polyfit(np.arange(len(times)), times, 1)[0])
+    for rate_hz in (stated_hz, fitted_hz):
+        if rate_hz and rate_hz > 0.0:
+            steady = np.arange(len(times)) / rate_hz
+            steady += float(np.mean(times - steady))
+            if np.abs(steady - times).max() <= ROUNDED_S:
+                return steady - steady[0] + times[0]
+    return times
+
+
 SAME_RATE = 0.05
 """A stated rate that differs from that of the time stamps by a larger share contradicts them."""
 

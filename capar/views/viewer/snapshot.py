@@ -90,7 +90,8 @@ def _paint(axes: "Axes", shown: Stage, frame: int) -> None:
         )
     )
     for body in known:
-        if len(known) > MOST_NAMES and body.kind in ("sensor", "looks"):
+        crowded = len(known) > MOST_NAMES and body.kind in ("sensor", "looks")
+        if crowded or body.kind == "body":
             continue
         place = body.positions[frame]
         axes.annotate(

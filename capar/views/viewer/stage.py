@@ -17,6 +17,7 @@ COLOURS = {
     "mobile": "#4477aa",
     "fixed": "#a9a9a9",
     "self": "#c98d6b",
+    "body": "#e3d3c4",
 }
 """The colour of a body by what it is."""
 
@@ -27,7 +28,7 @@ class StagedBody:
 
     name: str
     kind: str
-    """``sensor``, ``looks`` (it attends), or the tag of an object."""
+    """``sensor``, ``looks`` (it attends), the tag of an object, or ``body``: of a fitted body."""
 
     shape: Shape | None
     positions: Float[np.ndarray, "frames 3"]

@@ -29,7 +29,7 @@ for (const body of data.bodies) {
   const name = document.createElement("div");
   name.className = "name";
   name.textContent = body.name.replaceAll("_", " ");
-  place.append(name);
+  if (body.kind !== "body") place.append(name);
   group.add(axes);
   scene.add(group);
   bodies.set(body.name, {

@@ -36,7 +36,7 @@ from extractors.readers.schema.document import expanded, validated
 if TYPE_CHECKING:
     from extractors.readers.schema.capture import CaptureFile, MotionFile
 
-__all__ = ["find_place", "frame_times", "read_capture", "takes"]
+__all__ = ["files_of", "find_place", "frame_times", "read_capture", "takes"]
 
 
 def read_capture(place: str | Path) -> Capture:
@@ -99,6 +99,17 @@ def frame_times(place: str | Path, *, file: str = "") -> Float[np.ndarray, "fram
         raise document.unknown("file", file, files, "files")
     recording = files[file or next(iter(files))]
     return _clock(recording) - declared(document, files).start_s
+
+
+def files_of(place: str | Path) -> tuple[dict[str, WorldRecording], float]:
+    """Everything in a capture's files in the world, and when in their time it begins [s].
+
+    Raises:
+        CaparError: As of ``read_capture``.
+    """
+    document, _ = open_bundle(place)
+    files = read_files(document)
+    return files, declared(document, files).start_s
 
 
 def _clock(recording: WorldRecording) -> Float[np.ndarray, "frames"]:

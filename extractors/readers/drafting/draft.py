@@ -1,25 +1,33 @@
 """A first capture.toml from what files hold, for a person to edit."""
 
-import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from extractors.readers.drafting.marker_sets import marker_sets
-from extractors.readers.name_guesses import (
-    HEIGHT_M,
-    Standing,
-    end_effectors,
-    limbs,
-    side_of,
-    standing,
-)
-from extractors.readers.recording import UNITS, Recording
-from extractors.readers.schema.names import constant_name
+import numpy as np
+from jaxtyping import Float
 
-EDIT = "# EDIT:"
-"""What marks a line that a person must look at."""
+from extractors.readers.drafting.contents import Contents, Others, contents, others, world_points
+from extractors.readers.drafting.floor import Floor, floor
+from extractors.readers.drafting.frame_lines import EDIT as EDIT
+from extractors.readers.drafting.frame_lines import Frame, frame_lines, frame_of
+from extractors.readers.drafting.limb_sensors import LimbSensor, limb_sensors, mean_forward
+from extractors.readers.drafting.stance import forwards, rightwards
+from extractors.readers.drafting.tables import (
+    FOOT_RADIUS_M,
+    account_lines,
+    agent_lines,
+    floor_lines,
+    limb_lines,
+    nothing_lines,
+    object_lines,
+    quoted,
+    sensor_lines,
+)
+from extractors.readers.name_guesses import end_effectors, limbs, side_of
+from extractors.readers.recording import Recording
+from extractors.readers.schema.names import constant_name
 
 
 @dataclass(frozen=True)
@@ -31,30 +39,57 @@ class _Found:
     key: str
     """The line of TOML that names it."""
 
+    shape: str = ""
+    gaze: tuple[float, float, float] | None = None
+    fixed: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class _File:
+    """One file with everything that is drafted of it."""
+
+    key: str
+    contents: Contents
+    points: Mapping[str, Float[np.ndarray, "frames 3"]]
+    """In the world: metres, z up."""
+
+    sensors: Sequence[LimbSensor]
+    others: Others
+
 
 def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
     """A commented capture.toml for files, with paths relative to a folder."""
-    files = _files(recordings, folder)
-    found = [
-        each
-        for key, recording in zip(files, recordings, strict=True)
-        for each in _found(key, recording)
-    ]
-    of_limbs = limbs(each.name for each in found)
+    paths = _files(recordings, folder)
+    held = [contents(each) for each in recordings]
+    frame = frame_of(held)
+    files = [_file(key, each, frame) for key, each in zip(paths, held, strict=True)]
+    found = [body for each in files for body in _found(each)]
+    of_limbs = limbs(each.name for each in found if not each.fixed)
     sensors = [each for each in found if each.name in of_limbs]
-    lines = [f"name = {_quoted(constant_name(name))}", *_frame_lines(recordings)]
-    lines += [*_parts_lines(of_limbs), "", "[files]"]
-    lines += [f"{key} = {_quoted(path)}" for key, path in files.items()]
+    ground = _floor(files, [each.name for each in sensors if of_limbs[each.name] == "foot"])
+    lines = [f"name = {quoted(constant_name(name))}", *frame_lines(held, frame)]
+    lines += [*_parts_lines(of_limbs), *_contact_lines(ground), "", "[files]"]
+    lines += [f"{key} = {quoted(path)}" for key, path in paths.items()]
+    subjects = [each for file in files for each in _subjects(file)]
+    lines += agent_lines(subjects)
+    for file in files:
+        lines += account_lines(file.contents, file.sensors, file.others)
     used: set[str] = set()
-    if not sensors and found:
+    for file in files:
+        for each in file.sensors:
+            lines += limb_lines(each, file.key, file.contents.body, subjects, used)
+    if not sensors and found and not any(file.sensors for file in files):
         lines += ["", f"{EDIT} no name tells of a hand, head or foot; the first body is taken."]
         sensors = found[:1]
-    for each in sensors:
-        lines += ["", *_sensor(each, of_limbs.get(each.name, "hand"), used)]
-    for each in [other for other in found if other not in sensors]:
-        lines += ["", *_object(each, used)]
-    if not found:
-        lines += ["", *_nothing(recordings)]
+    for body in sensors:
+        limb = of_limbs.get(body.name, "hand")
+        lines += sensor_lines(body.name, limb, body.file, body.key, body.shape, body.gaze, used)
+    for body in [other for other in found if other not in sensors]:
+        lines += object_lines(body.name, body.file, body.key, body.shape, used, fixed=body.fixed)
+    if ground is not None:
+        lines += floor_lines(ground, used)
+    if not found and not any(file.sensors for file in files):
+        lines += nothing_lines(recordings)
     return "\n".join(lines) + "\n"
 
 
@@ -69,44 +104,18 @@ def _files(recordings: Sequence[Recording], folder: Path) -> dict[str, str]:
     return out
 
 
-def _frame_lines(recordings: Sequence[Recording]) -> list[str]:
-    lines = []
-    person = next(filter(None, map(standing, recordings)), None)
-    if any(each.unit_m is None for each in recordings):
-        lines += _unit_lines(person)
-    if any(each.up is None for each in recordings):
-        lines += _up_lines(person)
-    lines.append('handedness = "right"            # "left" if the world is mirrored')
-    if len(recordings) > 1:
-        rate = 1.0 / min(float(each.times[1] - each.times[0]) for each in recordings)
-        lines.append(f"rate_hz = {rate:.4g}                 # every stream is brought to this")
-    return lines
+def _file(key: str, held: Contents, frame: Frame) -> _File:
+    recording = held.recording
+    points = world_points(recording, recording.unit_m or frame.unit_m, recording.up or frame.up)
+    markers = {name: points[name] for name in recording.markers}
+    body = {name: each for name, each in held.body.items() if name in markers}
+    sensors = tuple(limb_sensors(markers, body))
+    return _File(key, held, points, sensors, others(markers, body if sensors else {}))
 
 
-def _unit_lines(person: Standing | None) -> list[str]:
-    """The unit, by the height of the person in the file."""
-    if person is None:
-        return [f'unit = "m"                      {EDIT} {", ".join(UNITS)}, or metres per unit']
-    evidence = f"# the head is {person.height:.4g} above the feet"
-    low, high = HEIGHT_M
-    if person.unit:
-        height = person.height * UNITS[person.unit]
-        return [
-            f"{evidence}: {height:.2f} m if the unit is {person.unit}",
-            f'unit = "{person.unit}"',
-        ]
-    return [
-        f"{evidence}, which is {low:g} to {high:g} m in no usual unit",
-        f"unit = {person.scale_m:.4g}                  {EDIT} metres per unit, for an adult",
-    ]
-
-
-def _up_lines(person: Standing | None) -> list[str]:
-    """The axis that points up, by where head and feet are."""
-    if person is None or not person.clear:
-        up = person.up if person else "z"
-        return [f'up = "{up}"                        {EDIT} the axis that points up: x, y or z']
-    return [f'up = "{person.up}"                        # from the feet to the head']
+def _subjects(file: _File) -> list[str]:
+    named = list(dict.fromkeys(each.subject for each in file.sensors))
+    return named if len(named) > 1 else []
 
 
 def _parts_lines(of_limbs: Mapping[str, str]) -> list[str]:
@@ -117,66 +126,91 @@ def _parts_lines(of_limbs: Mapping[str, str]) -> list[str]:
     return ['parts = "together"              # each hand and foot is one; "apart" tells its parts']
 
 
-def _found(file: str, recording: Recording) -> list[_Found]:
+def _contact_lines(ground: Floor | None) -> list[str]:
+    """The tolerance that the floor needs; it comes before the tables."""
+    if ground is None:
+        return []
+    spread = f"# feet stand at heights that differ by {ground.spread_m * 1e3:.0f} mm"
+    return [spread, f"contact.tolerance_m = {ground.tolerance_m:g}"]
+
+
+def _found(file: _File) -> list[_Found]:
     """Bodies and marker sets; of a skeleton only its end-effectors, for joints are no objects."""
-    names = list(end_effectors(recording) if recording.parents else recording.bodies)
+    recording = file.contents.recording
+    kinds = end_effectors(recording) if recording.parents else {}
+    names = list(kinds or ({} if recording.parents else recording.bodies))
     names = names or list(recording.bodies)[:1]
-    bodies = [_Found(name, file, f"body = {_quoted(name)}") for name in names]
-    unit = recording.unit_m or 1.0
-    metres = {name: points * unit for name, points in recording.markers.items()}
-    sets = marker_sets(metres)
+    bodies = [
+        _Found(
+            name,
+            file.key,
+            f"body = {quoted(name)}",
+            _shape(kinds.get(name, ""), recording, name),
+            _gaze(file, name) if kinds.get(name) == "head" else None,
+        )
+        for name in names
+    ]
     return bodies + [
-        _Found(name, file, f"markers = [{', '.join(map(_quoted, members))}]")
-        for name, members in sets.items()
+        _Found(
+            name,
+            file.key,
+            f"markers = [{', '.join(map(quoted, members))}]",
+            'shape = { box = "markers" }     # a stand-in: the box that the markers span',
+            fixed=name in file.others.fixed,
+        )
+        for name, members in file.others.sets.items()
     ]
 
 
-def _free_name(text: str, used: set[str]) -> str:
-    name = constant_name(text)
-    while name in used:
-        name += "_2"
-    used.add(name)
-    return name
+def _shape(limb: str, recording: Recording, name: str) -> str:
+    """A stand-in for the feet of a skeleton: capsules to its next joints."""
+    if limb != "foot" or name not in recording.parents.values():
+        return ""
+    return f'shape = {{ capsules = "children", radius_m = {FOOT_RADIUS_M:g} }}   # a stand-in'
 
 
-def _sensor(found: _Found, limb: str, used: set[str]) -> list[str]:
-    side = side_of(found.name)
-    return [
-        "[[sensor]]",
-        f"name = {_quoted(_free_name(found.name, used))}",
-        f"end_effector = {_quoted(limb)}",
-        f"side = {_quoted(side)}",
-        f"file = {_quoted(found.file)}",
-        found.key,
-        '# shape = { sphere = 0.05 }     # a stand-in, or { mesh = "..." }: contact needs one',
-    ]
+def _gaze(file: _File, name: str) -> tuple[float, float, float] | None:
+    """Forwards in the frame of a skeleton's head, whose axes are the file's own."""
+    recording = file.contents.recording
+    if not file.contents.body or recording.up is not None:
+        return None
+    ways = forwards(rightwards(file.points, file.contents.body))
+    stream = recording.bodies[name]
+    return mean_forward(stream.orientations, _in_file(file, ways))
 
 
-def _object(found: _Found, used: set[str]) -> list[str]:
-    name = _free_name(found.name, used)
-    return [
-        "[[object]]",
-        f"name = {_quoted(name)}",
-        f"kind = {_quoted(name)}         # its noun",
-        f'tag = "mobile"                  {EDIT} self, fixed or mobile',
-        f"file = {_quoted(found.file)}",
-        found.key,
-        '# shape = { box = [0.1, 0.1, 0.1] }   # or { mesh = "mug.stl", unit = "mm" }',
-    ]
+def _in_file(file: _File, ways: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames 3"]:
+    """Directions of the world along the file's axes."""
+    own, world = (
+        np.stack([each[n] for n in file.contents.recording.bodies])
+        for each in (
+            {n: s.positions for n, s in file.contents.recording.bodies.items()},
+            file.points,
+        )
+    )
+    turn, *_ = np.linalg.lstsq(
+        (world - world.mean(axis=(0, 1))).reshape(-1, 3),
+        (own - own.mean(axis=(0, 1))).reshape(-1, 3),
+        rcond=None,
+    )
+    out = ways @ turn
+    return np.asarray(out / np.linalg.norm(out, axis=1, keepdims=True))
 
 
-def _nothing(recordings: Sequence[Recording]) -> list[str]:
-    names = ", ".join(name for each in recordings for name in each.names)
-    return [
-        f"{EDIT} no three markers keep their distances. Say which are one body:",
-        f"# the files hold: {names}",
-        "# [[sensor]]",
-        '# name = "right_hand"',
-        '# end_effector = "hand"',
-        '# markers = ["...", "...", "..."]',
-    ]
-
-
-def _quoted(text: str) -> str:
-    """A string as TOML writes it; JSON's escapes are TOML's."""
-    return json.dumps(text, ensure_ascii=False)
+def _floor(files: Iterable[_File], feet_bodies: Sequence[str]) -> Floor | None:
+    """The floor under the feet of all people in the first file that has feet."""
+    for file in files:
+        recording = file.contents.recording
+        feet = {
+            f"{each.subject}{each.side}": list(each.markers)
+            for each in file.sensors
+            if each.limb == "foot"
+        }
+        for name in feet_bodies:
+            if name in recording.bodies:
+                children = [n for n, parent in recording.parents.items() if parent == name]
+                feet[name] = [name, *children]
+        if feet and len(recording.times) > 1:
+            rate_hz = 1.0 / float(np.median(np.diff(recording.times)))
+            return floor(file.points, feet, rate_hz, FOOT_RADIUS_M)
+    return None

@@ -11,7 +11,7 @@ from capar.model.capture import Notice, notice
 from capar.model.errors import FileError, UnknownNameError
 from extractors.readers.files import read_text, source_of
 from extractors.readers.formats.numbers import read_rows
-from extractors.readers.recording import UNITS, Recording, contradicted_rate
+from extractors.readers.recording import UNITS, Recording, contradicted_rate, unrounded
 
 
 def recognises(path: Path, head: bytes) -> bool:
@@ -41,12 +41,13 @@ def read(path: Path, options: Any) -> Recording:
         lines[5:], path=path, first_line=6, columns=2 + 3 * len(names), delimiter=delimiter
     )
     points = table[:, 2:].reshape(len(table), len(names), 3)
+    times = unrounded(table[:, 1], _rate_hz(header))
     return Recording(
         source=source_of(path, "trc"),
         markers={name: np.array(points[:, index]) for index, name in enumerate(names)},
-        marker_times=table[:, 1],
+        marker_times=times,
         unit_m=UNITS.get(header["Units"].lower()),
-        notices=tuple(_contradictions(header, table[:, 1])),
+        notices=tuple(_contradictions(header, times)),
     )
 
 
@@ -75,10 +76,15 @@ def _contradictions(
     """Notices of a number of frames or a rate in the header that the rows contradict."""
     if header["NumFrames"] != str(len(times)):
         yield notice("frames-missing", stated=header["NumFrames"], frames=len(times))
-    try:
-        stated_hz = float(header.get("DataRate", ""))
-    except ValueError:
-        return
-    rate_hz = contradicted_rate(times, stated_hz)
-    if rate_hz is not None:
+    stated_hz = _rate_hz(header)
+    rate_hz = None if stated_hz is None else contradicted_rate(times, stated_hz)
+    if stated_hz is not None and rate_hz is not None:
         yield notice("rate-contradicted", stated_hz=stated_hz, rate_hz=rate_hz)
+
+
+def _rate_hz(header: Mapping[str, str]) -> float | None:
+    """The rate that the header states [Hz]."""
+    try:
+        return float(header.get("DataRate", ""))
+    except ValueError:
+        return None

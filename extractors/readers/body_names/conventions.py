@@ -1,10 +1,11 @@
-"""What other skeletons call the places on the body: one data file a convention."""
+"""What other skeletons and marker sets call the places on the body: one data file a convention."""
 
 import tomllib
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
 from capar.model.errors import CaparError, UnknownNameError
 
@@ -26,15 +27,30 @@ class Convention:
     oriented: bool
     """Whether its files give orientations; else those of segments are derived from points."""
 
+    markers: bool
+    """Whether its names are those of markers on the skin, not of joints or key points."""
+
     points: Mapping[str, str]
     """Segment (its joint with the parent) or site of the body, by foreign name."""
 
     weights: Mapping[str, float]
     """How much a place counts, where it is not 1 [1]."""
 
+    on: Mapping[str, str] = field(default_factory=dict)
+    """Segment by the name of a marker that rides somewhere on it."""
+
+    computed: tuple[str, ...] = ()
+    """Patterns of names that its files give to computed quantities, which are no markers."""
+
+    units_m: tuple[float, ...] = ()
+    """Units that its files are in without stating them [m]."""
+
+    whole_names: bool = False
+    """Whether prefixes up to a colon belong to its names."""
+
     def named(self, names: Iterable[str]) -> dict[str, str]:
         """The place of each name that it knows; prefixes up to a colon are left out."""
-        short = {name: name.rpartition(":")[2] for name in names}
+        short = {name: name if self.whole_names else name.rpartition(":")[2] for name in names}
         return {name: self.points[bare] for name, bare in short.items() if bare in self.points}
 
     def weight(self, place: str) -> float:
@@ -45,17 +61,37 @@ class Convention:
 @cache
 def conventions() -> Mapping[str, Convention]:
     """Every convention by name."""
-    folder = files("capar.body") / "data" / "conventions"
+    folder = files("extractors.readers.body_names") / "data" / "conventions"
     out = {}
     for file in sorted(folder.iterdir(), key=lambda each: each.name):
         if file.name.endswith(".toml"):
             name = file.name.removesuffix(".toml")
-            row = tomllib.loads(file.read_text("utf-8"))
-            oriented = row["orientations"] == "given"
-            out[name] = Convention(
-                name, row["title"], row["source"], oriented, row["points"], row.get("weights", {})
-            )
+            out[name] = _convention(name, tomllib.loads(file.read_text("utf-8")))
     return out
+
+
+def _convention(name: str, row: Mapping[str, Any]) -> Convention:
+    return Convention(
+        name,
+        row["title"],
+        row["source"],
+        oriented=row["orientations"] == "given",
+        markers=row["orientations"] == "markers",
+        points=dict(_both_sides(row["points"])),
+        weights=row.get("weights", {}),
+        on=dict(_both_sides(row.get("on", {}))),
+        computed=tuple(row.get("computed", ())),
+        units_m=tuple(row.get("units_m", ())),
+    )
+
+
+def _both_sides(names: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Names with their places; those with a placeholder of a side once for each side."""
+    for name, place in names.items():
+        for side in ("right", "left") if "{" in name else ("none",):
+            letter = side[0]
+            own = name.format(S=letter.upper(), s=letter, Side=side.title())
+            yield own, place.format(side=side)
 
 
 def convention(name: str) -> Convention:

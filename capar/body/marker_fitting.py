@@ -1,0 +1,269 @@
+"""From markers on the skin to the body's motion: size, places of the markers, then postures."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
+from capar.body.human import Human
+from capar.body.model import body_spec
+from capar.body.skeleton import skeleton
+from capar.body.skeleton_fitting import (
+    SkeletonError,
+    SkeletonFit,
+    fit_skeleton,
+    trunk_share,
+    with_trunk,
+)
+from extractors.readers.body_names.body_names import BodyName
+from extractors.readers.body_names.conventions import Convention
+from extractors.readers.drafting.stance import Points, mean_of, standing_by_parts
+
+SAMPLES = 60
+"""Frames by which sizes and places of markers are found."""
+
+LEAST_EXACT = 6
+"""So many markers are at known places of the body at least, so that they place it."""
+
+ROUNDS = 2
+"""Times that the places of markers are found anew from postures, and postures from them."""
+
+LEAST_CLUSTER = 2
+"""So many markers on one segment at least tell where its middle is."""
+
+MIDDLE_WEIGHT = 0.2
+"""Weight of the middle of a segment by the markers that ride on it [1]."""
+
+CLUSTER_WEIGHT = 0.7
+"""Weight of markers whose places are found from the motion itself [1]."""
+
+SPANS: Mapping[str, tuple[tuple[str, str], ...]] = {
+    "upper_arm": (("upper_arm", "forearm"), ("acromion", "elbow_lateral")),
+    "forearm": (("forearm", "hand"), ("elbow_lateral", "wrist_radial")),
+    "thigh": (("thigh", "shank"), ("trochanter", "knee_lateral")),
+    "shank": (("shank", "foot"), ("knee_lateral", "ankle_lateral")),
+}
+"""Pairs of places, of one side, between which a measure lies; the first that is there counts."""
+
+BREADTHS: Mapping[str, tuple[str, ...]] = {
+    "shoulder_breadth": ("upper_arm", "acromion"),
+    "spine_breadth": ("thigh", "asis"),
+}
+"""Places whose distance between the sides goes with a measure."""
+
+USUAL_SHARE = (0.8, 1.25)
+"""A measure is taken from markers if it is between these shares of the estimated one [1]."""
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerFit:
+    """A body's motion that follows markers, and where these are on it."""
+
+    skeleton: SkeletonFit
+    local: Mapping[str, Float[np.ndarray, "3"]]
+    """Place of each marker in its segment's frame [m]."""
+
+
+def fit_markers(points: Points, names: Mapping[str, BodyName]) -> MarkerFit:
+    """Fit the body to markers in a world whose z axis points up.
+
+    The size comes from distances of landmarks, what they do not tell from the stature that the
+    heights of all markers show. Markers begin where landmarks usually are; then each one's place on
+    its segment is the one where it is in the median of the fitted postures.
+
+    Args:
+        points: By name [m]; NaN where lost.
+        names: What the names mean; points of no name are ignored.
+
+    Raises:
+        SkeletonError: Too few markers are at known places, or none three of them at once.
+    """
+    seen = {n: each for n, each in names.items() if n in points and not np.isnan(points[n]).all()}
+    exact = {name: each for name, each in seen.items() if each.exact and _is_sided(each)}
+    clusters = _clusters(seen)
+    if len(exact) + len(clusters) < LEAST_EXACT:
+        raise SkeletonError(
+            f"{len(exact)} markers at known places of the body ({', '.join(sorted(exact))}) and "
+            f"{len(clusters)} segments with clusters of them; {LEAST_EXACT} or more place it"
+        )
+    human = Human.of(measures_from_markers(points, exact, seen))
+    frames = _samples(points, seen)
+    sampled = {name: points[name][frames] for name in seen}
+    first = _by_landmarks(human.measures, sampled, exact, clusters)
+    local = _local(first, sampled, seen)
+    for _ in range(ROUNDS):
+        human = _with_markers(human.measures, local, seen)
+        own = _own_places(local, seen)
+        local = _local(fit_skeleton(sampled, own, human=human), sampled, seen)
+    human = _with_markers(human.measures, local, seen)
+    own = _own_places(local, seen)
+    return MarkerFit(fit_skeleton({n: points[n] for n in local}, own, human=human), local)
+
+
+def _clusters(names: Mapping[str, BodyName]) -> dict[str, list[str]]:
+    """Markers that ride on a segment, by the segment, where it has three or more."""
+    out: dict[str, list[str]] = {}
+    for name, each in names.items():
+        if _is_sided(each) and not each.exact:
+            out.setdefault(each.place, []).append(name)
+    return {segment: group for segment, group in out.items() if len(group) >= LEAST_CLUSTER}
+
+
+def _by_landmarks(
+    measures: Measures,
+    points: Points,
+    exact: Mapping[str, BodyName],
+    clusters: Mapping[str, list[str]],
+) -> SkeletonFit:
+    """A first fit: landmarks to where they usually are, clusters to the middles of segments."""
+    spec, bones = body_spec(measures), skeleton(measures)
+    places = {name: each.place for name, each in exact.items()}
+    known = {name: points[name] for name in exact}
+    for segment in (each for each in clusters if each in bones):
+        bone = bones[segment]
+        middle = 0.5 * (bone.tip - bone.origin)
+        spec.body(segment).add_site(name=f"middle_{segment}", pos=middle, size=[0.006, 0.0, 0.0])
+        known[f"middle_{segment}"] = mean_of(points, clusters[segment])
+        places[f"middle_{segment}"] = f"middle_{segment}"
+    weights = {each: MIDDLE_WEIGHT for each in places.values() if each.startswith("middle_")}
+    human = Human(measures, spec.compile())
+    return fit_skeleton(known, _convention(places, weights), human=human)
+
+
+def _is_sided(each: BodyName) -> bool:
+    """Whether a name tells all that a place of the body needs."""
+    return each.side != "none" or each.place in MIDDLE
+
+
+MIDDLE = {
+    "c7", "t10", "sternum_top", "sternum_low", "sacrum", "head_top", "head", "neck", "pelvis",
+    "nose", "thorax_upper", "thorax_lower", "lumbar_upper", "lumbar_lower",
+}  # fmt: skip
+"""Places of the middle of the body."""
+
+
+def _samples(points: Points, names: Mapping[str, BodyName]) -> np.ndarray:
+    """Frames in which most markers are seen, evenly through the recording."""
+    seen = np.sum([~np.isnan(points[name]).any(axis=1) for name in names], axis=0)
+    known = np.flatnonzero(seen >= 0.8 * seen.max())
+    return known[np.unique(np.linspace(0, len(known) - 1, SAMPLES).round().astype(int))]
+
+
+def measures_from_markers(
+    points: Points, names: Mapping[str, BodyName], every: Mapping[str, BodyName]
+) -> Measures:
+    """Measures by the distances of landmarks, the stature by the heights of all."""
+    stands = standing_by_parts(points, every)
+    stature = min(max(stands.height, 1.0), 2.2) if stands and stands.clear else None
+    given = {"stature": stature} if stature else {}
+    usual = estimate_measures(given=given)
+    body = Human.of(usual)
+    where = body.sites(body.posture()[None], {each.place for each in names.values()})
+    by_place: dict[str, list[str]] = {}
+    for name, each in names.items():
+        by_place.setdefault(each.place, []).append(name)
+    found = {}
+    for measure, pairs in _pairs().items():
+        shares = [_share(points, by_place, where, *pair) for pair in pairs]
+        known = [each for each in shares if each is not None]
+        if known and USUAL_SHARE[0] < float(np.mean(known[:2])) < USUAL_SHARE[1]:
+            found[measure] = usual[measure] * float(np.mean(known[:2]))
+    try:
+        made = estimate_measures(given=given | found)
+    except MeasuresError:
+        made = usual
+    places = {place: points[group[0]] for place, group in by_place.items()}
+    share = trunk_share(places, Human.of(made))
+    return made if share is None else with_trunk(made, share)
+
+
+def _pairs() -> dict[str, list[tuple[str, str]]]:
+    """By measure, the pairs of places that it lies between, both sides in a row."""
+    out = {
+        measure: [(f"{side}_{a}", f"{side}_{b}") for a, b in pairs for side in ("right", "left")]
+        for measure, pairs in SPANS.items()
+    }
+    return out | {
+        measure: [(f"right_{place}", f"left_{place}") for place in places]
+        for measure, places in BREADTHS.items()
+    }
+
+
+def _share(
+    points: Points,
+    by_place: Mapping[str, list[str]],
+    where: Mapping[str, tuple[np.ndarray, np.ndarray]],
+    first: str,
+    second: str,
+) -> float | None:
+    """How far two places are apart, as a share of the body's own distance [1]."""
+    if first not in by_place or second not in by_place:
+        return None
+    apart = np.linalg.norm(points[by_place[first][0]] - points[by_place[second][0]], axis=1)
+    if np.isnan(apart).all():
+        return None
+    own = float(np.linalg.norm(where[first][0][0] - where[second][0][0]))
+    return float(np.nanmedian(apart)) / own
+
+
+def _convention(places: Mapping[str, str], weights: Mapping[str, float]) -> Convention:
+    """Names of a file with their places on the body, as a convention of its own."""
+    return Convention(
+        "file", "the file's own markers", "", oriented=False, markers=True,
+        points=dict(places), weights=weights, whole_names=True,
+    )  # fmt: skip
+
+
+def _own_places(
+    local: Mapping[str, Float[np.ndarray, "3"]], names: Mapping[str, BodyName]
+) -> Convention:
+    """Every marker at the site that was made for it."""
+    riding = [f"marker_{name}" for name in local if not names[name].exact]
+    places = {name: f"marker_{name}" for name in local}
+    return _convention(places, dict.fromkeys(riding, CLUSTER_WEIGHT))
+
+
+def segment_of(human: Human, each: BodyName) -> str:
+    """The segment of the body that a place is on."""
+    site = next((s for s in range(human.model.nsite) if human.model.site(s).name == each.place), -1)
+    if site < 0:
+        return each.place
+    return str(human.model.body(human.model.site_bodyid[site]).name)
+
+
+def _local(
+    made: SkeletonFit, points: Points, names: Mapping[str, BodyName]
+) -> dict[str, Float[np.ndarray, "3"]]:
+    """The median place of every marker in its segment's frame [m]."""
+    human = made.human
+    segments = {name: segment_of(human, each) for name, each in names.items() if _is_sided(each)}
+    known = {human.model.body(each).name for each in range(human.model.nbody)}
+    segments = {name: each for name, each in segments.items() if each in known}
+    poses = human.sites(made.motion, set(segments.values()))
+    out = {}
+    for name, segment in segments.items():
+        places, turns = poses[segment]
+        seen = ~np.isnan(points[name]).any(axis=1)
+        if seen.any():
+            frame = RigidTransform.from_components(
+                places[seen], Rotation.from_quat(turns[seen], scalar_first=True)
+            )
+            out[name] = np.median(frame.inv().apply(points[name][seen]), axis=0)
+    return out
+
+
+def _with_markers(
+    measures: Measures,
+    local: Mapping[str, Float[np.ndarray, "3"]],
+    names: Mapping[str, BodyName],
+) -> Human:
+    """The body with a site for every marker, ``marker_<name>``."""
+    plain = Human.of(measures)
+    spec = body_spec(measures)
+    for name, place in local.items():
+        segment = segment_of(plain, names[name])
+        spec.body(segment).add_site(name=f"marker_{name}", pos=place, size=[0.006, 0.0, 0.0])
+    return Human(measures, spec.compile())

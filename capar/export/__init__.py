@@ -1,0 +1,1 @@
+"""Motions of fitted bodies as files that other programs read."""
