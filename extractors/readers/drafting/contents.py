@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.conventions import UP
+from capar.model.conventions import upward
 from extractors.readers.body_names.body_names import BodyName, body_names, computed
 from extractors.readers.body_names.conventions import conventions
 from extractors.readers.drafting.marker_sets import keeps_distance, marker_sets
@@ -73,7 +73,8 @@ def world_points(
     recording: Recording, unit_m: float, up: str
 ) -> dict[str, Float[np.ndarray, "frames 3"]]:
     """Joints and markers in metres with z up."""
-    return {name: UP[up].apply(each * unit_m) for name, each in points_of(recording).items()}
+    turn = upward(up)
+    return {name: turn.apply(each * unit_m) for name, each in points_of(recording).items()}
 
 
 @dataclass(frozen=True)
