@@ -10,7 +10,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.acting import RELAXED
 from capar.body.gaze import look_tasks, share_costs
-from capar.body.human import Human
+from capar.body.human import ROOT_SIZE, Human
 from capar.body.scripts import SIDES
 
 PALM_COST = (40.0, 8.0)
@@ -18,6 +18,12 @@ PALM_COST = (40.0, 8.0)
 
 HEAD_COST = (20.0, 4.0)
 """Likewise of the head while a thing is at it."""
+
+FREE_PALM = (0.3, 0.05)
+"""Shares of a palm's weights while its hand is free: how it is turned then is only a wish [1]."""
+
+FASTEST = 13.0
+"""What no hinge exceeds [rad/s]."""
 
 FREE_HEAD = 0.005
 """Share of that weight otherwise [1]."""
@@ -30,10 +36,10 @@ DAMPING_COST = 0.1
 LARGEST_STEP = 0.15
 """Largest step of a hinge in one iteration [rad]."""
 
-FEWEST, MOST = 3, 12
+FEWEST, MOST = 2, 10
 """Iterations a frame."""
 
-NEAR_M, NEAR_RAD = 1e-4, 1e-3
+NEAR_M, NEAR_RAD = 4e-4, 4e-3
 """An error of the palms at which iteration ends."""
 
 
@@ -44,6 +50,9 @@ class Targets:
     palms: Mapping[str, RigidTransform]
     """``T_world_palm`` by side; a side that is left out hangs at ease."""
 
+    grasps: Mapping[str, float]
+    """How firmly each palm is kept there [1]."""
+
     head: RigidTransform
     """``T_world_eyes``: between the eyes."""
 
@@ -52,6 +61,21 @@ class Targets:
 
     look: Float[np.ndarray, "3"]
     """The point looked at [m]."""
+
+
+class FrameLimit(mink.Limit):  # type: ignore[misc]
+    """No hinge goes further than a step from where it was at the frame before."""
+
+    def __init__(self, size: int, step: float) -> None:
+        self.step, self.start = step, np.zeros(size)
+        rows = np.hstack([np.zeros((size, 6)), np.eye(size)])
+        self.rows = np.vstack([rows, -rows])
+
+    def compute_qp_inequalities(self, configuration: mink.Configuration, dt: float) -> mink.Constraint:
+        """The inequalities of one iteration."""
+        gone = configuration.q[ROOT_SIZE:] - self.start
+        room = np.concatenate([self.step - gone, self.step + gone])
+        return mink.Constraint(G=self.rows, h=np.maximum(room, 0.0))
 
 
 class Solver:
@@ -68,7 +92,9 @@ class Solver:
         self.looks = look_tasks()
         self.home = {side: self.palm(side) for side in SIDES}
         self.tasks = [*self.palms.values(), self.head, *self.looks.values(), *self._stance()]
+        self.frame = FrameLimit(len(human.joints), 2.0 * np.pi)
         self.limits = [
+            self.frame,
             mink.ConfigurationLimit(human.model),
             mink.VelocityLimit(human.model, dict.fromkeys(human.joints, LARGEST_STEP)),
         ]
@@ -105,12 +131,17 @@ class Solver:
         """Go on to the targets."""
         for side, task in self.palms.items():
             task.set_target(_se3(targets.palms.get(side, self.home[side])))
+            firm = targets.grasps.get(side, 0.0)
+            costs = [c * (f + (1.0 - f) * firm) for c, f in zip(PALM_COST, FREE_PALM, strict=True)]
+            task.set_position_cost(costs[0])
+            task.set_orientation_cost(costs[1])
         self.head.set_target(_se3(targets.head))
         firm = FREE_HEAD + (1.0 - FREE_HEAD) * targets.firmness
         self.head.set_position_cost(HEAD_COST[0] * firm)
         self.head.set_orientation_cost(HEAD_COST[1] * firm)
         for task in self.looks.values():
             task.set_target(targets.look)
+        self.frame.start = self.posture[ROOT_SIZE:]
         for number in range(most):
             self._step()
             missed_m, missed_rad = self.missed(targets)
@@ -118,12 +149,14 @@ class Solver:
                 return
 
     def missed(self, targets: Targets) -> tuple[float, float]:
-        """How far the worst palm is from its target [m, rad]."""
+        """How far the worst palm is from its target [m, rad]; how a free one is turned is left."""
         metres, radians = 0.0, 0.0
         for side, goal in targets.palms.items():
             palm = self.palm(side)
             metres = max(metres, float(np.linalg.norm(palm.translation - goal.translation)))
-            radians = max(radians, float((palm.rotation.inv() * goal.rotation).magnitude()))
+            if targets.grasps.get(side, 0.0) > 0.5:
+                turned = (palm.rotation.inv() * goal.rotation).magnitude()
+                radians = max(radians, float(turned))
         return metres, radians
 
     def _step(self) -> None:

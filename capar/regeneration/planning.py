@@ -1,0 +1,274 @@
+"""From a recorded performance to what another body is to do in another scene."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.human import Human
+from capar.model.capture import TagType
+from capar.model.scene_facts import LookingAt
+from capar.regeneration.body_frames import BodyFrames, body_frames, head_path
+from capar.regeneration.errors import PlanError
+from capar.regeneration.grips import Grip, Gripping, Turn, turns
+from capar.regeneration.hand_paths import hand_paths
+from capar.regeneration.path_mapping import Detour
+from capar.regeneration.scenes import Scene, raised
+from capar.regeneration.solving import Solver, Targets
+from capar.regeneration.sources import Hold, Meeting, Source
+from capar.regeneration.thing_paths import Goal, thing_goals, thing_paths
+
+REACH_M, REACH_RAD = 0.001, float(np.radians(0.5))
+"""A hand that misses a goal by more cannot reach it."""
+
+KEYS = 6
+"""Key postures in a hold, besides those at goals."""
+
+KEY_ITERATIONS = 40
+MOST_TURNS = 30
+"""Turns of a grip that are tried."""
+
+FAR_M = 3.0
+"""Distance of the point looked at where nothing is [m]."""
+
+SHIFT_S = 0.3
+"""How long a shift of gaze takes [s]."""
+
+SETTLE_S = 0.45
+"""How long the head takes to be firmly where it is to be [s]."""
+
+GRASP_S = 0.5
+"""How long before a hold the hand is led more and more firmly [s]."""
+
+NEARER_M = (0.05, 0.1, 0.15, 0.2, 0.3)
+HIGHER_M = (0.1, -0.1, 0.2, -0.2)
+"""Remedies that are tried where something is out of reach [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Where hands, things, head and gaze are to be at every frame."""
+
+    source: Source
+    scene: Scene
+    human: Human
+    frames: BodyFrames
+    goals: Mapping[str, list[Goal]]
+    grips: tuple[Grip, ...]
+    detours: Mapping[tuple[str, int], Detour]
+    """By side and the free stretch's first frame."""
+
+    hands: Mapping[str, RigidTransform]
+    """``T_world_hand`` by side at every frame, the frame on the hand."""
+
+    grasps: Mapping[str, Float[np.ndarray, "frames"]]
+    """How firmly each hand is kept there [1]."""
+
+    things: Mapping[str, RigidTransform]
+    head: RigidTransform
+    firmness: Float[np.ndarray, "frames"]
+    looks: Float[np.ndarray, "frames 3"]
+    notes: tuple[str, ...]
+
+    def targets(self, frame: int) -> Targets:
+        """Where everything is to be at a frame."""
+        palms = {s: path[frame] * self.frames.palms[s] for s, path in self.hands.items()}
+        grasps = {side: float(firm[frame]) for side, firm in self.grasps.items()}
+        return Targets(
+            palms, grasps, self.head[frame], float(self.firmness[frame]), self.looks[frame]
+        )
+
+
+def plan(source: Source, scene: Scene, human: Human, *, margin_m: float = 0.012) -> Plan:
+    """Decide what a body is to do, before anything moves.
+
+    Args:
+        source: The recorded performance.
+        scene: Where it is performed.
+        human: Who performs.
+        margin_m: How far free hands keep from what they do not touch [m].
+
+    Raises:
+        PlanError: Something is out of reach or cannot be put down; the message says what would
+            help.
+    """
+    draft = _Draft(source, scene, human)
+    grips, missed = draft.reachable_grips()
+    if missed is not None:
+        raise PlanError(f"{missed}; {_remedy(source, scene, human)}")
+    held = {grip.hold: grip.pose for grip in grips}
+    hands, detours = hand_paths(
+        source, scene, draft.old, draft.new, held, draft.things, margin_m=margin_m
+    )
+    return Plan(
+        source, scene, human, draft.new, draft.goals, tuple(grips), detours, hands,
+        _grasps(source), draft.things, draft.head, draft.firmness, draft.looks, _notes(source, grips, draft.goals),
+    )  # fmt: skip
+
+
+class _Draft:
+    """A plan whose grips are still open."""
+
+    def __init__(self, source: Source, scene: Scene, human: Human) -> None:
+        self.source, self.scene = source, scene
+        self.old = body_frames(source.human, source.scene)
+        self.new = body_frames(human, scene)
+        self.goals = thing_goals(source, scene, self.old, self.new)
+        self.things = thing_paths(source, scene, self.goals)
+        self.head = head_path(source, self.old, self.new)
+        self.firmness = _around(source, source.meetings, SETTLE_S)
+        self.looks = _looks(source, self.things, self.head)
+        self.gripping = Gripping(source, scene, self.old, self.new)
+
+    def reachable_grips(self) -> tuple[list[Grip], str | None]:
+        """A grip for every hold with the least turn that reaches; what is missed if none does."""
+        chosen: list[Grip] = []
+        for group in _groups(self.source.holds):
+            best, found = None, False
+            options = turns(self.scene.thing(group[0].thing))
+            for turn in [each for each in options][:MOST_TURNS]:
+                grips = [self.gripping.grip(hold, turn) for hold in group]
+                miss = self._missed(chosen + grips, group)
+                if best is None or miss[0] < best[0][0]:
+                    best = (miss, grips)
+                if miss[0] <= 1.0:
+                    found = True
+                    break
+            assert best is not None
+            chosen += best[1]
+            if not found:
+                return chosen, best[0][1]
+        return chosen, None
+
+    def _missed(self, grips: list[Grip], group: list[Hold]) -> tuple[float, str]:
+        """How far the key postures of some holds are missed, in units of what is allowed."""
+        solver = Solver(self.new.human, (*self.scene.place, self.scene.floor_m), self.scene.heading)
+        worst = (0.0, "")
+        for frame in self._keys(group):
+            palms = {
+                grip.hold.side: self.things[grip.hold.thing][frame]
+                * grip.pose
+                * self.new.palms[grip.hold.side]
+                for grip in grips
+                if grip.hold.first <= frame <= grip.hold.last
+            }
+            firm = dict.fromkeys(palms, 1.0)
+            goal = Targets(palms, firm, self.head[frame], float(self.firmness[frame]), self.looks[frame])
+            solver.follow(goal, most=KEY_ITERATIONS)
+            metres, radians = solver.missed(goal)
+            ratio = max(metres / REACH_M, radians / REACH_RAD)
+            if ratio > worst[0]:
+                worst = (ratio, self._sentence(group, frame, metres, radians))
+        return worst
+
+    def _sentence(self, group: list[Hold], frame: int, metres: float, radians: float) -> str:
+        sides = " and ".join(sorted({hold.side for hold in group}))
+        return (
+            f"the {sides} hand cannot follow {group[0].thing!r} at {self.source.times[frame]:.2f} "
+            f"s: it misses by {metres * 1000:.0f} mm and {np.degrees(radians):.0f} degrees"
+        )
+
+    def _keys(self, group: list[Hold]) -> list[int]:
+        first, last = min(h.first for h in group), max(h.last for h in group)
+        keys = {int(each) for each in np.linspace(first, last, KEYS)}
+        for goals in self.goals.values():
+            keys |= {goal.frame for goal in goals if first <= goal.frame <= last}
+        return sorted(keys)
+
+
+def _groups(holds: tuple[Hold, ...]) -> list[list[Hold]]:
+    """Holds of one thing that overlap, in order of time."""
+    out: list[list[Hold]] = []
+    for hold in holds:
+        for group in out:
+            same = group[0].thing == hold.thing
+            if same and any(o.first <= hold.last and hold.first <= o.last for o in group):
+                group.append(hold)
+                break
+        else:
+            out.append([hold])
+    return out
+
+
+def _remedy(source: Source, scene: Scene, human: Human) -> str:
+    """What would make it possible."""
+    ahead = np.array([np.cos(scene.heading), np.sin(scene.heading)])
+    for by_m in NEARER_M:
+        x, y = np.asarray(scene.place) + by_m * ahead
+        if _possible(source, replace(scene, place=(float(x), float(y))), human):
+            return f"standing {by_m:.2f} m further ahead would do"
+    for name in [n for n, t in scene.things.items() if t.tag is TagType.FIXED]:
+        for by_m in HIGHER_M:
+            if _possible(source, raised(scene, name, by_m), human):
+                way = "higher" if by_m > 0 else "lower"
+                return f"{name!r} {abs(by_m):.1f} m {way} would do"
+    return "a larger body, or things nearer to it, would do"
+
+
+def _possible(source: Source, scene: Scene, human: Human) -> bool:
+    try:
+        return _Draft(source, scene, human).reachable_grips()[1] is None
+    except PlanError:
+        return False
+
+
+def _grasps(source: Source) -> dict[str, Float[np.ndarray, "frames"]]:
+    return {
+        side: _around(source, [h for h in source.holds if h.side == side], GRASP_S)
+        for side in source.hands
+    }
+
+
+def _around(
+    source: Source, spans: Sequence[Hold | Meeting], settle_s: float
+) -> Float[np.ndarray, "frames"]:
+    """One during some spans, smoothly falling to zero on both sides of each."""
+    out = np.zeros(len(source.times))
+    for span in spans:
+        start, end = source.times[span.first], source.times[span.last]
+        away = np.maximum(np.maximum(start - source.times, source.times - end), 0.0)
+        share = np.clip(1.0 - away / settle_s, 0.0, 1.0)
+        out = np.maximum(out, share**3 * (10.0 - 15.0 * share + 6.0 * share**2))
+    return out
+
+
+def _looks(
+    source: Source, things: Mapping[str, RigidTransform], head: RigidTransform
+) -> Float[np.ndarray, "frames 3"]:
+    """The point looked at: a thing that was looked at, else ahead along the line of sight."""
+    points = head.translation + FAR_M * head.rotation.apply([1.0, 0.0, 0.0])
+    for fact in source.observation.facts:
+        if isinstance(fact, LookingAt) and fact.object in things:
+            thing = source.scene.thing(fact.object)
+            if thing.tag is TagType.MOBILE:
+                middle = 0.5 * thing.shape.bounds.sum(axis=0)
+                part = slice(fact.first, fact.last + 1)
+                points[part] = things[fact.object][part].apply(middle)
+    width = max(round(SHIFT_S * source.rate_hz) | 1, 3)
+    window = np.hanning(width + 2)[1:-1]
+    padded = np.pad(points, ((width // 2, width // 2), (0, 0)), mode="edge")
+    columns = [np.convolve(c, window / window.sum(), mode="valid") for c in padded.T]
+    return np.stack(columns, axis=1)
+
+
+def _notes(
+    source: Source, grips: list[Grip], goals: Mapping[str, list[Goal]]
+) -> tuple[str, ...]:
+    out = list(source.notes)
+    for grip in grips:
+        if grip.turn != Turn():
+            out.append(
+                f"the {grip.hold.side} hand's grip on {grip.hold.thing!r} is turned by "
+                f"{np.degrees(grip.turn.yaw):.0f} degrees about it and "
+                f"{np.degrees(grip.turn.pitch):.0f} degrees about the palm's normal"
+            )
+        if grip.raised_m > 0.0005:
+            out.append(
+                f"the {grip.hold.side} hand takes {grip.hold.thing!r} {grip.raised_m * 1000:.0f} mm "
+                "higher, to stay clear of what it stands on"
+            )
+    for name, several in goals.items():
+        out += [f"{name!r} at {source.times[g.frame]:.2f} s: {g.reason}" for g in several]
+    return tuple(out)
