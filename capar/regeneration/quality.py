@@ -1,0 +1,264 @@
+"""What a motion is worth: every gate with what was measured and its limit."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.human import ROOT_SIZE
+from capar.regeneration.collisions import Pair, Surroundings
+from capar.regeneration.motions import Motion
+from capar.regeneration.path_mapping import way
+from capar.regeneration.sources import SETTLED_M, Hold
+
+STRIDE = 1
+"""Frames between two at which distances are measured."""
+
+LEAVING_S = 0.3
+"""So long after a hold a returning hand may still be near [s]."""
+
+MOVING_M = 0.05
+"""A shorter path has no profile of speed [m]."""
+
+
+@dataclass(frozen=True)
+class Gate:
+    """One thing that is demanded of a motion."""
+
+    name: str
+    value: float
+    limit: float
+    unit: str
+    at_least: bool = False
+    """Whether the value has to reach the limit; else it has to stay within."""
+
+    frame: int = -1
+    """Where it was worst; -1 where no frame stands out."""
+
+    bodies: str = ""
+    """What it was worst of."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is as demanded; a value that is no number is not."""
+        return self.value >= self.limit if self.at_least else self.value <= self.limit
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Every gate of one motion."""
+
+    gates: tuple[Gate, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every gate is."""
+        return all(gate.passed for gate in self.gates)
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """Names of the gates that are not."""
+        return tuple(gate.name for gate in self.gates if not gate.passed)
+
+    def gate(self, name: str) -> Gate:
+        """The gate of that name."""
+        return next(each for each in self.gates if each.name == name)
+
+
+def quality(motion: Motion) -> Quality:
+    """Verify a motion at every frame."""
+    hands = _hands(motion)
+    errors = _errors(motion, hands)
+    return Quality(
+        (
+            *_constraint_gates(motion, errors),
+            *_contact_gates(motion),
+            *_body_gates(motion),
+            _still_gate(motion),
+            _profile_gate(motion, hands),
+        )
+    )
+
+
+def _hands(motion: Motion) -> dict[str, RigidTransform]:
+    """``T_world_hand`` of the body as it moved."""
+    plan = motion.plan
+    names = [f"{side}_palm" for side in plan.hands]
+    sites = plan.human.sites(motion.postures, names)
+    out = {}
+    for side in plan.hands:
+        spots, turns = sites[f"{side}_palm"]
+        turn = Rotation.from_quat(turns, scalar_first=True)
+        out[side] = RigidTransform.from_components(spots, turn) * plan.frames.palms[side].inv()
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class _Error:
+    """How far a hand is from its place on what it holds."""
+
+    hold: Hold
+    metres: Float[np.ndarray, "frames"]
+    radians: Float[np.ndarray, "frames"]
+
+
+def _errors(motion: Motion, hands: dict[str, RigidTransform]) -> list[_Error]:
+    out = []
+    for grip in motion.plan.grips:
+        hold = grip.hold
+        part = slice(hold.first, hold.last + 1)
+        off = grip.pose.inv() * motion.plan.things[hold.thing][part].inv() * hands[hold.side][part]
+        out.append(
+            _Error(hold, np.linalg.norm(off.translation, axis=1), off.rotation.magnitude())
+        )
+    return out
+
+
+def _constraint_gates(motion: Motion, errors: list[_Error]) -> Iterator[Gate]:
+    plan = motion.plan
+    frames = {f for e in errors for f in (e.hold.first, e.hold.last)}
+    frames |= {goal.frame for goals in plan.goals.values() for goal in goals}
+    at, way_m, turned = (0.0, -1, ""), (0.0, -1, ""), (0.0, -1, "")
+    for error in errors:
+        names = f"{error.hold.side} hand, {error.hold.thing}"
+        for row in range(len(error.metres)):
+            frame = error.hold.first + row
+            way_m = max(way_m, (error.metres[row], frame, names))
+            if frame in frames:
+                at = max(at, (error.metres[row], frame, names))
+                turned = max(turned, (error.radians[row], frame, names))
+    head = _head_error(motion)
+    at = max(at, head)
+    yield Gate("event position", 1e3 * at[0], 1.0, "mm", False, at[1], at[2])
+    yield Gate("event rotation", float(np.degrees(turned[0])), 1.0, "deg", False, *turned[1:])
+    yield Gate("on the way", 1e3 * way_m[0], 2.0, "mm", False, way_m[1], way_m[2])
+
+
+def _head_error(motion: Motion) -> tuple[float, int, str]:
+    """How far the head is from where a thing meets it, at worst [m]."""
+    plan, worst = motion.plan, (0.0, -1, "")
+    spots, _ = plan.human.sites(motion.postures, ["between_eyes"])["between_eyes"]
+    for meeting in plan.source.meetings:
+        frame = (meeting.first + meeting.last) // 2
+        for each in (meeting.first, frame, meeting.last):
+            off = float(np.linalg.norm(spots[each] - plan.head.translation[frame]))
+            worst = max(worst, (off, each, f"{meeting.thing}, {meeting.part}"))
+    return worst
+
+
+def _contact_gates(motion: Motion) -> Iterator[Gate]:
+    """Penetration of anything, and how far free hands keep from what they do not touch."""
+    plan = motion.plan
+    around = Surroundings(plan.human, plan.scene)
+    deepest, nearest = (Pair(np.inf, "", ""), -1), (Pair(np.inf, "", ""), -1)
+    for frame in range(0, len(motion.postures), STRIDE):
+        around.pose(motion.postures[frame], {n: p[frame] for n, p in plan.things.items()})
+        pairs = around.near()
+        for pair in (*pairs, *_unsupported(motion, around, frame)):
+            deepest = min(deepest, (pair, frame))
+        for pair in pairs:
+            side = pair.part.partition("_")[0]
+            if side in plan.hands and _is_hand(pair.part) and _returns(motion, side, pair, frame):
+                nearest = min(nearest, (pair, frame))
+    yield _distance_gate("penetration", -1.0, *deepest)
+    yield _distance_gate("free hand clear", 10.0, *nearest)
+
+
+def _distance_gate(name: str, limit_mm: float, pair: Pair, frame: int) -> Gate:
+    bodies = f"{pair.part}, {pair.thing}" if pair.part else ""
+    return Gate(name, 1e3 * pair.distance_m, limit_mm, "mm", True, frame, bodies)
+
+
+def _unsupported(motion: Motion, around: Surroundings, frame: int) -> list[Pair]:
+    return around.things_near() if frame % 2 == 0 else []
+
+
+def _is_hand(part: str) -> bool:
+    return part.endswith(("_hand", "_fingers", "_fingertips"))
+
+
+def _returns(motion: Motion, side: str, pair: Pair, frame: int) -> bool:
+    """Whether a hand is free and not on its way to or from what it is near."""
+    plan = motion.plan
+    span = LEAVING_S * plan.source.rate_hz
+    for hold in plan.source.holds:
+        if hold.side == side and hold.first - span <= frame <= hold.last + span:
+            return False
+    own = {hold.thing for hold in plan.source.holds if hold.side == side}
+    return pair.thing not in own or not _brushes(motion, side, pair.thing, frame)
+
+
+def _brushes(motion: Motion, side: str, thing: str, frame: int) -> bool:
+    """Whether a hand that slides along a thing has it near before and after it holds it."""
+    source = motion.plan.source
+    span = 2.0 * LEAVING_S * source.rate_hz
+    holds = [h for h in source.holds if h.side == side and h.thing == thing]
+    return any(hold.first - span <= frame <= hold.last + span for hold in holds)
+
+
+def _body_gates(motion: Motion) -> Iterator[Gate]:
+    plan, postures = motion.plan, motion.postures
+    feet = plan.human.sites(postures, ["right_foot", "left_foot"])
+    slid = {n: np.linalg.norm(spots - spots[0], axis=1) for n, (spots, _) in feet.items()}
+    foot = max(slid, key=lambda name: float(slid[name].max()))
+    yield Gate(
+        "feet", 1e3 * float(slid[foot].max()), 3.0, "mm", False, int(slid[foot].argmax()), foot
+    )
+    low, high = plan.human.ranges.T
+    angles = postures[:, ROOT_SIZE:]
+    out = np.maximum(np.maximum(low - angles, angles - high), 0.0)
+    frame, hinge = np.unravel_index(int(out.argmax()), out.shape)
+    yield Gate(
+        "joint limits", float(np.degrees(out.max())), 0.01, "deg", False,
+        int(frame), plan.human.joints[int(hinge)],
+    )  # fmt: skip
+    speeds = np.abs(np.diff(angles, axis=0)) * plan.source.rate_hz
+    frame, hinge = np.unravel_index(int(speeds.argmax()), speeds.shape)
+    yield Gate(
+        "joint speed", float(speeds.max()), 15.0, "rad/s", False,
+        int(frame), plan.human.joints[int(hinge)],
+    )  # fmt: skip
+    hips = np.linalg.norm(np.diff(postures[:, :3], axis=0), axis=1) * plan.source.rate_hz
+    yield Gate("pelvis speed", float(hips.max()), 1.5, "m/s", False, int(hips.argmax()))
+
+
+def _still_gate(motion: Motion) -> Gate:
+    """What no hand holds stays where it is."""
+    plan, worst = motion.plan, (0.0, -1, "")
+    for name, path in plan.things.items():
+        steps = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
+        for hold in plan.source.holds:
+            if hold.thing == name:
+                steps[hold.first : hold.last] = 0.0
+        worst = max(worst, (float(steps.max()), int(steps.argmax()), name))
+    return Gate("things not held", 1e3 * worst[0], 0.5, "mm a frame", False, *worst[1:])
+
+
+def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
+    """Correlation of the speeds of hands along their paths with the recorded ones, at worst."""
+    plan, worst = motion.plan, (1.0, -1, "")
+    for side, hand in hands.items():
+        new, old = hand.translation, plan.source.hands[side].path.translation
+        if min(way(new)[-1], way(old)[-1]) < MOVING_M + 2.0 * SETTLED_M:
+            continue
+        for first, last in _pieces(motion, side):
+            one, two = (np.diff(way(p[first : last + 1])) for p in (new, old))
+            if min(one.sum(), two.sum()) >= MOVING_M and len(one) > 3:
+                value = float(np.corrcoef(one, two)[0, 1])
+                worst = min(worst, (value, first, f"{side} hand"))
+    return Gate("speed profile", worst[0], 0.98, "r", True, worst[1], worst[2])
+
+
+def _pieces(motion: Motion, side: str) -> list[tuple[int, int]]:
+    """Stretches between events of a hand."""
+    plan = motion.plan
+    edges = {0, len(motion.postures) - 1}
+    for hold in plan.source.holds:
+        if hold.side == side:
+            edges |= {hold.first, hold.last}
+            inner = {g.frame for g in plan.goals.get(hold.thing, [])}
+            edges |= {f for f in inner if hold.first <= f <= hold.last}
+    ordered = sorted(edges)
+    return list(zip(ordered, ordered[1:], strict=False))
