@@ -25,8 +25,11 @@ YAWS = (0.0, 0.2, -0.2, 0.4, -0.4, 0.6, -0.6, 0.8, -0.8, 1.05, -1.05)
 PITCHES = (0.0, 0.15, -0.15, 0.3, -0.3, 0.5, -0.5)
 """Turns about the normal of the palm that are tried [rad]."""
 
-PITCH_WEIGHT = 2.0
-"""How much worse a turn about the palm's normal is than one about a round thing [1]."""
+TILTS = (0.0, -0.1, 0.1, -0.2, 0.2, 0.3)
+"""Turns across the palm, fingers to the thing positive, that are tried without others [rad]."""
+
+PITCH_WEIGHT, TILT_WEIGHT = 2.0, 4.0
+"""How much worse these turns are than one about a round thing [1]."""
 
 CLEAR_M = 0.014
 """How far a hand stays above what the thing stands on, if it did so before [m]."""
@@ -45,10 +48,13 @@ class Turn:
     pitch: float = 0.0
     """About the normal of the palm [rad]."""
 
+    tilt: float = 0.0
+    """Across the palm, the fingers towards the thing [rad]."""
+
     @property
     def size(self) -> float:
         """How much worse than none it is [rad]."""
-        return abs(self.yaw) + PITCH_WEIGHT * abs(self.pitch)
+        return abs(self.yaw) + PITCH_WEIGHT * abs(self.pitch) + TILT_WEIGHT * abs(self.tilt)
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +74,7 @@ def turns(thing: Thing) -> Iterator[Turn]:
     """The turns to try on a thing, the smallest first."""
     yaws = YAWS if is_round(thing.shape) else YAWS[:1]
     found = [Turn(yaw, pitch) for yaw in yaws for pitch in PITCHES]
+    found += [Turn(tilt=tilt) for tilt in TILTS[1:]]
     yield from sorted(found, key=lambda each: each.size)
 
 
@@ -97,7 +104,7 @@ class Gripping:
         point = on_hand * self.new.hands[hold.side].extents / track.frame.extents
         spot = on_thing * after.size / np.maximum(before.size, 1e-9)
         gap = relative.apply(on_hand) - on_thing
-        turned = relative.rotation * Rotation.from_euler("z", turn.pitch)
+        turned = relative.rotation * Rotation.from_euler("ZY", [turn.pitch, turn.tilt])
         pose = RigidTransform.from_components(spot + gap - turned.apply(point), turned)
         if is_round(after.shape):
             pose = RigidTransform.from_rotation(self._about(hold, turn)) * pose

@@ -8,9 +8,11 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
+from capar.body.recording import HAND_SEGMENTS
 from capar.model.capture import TagType
 from capar.model.scene_facts import LookingAt
 from capar.regeneration.body_frames import BodyFrames, body_frames, head_path
+from capar.regeneration.collisions import Pair, Surroundings
 from capar.regeneration.errors import PlanError
 from capar.regeneration.grips import Grip, Gripping, Turn, turns
 from capar.regeneration.hand_paths import hand_paths
@@ -23,12 +25,18 @@ from capar.regeneration.thing_paths import Goal, thing_goals, thing_paths
 REACH_M, REACH_RAD = 0.001, float(np.radians(0.5))
 """A hand that misses a goal by more cannot reach it."""
 
+CUT_M = 0.001
+"""How deep a part of the body may be inside a thing [m]."""
+
 KEYS = 6
 """Key postures in a hold, besides those at goals."""
 
 KEY_ITERATIONS = 40
 MOST_TURNS = 30
 """Turns of a grip that are tried."""
+
+FEW_TURNS = 6
+"""Likewise where a remedy is sought."""
 
 FAR_M = 3.0
 """Distance of the point looked at where nothing is [m]."""
@@ -94,6 +102,7 @@ def plan(source: Source, scene: Scene, human: Human, *, margin_m: float = 0.012)
         PlanError: Something is out of reach or cannot be put down; the message says what would
             help.
     """
+    _check_stance(scene, human)
     draft = _Draft(source, scene, human)
     grips, missed = draft.reachable_grips()
     if missed is not None:
@@ -122,15 +131,16 @@ class _Draft:
         self.looks = _looks(source, self.things, self.head)
         self.gripping = Gripping(source, scene, self.old, self.new)
 
-    def reachable_grips(self) -> tuple[list[Grip], str | None]:
+    def reachable_grips(self, most: int = MOST_TURNS) -> tuple[list[Grip], str | None]:
         """A grip for every hold with the least turn that reaches; what is missed if none does."""
         chosen: list[Grip] = []
         for group in _groups(self.source.holds):
             best, found = None, False
             options = turns(self.scene.thing(group[0].thing))
-            for turn in [each for each in options][:MOST_TURNS]:
+            for turn in list(options)[:most]:
                 grips = [self.gripping.grip(hold, turn) for hold in group]
-                miss = self._missed(chosen + grips, group)
+                enough = np.inf if best is None else max(best[0][0], 1.0)
+                miss = self._missed(chosen + grips, group, enough)
                 if best is None or miss[0] < best[0][0]:
                     best = (miss, grips)
                 if miss[0] <= 1.0:
@@ -142,8 +152,13 @@ class _Draft:
                 return chosen, best[0][1]
         return chosen, None
 
-    def _missed(self, grips: list[Grip], group: list[Hold]) -> tuple[float, str]:
-        """How far the key postures of some holds are missed, in units of what is allowed."""
+    def _missed(
+        self, grips: list[Grip], group: list[Hold], enough: float
+    ) -> tuple[float, str]:
+        """How far the key postures of some holds are missed, in units of what is allowed.
+
+        No further than is enough to be worse than another grip.
+        """
         solver = Solver(self.new.human, (*self.scene.place, self.scene.floor_m), self.scene.heading)
         worst = (0.0, "")
         for frame in self._keys(group):
@@ -161,14 +176,32 @@ class _Draft:
             ratio = max(metres / REACH_M, radians / REACH_RAD)
             if ratio > worst[0]:
                 worst = (ratio, self._sentence(group, frame, metres, radians))
+            pair = self._cut(solver, grips, frame)
+            if pair and -pair.distance_m / CUT_M > worst[0]:
+                depth, sides = -pair.distance_m, _sides(group)
+                worst = (
+                    depth / CUT_M,
+                    f"while the {sides} hand has {group[0].thing!r} at "
+                    f"{self.source.times[frame]:.2f} s, {pair.part} is {1e3 * depth:.0f} mm inside "
+                    f"{pair.thing!r}",
+                )
+            if ratio > enough:
+                break
         return worst
 
     def _sentence(self, group: list[Hold], frame: int, metres: float, radians: float) -> str:
-        sides = " and ".join(sorted({hold.side for hold in group}))
         return (
-            f"the {sides} hand cannot follow {group[0].thing!r} at {self.source.times[frame]:.2f} "
+            f"the {_sides(group)} hand cannot follow {group[0].thing!r} at {self.source.times[frame]:.2f} "
             f"s: it misses by {metres * 1000:.0f} mm and {np.degrees(radians):.0f} degrees"
         )
+
+    def _cut(self, solver: Solver, grips: list[Grip], frame: int) -> Pair | None:
+        """The part of the body that is deepest inside a thing, but for hands in what they hold."""
+        around = self.gripping.around
+        around.pose(solver.posture, {name: path[frame] for name, path in self.things.items()})
+        held = {(g.hold.side, g.hold.thing) for g in grips}
+        pairs = [p for p in around.near() if not _holds_it(p, held) and p.distance_m < 0.0]
+        return min(pairs, default=None)
 
     def _keys(self, group: list[Hold]) -> list[int]:
         first, last = min(h.first for h in group), max(h.last for h in group)
@@ -176,6 +209,29 @@ class _Draft:
         for goals in self.goals.values():
             keys |= {goal.frame for goal in goals if first <= goal.frame <= last}
         return sorted(keys)
+
+
+def _sides(group: list[Hold]) -> str:
+    return " and ".join(sorted({hold.side for hold in group}))
+
+
+def _holds_it(pair: Pair, held: set[tuple[str, str]]) -> bool:
+    side, _, part = pair.part.partition("_")
+    return part in (*HAND_SEGMENTS, "thumb") and (side, pair.thing) in held
+
+
+def _check_stance(scene: Scene, human: Human) -> None:
+    """Whoever stands at ease stands in nothing."""
+    around = Surroundings(human, scene)
+    solver = Solver(human, (*scene.place, scene.floor_m), scene.heading)
+    around.pose(solver.rest, {name: thing.pose for name, thing in scene.things.items()})
+    for pair in around.near():
+        if pair.distance_m < 0.0:
+            raise PlanError(
+                f"standing at ({scene.place[0]:.2f}, {scene.place[1]:.2f}) m the performer's "
+                f"{pair.part} is {-pair.distance_m * 1000:.0f} mm inside {pair.thing!r}; stand "
+                "further back, or put it elsewhere"
+            )
 
 
 def _groups(holds: tuple[Hold, ...]) -> list[list[Hold]]:
@@ -209,7 +265,8 @@ def _remedy(source: Source, scene: Scene, human: Human) -> str:
 
 def _possible(source: Source, scene: Scene, human: Human) -> bool:
     try:
-        return _Draft(source, scene, human).reachable_grips()[1] is None
+        _check_stance(scene, human)
+        return _Draft(source, scene, human).reachable_grips(FEW_TURNS)[1] is None
     except PlanError:
         return False
 

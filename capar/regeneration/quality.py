@@ -13,11 +13,8 @@ from capar.regeneration.motions import Motion
 from capar.regeneration.path_mapping import way
 from capar.regeneration.sources import SETTLED_M, Hold
 
-STRIDE = 1
-"""Frames between two at which distances are measured."""
-
 LEAVING_S = 0.3
-"""So long after a hold a returning hand may still be near [s]."""
+"""So long before and after a hold a hand may be near things [s]."""
 
 MOVING_M = 0.05
 """A shorter path has no profile of speed [m]."""
@@ -47,10 +44,22 @@ class Gate:
 
 
 @dataclass(frozen=True)
+class Measure:
+    """Something that is told of a motion and not demanded."""
+
+    name: str
+    value: float
+    unit: str
+    frame: int = -1
+    bodies: str = ""
+
+
+@dataclass(frozen=True)
 class Quality:
     """Every gate of one motion."""
 
     gates: tuple[Gate, ...]
+    told: tuple[Measure, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -71,15 +80,15 @@ def quality(motion: Motion) -> Quality:
     """Verify a motion at every frame."""
     hands = _hands(motion)
     errors = _errors(motion, hands)
-    return Quality(
-        (
-            *_constraint_gates(motion, errors),
-            *_contact_gates(motion),
-            *_body_gates(motion),
-            _still_gate(motion),
-            _profile_gate(motion, hands),
-        )
+    contacts, thumb = _contact_gates(motion)
+    gates = (
+        *_constraint_gates(motion, errors),
+        *contacts,
+        *_body_gates(motion),
+        _still_gate(motion),
+        _profile_gate(motion, hands),
     )
+    return Quality(gates, (thumb,))
 
 
 def _hands(motion: Motion) -> dict[str, RigidTransform]:
@@ -148,22 +157,35 @@ def _head_error(motion: Motion) -> tuple[float, int, str]:
     return worst
 
 
-def _contact_gates(motion: Motion) -> Iterator[Gate]:
-    """Penetration of anything, and how far free hands keep from what they do not touch."""
+def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
+    """Penetration of anything, and how far free hands keep from what they do not touch.
+
+    A thumb is not posed, and its mannequin's base stands out from the palm: what it cuts of the
+    thing that its hand takes is told apart.
+    """
     plan = motion.plan
     around = Surroundings(plan.human, plan.scene)
-    deepest, nearest = (Pair(np.inf, "", ""), -1), (Pair(np.inf, "", ""), -1)
-    for frame in range(0, len(motion.postures), STRIDE):
+    far = (Pair(np.inf, "", ""), -1)
+    deepest, nearest, thumb = far, far, far
+    for frame in range(len(motion.postures)):
         around.pose(motion.postures[frame], {n: p[frame] for n, p in plan.things.items()})
-        pairs = around.near()
-        for pair in (*pairs, *_unsupported(motion, around, frame)):
-            deepest = min(deepest, (pair, frame))
-        for pair in pairs:
+        for pair in around.near():
             side = pair.part.partition("_")[0]
-            if side in plan.hands and _is_hand(pair.part) and _returns(motion, side, pair, frame):
+            if pair.part.endswith("_thumb") and _takes(motion, side, pair.thing, frame):
+                thumb = min(thumb, (pair, frame))
+                continue
+            deepest = min(deepest, (pair, frame))
+            if side in plan.hands and _is_hand(pair.part) and _is_free(motion, side, frame):
                 nearest = min(nearest, (pair, frame))
-    yield _distance_gate("penetration", -1.0, *deepest)
-    yield _distance_gate("free hand clear", 10.0, *nearest)
+        for pair in around.things_near():
+            deepest = min(deepest, (pair, frame))
+    gates = [
+        _distance_gate("penetration", -1.0, *deepest),
+        _distance_gate("free hand clear", 10.0, *nearest),
+    ]
+    pair, frame = thumb
+    bodies = f"{pair.part}, {pair.thing}"
+    return gates, Measure("thumb and what it holds", 1e3 * pair.distance_m, "mm", frame, bodies)
 
 
 def _distance_gate(name: str, limit_mm: float, pair: Pair, frame: int) -> Gate:
@@ -171,31 +193,28 @@ def _distance_gate(name: str, limit_mm: float, pair: Pair, frame: int) -> Gate:
     return Gate(name, 1e3 * pair.distance_m, limit_mm, "mm", True, frame, bodies)
 
 
-def _unsupported(motion: Motion, around: Surroundings, frame: int) -> list[Pair]:
-    return around.things_near() if frame % 2 == 0 else []
-
-
 def _is_hand(part: str) -> bool:
     return part.endswith(("_hand", "_fingers", "_fingertips"))
 
 
-def _returns(motion: Motion, side: str, pair: Pair, frame: int) -> bool:
-    """Whether a hand is free and not on its way to or from what it is near."""
-    plan = motion.plan
-    span = LEAVING_S * plan.source.rate_hz
-    for hold in plan.source.holds:
-        if hold.side == side and hold.first - span <= frame <= hold.last + span:
-            return False
-    own = {hold.thing for hold in plan.source.holds if hold.side == side}
-    return pair.thing not in own or not _brushes(motion, side, pair.thing, frame)
+def _is_free(motion: Motion, side: str, frame: int) -> bool:
+    """Whether a hand holds nothing, and has not just done so nor is about to."""
+    return not any(_near_hold(motion, hold, frame) for hold in _holds(motion, side))
 
 
-def _brushes(motion: Motion, side: str, thing: str, frame: int) -> bool:
-    """Whether a hand that slides along a thing has it near before and after it holds it."""
-    source = motion.plan.source
-    span = 2.0 * LEAVING_S * source.rate_hz
-    holds = [h for h in source.holds if h.side == side and h.thing == thing]
-    return any(hold.first - span <= frame <= hold.last + span for hold in holds)
+def _takes(motion: Motion, side: str, thing: str, frame: int) -> bool:
+    """Whether a hand holds that thing, or is about to, or has just let it go."""
+    own = (hold for hold in _holds(motion, side) if hold.thing == thing)
+    return any(_near_hold(motion, hold, frame) for hold in own)
+
+
+def _holds(motion: Motion, side: str) -> list[Hold]:
+    return [hold for hold in motion.plan.source.holds if hold.side == side]
+
+
+def _near_hold(motion: Motion, hold: Hold, frame: int) -> bool:
+    span = LEAVING_S * motion.plan.source.rate_hz
+    return hold.first - span <= frame <= hold.last + span
 
 
 def _body_gates(motion: Motion) -> Iterator[Gate]:

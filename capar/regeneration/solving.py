@@ -39,6 +39,9 @@ LARGEST_STEP = 0.15
 FEWEST, MOST = 2, 10
 """Iterations a frame."""
 
+STALLED, STALL = 8, 2e-4
+"""After so many iterations, less progress than this ends them [m, rad]."""
+
 NEAR_M, NEAR_RAD = 4e-4, 4e-3
 """An error of the palms at which iteration ends."""
 
@@ -142,9 +145,12 @@ class Solver:
         for task in self.looks.values():
             task.set_target(targets.look)
         self.frame.start = self.posture[ROOT_SIZE:]
+        missed_m, missed_rad = np.inf, np.inf
         for number in range(most):
             self._step()
-            missed_m, missed_rad = self.missed(targets)
+            before, (missed_m, missed_rad) = (missed_m, missed_rad), self.missed(targets)
+            if number >= STALLED and abs(before[0] - missed_m) + abs(before[1] - missed_rad) < STALL:
+                return
             if number + 1 >= FEWEST and missed_m < NEAR_M and missed_rad < NEAR_RAD:
                 return
 
