@@ -153,8 +153,9 @@ def _sensor(made: Performance, mount: Mount, stream: Stream) -> Sensor:
         head = _standing_frame(made, "head")
         eye = seat.apply(head.inv().apply(spots[0]))
         ahead = seat.rotation.apply(head.rotation.inv().apply([1.0, 0.0, 0.0]))
+        surface = _moved(segment_surface(made.human.measures, ("head",), "head"), seat)
         return Sensor(
-            "head", "head", "none", "neck", stream, _moved(segment_surface(made.human.measures, ("head",), "head"), seat),
+            "head", "head", "none", "neck", stream, surface,
             Role.ATTENDS, _three(ahead), _three(eye),
         )  # fmt: skip
     shape = None

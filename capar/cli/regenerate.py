@@ -37,9 +37,9 @@ def regenerate(
 ) -> None:
     """Perform the action of CAPTURE on another body, verify every frame, and write a capture."""
     from capar.cli._output import print_json
+    from capar.pipelines.round_trips import body, observed_source
     from capar.regeneration.captures import capture_of, write_motion
     from capar.regeneration.regenerating import regenerate as perform
-    from capar.pipelines.round_trips import body, observed_source
     from capar.regeneration.scene_files import read_scene
 
     _check_output(output)

@@ -44,7 +44,9 @@ def body_frames(human: Human, scene: Scene) -> BodyFrames:
     return BodyFrames(human, hands, palms, rest, RigidTransform.from_components(spot, turn))
 
 
-def rest_pose(source: Source, old: BodyFrames, new: BodyFrames, side: str, frame: int) -> RigidTransform:
+def rest_pose(
+    source: Source, old: BodyFrames, new: BodyFrames, side: str, frame: int
+) -> RigidTransform:
     """Where a hand that was free at a frame is on the new body: as far from ease as it was."""
     away = old.rest[side].inv() * source.hands[side].path[frame]
     return new.rest[side] * _enlarged(away, _ratio(old, new))

@@ -110,7 +110,6 @@ class Surroundings:
         return float(min(_depths(local, self.model, geom).min(), 0.0))
 
 
-
 def _rotation(quaternion: Float[np.ndarray, "4"]) -> Rotation:
     return Rotation.from_quat(np.array(quaternion), scalar_first=True)
 
@@ -143,9 +142,7 @@ def _surface_points(shape: Shape) -> Float[np.ndarray, "points 3"] | None:
     return np.concatenate([np.array(shape.vertices), np.array(points)])
 
 
-def _add_thing(
-    spec: mujoco.MjSpec, name: str, vertices: Float[np.ndarray, "vertices 3"]
-) -> None:
+def _add_thing(spec: mujoco.MjSpec, name: str, vertices: Float[np.ndarray, "vertices 3"]) -> None:
     hull = trimesh.convex.convex_hull(vertices)
     mesh = spec.add_mesh(name=f"mesh_{name}")
     mesh.uservert = np.array(hull.vertices).ravel()

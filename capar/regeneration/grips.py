@@ -171,6 +171,4 @@ class Gripping:
 def _hand_shape(sensor: Sensor, frame: RigidTransform) -> Shape:
     """The recorded hand's surface in the frame on it."""
     assert sensor.shape is not None  # checked when the source was made
-    return Shape(
-        frame.inv().apply(np.array(sensor.shape.vertices)), np.array(sensor.shape.faces)
-    )
+    return Shape(frame.inv().apply(np.array(sensor.shape.vertices)), np.array(sensor.shape.faces))

@@ -54,9 +54,7 @@ def hand_paths(
             part = source.hands[side].path[first : last + 1]
             turn = scene.heading - source.scene.heading
             options = {
-                detour: mapped(
-                    part, start, goal, turn=turn, detour=detour, heading=scene.heading
-                )
+                detour: mapped(part, start, goal, turn=turn, detour=detour, heading=scene.heading)
                 for detour in DETOURS
             }
             best = clearance.first_clear(side, options, first, touched)

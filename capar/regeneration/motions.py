@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.regeneration.planning import Plan
-from capar.regeneration.solving import FASTEST, Solver
+from capar.regeneration.solving import Solver
 
 SETTLING = 60
 """Iterations for the first frame."""
@@ -25,7 +25,7 @@ def perform_plan(plan: Plan) -> Motion:
     scene = plan.scene
     solver = Solver(plan.human, (*scene.place, scene.floor_m), scene.heading)
     solver.follow(plan.targets(0), most=SETTLING)
-    solver.frame.step = FASTEST / plan.source.rate_hz
+    solver.frame.bound(1.0 / plan.source.rate_hz)
     postures = np.empty((len(plan.source.times), len(solver.posture)))
     for frame in range(len(postures)):
         solver.follow(plan.targets(frame))

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import RigidTransform, Rotation
+from scipy.spatial.transform import RigidTransform
 
 from capar.body.human import Human
 from capar.body.recording import HAND_SEGMENTS
@@ -49,6 +49,9 @@ SETTLE_S = 0.45
 
 GRASP_S = 0.5
 """How long before a hold the hand is led more and more firmly [s]."""
+
+REST_M, REST_SHARE = 0.02, 0.5
+"""A hand that stays so near for a while rests [m], and how firmly it is kept there [1]."""
 
 NEARER_M = (0.05, 0.1, 0.15, 0.2, 0.3)
 HIGHER_M = (0.1, -0.1, 0.2, -0.2)
@@ -113,7 +116,8 @@ def plan(source: Source, scene: Scene, human: Human, *, margin_m: float = 0.012)
     )
     return Plan(
         source, scene, human, draft.new, draft.goals, tuple(grips), detours, hands,
-        _grasps(source), draft.things, draft.head, draft.firmness, draft.looks, _notes(source, grips, draft.goals),
+        _grasps(source), draft.things, draft.head, draft.firmness, draft.looks,
+        _notes(source, grips, draft.goals),
     )  # fmt: skip
 
 
@@ -152,9 +156,7 @@ class _Draft:
                 return chosen, best[0][1]
         return chosen, None
 
-    def _missed(
-        self, grips: list[Grip], group: list[Hold], enough: float
-    ) -> tuple[float, str]:
+    def _missed(self, grips: list[Grip], group: list[Hold], enough: float) -> tuple[float, str]:
         """How far the key postures of some holds are missed, in units of what is allowed.
 
         No further than is enough to be worse than another grip.
@@ -170,7 +172,9 @@ class _Draft:
                 if grip.hold.first <= frame <= grip.hold.last
             }
             firm = dict.fromkeys(palms, 1.0)
-            goal = Targets(palms, firm, self.head[frame], float(self.firmness[frame]), self.looks[frame])
+            goal = Targets(
+                palms, firm, self.head[frame], float(self.firmness[frame]), self.looks[frame]
+            )
             solver.follow(goal, most=KEY_ITERATIONS)
             metres, radians = solver.missed(goal)
             ratio = max(metres / REACH_M, radians / REACH_RAD)
@@ -190,9 +194,10 @@ class _Draft:
         return worst
 
     def _sentence(self, group: list[Hold], frame: int, metres: float, radians: float) -> str:
+        at_s = self.source.times[frame]
         return (
-            f"the {_sides(group)} hand cannot follow {group[0].thing!r} at {self.source.times[frame]:.2f} "
-            f"s: it misses by {metres * 1000:.0f} mm and {np.degrees(radians):.0f} degrees"
+            f"the {_sides(group)} hand cannot follow {group[0].thing!r} at {at_s:.2f} s: "
+            f"it misses by {metres * 1000:.0f} mm and {np.degrees(radians):.0f} degrees"
         )
 
     def _cut(self, solver: Solver, grips: list[Grip], frame: int) -> Pair | None:
@@ -272,10 +277,24 @@ def _possible(source: Source, scene: Scene, human: Human) -> bool:
 
 
 def _grasps(source: Source) -> dict[str, Float[np.ndarray, "frames"]]:
-    return {
-        side: _around(source, [h for h in source.holds if h.side == side], GRASP_S)
-        for side in source.hands
-    }
+    """One in holds; a hand that rests beside a body that leans is kept where it is as well."""
+    out = {}
+    for side, hand in source.hands.items():
+        holds = [hold for hold in source.holds if hold.side == side]
+        firm = _around(source, holds, GRASP_S)
+        out[side] = np.maximum(firm, REST_SHARE * _rests(source, hand.path.translation))
+    return out
+
+
+def _rests(source: Source, spots: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
+    """One where something hardly moves for a while, smoothly falling to zero beside that."""
+    half = max(round(0.5 * GRASP_S * source.rate_hz), 1)
+    padded = np.pad(spots, ((half, half), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0)
+    still = (np.ptp(windows, axis=2).max(axis=1) < REST_M).astype(float)
+    mean = np.ones(2 * half + 1) / (2 * half + 1)
+    smooth = np.convolve(np.pad(still, half, mode="edge"), mean, mode="valid")
+    return np.asarray(smooth)
 
 
 def _around(
@@ -310,21 +329,20 @@ def _looks(
     return np.stack(columns, axis=1)
 
 
-def _notes(
-    source: Source, grips: list[Grip], goals: Mapping[str, list[Goal]]
-) -> tuple[str, ...]:
+def _notes(source: Source, grips: list[Grip], goals: Mapping[str, list[Goal]]) -> tuple[str, ...]:
     out = list(source.notes)
     for grip in grips:
         if grip.turn != Turn():
             out.append(
                 f"the {grip.hold.side} hand's grip on {grip.hold.thing!r} is turned by "
-                f"{np.degrees(grip.turn.yaw):.0f} degrees about it and "
-                f"{np.degrees(grip.turn.pitch):.0f} degrees about the palm's normal"
+                f"{np.degrees(grip.turn.yaw):.0f} degrees about it, "
+                f"{np.degrees(grip.turn.pitch):.0f} degrees about the palm's normal and "
+                f"{np.degrees(grip.turn.tilt):.0f} degrees across the palm"
             )
         if grip.raised_m > 0.0005:
+            higher = f"{grip.raised_m * 1000:.0f} mm higher"
             out.append(
-                f"the {grip.hold.side} hand takes {grip.hold.thing!r} {grip.raised_m * 1000:.0f} mm "
-                "higher, to stay clear of what it stands on"
+                f"the {grip.hold.side} hand takes {grip.hold.thing!r} {higher}, to stay clear of what it stands on"
             )
     for name, several in goals.items():
         out += [f"{name!r} at {source.times[g.frame]:.2f} s: {g.reason}" for g in several]

@@ -1,5 +1,6 @@
 """What a motion is worth: every gate with what was measured and its limit."""
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -14,7 +15,10 @@ from capar.regeneration.path_mapping import way
 from capar.regeneration.sources import SETTLED_M, Hold
 
 LEAVING_S = 0.3
-"""So long before and after a hold a hand may be near things [s]."""
+"""So long before and after a hold a hand may be near what stands beside [s]."""
+
+TAKING_S = 0.5
+"""Likewise near what it holds [s]."""
 
 MOVING_M = 0.05
 """A shorter path has no profile of speed [m]."""
@@ -119,9 +123,7 @@ def _errors(motion: Motion, hands: dict[str, RigidTransform]) -> list[_Error]:
         hold = grip.hold
         part = slice(hold.first, hold.last + 1)
         off = grip.pose.inv() * motion.plan.things[hold.thing][part].inv() * hands[hold.side][part]
-        out.append(
-            _Error(hold, np.linalg.norm(off.translation, axis=1), off.rotation.magnitude())
-        )
+        out.append(_Error(hold, np.linalg.norm(off.translation, axis=1), off.rotation.magnitude()))
     return out
 
 
@@ -175,7 +177,7 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
                 thumb = min(thumb, (pair, frame))
                 continue
             deepest = min(deepest, (pair, frame))
-            if side in plan.hands and _is_hand(pair.part) and _is_free(motion, side, frame):
+            if side in plan.hands and _is_hand(pair.part) and _is_free(motion, pair, frame):
                 nearest = min(nearest, (pair, frame))
         for pair in around.things_near():
             deepest = min(deepest, (pair, frame))
@@ -197,23 +199,27 @@ def _is_hand(part: str) -> bool:
     return part.endswith(("_hand", "_fingers", "_fingertips"))
 
 
-def _is_free(motion: Motion, side: str, frame: int) -> bool:
-    """Whether a hand holds nothing, and has not just done so nor is about to."""
-    return not any(_near_hold(motion, hold, frame) for hold in _holds(motion, side))
+def _is_free(motion: Motion, pair: Pair, frame: int) -> bool:
+    """Whether a hand holds nothing, nor just did nor is about to, least of all that thing."""
+    side = pair.part.partition("_")[0]
+    holds = _holds(motion, side)
+    if _takes(motion, side, pair.thing, frame):
+        return False
+    return not any(_near_hold(motion, hold, frame, LEAVING_S) for hold in holds)
 
 
 def _takes(motion: Motion, side: str, thing: str, frame: int) -> bool:
     """Whether a hand holds that thing, or is about to, or has just let it go."""
     own = (hold for hold in _holds(motion, side) if hold.thing == thing)
-    return any(_near_hold(motion, hold, frame) for hold in own)
+    return any(_near_hold(motion, hold, frame, TAKING_S) for hold in own)
 
 
 def _holds(motion: Motion, side: str) -> list[Hold]:
     return [hold for hold in motion.plan.source.holds if hold.side == side]
 
 
-def _near_hold(motion: Motion, hold: Hold, frame: int) -> bool:
-    span = LEAVING_S * motion.plan.source.rate_hz
+def _near_hold(motion: Motion, hold: Hold, frame: int, span_s: float) -> bool:
+    span = span_s * motion.plan.source.rate_hz
     return hold.first - span <= frame <= hold.last + span
 
 
@@ -280,4 +286,4 @@ def _pieces(motion: Motion, side: str) -> list[tuple[int, int]]:
             inner = {g.frame for g in plan.goals.get(hold.thing, [])}
             edges |= {f for f in inner if hold.first <= f <= hold.last}
     ordered = sorted(edges)
-    return list(zip(ordered, ordered[1:], strict=False))
+    return list(itertools.pairwise(ordered))

@@ -9,23 +9,26 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.acting import RELAXED
-from capar.body.gaze import look_tasks, share_costs
-from capar.body.human import ROOT_SIZE, Human
+from capar.body.gaze import LOOK_COST, look_tasks, share_costs
+from capar.body.human import Human
 from capar.body.scripts import SIDES
 
 PALM_COST = (40.0, 8.0)
 """Weights of a metre and of a radian at the palms."""
 
-HEAD_COST = (20.0, 4.0)
+HEAD_COST = (60.0, 8.0)
 """Likewise of the head while a thing is at it."""
 
-FREE_PALM = (0.3, 0.05)
+FREE_PALM = (0.15, 0.05)
 """Shares of a palm's weights while its hand is free: how it is turned then is only a wish [1]."""
 
 FASTEST = 13.0
 """What no hinge exceeds [rad/s]."""
 
-FREE_HEAD = 0.005
+ROOT_MPS, ROOT_RADPS = 0.7, 2.0
+"""Likewise the pelvis, along each axis [m/s] and about it [rad/s]."""
+
+FREE_HEAD = 0.002
 """Share of that weight otherwise [1]."""
 
 FOOT_COST = 120.0
@@ -35,6 +38,8 @@ BALANCE_COST = 2.0
 DAMPING_COST = 0.1
 LARGEST_STEP = 0.15
 """Largest step of a hinge in one iteration [rad]."""
+
+LEAST_STEP = 1e-5
 
 FEWEST, MOST = 2, 10
 """Iterations a frame."""
@@ -67,18 +72,32 @@ class Targets:
 
 
 class FrameLimit(mink.Limit):  # type: ignore[misc]
-    """No hinge goes further than a step from where it was at the frame before."""
+    """Nothing goes further than a step from where it was at the frame before."""
 
-    def __init__(self, size: int, step: float) -> None:
-        self.step, self.start = step, np.zeros(size)
-        rows = np.hstack([np.zeros((size, 6)), np.eye(size)])
-        self.rows = np.vstack([rows, -rows])
+    def __init__(self, hinges: int) -> None:
+        self.steps = np.full(6 + hinges, np.inf)
+        self.largest = np.concatenate([np.full(6, np.inf), np.full(hinges, LARGEST_STEP)])
+        self.gone = np.zeros(6 + hinges)
+        self.rows = np.vstack([np.eye(6 + hinges), -np.eye(6 + hinges)])
 
-    def compute_qp_inequalities(self, configuration: mink.Configuration, dt: float) -> mink.Constraint:
+    def bound(self, step_s: float) -> None:
+        """Take the speeds that nothing exceeds, at a time between frames [s]."""
+        hinges = np.full(len(self.gone) - 6, FASTEST)
+        self.steps = step_s * np.concatenate([np.full(3, ROOT_MPS), np.full(3, ROOT_RADPS), hinges])
+
+    def begin(self) -> None:
+        """A frame begins."""
+        self.gone = np.zeros_like(self.gone)
+
+    def compute_qp_inequalities(
+        self, configuration: mink.Configuration, dt: float
+    ) -> mink.Constraint:
         """The inequalities of one iteration."""
-        gone = configuration.q[ROOT_SIZE:] - self.start
-        room = np.concatenate([self.step - gone, self.step + gone])
-        return mink.Constraint(G=self.rows, h=np.maximum(room, 0.0))
+        room = np.stack([self.steps - self.gone, self.steps + self.gone])
+        # Without any room the bounds of both sides meet, on which the QP solver may cycle.
+        room = np.clip(room, LEAST_STEP, self.largest).ravel()
+        bounded = np.isfinite(room)
+        return mink.Constraint(G=self.rows[bounded], h=room[bounded])
 
 
 class Solver:
@@ -95,12 +114,8 @@ class Solver:
         self.looks = look_tasks()
         self.home = {side: self.palm(side) for side in SIDES}
         self.tasks = [*self.palms.values(), self.head, *self.looks.values(), *self._stance()]
-        self.frame = FrameLimit(len(human.joints), 2.0 * np.pi)
-        self.limits = [
-            self.frame,
-            mink.ConfigurationLimit(human.model),
-            mink.VelocityLimit(human.model, dict.fromkeys(human.joints, LARGEST_STEP)),
-        ]
+        self.frame = FrameLimit(len(human.joints))
+        self.limits = [self.frame, mink.ConfigurationLimit(human.model)]
 
     def _stance(self) -> list[mink.Task]:
         feet = [mink.FrameTask(f"{s}_foot", "body", FOOT_COST, FOOT_COST) for s in SIDES]
@@ -144,23 +159,27 @@ class Solver:
         self.head.set_orientation_cost(HEAD_COST[1] * firm)
         for task in self.looks.values():
             task.set_target(targets.look)
-        self.frame.start = self.posture[ROOT_SIZE:]
+            task.set_cost(LOOK_COST * (1.0 - 0.9 * targets.firmness))
+        self.frame.begin()
         missed_m, missed_rad = np.inf, np.inf
         for number in range(most):
             self._step()
             before, (missed_m, missed_rad) = (missed_m, missed_rad), self.missed(targets)
-            if number >= STALLED and abs(before[0] - missed_m) + abs(before[1] - missed_rad) < STALL:
+            if (
+                number >= STALLED
+                and abs(before[0] - missed_m) + abs(before[1] - missed_rad) < STALL
+            ):
                 return
             if number + 1 >= FEWEST and missed_m < NEAR_M and missed_rad < NEAR_RAD:
                 return
 
     def missed(self, targets: Targets) -> tuple[float, float]:
-        """How far the worst palm is from its target [m, rad]; how a free one is turned is left."""
+        """How far the worst palm that holds something is from its target [m, rad]."""
         metres, radians = 0.0, 0.0
         for side, goal in targets.palms.items():
-            palm = self.palm(side)
-            metres = max(metres, float(np.linalg.norm(palm.translation - goal.translation)))
             if targets.grasps.get(side, 0.0) > 0.5:
+                palm = self.palm(side)
+                metres = max(metres, float(np.linalg.norm(palm.translation - goal.translation)))
                 turned = (palm.rotation.inv() * goal.rotation).magnitude()
                 radians = max(radians, float(turned))
         return metres, radians
@@ -168,6 +187,7 @@ class Solver:
     def _step(self) -> None:
         velocity = mink.solve_ik(self.configuration, self.tasks, 1.0, "daqp", limits=self.limits)
         self.configuration.integrate_inplace(velocity, 1.0)
+        self.frame.gone += velocity
 
 
 def _se3(pose: RigidTransform) -> mink.SE3:

@@ -16,7 +16,6 @@ from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagTy
 from capar.model.facts import Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
-from capar.model.scene_facts import LookingAt
 from capar.regeneration.errors import PlanError
 from capar.regeneration.hand_frames import HandFrame, hand_frame
 from capar.regeneration.scenes import Scene
@@ -189,9 +188,7 @@ def _thing(each: TagObject, path: RigidTransform) -> tuple[Thing, RigidTransform
         each.shape.source, each.shape.description,
     )  # fmt: skip
     x0, y0, z0 = (float(v) for v in np.median(path.translation[:count], axis=0))
-    made = Thing(
-        each.name, shape, (x0, y0, z0), heading, each.tag, each.kind, mass_kg=each.mass_kg
-    )
+    made = Thing(each.name, shape, (x0, y0, z0), heading, each.tag, each.kind, mass_kg=each.mass_kg)
     return made, path * RigidTransform.from_rotation(tilt.inv())
 
 
@@ -206,7 +203,9 @@ def _touched(
     for each in touching:
         if each.body == sensor.name and each.other in things:
             frame = (each.first + each.last) // 2
-            out.append((frame, paths[each.other][frame].apply(np.array(things[each.other].shape.vertices))))
+            out.append(
+                (frame, paths[each.other][frame].apply(np.array(things[each.other].shape.vertices)))
+            )
     return out
 
 

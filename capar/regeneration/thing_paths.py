@@ -168,9 +168,7 @@ def _at_head(
     return head_path(source, old, new)[frame] * local
 
 
-def _touching(
-    scene: Scene, new: BodyFrames, name: str, local: RigidTransform
-) -> RigidTransform:
+def _touching(scene: Scene, new: BodyFrames, name: str, local: RigidTransform) -> RigidTransform:
     """The pose in the eyes' frame moved ahead or back until the surfaces touch."""
     around = Surroundings(new.human, scene)
     solver = Solver(new.human, (*scene.place, scene.floor_m), scene.heading)
