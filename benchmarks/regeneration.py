@@ -46,7 +46,8 @@ def summary(trips: list[Trip]) -> str:
     failed = Counter(name for trip in done if trip.quality for name in trip.quality.failed)
     return (
         f"{len(trips)} asked, {len(done)} in reach, {sum(t.same_par for t in done)} same PAR, "
-        f"{len(good)} every gate, {sum(t.passed for t in done)} passed; failed gates: {dict(failed)}"
+        f"{len(good)} every gate, {sum(t.passed for t in done)} passed; "
+        f"failed gates: {dict(failed)}"
     )
 
 

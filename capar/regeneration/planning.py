@@ -22,8 +22,8 @@ from capar.regeneration.solving import Solver, Targets
 from capar.regeneration.sources import Hold, Meeting, Source
 from capar.regeneration.thing_paths import Goal, thing_goals, thing_paths
 
-REACH_M, REACH_RAD = 0.001, float(np.radians(0.5))
-"""A hand that misses a goal by more cannot reach it."""
+REACH_M, REACH_RAD = 0.0009, float(np.radians(0.9))
+"""A hand that misses a goal by more cannot reach it: a little less than the gates allow."""
 
 CUT_M = 0.001
 """How deep a part of the body may be inside a thing [m]."""
@@ -342,7 +342,8 @@ def _notes(source: Source, grips: list[Grip], goals: Mapping[str, list[Goal]]) -
         if grip.raised_m > 0.0005:
             higher = f"{grip.raised_m * 1000:.0f} mm higher"
             out.append(
-                f"the {grip.hold.side} hand takes {grip.hold.thing!r} {higher}, to stay clear of what it stands on"
+                f"the {grip.hold.side} hand takes {grip.hold.thing!r} {higher}, to stay clear of "
+                "what it stands on"
             )
     for name, several in goals.items():
         out += [f"{name!r} at {source.times[g.frame]:.2f} s: {g.reason}" for g in several]

@@ -71,7 +71,7 @@ class Targets:
     """The point looked at [m]."""
 
 
-class FrameLimit(mink.Limit):  # type: ignore[misc]
+class FrameLimit(mink.Limit):
     """Nothing goes further than a step from where it was at the frame before."""
 
     def __init__(self, hinges: int) -> None:
@@ -121,8 +121,9 @@ class Solver:
         feet = [mink.FrameTask(f"{s}_foot", "body", FOOT_COST, FOOT_COST) for s in SIDES]
         balance = mink.ComTask(cost=[BALANCE_COST, BALANCE_COST, 0.0])
         ease = mink.PostureTask(self.human.model, cost=share_costs(self.human, 0.15))
-        for task in (*feet, balance):
-            task.set_target_from_configuration(self.configuration)
+        for foot in feet:
+            foot.set_target_from_configuration(self.configuration)
+        balance.set_target_from_configuration(self.configuration)
         ease.set_target(self.rest)
         return [*feet, balance, ease, mink.DampingTask(self.human.model, cost=DAMPING_COST)]
 
@@ -157,9 +158,9 @@ class Solver:
         firm = FREE_HEAD + (1.0 - FREE_HEAD) * targets.firmness
         self.head.set_position_cost(HEAD_COST[0] * firm)
         self.head.set_orientation_cost(HEAD_COST[1] * firm)
-        for task in self.looks.values():
-            task.set_target(targets.look)
-            task.set_cost(LOOK_COST * (1.0 - 0.9 * targets.firmness))
+        for look in self.looks.values():
+            look.set_target(targets.look)
+            look.set_cost(LOOK_COST * (1.0 - 0.9 * targets.firmness))
         self.frame.begin()
         missed_m, missed_rad = np.inf, np.inf
         for number in range(most):

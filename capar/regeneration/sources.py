@@ -23,7 +23,7 @@ from capar.regeneration.scenes import Scene
 START_FRAMES = 10
 """Frames from which it is taken where everything is at the beginning [1]."""
 
-SETTLED_M, SETTLED_RAD = 0.004, float(np.radians(3.0))
+SETTLED_M, SETTLED_RAD = 0.0025, float(np.radians(2.0))
 """While two bodies' relative pose is so near its median, they are rigidly together."""
 
 SETTLED_SHARE = 0.8
@@ -228,8 +228,8 @@ def _hand(
     if not near:  # a hand that touches nothing hangs with its palm to the body
         here = path[0].apply(middle)
         palm = path.rotation[0].inv().apply([shoulder[0] - here[0], shoulder[1] - here[1], 0.0])
-    frame = hand_frame(sensor.shape, fingers, palm)
-    return HandTrack(sensor.name, sensor.side, frame, path * frame.pose)
+    own = hand_frame(sensor.shape, fingers, palm)
+    return HandTrack(sensor.name, sensor.side, own, path * own.pose)
 
 
 def _holds(
