@@ -19,7 +19,7 @@ PALM_COST = (40.0, 8.0)
 HEAD_COST = (60.0, 8.0)
 """Likewise of the head while a thing is at it."""
 
-FREE_PALM = (0.15, 0.05)
+FREE_PALM = (0.4, 0.05)
 """Shares of a palm's weights while its hand is free: how it is turned then is only a wish [1]."""
 
 FASTEST = 13.0
