@@ -32,7 +32,7 @@ KEYS = 6
 """Key postures in a hold, besides those at goals."""
 
 KEY_ITERATIONS = 40
-MOST_TURNS = 30
+MOST_TURNS = 90
 """Turns of a grip that are tried."""
 
 FEW_TURNS = 6
