@@ -13,13 +13,13 @@ from capar.body.gaze import LOOK_COST, look_tasks, share_costs
 from capar.body.human import Human
 from capar.body.scripts import SIDES
 
-PALM_COST = (40.0, 8.0)
+PALM_COST = (60.0, 4.0)
 """Weights of a metre and of a radian at the palms."""
 
 HEAD_COST = (60.0, 8.0)
 """Likewise of the head while a thing is at it."""
 
-FREE_PALM = (0.4, 0.05)
+FREE_PALM = (0.27, 0.1)
 """Shares of a palm's weights while its hand is free: how it is turned then is only a wish [1]."""
 
 FASTEST = 13.0
