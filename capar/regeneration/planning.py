@@ -1,6 +1,6 @@
 """From a recorded performance to what another body is to do in another scene."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.spatial.transform import RigidTransform
 from capar.body.human import Human
 from capar.body.recording import HAND_SEGMENTS
 from capar.model.capture import TagType
-from capar.model.scene_facts import LookingAt
+from capar.regeneration import attending
 from capar.regeneration.body_frames import BodyFrames, body_frames, head_path
 from capar.regeneration.collisions import Pair, Surroundings
 from capar.regeneration.errors import PlanError
@@ -19,7 +19,7 @@ from capar.regeneration.hand_paths import hand_paths
 from capar.regeneration.path_mapping import Detour
 from capar.regeneration.scenes import Scene, raised
 from capar.regeneration.solving import Solver, Targets
-from capar.regeneration.sources import Hold, Meeting, Source
+from capar.regeneration.sources import Hold, Source
 from capar.regeneration.thing_paths import Goal, thing_goals, thing_paths
 
 REACH_M, REACH_RAD = 0.0009, float(np.radians(0.9))
@@ -38,20 +38,8 @@ MOST_TURNS = 90
 FEW_TURNS = 6
 """Likewise where a remedy is sought."""
 
-FAR_M = 3.0
-"""Distance of the point looked at where nothing is [m]."""
-
-SHIFT_S = 0.3
-"""How long a shift of gaze takes [s]."""
-
 SETTLE_S = 0.45
 """How long the head takes to be firmly where it is to be [s]."""
-
-GRASP_S = 0.5
-"""How long before a hold the hand is led more and more firmly [s]."""
-
-REST_M, REST_SHARE = 0.02, 0.5
-"""A hand that stays so near for a while rests [m], and how firmly it is kept there [1]."""
 
 NEARER_M = (0.05, 0.1, 0.15, 0.2, 0.3)
 HIGHER_M = (0.1, -0.1, 0.2, -0.2)
@@ -116,7 +104,7 @@ def plan(source: Source, scene: Scene, human: Human, *, margin_m: float = 0.012)
     )
     return Plan(
         source, scene, human, draft.new, draft.goals, tuple(grips), detours, hands,
-        _grasps(source), draft.things, draft.head, draft.firmness, draft.looks,
+        attending.grasps(source), draft.things, draft.head, draft.firmness, draft.looks,
         _notes(source, grips, draft.goals),
     )  # fmt: skip
 
@@ -131,8 +119,8 @@ class _Draft:
         self.goals = thing_goals(source, scene, self.old, self.new)
         self.things = thing_paths(source, scene, self.goals)
         self.head = head_path(source, self.old, self.new)
-        self.firmness = _around(source, source.meetings, SETTLE_S)
-        self.looks = _looks(source, self.things, self.head)
+        self.firmness = attending.around(source, source.meetings, SETTLE_S)
+        self.looks = attending.looks(source, self.things, self.head)
         self.gripping = Gripping(source, scene, self.old, self.new)
 
     def reachable_grips(self, most: int = MOST_TURNS) -> tuple[list[Grip], str | None]:
@@ -274,59 +262,6 @@ def _possible(source: Source, scene: Scene, human: Human) -> bool:
         return _Draft(source, scene, human).reachable_grips(FEW_TURNS)[1] is None
     except PlanError:
         return False
-
-
-def _grasps(source: Source) -> dict[str, Float[np.ndarray, "frames"]]:
-    """One in holds; a hand that rests beside a body that leans is kept where it is as well."""
-    out = {}
-    for side, hand in source.hands.items():
-        holds = [hold for hold in source.holds if hold.side == side]
-        firm = _around(source, holds, GRASP_S)
-        out[side] = np.maximum(firm, REST_SHARE * _rests(source, hand.path.translation))
-    return out
-
-
-def _rests(source: Source, spots: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
-    """One where something hardly moves for a while, smoothly falling to zero beside that."""
-    half = max(round(0.5 * GRASP_S * source.rate_hz), 1)
-    padded = np.pad(spots, ((half, half), (0, 0)), mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0)
-    still = (np.ptp(windows, axis=2).max(axis=1) < REST_M).astype(float)
-    mean = np.ones(2 * half + 1) / (2 * half + 1)
-    smooth = np.convolve(np.pad(still, half, mode="edge"), mean, mode="valid")
-    return np.asarray(smooth)
-
-
-def _around(
-    source: Source, spans: Sequence[Hold | Meeting], settle_s: float
-) -> Float[np.ndarray, "frames"]:
-    """One during some spans, smoothly falling to zero on both sides of each."""
-    out = np.zeros(len(source.times))
-    for span in spans:
-        start, end = source.times[span.first], source.times[span.last]
-        away = np.maximum(np.maximum(start - source.times, source.times - end), 0.0)
-        share = np.clip(1.0 - away / settle_s, 0.0, 1.0)
-        out = np.maximum(out, share**3 * (10.0 - 15.0 * share + 6.0 * share**2))
-    return out
-
-
-def _looks(
-    source: Source, things: Mapping[str, RigidTransform], head: RigidTransform
-) -> Float[np.ndarray, "frames 3"]:
-    """The point looked at: a thing that was looked at, else ahead along the line of sight."""
-    points = head.translation + FAR_M * head.rotation.apply([1.0, 0.0, 0.0])
-    for fact in source.observation.facts:
-        if isinstance(fact, LookingAt) and fact.object in things:
-            thing = source.scene.thing(fact.object)
-            if thing.tag is TagType.MOBILE:
-                middle = 0.5 * thing.shape.bounds.sum(axis=0)
-                part = slice(fact.first, fact.last + 1)
-                points[part] = things[fact.object][part].apply(middle)
-    width = max(round(SHIFT_S * source.rate_hz) | 1, 3)
-    window = np.hanning(width + 2)[1:-1]
-    padded = np.pad(points, ((width // 2, width // 2), (0, 0)), mode="edge")
-    columns = [np.convolve(c, window / window.sum(), mode="valid") for c in padded.T]
-    return np.stack(columns, axis=1)
 
 
 def _notes(source: Source, grips: list[Grip], goals: Mapping[str, list[Goal]]) -> tuple[str, ...]:
