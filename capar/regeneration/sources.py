@@ -23,8 +23,14 @@ from capar.regeneration.scenes import Scene
 START_FRAMES = 10
 """Frames from which it is taken where everything is at the beginning [1]."""
 
-SETTLED_M, SETTLED_RAD = 0.0025, float(np.radians(2.0))
-"""While two bodies' relative pose is so near its median, they are rigidly together."""
+SETTLED_M = 0.0025
+"""While two bodies' relative pose is so near its median, they are rigidly together [m]."""
+
+SETTLED_RAD = float(np.radians(2.0))
+"""Likewise the angle [rad]."""
+
+LOOSER = (1.0, 2.0)
+"""Multiples of both that are tried: noisy sensors keep less still [1]."""
 
 SETTLED_SHARE = 0.8
 """Noise may take so small a share of the frames in between out of that [1]."""
@@ -271,11 +277,12 @@ def _settled(relative: RigidTransform) -> tuple[int, int] | None:
     off = np.linalg.norm(spots - np.median(spots, axis=0), axis=1)
     near = off <= np.median(off)
     turned = (relative.rotation * relative.rotation[near].mean().inv()).magnitude()
-    steady = (off < SETTLED_M) & (turned < SETTLED_RAD)
-    frames = np.flatnonzero(steady)
-    if len(frames) < 2 or steady[frames[0] : frames[-1] + 1].mean() < SETTLED_SHARE:
-        return None
-    return int(frames[0]), int(frames[-1])
+    for factor in LOOSER:
+        steady = (off < factor * SETTLED_M) & (turned < factor * SETTLED_RAD)
+        frames = np.flatnonzero(steady)
+        if len(frames) > 1 and steady[frames[0] : frames[-1] + 1].mean() >= SETTLED_SHARE:
+            return int(frames[0]), int(frames[-1])
+    return None
 
 
 def _check_movers(source: Source) -> None:
