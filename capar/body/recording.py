@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.body.anthropometry import Measures
 from capar.body.body_shapes import forms
 from capar.body.form_meshes import form_mesh
 from capar.body.gaze import lines_of_sight
@@ -152,14 +153,15 @@ def _sensor(made: Performance, mount: Mount, stream: Stream) -> Sensor:
         head = _standing_frame(made, "head")
         eye = seat.apply(head.inv().apply(spots[0]))
         ahead = seat.rotation.apply(head.rotation.inv().apply([1.0, 0.0, 0.0]))
+        surface = _moved(segment_surface(made.human.measures, ("head",), "head"), seat)
         return Sensor(
-            "head", "head", "none", "neck", stream, _moved(_surface(made, ("head",), head), seat),
+            "head", "head", "none", "neck", stream, surface,
             Role.ATTENDS, _three(ahead), _three(eye),
         )  # fmt: skip
     shape = None
     if part == "hand":
-        frame = _standing_frame(made, f"{side}_hand")
-        shape = _moved(_surface(made, tuple(f"{side}_{e}" for e in HAND_SEGMENTS), frame), seat)
+        parts = tuple(f"{side}_{each}" for each in HAND_SEGMENTS)
+        shape = _moved(segment_surface(made.human.measures, parts, f"{side}_hand"), seat)
     acts = part in {"hand", "foot"}
     link = f"{side}_{LINKS[part]}" if acts else f"{side}_{part}" if side else mount.place
     return Sensor(
@@ -201,14 +203,14 @@ def _standing_frame(made: Performance, segment: str) -> RigidTransform:
     return RigidTransform.from_translation(origin)
 
 
-def _surface(made: Performance, segments: tuple[str, ...], frame: RigidTransform) -> Shape:
-    """The surface of some segments of the standing body in a frame."""
-    bones = skeleton(made.human.measures)
+def segment_surface(measures: Measures, segments: tuple[str, ...], frame: str) -> Shape:
+    """The surface of some segments of the standing body, in the frame of one of them."""
+    bones = skeleton(measures)
     parts = []
-    for form in forms(made.human.measures, bones):
+    for form in forms(measures, bones):
         if form.body in segments:
             mesh = form_mesh(form)
-            mesh.apply_translation(bones[form.body].origin - frame.translation)
+            mesh.apply_translation(bones[form.body].origin - bones[frame].origin)
             parts.append(mesh)
     mesh = sum(parts[1:], parts[0])
     return Shape(np.array(mesh.vertices), np.array(mesh.faces), description=" and ".join(segments))

@@ -1,0 +1,119 @@
+"""Observe, perform on another body, and observe again: does the same action come out?"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from capar.body.anthropometry import ready_made
+from capar.body.human import Human
+from capar.model.capture import Capture
+from capar.model.facts import Touching
+from capar.model.observation import Observation
+from capar.pipelines.observation import observe
+from capar.pipelines.trials import trial_of
+from capar.regeneration.captures import capture_of
+from capar.regeneration.errors import PlanError
+from capar.regeneration.quality import Quality
+from capar.regeneration.regenerating import regenerate
+from capar.regeneration.scene_files import drawn_scene
+from capar.regeneration.scenes import Scene
+from capar.regeneration.sources import Source, source_of
+
+SAME = "same"
+"""Names the body that was recorded."""
+
+
+@dataclass(frozen=True)
+class Trip:
+    """One performance on another body, observed again."""
+
+    agent: str
+    scene: int
+    """Number of the drawn scene; 0 for the recorded one."""
+
+    refused: str
+    """Why it was not performed; empty where it was."""
+
+    quality: Quality | None
+    same_par: bool
+    same_contacts: bool
+    same_relations: bool
+    names: str
+    """What was done according to the second observation, where that differs."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the same action came out of a good motion."""
+        good = self.quality is not None and self.quality.passed
+        return good and self.same_par and self.same_contacts and self.same_relations
+
+
+def observed_source(capture: Capture | Path | str) -> Source:
+    """A capture, observed and ready to be performed.
+
+    Raises:
+        PlanError: The capture does not determine a performance.
+    """
+    trial = trial_of(capture)
+    return source_of(trial, observe(trial))
+
+
+def body(agent: str, source: Source) -> Human:
+    """The body of an agent: ``man``, ``woman``, ``child``, or ``same`` for the recorded one.
+
+    Raises:
+        UnknownNameError: There is no such agent.
+    """
+    return source.human if agent == SAME else Human.of(ready_made(agent))
+
+
+def round_trips(
+    source: Source, agents: tuple[str, ...], *, scenes: int = 0, seed: int = 0
+) -> Iterator[Trip]:
+    """Perform on every agent in every scene, and observe again.
+
+    Args:
+        source: What was recorded.
+        agents: Who performs.
+        scenes: How many scenes are drawn; 0 performs in the recorded one.
+        seed: Of the scenes.
+    """
+    bodies = {agent: body(agent, source) for agent in agents}
+    for number in range(1, scenes + 1) if scenes else (0,):
+        scene = source.scene
+        if number:
+            scene = drawn_scene(scene, np.random.default_rng([seed, number]))
+        for agent, human in bodies.items():
+            yield _trip(source, agent, human, number, scene)
+
+
+def _trip(source: Source, agent: str, human: Human, number: int, scene: Scene) -> Trip:
+    try:
+        motion, quality = regenerate(source, human, scene)
+    except PlanError as error:
+        return Trip(agent, number, str(error), None, False, False, False, "")
+    made = capture_of(motion, name=source.capture.name, agent=agent)
+    first, again = source.observation, observe(made, rules=source.observation.profile)
+    one, two = first.complex_par, again.complex_par
+    differ = one.signature != two.signature
+    return Trip(
+        agent, number, "", quality,
+        not differ,
+        _contacts(first) == _contacts(again),
+        one.relations == two.relations,
+        _names(again) if differ else "",
+    )  # fmt: skip
+
+
+def _contacts(observation: Observation) -> list[tuple[str, str]]:
+    """Who touched what, in order of time for each pair of bodies."""
+    facts = (each for each in observation.facts if isinstance(each, Touching))
+    return sorted((each.body, each.other) for each in facts)
+
+
+def _names(observation: Observation) -> str:
+    return "; ".join(
+        f"{link.ee}: {' '.join(each.name for each in link.segments)}" for link in observation.links
+    )

@@ -1,0 +1,15 @@
+"""Regeneration: what was observed, performed on another body in another scene, and verified."""
+
+from capar.regeneration.captures import capture_of as capture_of
+from capar.regeneration.captures import write_motion as write_motion
+from capar.regeneration.errors import PlanError as PlanError
+from capar.regeneration.grips import Grip as Grip
+from capar.regeneration.motions import Motion as Motion
+from capar.regeneration.planning import Plan as Plan
+from capar.regeneration.quality import Gate as Gate
+from capar.regeneration.quality import Quality as Quality
+from capar.regeneration.regenerating import regenerate as regenerate
+from capar.regeneration.scenes import Scene as Scene
+from capar.regeneration.sources import Source as Source
+from capar.regeneration.sources import source_of as source_of
+from capar.regeneration.thing_paths import Goal as Goal

@@ -1,0 +1,79 @@
+"""A motion as a capture, so that it can be observed again."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from capar.body import things
+from capar.body.bundles import write_bundle
+from capar.body.performing import Performance
+from capar.body.recording import Truth, record
+from capar.body.sensing import PERFECT, Tracker
+from capar.model.capture import Agent, Capture
+from capar.regeneration.motions import Motion
+
+
+def capture_of(
+    motion: Motion, *, name: str, agent: str, tracker: Tracker = PERFECT, seed: int = 0
+) -> Capture:
+    """What a tracker would have recorded of a motion.
+
+    Args:
+        motion: What was done.
+        name: Of the capture.
+        agent: Name of the performer.
+        tracker: Its faults; none, unless stated.
+        seed: Of its faults.
+    """
+    plan = motion.plan
+    measures = plan.human.measures
+    kind = "child" if measures.adult_share < 0.5 else measures.adult
+    stated = {each: round(value, 4) for each, value in measures.values.items()}
+    made = Performance(
+        human=plan.human,
+        scene=things.Scene(plan.scene.things),
+        script=(),
+        times=np.array(plan.source.times),
+        motion=motion.postures,
+        things=plan.things,
+        phases=(),
+        gazes=plan.looks,
+        looks=(),
+        slip_m={},
+    )
+    return record(
+        made,
+        name=name,
+        seed=seed,
+        tracker=tracker,
+        sensors=(*(f"{side}_hand" for side in plan.hands), "head"),
+        agent=Agent(agent, kind, {"age": measures.age, **stated}),
+    )
+
+
+def write_motion(motion: Motion, capture: Capture, folder: Path) -> None:
+    """Write a motion's capture as a bundle, with what was planned as the truth beside it."""
+    write_bundle(capture, _truth(motion), folder)
+
+
+def _truth(motion: Motion) -> Truth:
+    times = motion.plan.source.times
+    contacts = sorted(
+        (first, second, float(times[a]), float(times[b]))
+        for first, second, a, b in _contacts(motion)
+    )
+    goals = motion.plan.goals.items()
+    moves = tuple((n, float(times[g[0].frame]), float(times[g[-1].frame])) for n, g in goals)
+    phases = tuple(
+        (f"{each.ee}_{each.index}_{each.name}", float(times[each.first]), float(times[each.last]))
+        for each in motion.plan.source.observation.segments
+    )
+    return Truth(tuple(contacts), moves, phases, ())
+
+
+def _contacts(motion: Motion) -> Iterator[tuple[str, str, int, int]]:
+    for hold in motion.plan.source.holds:
+        yield f"{hold.side}_hand", hold.thing, hold.first, hold.last
+    for meeting in motion.plan.source.meetings:
+        yield meeting.thing, meeting.part, meeting.first, meeting.last

@@ -1,0 +1,152 @@
+"""Distances between a body and the things of a scene, by MuJoCo on convex parts."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import trimesh
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.human import Human
+from capar.body.model import body_spec
+from capar.model.capture import Shape
+from capar.regeneration.scenes import Scene
+
+NEAR_M = 0.08
+"""Larger distances are not measured [m]."""
+
+HOLLOW = 0.98
+"""A thing that fills a smaller share of its hull is hollow [1]."""
+
+SAMPLES = 4000
+"""Points on the surface of a hollow thing."""
+
+
+@dataclass(frozen=True, order=True)
+class Pair:
+    """The distance between two bodies; negative where they cut [m]."""
+
+    distance_m: float
+    part: str
+    thing: str
+
+
+class Surroundings:
+    """A body and the things of a scene, to be posed and measured."""
+
+    def __init__(self, human: Human, scene: Scene) -> None:
+        self.scene = scene
+        spec = body_spec(human.measures)
+        for name, thing in scene.things.items():
+            _add_thing(spec, name, np.array(thing.shape.vertices))
+        self.model = spec.compile()
+        self.data = mujoco.MjData(self.model)
+        self.bodies = {n: self.model.body(f"thing_{n}").mocapid[0] for n in scene.things}
+        self.geoms = {n: int(self.model.body(f"thing_{n}").geomadr[0]) for n in scene.things}
+        things = set(self.geoms.values())
+        self.parts = {
+            geom: self.model.body(int(self.model.geom_bodyid[geom])).name
+            for geom in range(self.model.ngeom)
+            if geom not in things
+        }
+        self.hollow = {n: _surface_points(t.shape) for n, t in scene.things.items()}
+
+    def pose(
+        self, posture: Float[np.ndarray, "posture"], things: Mapping[str, RigidTransform]
+    ) -> None:
+        """Put the body and the things somewhere."""
+        self.data.qpos[:] = posture
+        for name, pose in things.items():
+            self.data.mocap_pos[self.bodies[name]] = pose.translation
+            self.data.mocap_quat[self.bodies[name]] = pose.rotation.as_quat(scalar_first=True)
+        mujoco.mj_kinematics(self.model, self.data)
+
+    def near(self, parts: Iterable[str] | None = None) -> list[Pair]:
+        """Distances of parts of the body, or of all, from the things near them."""
+        wanted = None if parts is None else set(parts)
+        out = []
+        for geom, part in self.parts.items():
+            if wanted is None or part in wanted:
+                for name, other in self.geoms.items():
+                    found = self._distance(geom, other)
+                    if found < 0.0 and self.hollow[name] is not None:
+                        found = max(found, self._outside(geom, name))
+                    if found < NEAR_M:
+                        out.append(Pair(found, part, name))
+        return out
+
+    def things_near(self) -> list[Pair]:
+        """Distances between things near each other."""
+        names = sorted(self.geoms)
+        out = []
+        for number, first in enumerate(names):
+            for second in names[number + 1 :]:
+                found = self._distance(self.geoms[first], self.geoms[second])
+                if found < NEAR_M:
+                    out.append(Pair(found, first, second))
+        return out
+
+    def _distance(self, first: int, second: int) -> float:
+        # The bound of a geom's sphere; mj_geomDistance of what is far apart takes as long.
+        apart = np.linalg.norm(self.data.geom_xpos[first] - self.data.geom_xpos[second])
+        reach = self.model.geom_rbound[first] + self.model.geom_rbound[second]
+        if apart - reach > NEAR_M:
+            return NEAR_M
+        return float(mujoco.mj_geomDistance(self.model, self.data, first, second, NEAR_M, None))
+
+    def _outside(self, geom: int, name: str) -> float:
+        """How far the surface of a hollow thing is outside of a part; not above zero [m]."""
+        points = self.hollow[name]
+        assert points is not None
+        mocap = self.bodies[name]
+        pose = RigidTransform.from_components(
+            self.data.mocap_pos[mocap],
+            _rotation(self.data.mocap_quat[mocap]),
+        )
+        turn = self.data.geom_xmat[geom].reshape(3, 3)
+        local = (pose.apply(points) - self.data.geom_xpos[geom]) @ turn
+        return float(min(_depths(local, self.model, geom).min(), 0.0))
+
+
+def _rotation(quaternion: Float[np.ndarray, "4"]) -> Rotation:
+    return Rotation.from_quat(np.array(quaternion), scalar_first=True)
+
+
+def _depths(
+    points: Float[np.ndarray, "points 3"], model: mujoco.MjModel, geom: int
+) -> Float[np.ndarray, "points"]:
+    """Signed distances of points from a primitive in its own frame [m]."""
+    size, kind = model.geom_size[geom], model.geom_type[geom]
+    if kind == mujoco.mjtGeom.mjGEOM_BOX:
+        off = np.abs(points) - size
+        outside = np.linalg.norm(np.maximum(off, 0.0), axis=1)
+        return np.asarray(outside + np.minimum(off.max(axis=1), 0.0))
+    if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
+        axis = np.clip(points[:, 2], -size[1], size[1])
+        apart = points - np.stack([0 * axis, 0 * axis, axis], axis=1)
+        return np.asarray(np.linalg.norm(apart, axis=1) - size[0])
+    # To first order: the implicit function over the length of its gradient.
+    scaled = np.linalg.norm(points / size, axis=1)
+    slope = np.linalg.norm(points / size**2, axis=1)
+    return np.asarray(scaled * (scaled - 1.0) / np.maximum(slope, 1e-9))
+
+
+def _surface_points(shape: Shape) -> Float[np.ndarray, "points 3"] | None:
+    """Points on a hollow shape's surface; None where its hull is its shape."""
+    mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
+    if abs(mesh.volume) > HOLLOW * mesh.convex_hull.volume:
+        return None
+    points, _ = trimesh.sample.sample_surface(mesh, SAMPLES, seed=0)
+    return np.concatenate([np.array(shape.vertices), np.array(points)])
+
+
+def _add_thing(spec: mujoco.MjSpec, name: str, vertices: Float[np.ndarray, "vertices 3"]) -> None:
+    hull = trimesh.convex.convex_hull(vertices)
+    mesh = spec.add_mesh(name=f"mesh_{name}")
+    mesh.uservert = np.array(hull.vertices).ravel()
+    mesh.userface = np.array(hull.faces).ravel()
+    mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+    body = spec.worldbody.add_body(name=f"thing_{name}", mocap=True)
+    body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name, contype=0, conaffinity=0)

@@ -1,0 +1,174 @@
+"""How the new hand lies on the new thing: the same points touch, turned as little as may be."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.recording import HAND_SEGMENTS, segment_surface
+from capar.body.things import Thing
+from capar.model.capture import Sensor, Shape
+from capar.regeneration.body_frames import BodyFrames
+from capar.regeneration.collisions import Surroundings
+from capar.regeneration.contact_points import contact_points
+from capar.regeneration.scenes import Scene
+from capar.regeneration.solving import Solver
+from capar.regeneration.sources import Hold, Source
+from capar.regeneration.thing_paths import touching_shift
+
+YAWS = (0.0, 0.2, -0.2, 0.4, -0.4, 0.6, -0.6, 0.8, -0.8, 1.05, -1.05)
+"""Turns about the axis of a round thing that are tried, outwards positive [rad]."""
+
+PITCHES = (0.0, 0.15, -0.15, 0.3, -0.3, 0.5, -0.5)
+"""Turns about the normal of the palm that are tried [rad]."""
+
+TILTS = (0.0, -0.1, 0.1, -0.2, 0.2, 0.3)
+"""Turns across the palm, fingers to the thing positive, that are tried without others [rad]."""
+
+PITCH_WEIGHT, TILT_WEIGHT = 2.0, 4.0
+"""How much worse these turns are than one about a round thing [1]."""
+
+CLEAR_M = 0.014
+"""How far a hand stays above what the thing stands on, if it did so before [m]."""
+
+ROUND_SHARE = 0.02
+"""Largest deviation of a round thing's radius [1]."""
+
+
+@dataclass(frozen=True)
+class Turn:
+    """How far a grip is turned from the recorded one."""
+
+    yaw: float = 0.0
+    """About the axis of a round thing [rad]."""
+
+    pitch: float = 0.0
+    """About the normal of the palm [rad]."""
+
+    tilt: float = 0.0
+    """Across the palm, the fingers towards the thing [rad]."""
+
+    @property
+    def size(self) -> float:
+        """How much worse than none it is [rad]."""
+        return abs(self.yaw) + PITCH_WEIGHT * abs(self.pitch) + TILT_WEIGHT * abs(self.tilt)
+
+
+@dataclass(frozen=True, eq=False)
+class Grip:
+    """Where a hand lies on a thing."""
+
+    hold: Hold
+    pose: RigidTransform
+    """``T_thing_hand``, the frame on the hand."""
+
+    turn: Turn
+    raised_m: float
+    """How far it was raised to stay clear of what the thing stands on [m]."""
+
+
+def turns(thing: Thing) -> Iterator[Turn]:
+    """The turns to try on a thing, the smallest first."""
+    yaws = YAWS if is_round(thing.shape) else YAWS[:1]
+    found = [Turn(yaw, pitch) for yaw in yaws for pitch in PITCHES]
+    found += [Turn(tilt=tilt) for tilt in TILTS[1:]]
+    yield from sorted(found, key=lambda each: each.size)
+
+
+def is_round(shape: Shape) -> bool:
+    """Whether a shape's outline from above is a circle about its z axis."""
+    hull = trimesh.convex.convex_hull(np.array(shape.vertices))
+    radii = np.linalg.norm(hull.vertices[:, :2], axis=1)
+    outer = radii[radii > 0.5 * radii.max()]
+    return len(outer) >= 16 and bool(np.ptp(outer) < ROUND_SHARE * radii.max())
+
+
+class Gripping:
+    """Grips of one body on the things of one scene."""
+
+    def __init__(self, source: Source, scene: Scene, old: BodyFrames, new: BodyFrames) -> None:
+        self.source, self.scene, self.old, self.new = source, scene, old, new
+        self.around = Surroundings(new.human, scene)
+        self.posture = Solver(new.human, (*scene.place, scene.floor_m), scene.heading).rest
+        self.recorded = {hold: self._recorded(hold) for hold in source.holds}
+
+    def grip(self, hold: Hold, turn: Turn) -> Grip:
+        """The recorded grip in the new measures, turned, touching, and clear of the support."""
+        relative, on_hand, on_thing = self.recorded[hold]
+        before = self.source.scene.thing(hold.thing)
+        after = self.scene.thing(hold.thing)
+        track = self.source.hands[hold.side]
+        point = on_hand * self.new.hands[hold.side].extents / track.frame.extents
+        spot = on_thing * after.size / np.maximum(before.size, 1e-9)
+        gap = relative.apply(on_hand) - on_thing
+        turned = relative.rotation * Rotation.from_euler("ZY", [turn.pitch, turn.tilt])
+        pose = RigidTransform.from_components(spot + gap - turned.apply(point), turned)
+        if is_round(after.shape):
+            pose = RigidTransform.from_rotation(self._about(hold, turn)) * pose
+        raised = self._raise(hold, pose)
+        pose = RigidTransform.from_translation([0.0, 0.0, raised]) * pose
+        return Grip(hold, self._touching(hold, pose), turn, raised)
+
+    def _recorded(
+        self, hold: Hold
+    ) -> tuple[RigidTransform, Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+        """``T_thing_hand`` and the middle of the contact on the hand's frame and on the thing."""
+        track = self.source.hands[hold.side]
+        part = slice(hold.first, hold.last + 1)
+        poses = self.source.paths[hold.thing][part].inv() * track.path[part]
+        spot = np.median(poses.translation, axis=0)
+        relative = RigidTransform.from_components(spot, poses.rotation.mean())
+        sensor = self.source.capture.sensor(track.sensor)
+        hand = _hand_shape(sensor, track.frame.pose)
+        shape = self.source.scene.thing(hold.thing).shape
+        on_hand, on_thing = contact_points(hand, shape, relative.inv())
+        return relative, on_hand, on_thing
+
+    def _about(self, hold: Hold, turn: Turn) -> Rotation:
+        """A round thing is gripped as seen from where the performer faces."""
+        old, new = self.source.scene, self.scene
+        facing = (new.heading - new.thing(hold.thing).heading) - (
+            old.heading - old.thing(hold.thing).heading
+        )
+        outwards = -turn.yaw if hold.side == "right" else turn.yaw
+        return Rotation.from_euler("z", facing + outwards)
+
+    def _raise(self, hold: Hold, pose: RigidTransform) -> float:
+        """How much higher the hand has to be to stay clear of what the thing stands on [m]."""
+        if not self.scene.support(hold.thing):
+            return 0.0
+        track = self.source.hands[hold.side]
+        sensor = self.source.capture.sensor(track.sensor)
+        shape = _hand_shape(sensor, track.frame.pose)
+        before = self._above(self.source.scene, hold, self.recorded[hold][0], shape)
+        names = tuple(f"{hold.side}_{each}" for each in HAND_SEGMENTS)
+        surface = segment_surface(self.new.human.measures, names, f"{hold.side}_hand")
+        local = self.new.hands[hold.side].pose.inv().apply(np.array(surface.vertices))
+        own = Shape(local, np.array(surface.faces))
+        return max(0.0, min(CLEAR_M, before) - self._above(self.scene, hold, pose, own))
+
+    def _above(self, scene: Scene, hold: Hold, pose: RigidTransform, hand: Shape) -> float:
+        low = scene.thing(hold.thing).shape.bounds[0, 2]
+        return float(pose.apply(np.array(hand.vertices))[:, 2].min() - low)
+
+    def _touching(self, hold: Hold, pose: RigidTransform) -> RigidTransform:
+        """The hand moved along its palm's normal until it touches."""
+        rest, side = self.new.rest[hold.side], hold.side
+        names = [f"{side}_{each}" for each in HAND_SEGMENTS]
+
+        def apart(by_m: float) -> float:
+            away = pose * RigidTransform.from_translation([0.0, 0.0, -by_m])
+            self.around.pose(self.posture, {hold.thing: rest * away.inv()})
+            found = (p.distance_m for p in self.around.near(names) if p.thing == hold.thing)
+            return min(found, default=1.0)
+
+        return pose * RigidTransform.from_translation([0.0, 0.0, -touching_shift(apart)])
+
+
+def _hand_shape(sensor: Sensor, frame: RigidTransform) -> Shape:
+    """The recorded hand's surface in the frame on it."""
+    assert sensor.shape is not None  # checked when the source was made
+    return Shape(frame.inv().apply(np.array(sensor.shape.vertices)), np.array(sensor.shape.faces))

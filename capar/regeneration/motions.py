@@ -1,0 +1,33 @@
+"""The motion of a whole body that does what a plan says, and what it comes to."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.regeneration.planning import Plan
+from capar.regeneration.solving import Solver
+
+SETTLING = 60
+"""Iterations for the first frame."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A body's postures along a plan."""
+
+    plan: Plan
+    postures: Float[np.ndarray, "frames posture"]
+
+
+def perform_plan(plan: Plan) -> Motion:
+    """Follow a plan frame by frame."""
+    scene = plan.scene
+    solver = Solver(plan.human, (*scene.place, scene.floor_m), scene.heading)
+    solver.follow(plan.targets(0), most=SETTLING)
+    solver.frame.bound(1.0 / plan.source.rate_hz)
+    postures = np.empty((len(plan.source.times), len(solver.posture)))
+    for frame in range(len(postures)):
+        solver.follow(plan.targets(frame))
+        postures[frame] = solver.posture
+    return Motion(plan, postures)

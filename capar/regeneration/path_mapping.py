@@ -1,0 +1,125 @@
+"""A recorded path led from another start to another goal, with its shape and its timing."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+SHORT_M = 0.05
+"""A shorter way from start to goal has no direction of its own [m]."""
+
+SMALLEST_M = 1e-6
+"""Added to the way of every frame, so that time is a function of the way [m]."""
+
+
+@dataclass(frozen=True)
+class Detour:
+    """What is added to a path between its ends so that it clears the scene."""
+
+    lift_m: float = 0.0
+    """How far it is lifted half-way [m]."""
+
+    back_m: float = 0.0
+    """How far it is drawn back, towards the performer, half-way [m]."""
+
+    def offset(
+        self, shares: Float[np.ndarray, "frames"], heading: float
+    ) -> Float[np.ndarray, "frames 3"]:
+        """The added displacement at shares of the way [m]."""
+        back = self.back_m * np.array([-np.cos(heading), -np.sin(heading), 0.0])
+        bump = 4.0 * shares * (1.0 - shares)
+        return np.outer(bump, back + np.array([0.0, 0.0, self.lift_m]))
+
+
+STRAIGHT = Detour()
+
+
+def way(positions: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
+    """Length of the path up to each frame [m], strictly increasing."""
+    steps = np.linalg.norm(np.diff(positions, axis=0), axis=1) + SMALLEST_M
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def arc_shares(positions: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
+    """Share of the way covered at each frame: VelStyle of the path (thesis eq. 4.1) [1]."""
+    covered = way(positions)
+    return np.asarray(covered / covered[-1])
+
+
+def mapped(
+    path: RigidTransform,
+    start: RigidTransform,
+    goal: RigidTransform,
+    *,
+    turn: float = 0.0,
+    detour: Detour = STRAIGHT,
+    heading: float = 0.0,
+) -> RigidTransform:
+    """A path with other ends.
+
+    What deviates from the straight way is kept in metres and turned with the way; the share of
+    the path's length that is covered at each frame stays the same.
+
+    Args:
+        path: As it was recorded; the last frame is the goal's.
+        start: Where the new one begins.
+        goal: Where it ends.
+        turn: How far the deviations are turned about z where the way has no direction [rad].
+        detour: What is added between the ends.
+        heading: Which way the performer faces [rad].
+    """
+    old = path.translation
+    shares = arc_shares(old)
+    along = _along(old, shares)
+    chord, new = old[-1] - old[0], goal.translation - start.translation
+    angle = _turn(chord, new, turn)
+    about = Rotation.from_euler("z", angle)
+    aside = about.apply(old - old[0] - np.outer(along, chord))
+    spots = start.translation + np.outer(along, new) + aside
+    spots = spots + detour.offset(shares, heading)
+    spots = _retimed(spots, shares)
+    return RigidTransform.from_components(
+        spots, _turns(path.rotation, start.rotation, goal.rotation, shares, about)
+    )
+
+
+def _along(
+    old: Float[np.ndarray, "frames 3"], shares: Float[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames"]:
+    """How far along the straight way each frame is; by the path's length where that is short."""
+    chord = old[-1] - old[0]
+    length = float(np.linalg.norm(chord))
+    return np.asarray((old - old[0]) @ chord / length**2) if length > SHORT_M else shares
+
+
+def _turn(old: Float[np.ndarray, "3"], new: Float[np.ndarray, "3"], usual: float) -> float:
+    """How far the way has turned about z [rad]."""
+    if min(np.hypot(*old[:2]), np.hypot(*new[:2])) < SHORT_M:
+        return usual
+    return float(np.arctan2(new[1], new[0]) - np.arctan2(old[1], old[0]))
+
+
+def _retimed(
+    spots: Float[np.ndarray, "frames 3"], shares: Float[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames 3"]:
+    """The same path with a given share of its length covered at each frame."""
+    covered = arc_shares(spots)
+    return np.stack([np.interp(shares, covered, column) for column in spots.T], axis=1)
+
+
+def _turns(
+    old: Rotation,
+    first: Rotation,
+    last: Rotation,
+    shares: Float[np.ndarray, "frames"],
+    about: Rotation,
+) -> Rotation:
+    """The old deviations from an even turn, on the even turn between the new ends."""
+    deviation = old * _even(old[0], old[-1], shares).inv()
+    return about * deviation * about.inv() * _even(first, last, shares)
+
+
+def _even(first: Rotation, last: Rotation, shares: Float[np.ndarray, "frames"]) -> Rotation:
+    axis = (last * first.inv()).as_rotvec()
+    return Rotation.from_rotvec(np.outer(shares, axis)) * first

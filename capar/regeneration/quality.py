@@ -1,0 +1,289 @@
+"""What a motion is worth: every gate with what was measured and its limit."""
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.human import ROOT_SIZE
+from capar.regeneration.collisions import Pair, Surroundings
+from capar.regeneration.motions import Motion
+from capar.regeneration.path_mapping import way
+from capar.regeneration.sources import SETTLED_M, Hold
+
+LEAVING_S = 0.3
+"""So long before and after a hold a hand may be near what stands beside [s]."""
+
+TAKING_S = 0.5
+"""Likewise near what it holds [s]."""
+
+MOVING_M = 0.05
+"""A shorter path has no profile of speed [m]."""
+
+
+@dataclass(frozen=True)
+class Gate:
+    """One thing that is demanded of a motion."""
+
+    name: str
+    value: float
+    limit: float
+    unit: str
+    at_least: bool = False
+    """Whether the value has to reach the limit; else it has to stay within."""
+
+    frame: int = -1
+    """Where it was worst; -1 where no frame stands out."""
+
+    bodies: str = ""
+    """What it was worst of."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is as demanded; a value that is no number is not."""
+        return self.value >= self.limit if self.at_least else self.value <= self.limit
+
+
+@dataclass(frozen=True)
+class Measure:
+    """Something that is told of a motion and not demanded."""
+
+    name: str
+    value: float
+    unit: str
+    frame: int = -1
+    bodies: str = ""
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Every gate of one motion."""
+
+    gates: tuple[Gate, ...]
+    told: tuple[Measure, ...] = ()
+
+    @property
+    def passed(self) -> bool:
+        """Whether every gate is."""
+        return all(gate.passed for gate in self.gates)
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """Names of the gates that are not."""
+        return tuple(gate.name for gate in self.gates if not gate.passed)
+
+    def gate(self, name: str) -> Gate:
+        """The gate of that name."""
+        return next(each for each in self.gates if each.name == name)
+
+
+def quality(motion: Motion) -> Quality:
+    """Verify a motion at every frame."""
+    hands = _hands(motion)
+    errors = _errors(motion, hands)
+    contacts, thumb = _contact_gates(motion)
+    gates = (
+        *_constraint_gates(motion, errors),
+        *contacts,
+        *_body_gates(motion),
+        _still_gate(motion),
+        _profile_gate(motion, hands),
+    )
+    return Quality(gates, (thumb,))
+
+
+def _hands(motion: Motion) -> dict[str, RigidTransform]:
+    """``T_world_hand`` of the body as it moved."""
+    plan = motion.plan
+    names = [f"{side}_palm" for side in plan.hands]
+    sites = plan.human.sites(motion.postures, names)
+    out = {}
+    for side in plan.hands:
+        spots, turns = sites[f"{side}_palm"]
+        turn = Rotation.from_quat(turns, scalar_first=True)
+        out[side] = RigidTransform.from_components(spots, turn) * plan.frames.palms[side].inv()
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class _Error:
+    """How far a hand is from its place on what it holds."""
+
+    hold: Hold
+    metres: Float[np.ndarray, "frames"]
+    radians: Float[np.ndarray, "frames"]
+
+
+def _errors(motion: Motion, hands: dict[str, RigidTransform]) -> list[_Error]:
+    out = []
+    for grip in motion.plan.grips:
+        hold = grip.hold
+        part = slice(hold.first, hold.last + 1)
+        off = grip.pose.inv() * motion.plan.things[hold.thing][part].inv() * hands[hold.side][part]
+        out.append(_Error(hold, np.linalg.norm(off.translation, axis=1), off.rotation.magnitude()))
+    return out
+
+
+def _constraint_gates(motion: Motion, errors: list[_Error]) -> Iterator[Gate]:
+    plan = motion.plan
+    frames = {f for e in errors for f in (e.hold.first, e.hold.last)}
+    frames |= {goal.frame for goals in plan.goals.values() for goal in goals}
+    at, way_m, turned = (0.0, -1, ""), (0.0, -1, ""), (0.0, -1, "")
+    for error in errors:
+        names = f"{error.hold.side} hand, {error.hold.thing}"
+        for row in range(len(error.metres)):
+            frame = error.hold.first + row
+            way_m = max(way_m, (error.metres[row], frame, names))
+            if frame in frames:
+                at = max(at, (error.metres[row], frame, names))
+                turned = max(turned, (error.radians[row], frame, names))
+    head = _head_error(motion)
+    at = max(at, head)
+    yield Gate("event position", 1e3 * at[0], 1.0, "mm", False, at[1], at[2])
+    yield Gate("event rotation", float(np.degrees(turned[0])), 1.0, "deg", False, *turned[1:])
+    yield Gate("on the way", 1e3 * way_m[0], 2.0, "mm", False, way_m[1], way_m[2])
+
+
+def _head_error(motion: Motion) -> tuple[float, int, str]:
+    """How far the head is from where a thing meets it, at worst [m]."""
+    plan, worst = motion.plan, (0.0, -1, "")
+    spots, _ = plan.human.sites(motion.postures, ["between_eyes"])["between_eyes"]
+    for meeting in plan.source.meetings:
+        frame = (meeting.first + meeting.last) // 2
+        for each in (meeting.first, frame, meeting.last):
+            off = float(np.linalg.norm(spots[each] - plan.head.translation[frame]))
+            worst = max(worst, (off, each, f"{meeting.thing}, {meeting.part}"))
+    return worst
+
+
+def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
+    """Penetration of anything, and how far free hands keep from what they do not touch.
+
+    A thumb is not posed, and its mannequin's base stands out from the palm: what it cuts of the
+    thing that its hand takes is told apart.
+    """
+    plan = motion.plan
+    around = Surroundings(plan.human, plan.scene)
+    far = (Pair(np.inf, "", ""), -1)
+    deepest, nearest, thumb = far, far, far
+    for frame in range(len(motion.postures)):
+        around.pose(motion.postures[frame], {n: p[frame] for n, p in plan.things.items()})
+        for pair in around.near():
+            side = pair.part.partition("_")[0]
+            if pair.part.endswith("_thumb") and _takes(motion, side, pair.thing, frame):
+                thumb = min(thumb, (pair, frame))
+                continue
+            deepest = min(deepest, (pair, frame))
+            if side in plan.hands and _is_hand(pair.part) and _is_free(motion, pair, frame):
+                nearest = min(nearest, (pair, frame))
+        for pair in around.things_near():
+            deepest = min(deepest, (pair, frame))
+    gates = [
+        _distance_gate("penetration", -1.0, *deepest),
+        _distance_gate("free hand clear", 10.0, *nearest),
+    ]
+    pair, frame = thumb
+    bodies = f"{pair.part}, {pair.thing}"
+    return gates, Measure("thumb and what it holds", 1e3 * pair.distance_m, "mm", frame, bodies)
+
+
+def _distance_gate(name: str, limit_mm: float, pair: Pair, frame: int) -> Gate:
+    bodies = f"{pair.part}, {pair.thing}" if pair.part else ""
+    return Gate(name, 1e3 * pair.distance_m, limit_mm, "mm", True, frame, bodies)
+
+
+def _is_hand(part: str) -> bool:
+    return part.endswith(("_hand", "_fingers", "_fingertips"))
+
+
+def _is_free(motion: Motion, pair: Pair, frame: int) -> bool:
+    """Whether a hand holds nothing, nor just did nor is about to, least of all that thing."""
+    side = pair.part.partition("_")[0]
+    holds = _holds(motion, side)
+    if _takes(motion, side, pair.thing, frame):
+        return False
+    return not any(_near_hold(motion, hold, frame, LEAVING_S) for hold in holds)
+
+
+def _takes(motion: Motion, side: str, thing: str, frame: int) -> bool:
+    """Whether a hand holds that thing, or is about to, or has just let it go."""
+    own = (hold for hold in _holds(motion, side) if hold.thing == thing)
+    return any(_near_hold(motion, hold, frame, TAKING_S) for hold in own)
+
+
+def _holds(motion: Motion, side: str) -> list[Hold]:
+    return [hold for hold in motion.plan.source.holds if hold.side == side]
+
+
+def _near_hold(motion: Motion, hold: Hold, frame: int, span_s: float) -> bool:
+    span = span_s * motion.plan.source.rate_hz
+    return hold.first - span <= frame <= hold.last + span
+
+
+def _body_gates(motion: Motion) -> Iterator[Gate]:
+    plan, postures = motion.plan, motion.postures
+    feet = plan.human.sites(postures, ["right_foot", "left_foot"])
+    slid = {n: np.linalg.norm(spots - spots[0], axis=1) for n, (spots, _) in feet.items()}
+    foot = max(slid, key=lambda name: float(slid[name].max()))
+    yield Gate(
+        "feet", 1e3 * float(slid[foot].max()), 3.0, "mm", False, int(slid[foot].argmax()), foot
+    )
+    low, high = plan.human.ranges.T
+    angles = postures[:, ROOT_SIZE:]
+    out = np.maximum(np.maximum(low - angles, angles - high), 0.0)
+    frame, hinge = np.unravel_index(int(out.argmax()), out.shape)
+    yield Gate(
+        "joint limits", float(np.degrees(out.max())), 0.01, "deg", False,
+        int(frame), plan.human.joints[int(hinge)],
+    )  # fmt: skip
+    speeds = np.abs(np.diff(angles, axis=0)) * plan.source.rate_hz
+    frame, hinge = np.unravel_index(int(speeds.argmax()), speeds.shape)
+    yield Gate(
+        "joint speed", float(speeds.max()), 15.0, "rad/s", False,
+        int(frame), plan.human.joints[int(hinge)],
+    )  # fmt: skip
+    hips = np.linalg.norm(np.diff(postures[:, :3], axis=0), axis=1) * plan.source.rate_hz
+    yield Gate("pelvis speed", float(hips.max()), 1.5, "m/s", False, int(hips.argmax()))
+
+
+def _still_gate(motion: Motion) -> Gate:
+    """What no hand holds stays where it is."""
+    plan, worst = motion.plan, (0.0, -1, "")
+    for name, path in plan.things.items():
+        steps = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
+        for hold in plan.source.holds:
+            if hold.thing == name:
+                steps[hold.first : hold.last] = 0.0
+        worst = max(worst, (float(steps.max()), int(steps.argmax()), name))
+    return Gate("things not held", 1e3 * worst[0], 0.5, "mm a frame", False, *worst[1:])
+
+
+def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
+    """Correlation of the speeds of hands along their paths with the recorded ones, at worst."""
+    plan, worst = motion.plan, (1.0, -1, "")
+    for side, hand in hands.items():
+        new, old = hand.translation, plan.source.hands[side].path.translation
+        if min(way(new)[-1], way(old)[-1]) < MOVING_M + 2.0 * SETTLED_M:
+            continue
+        for first, last in _pieces(motion, side):
+            one, two = (np.diff(way(p[first : last + 1])) for p in (new, old))
+            if min(one.sum(), two.sum()) >= MOVING_M and len(one) > 3:
+                value = float(np.corrcoef(one, two)[0, 1])
+                worst = min(worst, (value, first, f"{side} hand"))
+    return Gate("speed profile", worst[0], 0.98, "r", True, worst[1], worst[2])
+
+
+def _pieces(motion: Motion, side: str) -> list[tuple[int, int]]:
+    """Stretches between events of a hand."""
+    plan = motion.plan
+    edges = {0, len(motion.postures) - 1}
+    for hold in plan.source.holds:
+        if hold.side == side:
+            edges |= {hold.first, hold.last}
+            inner = {g.frame for g in plan.goals.get(hold.thing, [])}
+            edges |= {f for f in inner if hold.first <= f <= hold.last}
+    ordered = sorted(edges)
+    return list(itertools.pairwise(ordered))

@@ -1,0 +1,133 @@
+"""Scenes that are not as they were recorded: from a file, or drawn at random by a seed."""
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from capar.model.capture import TagType
+from capar.model.errors import FileError
+from capar.regeneration.scenes import Scene, mobile, moved, raised, resized
+
+HEIGHTS_M = (0.6, 1.1)
+"""Heights of the table that are drawn [m]."""
+
+SIZES = (0.7, 1.4)
+"""Sizes of what can be moved, of the recorded [1]."""
+
+ASIDE_M = 0.1
+"""How far from its place a thing is drawn along each axis [m]."""
+
+DRAWS = 200
+APART_M = 0.02
+"""How far drawn things are apart at least [m]."""
+
+KEYS = {"position", "turn_deg", "size", "raise_m"}
+STANCE_KEYS = {"place", "heading_deg", "floor_m"}
+
+
+def read_scene(path: Path, scene: Scene) -> Scene:
+    """The recorded scene with the changes that a TOML file states.
+
+    ``[stance]`` has ``place`` [m], ``heading_deg`` and ``floor_m``; ``[object.NAME]`` has ``size``
+    (a factor), ``position`` of its origin [m], ``turn_deg`` about the vertical, and ``raise_m``,
+    which takes along what stands on it.
+
+    Raises:
+        FileError: The file cannot be read, or says something else.
+        UnknownNameError: It names an object that is not there.
+    """
+    try:
+        table = tomllib.loads(path.read_text("utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise FileError(path, f"is no TOML: {error}.", "See `capar regenerate --help`.") from None
+    _check_keys(path, "the file", table, {"stance", "object"})
+    for name, row in table.get("object", {}).items():
+        scene = _changed(path, scene, name, row)
+    stance = table.get("stance", {})
+    _check_keys(path, "[stance]", stance, STANCE_KEYS)
+    x, y = _numbers(path, "stance.place", stance.get("place", scene.place), 2)
+    heading = _number(path, "heading_deg", stance.get("heading_deg", np.degrees(scene.heading)))
+    floor = _number(path, "floor_m", stance.get("floor_m", scene.floor_m))
+    return replace(scene, place=(x, y), heading=float(np.radians(heading)), floor_m=floor)
+
+
+def drawn_scene(scene: Scene, rng: np.random.Generator) -> Scene:
+    """A scene with other sizes and places, its first fixed thing as high as a table may be."""
+    for name in mobile(scene):
+        scene = resized(scene, name, float(rng.uniform(*SIZES)))
+    fixed = [name for name, thing in scene.things.items() if thing.tag is TagType.FIXED]
+    if fixed:
+        thing = scene.thing(fixed[0])
+        top = thing.place[2] + float(thing.shape.bounds[1, 2])
+        scene = raised(scene, fixed[0], float(rng.uniform(*HEIGHTS_M)) - top)
+    for _ in range(DRAWS):
+        found = scene
+        for name in mobile(scene):
+            x, y, z = scene.thing(name).place
+            dx, dy = rng.uniform(-ASIDE_M, ASIDE_M, 2)
+            found = moved(found, name, (x + dx, y + dy, z), scene.thing(name).heading)
+        if _sound(scene, found):
+            return found
+    return scene
+
+
+def _sound(before: Scene, after: Scene) -> bool:
+    """Whether everything stands on what it stood on, and apart from the others."""
+    names = mobile(after)
+    boxes = {
+        n: after.thing(n).pose.apply(np.array(after.thing(n).shape.vertices))[:, :2] for n in names
+    }
+    for number, first in enumerate(names):
+        if after.support(first) != before.support(first):
+            return False
+        for second in names[number + 1 :]:
+            one, two = boxes[first], boxes[second]
+            gaps = np.maximum(one.min(axis=0) - two.max(axis=0), two.min(axis=0) - one.max(axis=0))
+            if gaps.max() < APART_M:
+                return False
+    return True
+
+
+def _changed(path: Path, scene: Scene, name: str, row: Any) -> Scene:
+    scene.thing(name)
+    if not isinstance(row, dict):
+        raise FileError(path, f"object.{name} is no table.", f"Write [object.{name}].")
+    _check_keys(path, f"[object.{name}]", row, KEYS)
+    if "size" in row:
+        factor = _number(path, "size", row["size"])
+        if factor <= 0.0:
+            raise FileError(path, f"size = {factor} of {name!r}.", "A size is a factor above zero.")
+        scene = resized(scene, name, factor)
+    if "raise_m" in row:
+        scene = raised(scene, name, _number(path, "raise_m", row["raise_m"]))
+    thing = scene.thing(name)
+    x, y, z = _numbers(path, f"{name}.position", row.get("position", thing.place), 3)
+    turn = np.radians(_number(path, "turn_deg", row.get("turn_deg", 0.0)))
+    return moved(scene, name, (x, y, z), thing.heading + float(turn))
+
+
+def _check_keys(path: Path, where: str, row: dict[str, Any], known: set[str]) -> None:
+    for key in row:
+        if key not in known:
+            raise FileError(
+                path, f"unknown key {key!r} in {where}.", f"There are: {', '.join(sorted(known))}."
+            )
+
+
+def _number(path: Path, key: str, value: Any) -> float:
+    return _numbers(path, key, [value], 1)[0]
+
+
+def _numbers(path: Path, key: str, value: Any, count: int) -> tuple[float, ...]:
+    many = "a number" if count == 1 else f"a list of {count} numbers"
+    fault = FileError(path, f"{key} = {value!r}.", f"It is {many}.")
+    try:
+        out = tuple(float(each) for each in value)
+    except (TypeError, ValueError):
+        raise fault from None
+    if len(out) != count or not np.isfinite(out).all():
+        raise fault
+    return out

@@ -1,0 +1,101 @@
+"""The scene that a motion is made for: things where they stand, and where the performer stands."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.body.things import Thing
+from capar.model.capture import Shape, TagType
+from capar.model.errors import UnknownNameError
+
+ON_M = 0.02
+"""A thing whose lowest point is this near above another one's top stands on it [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Things, the floor, and the stance."""
+
+    things: Mapping[str, Thing]
+    place: tuple[float, float]
+    """Where the performer stands [m]."""
+
+    heading: float
+    """Which way the performer faces, from x towards y [rad]."""
+
+    floor_m: float = 0.0
+    """Height of the floor [m]."""
+
+    def __post_init__(self) -> None:
+        """Make the things read-only."""
+        object.__setattr__(self, "things", MappingProxyType(dict(self.things)))
+
+    def thing(self, name: str) -> Thing:
+        """The thing of that name.
+
+        Raises:
+            UnknownNameError: There is none.
+        """
+        if name not in self.things:
+            raise UnknownNameError("thing", name, self.things, where="scene")
+        return self.things[name]
+
+    def support(self, name: str) -> str:
+        """What a thing stands on; empty where nothing is beneath it."""
+        thing = self.thing(name)
+        low, middle = _corners(thing)[0, 2], np.asarray(thing.place)[:2]
+        for other in self.things.values():
+            near, far = _corners(other)
+            beneath = abs(low - far[2]) < ON_M and other.name != name
+            if beneath and (near[:2] <= middle).all() and (middle <= far[:2]).all():
+                return other.name
+        return ""
+
+
+def moved(scene: Scene, name: str, place: tuple[float, float, float], heading: float) -> Scene:
+    """The scene with a thing elsewhere; what stands on it stays where it is."""
+    thing = replace(scene.thing(name), place=place, heading=heading)
+    return replace(scene, things={**scene.things, name: thing})
+
+
+def resized(scene: Scene, name: str, factor: float) -> Scene:
+    """The scene with a thing of another size, its lowest point as high as before."""
+    thing = scene.thing(name)
+    shape = scaled(thing.shape, factor)
+    x, y, z = thing.place
+    z += float(thing.shape.bounds[0, 2] - shape.bounds[0, 2])
+    changed = replace(thing, shape=shape, place=(x, y, z))
+    return replace(scene, things={**scene.things, name: changed})
+
+
+def raised(scene: Scene, name: str, by_m: float) -> Scene:
+    """The scene with a thing, and all that stands on it, higher by so much [m]."""
+    riders = [each for each in scene.things if scene.support(each) == name]
+    for each in (name, *riders):
+        thing = scene.thing(each)
+        x, y, z = thing.place
+        scene = moved(scene, each, (x, y, z + by_m), thing.heading)
+    return scene
+
+
+def scaled(shape: Shape, factor: float) -> Shape:
+    """A shape enlarged about its frame's origin."""
+    return Shape(
+        np.array(shape.vertices) * factor,
+        np.array(shape.faces),
+        shape.source,
+        f"{shape.description} x {factor:g}",
+    )
+
+
+def mobile(scene: Scene) -> list[str]:
+    """Names of what can be moved, sorted."""
+    return sorted(each.name for each in scene.things.values() if each.tag is TagType.MOBILE)
+
+
+def _corners(thing: Thing) -> Float[np.ndarray, "2 3"]:
+    spots = thing.pose.apply(np.array(thing.shape.vertices))
+    return np.stack([spots.min(axis=0), spots.max(axis=0)])

@@ -1,0 +1,195 @@
+"""Inverse kinematics of a whole body: palms, head, gaze, feet and balance together."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mink
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.acting import RELAXED
+from capar.body.gaze import LOOK_COST, look_tasks, share_costs
+from capar.body.human import Human
+from capar.body.scripts import SIDES
+
+PALM_COST = (60.0, 4.0)
+"""Weights of a metre and of a radian at the palms."""
+
+HEAD_COST = (60.0, 8.0)
+"""Likewise of the head while a thing is at it."""
+
+FREE_PALM = (0.27, 0.1)
+"""Shares of a palm's weights while its hand is free: how it is turned then is only a wish [1]."""
+
+FASTEST = 13.0
+"""What no hinge exceeds [rad/s]."""
+
+ROOT_MPS, ROOT_RADPS = 0.7, 2.0
+"""Likewise the pelvis, along each axis [m/s] and about it [rad/s]."""
+
+FREE_HEAD = 0.002
+"""Share of that weight otherwise [1]."""
+
+FOOT_COST = 120.0
+BALANCE_COST = 2.0
+"""Weight of a metre of the centre of mass from above the feet."""
+
+DAMPING_COST = 0.1
+LARGEST_STEP = 0.15
+"""Largest step of a hinge in one iteration [rad]."""
+
+LEAST_STEP = 1e-5
+
+FEWEST, MOST = 2, 10
+"""Iterations a frame."""
+
+STALLED, STALL = 8, 2e-4
+"""After so many iterations, less progress than this ends them [m, rad]."""
+
+NEAR_M, NEAR_RAD = 4e-4, 4e-3
+"""An error of the palms at which iteration ends."""
+
+
+@dataclass(frozen=True, eq=False)
+class Targets:
+    """Where the body's parts are to be at one moment."""
+
+    palms: Mapping[str, RigidTransform]
+    """``T_world_palm`` by side; a side that is left out hangs at ease."""
+
+    grasps: Mapping[str, float]
+    """How firmly each palm is kept there [1]."""
+
+    head: RigidTransform
+    """``T_world_eyes``: between the eyes."""
+
+    firmness: float
+    """How firmly the head is kept there [1]."""
+
+    look: Float[np.ndarray, "3"]
+    """The point looked at [m]."""
+
+
+class FrameLimit(mink.Limit):
+    """Nothing goes further than a step from where it was at the frame before."""
+
+    def __init__(self, hinges: int) -> None:
+        self.steps = np.full(6 + hinges, np.inf)
+        self.largest = np.concatenate([np.full(6, np.inf), np.full(hinges, LARGEST_STEP)])
+        self.gone = np.zeros(6 + hinges)
+        self.rows = np.vstack([np.eye(6 + hinges), -np.eye(6 + hinges)])
+
+    def bound(self, step_s: float) -> None:
+        """Take the speeds that nothing exceeds, at a time between frames [s]."""
+        hinges = np.full(len(self.gone) - 6, FASTEST)
+        self.steps = step_s * np.concatenate([np.full(3, ROOT_MPS), np.full(3, ROOT_RADPS), hinges])
+
+    def begin(self) -> None:
+        """A frame begins."""
+        self.gone = np.zeros_like(self.gone)
+
+    def compute_qp_inequalities(
+        self, configuration: mink.Configuration, dt: float
+    ) -> mink.Constraint:
+        """The inequalities of one iteration."""
+        room = np.stack([self.steps - self.gone, self.steps + self.gone])
+        # Without any room the bounds of both sides meet, on which the QP solver may cycle.
+        room = np.clip(room, LEAST_STEP, self.largest).ravel()
+        bounded = np.isfinite(room)
+        return mink.Constraint(G=self.rows[bounded], h=room[bounded])
+
+
+class Solver:
+    """The body in a posture, led from target to target."""
+
+    def __init__(self, human: Human, place: tuple[float, float, float], heading: float) -> None:
+        self.human = human
+        eased = {f"{s}_{n}": float(np.radians(a)) for n, a in RELAXED.items() for s in SIDES}
+        self.rest = human.posture(eased, place=place, heading=heading)
+        self.configuration = mink.Configuration(human.model)
+        self.configuration.update(self.rest)
+        self.palms = {s: mink.FrameTask(f"{s}_palm", "site", *PALM_COST) for s in SIDES}
+        self.head = mink.FrameTask("between_eyes", "site", *HEAD_COST)
+        self.looks = look_tasks()
+        self.home = {side: self.palm(side) for side in SIDES}
+        self.tasks = [*self.palms.values(), self.head, *self.looks.values(), *self._stance()]
+        self.frame = FrameLimit(len(human.joints))
+        self.limits = [self.frame, mink.ConfigurationLimit(human.model)]
+
+    def _stance(self) -> list[mink.Task]:
+        feet = [mink.FrameTask(f"{s}_foot", "body", FOOT_COST, FOOT_COST) for s in SIDES]
+        balance = mink.ComTask(cost=[BALANCE_COST, BALANCE_COST, 0.0])
+        ease = mink.PostureTask(self.human.model, cost=share_costs(self.human, 0.15))
+        for foot in feet:
+            foot.set_target_from_configuration(self.configuration)
+        balance.set_target_from_configuration(self.configuration)
+        ease.set_target(self.rest)
+        return [*feet, balance, ease, mink.DampingTask(self.human.model, cost=DAMPING_COST)]
+
+    def palm(self, side: str) -> RigidTransform:
+        """Where a palm is."""
+        return self.site(f"{side}_palm")
+
+    def site(self, name: str) -> RigidTransform:
+        """Where a site of the body is."""
+        pose = self.configuration.get_transform_frame_to_world(name, "site")
+        turn = Rotation.from_quat(pose.rotation().wxyz, scalar_first=True)
+        return RigidTransform.from_components(pose.translation(), turn)
+
+    def reset(self) -> None:
+        """Stand at ease."""
+        self.configuration.update(self.rest)
+
+    @property
+    def posture(self) -> Float[np.ndarray, "posture"]:
+        """As it is."""
+        return np.array(self.configuration.q)
+
+    def follow(self, targets: Targets, *, most: int = MOST) -> None:
+        """Go on to the targets."""
+        for side, task in self.palms.items():
+            task.set_target(_se3(targets.palms.get(side, self.home[side])))
+            firm = targets.grasps.get(side, 0.0)
+            costs = [c * (f + (1.0 - f) * firm) for c, f in zip(PALM_COST, FREE_PALM, strict=True)]
+            task.set_position_cost(costs[0])
+            task.set_orientation_cost(costs[1])
+        self.head.set_target(_se3(targets.head))
+        firm = FREE_HEAD + (1.0 - FREE_HEAD) * targets.firmness
+        self.head.set_position_cost(HEAD_COST[0] * firm)
+        self.head.set_orientation_cost(HEAD_COST[1] * firm)
+        for look in self.looks.values():
+            look.set_target(targets.look)
+            look.set_cost(LOOK_COST * (1.0 - 0.9 * targets.firmness))
+        self.frame.begin()
+        missed_m, missed_rad = np.inf, np.inf
+        for number in range(most):
+            self._step()
+            before, (missed_m, missed_rad) = (missed_m, missed_rad), self.missed(targets)
+            if (
+                number >= STALLED
+                and abs(before[0] - missed_m) + abs(before[1] - missed_rad) < STALL
+            ):
+                return
+            if number + 1 >= FEWEST and missed_m < NEAR_M and missed_rad < NEAR_RAD:
+                return
+
+    def missed(self, targets: Targets) -> tuple[float, float]:
+        """How far the worst palm that holds something is from its target [m, rad]."""
+        metres, radians = 0.0, 0.0
+        for side, goal in targets.palms.items():
+            if targets.grasps.get(side, 0.0) > 0.5:
+                palm = self.palm(side)
+                metres = max(metres, float(np.linalg.norm(palm.translation - goal.translation)))
+                turned = (palm.rotation.inv() * goal.rotation).magnitude()
+                radians = max(radians, float(turned))
+        return metres, radians
+
+    def _step(self) -> None:
+        velocity = mink.solve_ik(self.configuration, self.tasks, 1.0, "daqp", limits=self.limits)
+        self.configuration.integrate_inplace(velocity, 1.0)
+        self.frame.gone += velocity
+
+
+def _se3(pose: RigidTransform) -> mink.SE3:
+    return mink.SE3(np.concatenate([pose.rotation.as_quat(scalar_first=True), pose.translation]))

@@ -1,0 +1,191 @@
+"""Where things are throughout: at rest, on the way between goals, and at the head."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
+from capar.regeneration.collisions import Surroundings
+from capar.regeneration.contact_points import contact_points
+from capar.regeneration.errors import PlanError
+from capar.regeneration.path_mapping import mapped
+from capar.regeneration.scenes import Scene, moved
+from capar.regeneration.solving import Solver
+from capar.regeneration.sources import MOVES_M, Meeting, Source
+
+STILL_M = 0.005
+"""A stretch in which a thing stays so near where it was is one of rest [m]."""
+
+TOUCH_M = 0.0005
+"""What is left between surfaces that touch [m]."""
+
+SEARCH_M = 0.03
+"""How far a thing is moved at most so that it touches [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Goal:
+    """Where a thing has to be at an event, and what decides that."""
+
+    thing: str
+    frame: int
+    pose: RigidTransform
+    reason: str
+
+
+def thing_goals(
+    source: Source, scene: Scene, old: BodyFrames, new: BodyFrames
+) -> dict[str, list[Goal]]:
+    """The goals of every thing that is held, in order of time.
+
+    Raises:
+        PlanError: A thing would be put down where nothing supports it.
+    """
+    out: dict[str, list[Goal]] = {}
+    for name in source.paths:
+        for first, last in _handled(source, name):
+            goals = out.setdefault(name, [])
+            pose = goals[-1].pose if goals else scene.thing(name).pose
+            goals.append(Goal(name, first, pose, "stays where it is"))
+            for meeting in source.meetings:
+                if meeting.thing == name and first <= meeting.first <= last:
+                    at = _at_head(source, scene, old, new, meeting)
+                    reason = f"at the {meeting.part}, in its own measures"
+                    goals.append(Goal(name, meeting.first, at, reason))
+                    goals.append(Goal(name, min(meeting.last, last), at, reason))
+            goals.append(_put_down(source, scene, name, (first, last), pose))
+    return out
+
+
+def thing_paths(
+    source: Source, scene: Scene, goals: dict[str, list[Goal]]
+) -> dict[str, RigidTransform]:
+    """``T_world_thing`` at every frame."""
+    count, turn = len(source.times), scene.heading - source.scene.heading
+    out = {}
+    for name, recorded in source.paths.items():
+        poses = [scene.thing(name).pose] * count
+        for start, goal in zip(goals.get(name, []), goals.get(name, [])[1:], strict=False):
+            part = recorded[start.frame : goal.frame + 1]
+            if goal.frame > start.frame:
+                piece = _piece(part, start.pose, goal.pose, turn, scene.heading)
+                poses[start.frame : goal.frame + 1] = list(piece)
+            poses[goal.frame :] = [goal.pose] * (count - goal.frame)
+        out[name] = RigidTransform.concatenate(poses)
+    return out
+
+
+def _piece(
+    part: RigidTransform, start: RigidTransform, goal: RigidTransform, turn: float, heading: float
+) -> RigidTransform:
+    apart = np.linalg.norm(part.translation - part.translation[0], axis=1)
+    near = np.linalg.norm(goal.translation - start.translation) < 1e-9
+    if apart.max() < STILL_M and near:
+        return RigidTransform.concatenate([start] * len(part))
+    return mapped(part, start, goal, turn=turn, heading=heading)
+
+
+def _handled(source: Source, name: str) -> list[tuple[int, int]]:
+    """From when to when a thing is held without a break, if it moves at all."""
+    path = source.paths[name].translation
+    if np.linalg.norm(path - path[0], axis=1).max() < MOVES_M:
+        return []
+    out: list[tuple[int, int]] = []
+    for hold in source.holds:
+        if hold.thing == name:
+            if out and hold.first <= out[-1][1]:
+                out[-1] = (out[-1][0], max(out[-1][1], hold.last))
+            else:
+                out.append((hold.first, hold.last))
+    return out
+
+
+def _put_down(
+    source: Source, scene: Scene, name: str, span: tuple[int, int], pose: RigidTransform
+) -> Goal:
+    """As far in metres from where it came from as it was; on another thing in that one's size."""
+    before, after = (source.paths[name][each] for each in span)
+    turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
+    by = turn.apply(after.translation - before.translation)
+    spun = turn * after.rotation * before.rotation.inv() * turn.inv() * pose.rotation
+    came, support = (_support_at(source.scene, name, each) for each in (before, after))
+    spot, reason = pose.translation + by, "as far from where it came from as it was [m]"
+    if support and support != came:
+        spot = _on(source, scene, name, support, after)
+        reason = f"at the same place on {support!r}, in its own measures"
+    goal = RigidTransform.from_components(spot, spun)
+    if support and not _support_at(scene, name, goal):
+        x, y, z = spot
+        raise PlanError(
+            f"{name!r} would be put down at ({x:.2f}, {y:.2f}, {z:.2f}) m, where {support!r} does "
+            f"not reach; a larger {support!r}, or {name!r} nearer its middle, would do"
+        )
+    return Goal(name, span[1], goal, reason)
+
+
+def _on(
+    source: Source, scene: Scene, name: str, support: str, after: RigidTransform
+) -> Float[np.ndarray, "3"]:
+    old, new = source.scene.thing(support), scene.thing(support)
+    local = old.pose.inv().apply(after.translation)
+    low_old, low_new = (s.thing(name).shape.bounds[0, 2] for s in (source.scene, scene))
+    share = (local - old.shape.bounds[0]) / np.maximum(old.size, 1e-9)
+    spot = new.pose.apply(new.shape.bounds[0] + share * new.size)
+    above = local[2] + low_old - old.shape.bounds[1, 2]
+    spot[2] = new.place[2] + new.shape.bounds[1, 2] + above - low_new
+    return np.asarray(spot)
+
+
+def _support_at(scene: Scene, name: str, pose: RigidTransform) -> str:
+    x, y, z = (float(each) for each in pose.translation)
+    return moved(scene, name, (x, y, z), scene.thing(name).heading).support(name)
+
+
+def _at_head(
+    source: Source, scene: Scene, old: BodyFrames, new: BodyFrames, meeting: Meeting
+) -> RigidTransform:
+    """Where a thing meets the new head: the same points touch, in the measures of both."""
+    frame = (meeting.first + meeting.last) // 2
+    eyes, thing = source.eyes[frame], source.paths[meeting.thing][frame]
+    part = source.capture.tag_object(meeting.part)
+    before, after = source.scene.thing(meeting.thing), scene.thing(meeting.thing)
+    seat = eyes.inv() * part.stream.pose(frame)
+    if part.shape is None:
+        raise PlanError(f"{meeting.part!r} has no shape; give it a mesh")
+    on_head, on_thing = contact_points(
+        part.shape, before.shape, part.stream.pose(frame).inv() * thing
+    )
+    spot = seat.apply(on_head)
+    relative = eyes.inv() * thing
+    gap = relative.apply(on_thing) - spot
+    scale = after.size / np.maximum(before.size, 1e-9)
+    middle = spot * head_ratio(old, new) + gap - relative.rotation.apply(on_thing * scale)
+    local = RigidTransform.from_components(middle, relative.rotation)
+    local = _touching(scene, new, meeting.thing, local)
+    return head_path(source, old, new)[frame] * local
+
+
+def _touching(scene: Scene, new: BodyFrames, name: str, local: RigidTransform) -> RigidTransform:
+    """The pose in the eyes' frame moved ahead or back until the surfaces touch."""
+    around = Surroundings(new.human, scene)
+    solver = Solver(new.human, (*scene.place, scene.floor_m), scene.heading)
+    eyes = solver.site("between_eyes")
+
+    def apart(by_m: float) -> float:
+        pose = eyes * RigidTransform.from_translation([by_m, 0.0, 0.0]) * local
+        around.pose(solver.posture, {name: pose})
+        return min((p.distance_m for p in around.near(["head"]) if p.thing == name), default=1.0)
+
+    return RigidTransform.from_translation([touching_shift(apart), 0.0, 0.0]) * local
+
+
+def touching_shift(apart: Callable[[float], float]) -> float:
+    """How far to move so that a distance that grows with it becomes ``TOUCH_M`` [m]."""
+    low, high = -SEARCH_M, SEARCH_M
+    for _ in range(24):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if apart(middle) > TOUCH_M else (middle, high)
+    return 0.5 * (low + high)

@@ -1,0 +1,202 @@
+"""Other bodies do in other scenes what was recorded, or it is said why they cannot."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from virtual_bodies.actions import action_capture
+
+from capar.body.bundles import write_bundle
+from capar.body.recording import Truth
+from capar.cli import main
+from capar.model.capture import Capture
+from capar.pipelines.round_trips import body, observed_source, round_trips
+from capar.regeneration import Motion, PlanError, Quality, Source, regenerate
+from capar.regeneration.body_frames import body_frames
+from capar.regeneration.hand_frames import body_hand_frame
+from capar.regeneration.motions import perform_plan
+from capar.regeneration.planning import plan
+from capar.regeneration.quality import quality
+from capar.regeneration.scenes import raised, resized
+
+RATE_HZ = 30.0
+
+
+@cache
+def _source(action: str) -> Source:
+    return observed_source(action_capture(action, rate_hz=RATE_HZ))
+
+
+@cache
+def _done(action: str, agent: str) -> tuple[Motion, Quality]:
+    source = _source(action)
+    return regenerate(source, body(agent, source))
+
+
+def test_the_frame_on_a_recorded_hand_is_the_one_on_the_body_that_was_recorded() -> None:
+    source = _source("drink")
+    for side, hand in source.hands.items():
+        own = body_hand_frame(source.human, side)
+        np.testing.assert_allclose(hand.frame.extents, own.extents, atol=2e-4)
+    rest = body_frames(source.human, source.scene).rest["right"]
+    away = rest.inv() * source.hands["right"].path[0]
+    assert np.linalg.norm(away.translation) < 0.005
+    assert away.rotation.magnitude() < np.radians(1.0)
+
+
+@pytest.mark.parametrize("action", ["drink", "touch"])
+def test_the_recorded_body_in_the_recorded_scene_goes_the_recorded_way(action: str) -> None:
+    motion, found = _done(action, "same")
+    assert found.passed, found.failed
+    source = motion.plan.source
+    for name, path in source.paths.items():
+        off = motion.plan.things[name].translation - path.translation
+        assert np.linalg.norm(off, axis=1).max() < 0.005
+    palms = source.human.sites(motion.postures, ["right_palm"])["right_palm"][0]
+    true = source.hands["right"].path * motion.plan.frames.palms["right"]
+    assert np.linalg.norm(palms - true.translation, axis=1).max() < 0.005
+
+
+def test_a_child_drinks_at_its_own_mouth_and_the_same_action_is_observed() -> None:
+    source = _source("drink")
+    (trip,) = round_trips(source, ("child",))
+    assert trip.quality is not None
+    assert trip.quality.passed, trip.quality.failed
+    assert trip.same_par
+    assert trip.same_contacts
+    motion, _ = _done("drink", "child")
+    meeting = source.meetings[0]
+    lips = motion.plan.human.sites(motion.postures, ["mouth"])["mouth"][0][meeting.first]
+    mug = motion.plan.things["mug"][meeting.first]
+    rim = mug.apply(np.array(motion.plan.scene.thing("mug").shape.vertices))
+    assert np.linalg.norm(rim - lips, axis=1).min() < 0.03
+
+
+def test_a_larger_mug_on_a_lower_table_is_taken_by_its_side_and_put_back() -> None:
+    source = _source("drink")
+    scene = resized(raised(source.scene, "table", -0.1), "mug", 1.3)
+    motion, found = regenerate(source, source.human, scene)
+    assert found.passed, found.failed
+    last = motion.plan.things["mug"].translation[-1]
+    np.testing.assert_allclose(last, scene.thing("mug").place, atol=0.002)
+
+
+def _jumped(motion: Motion) -> Motion:
+    postures = motion.postures.copy()
+    postures[40, motion.plan.human.index("left_elbow_flexion")] += 1.0
+    return replace(motion, postures=postures)
+
+
+def _slid(motion: Motion) -> Motion:
+    postures = motion.postures.copy()
+    postures[:, 0] += np.linspace(0.0, 0.01, len(postures))
+    return replace(motion, postures=postures)
+
+
+def _let_go(motion: Motion) -> Motion:
+    hold = motion.plan.source.holds[0]
+    path = motion.plan.things["mug"]
+    spots = path.translation.copy()
+    spots[hold.first : hold.last, 1] += 0.004
+    moved = type(path).from_components(spots, path.rotation)
+    return replace(motion, plan=replace(motion.plan, things={**motion.plan.things, "mug": moved}))
+
+
+def _sunk(motion: Motion) -> Motion:
+    scene = raised(motion.plan.scene, "table", 0.0)
+    path = motion.plan.things["table"]
+    higher = type(path).from_translation([0.0, 0.0, 0.01]) * path
+    things = {**motion.plan.things, "table": higher}
+    return replace(motion, plan=replace(motion.plan, scene=scene, things=things))
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "gate"),
+    [
+        (_jumped, "joint speed"),
+        (_slid, "feet"),
+        (_let_go, "on the way"),
+        (_sunk, "penetration"),
+    ],
+    ids=["a jump", "sliding feet", "a loose grip", "a sunk mug"],
+)
+def test_a_spoilt_motion_does_not_pass(spoilt: object, gate: str) -> None:
+    motion, _ = _done("drink", "same")
+    assert callable(spoilt)
+    assert gate in quality(spoilt(motion)).failed
+
+
+def test_out_of_reach_is_decided_before_anything_moves_with_what_would_help() -> None:
+    source = _source("touch")
+    scene = replace(source.scene, place=(-0.8, 0.0))
+    with pytest.raises(PlanError, match=r"misses by \d+ mm.*; standing \d\.\d\d m further ahead"):
+        plan(source, scene, source.human)
+
+
+def test_nobody_stands_inside_a_table() -> None:
+    source = _source("touch")
+    with pytest.raises(PlanError, match="inside 'table'; stand further back"):
+        plan(source, replace(source.scene, place=(0.3, 0.0)), source.human)
+
+
+def test_the_same_input_gives_the_same_motion() -> None:
+    source = _source("touch")
+    made = plan(source, source.scene, source.human)
+    one, two = (perform_plan(made).postures for _ in range(2))
+    assert one.tobytes() == two.tobytes()
+
+
+def _written(capture: Capture, folder: Path) -> Path:
+    write_bundle(capture, Truth((), (), (), ()), folder)
+    return folder
+
+
+def _run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["capar", *arguments])
+    try:
+        main()
+    except SystemExit as end:
+        return int(end.code or 0)
+    return 0
+
+
+def test_a_regenerated_bundle_is_observed_as_the_same_action(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = _written(action_capture("touch", rate_hz=RATE_HZ), tmp_path / "man")
+    child = tmp_path / "child"
+    code = _run(monkeypatch, "regenerate", str(folder), "--agent", "child", "--output", str(child))
+    assert code == 0
+    table = capsys.readouterr().out
+    assert "event position" in table
+    assert "penetration" in table
+    again = observed_source(child).observation
+    first = _source("touch").observation.complex_par
+    assert again.complex_par.signature == first.signature
+    assert again.agent.kind == "child"
+    assert _run(monkeypatch, "regenerate", str(folder), "--output", str(child)) == 2
+    assert "not an empty folder" in capsys.readouterr().err
+
+
+def test_what_cannot_be_done_ends_with_2_and_a_sentence_and_writes_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = _written(action_capture("touch", rate_hz=RATE_HZ), tmp_path / "man")
+    scene = tmp_path / "scene.toml"
+    scene.write_text("[stance]\nplace = [0.3, 0.0]\n")
+    out = tmp_path / "out"
+    arguments = ("regenerate", str(folder), "--scene", str(scene), "--output", str(out))
+    assert _run(monkeypatch, *arguments) == 2
+    assert "inside 'table'" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_a_capture_without_a_head_is_refused() -> None:
+    capture = action_capture("touch", rate_hz=RATE_HZ)
+    hands = tuple(each for each in capture.sensors if each.end_effector == "hand")
+    objects = tuple(each for each in capture.objects if each.name != "head")
+    blind = Capture("blind", hands, objects, capture.agent)
+    with pytest.raises(PlanError, match="no sensor of the head"):
+        observed_source(blind)

@@ -1,0 +1,82 @@
+"""Scenes change as their files state, and what stands on a table goes up with it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from capar.body.things import Thing, box, cup, table
+from capar.model.errors import CaparError, UnknownNameError
+from capar.regeneration.scene_files import drawn_scene, read_scene
+from capar.regeneration.scenes import Scene, raised, resized
+
+
+def _scene() -> Scene:
+    mug = Thing("mug", cup(0.035, 0.09), (0.45, -0.2, 0.8), round=True)
+    crate = Thing("crate", box(0.15, 0.2, 0.15), (0.5, 0.15, 0.8))
+    return Scene({each.name: each for each in (table(0.8), mug, crate)}, (0.0, 0.0), 0.0)
+
+
+def test_what_stands_on_a_table_goes_up_with_it() -> None:
+    higher = raised(_scene(), "table", 0.1)
+    assert higher.thing("mug").place[2] == pytest.approx(0.9)
+    assert higher.support("mug") == "table"
+    assert higher.support("table") == ""
+
+
+@pytest.mark.parametrize("factor", [0.7, 1.4])
+def test_a_resized_thing_still_stands_where_it_stood(factor: float) -> None:
+    changed = resized(_scene(), "crate", factor)
+    assert changed.support("crate") == "table"
+    np.testing.assert_allclose(changed.thing("crate").size, factor * _scene().thing("crate").size)
+
+
+def test_a_scene_file_changes_what_it_names_and_nothing_else(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(
+        "[stance]\nplace = [0.1, 0.0]\n[object.table]\nraise_m = -0.1\n"
+        "[object.mug]\nsize = 1.2\nturn_deg = 90\n"
+    )
+    read = read_scene(path, _scene())
+    assert read.place == (0.1, 0.0)
+    assert read.thing("mug").heading == pytest.approx(np.pi / 2)
+    assert read.thing("mug").place == pytest.approx((0.45, -0.2, 0.7))
+    assert read.thing("crate").place == pytest.approx((0.5, 0.15, 0.7))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[object.mug]\nsise = 2", r"unknown key 'sise' in \[object.mug\].*size"),
+        ("[object.mug]\nsize = 0", "size = 0.0 of 'mug'.*factor above zero"),
+        ("[object.mug]\nposition = [1, 2]", "list of 3 numbers"),
+        ("[stance]\nplace = [nan, 0]", "list of 2 numbers"),
+        ("[stage]\nplace = [0, 0]", "unknown key 'stage' in the file"),
+        ("size =", "is no TOML"),
+    ],
+)
+def test_a_faulty_scene_file_is_refused_with_what_would_be_right(
+    tmp_path: Path, text: str, message: str
+) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    with pytest.raises(CaparError, match=message):
+        read_scene(path, _scene())
+
+
+def test_an_unknown_object_in_a_scene_file_is_named_with_those_that_are_there(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text("[object.cup]\nsize = 2.0\n")
+    with pytest.raises(UnknownNameError, match=r"no thing 'cup'.*mug"):
+        read_scene(path, _scene())
+
+
+def test_drawn_scenes_stand_and_a_seed_draws_the_same_one() -> None:
+    one, again = (drawn_scene(_scene(), np.random.default_rng([3, 1])) for _ in range(2))
+    for name, thing in one.things.items():
+        assert thing.place == again.thing(name).place
+        assert one.support(name) == _scene().support(name)
+    other = drawn_scene(_scene(), np.random.default_rng([3, 2]))
+    assert other.thing("mug").place != one.thing("mug").place

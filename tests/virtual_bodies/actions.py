@@ -1,0 +1,62 @@
+"""Performances of virtual bodies that others do again: the five actions and where they are done."""
+
+from functools import cache
+
+from capar.body.anthropometry import ready_made
+from capar.body.human import Human
+from capar.body.performing import perform
+from capar.body.recording import record
+from capar.body.scripts import (
+    STAND,
+    Hand,
+    Move,
+    Phase,
+    Script,
+    drink,
+    lift_with_both_hands,
+    slide,
+    touch,
+)
+from capar.body.sensing import PERFECT, Tracker
+from capar.body.things import Scene, Thing, box, cup, scene, table
+from capar.model.capture import Capture
+
+HELD = {"right": Hand("holds", "mug")}
+CARRY: Script = (
+    STAND,
+    Phase("reach", 1.0, {"right": Hand("reaches", "mug")}, look="mug"),
+    Phase("grasp", 0.3, HELD, look="mug"),
+    Phase("lift", 0.8, HELD, {"mug": Move((0.0, 0.0, 0.2))}, look="mug"),
+    Phase("carry", 0.9, HELD, {"mug": Move((0.0, 0.2, 0.0))}, look="mug"),
+    Phase("lower", 0.8, HELD, {"mug": Move((0.0, 0.0, -0.2))}, look="mug"),
+    Phase("hold", 0.3, HELD, look="mug"),
+    Phase("return", 1.0, look="ahead"),
+    Phase("stand", 0.6, look="ahead"),
+)
+ACTIONS: dict[str, Script] = {
+    "drink": drink("mug"),
+    "touch": touch("crate"),
+    "slide": slide("mug", (0.0, 0.12, 0.0)),
+    "carry": CARRY,
+    "pick_up": lift_with_both_hands("crate", height=0.2),
+}
+"""Each has the things of its own scene."""
+
+
+def action_scene(human: Human, action: str) -> Scene:
+    """A table at hip height with what the action needs."""
+    tall = human.measures["stature"]
+    top = 0.52 * tall
+    mug = Thing("mug", cup(0.035, 0.09), (0.22 * tall, -0.10 * tall, top), round=True)
+    crate = Thing("crate", box(0.15, 0.20, 0.15), (0.24 * tall, 0.02 * tall, top))
+    return scene(table(top, near_m=0.13 * tall), crate if action in {"touch", "pick_up"} else mug)
+
+
+@cache
+def action_capture(
+    action: str, who: str = "man", *, rate_hz: float = 60.0, noisy: bool = False
+) -> Capture:
+    """What was recorded of an action."""
+    human = Human.of(ready_made(who))
+    made = perform(human, action_scene(human, action), ACTIONS[action], rate_hz=rate_hz)
+    return record(made, name=action, seed=3, tracker=Tracker() if noisy else PERFECT)
