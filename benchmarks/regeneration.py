@@ -7,8 +7,7 @@ import sys
 import time
 from collections import Counter
 
-from virtual_bodies.actions import ACTIONS, action_capture
-
+from capar.body.scripted_actions import ACTIONS, action_capture
 from capar.pipelines.round_trips import Trip, observed_source, round_trips
 
 AGENTS = ("man", "woman", "child")

@@ -90,6 +90,16 @@ def console() -> "Console":
     return Console(width=None if sys.stdout.isatty() else PIPE_COLUMNS)
 
 
+def check_new_folder(folder: Path) -> None:
+    """Check that a folder can be filled: it is not there yet, or it is empty.
+
+    Raises:
+        FileError: Something is there.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise FileError(folder, "exists and is not an empty folder.", "Name a new folder.")
+
+
 def progress(doing: str) -> "Callable[[Sequence[Any]], Iterable[Any]]":
     """Goes through a sequence with a bar on standard error, if that is a terminal."""
     import sys

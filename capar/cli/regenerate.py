@@ -36,13 +36,14 @@ def regenerate(
     json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
     """Perform the action of CAPTURE on another body, verify every frame, and write a capture."""
-    from capar.cli._output import print_json
+    from capar.cli._output import check_new_folder, print_json
     from capar.pipelines.round_trips import body, observed_source
     from capar.regeneration.captures import capture_of, write_motion
     from capar.regeneration.regenerating import regenerate as perform
     from capar.regeneration.scene_files import read_scene
 
-    _check_output(output)
+    if output:
+        check_new_folder(output)
     source = observed_source(capture)
     human = body(agent, source)
     place = read_scene(scene, source.scene) if scene else source.scene
@@ -57,13 +58,6 @@ def regenerate(
     _tell(motion, quality)
     if output:
         typer.echo(f"wrote {output}", err=True)
-
-
-def _check_output(output: Path | None) -> None:
-    from capar.model.errors import FileError
-
-    if output and output.exists() and (not output.is_dir() or any(output.iterdir())):
-        raise FileError(output, "exists and is not an empty folder.", "Name a new folder.")
 
 
 def _answer(motion: "Motion", quality: "Quality") -> dict[str, Any]:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from virtual_bodies.actions import action_capture
 
 from capar.body.bundles import write_bundle
 from capar.body.recording import Truth
+from capar.body.scripted_actions import action_capture
 from capar.cli import main
 from capar.model.capture import Capture
 from capar.pipelines.round_trips import body, observed_source, round_trips

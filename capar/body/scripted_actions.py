@@ -1,10 +1,10 @@
-"""Performances of virtual bodies that others do again: the five actions and where they are done."""
+"""Actions that virtual bodies perform, and where: what can be tried without a recording."""
 
 from functools import cache
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
-from capar.body.performing import perform
+from capar.body.performing import Performance, perform
 from capar.body.recording import record
 from capar.body.scripts import (
     STAND,
@@ -20,6 +20,7 @@ from capar.body.scripts import (
 from capar.body.sensing import PERFECT, Tracker
 from capar.body.things import Scene, Thing, box, cup, scene, table
 from capar.model.capture import Capture
+from capar.model.errors import UnknownNameError
 
 HELD = {"right": Hand("holds", "mug")}
 CARRY: Script = (
@@ -53,10 +54,27 @@ def action_scene(human: Human, action: str) -> Scene:
 
 
 @cache
-def action_capture(
-    action: str, who: str = "man", *, rate_hz: float = 60.0, noisy: bool = False
-) -> Capture:
-    """What was recorded of an action."""
+def performed(action: str, who: str = "man", *, rate_hz: float = 60.0) -> Performance:
+    """An action as a ready-made body performs it.
+
+    Args:
+        action: One of ``ACTIONS``.
+        who: One of ``READY_MADE``.
+        rate_hz: Frames a second.
+
+    Raises:
+        UnknownNameError: There is no such action or body.
+    """
+    if action not in ACTIONS:
+        raise UnknownNameError("action", action, ACTIONS)
     human = Human.of(ready_made(who))
-    made = perform(human, action_scene(human, action), ACTIONS[action], rate_hz=rate_hz)
-    return record(made, name=action, seed=3, tracker=Tracker() if noisy else PERFECT)
+    return perform(human, action_scene(human, action), ACTIONS[action], rate_hz=rate_hz)
+
+
+def action_capture(
+    action: str, who: str = "man", *, rate_hz: float = 60.0, noisy: bool = False, seed: int = 3
+) -> Capture:
+    """What a tracker records of an action: a perfect one, or one with usual faults."""
+    tracker = Tracker() if noisy else PERFECT
+    made = performed(action, who, rate_hz=rate_hz)
+    return record(made, name=action, seed=seed, tracker=tracker)
