@@ -478,7 +478,7 @@ def test_every_filter_leaves_exactly_what_it_says(world: World, actionary: Actio
 
 def test_every_question_of_segments_takes_the_same_filters() -> None:
     exempt = {"allen", "before", "shared", "world"}  # of whole actions, conditions, or one time
-    other = {"notices", "observations", "sources", "held"}  # of observations
+    other = {"corrections", "held", "notices", "observations", "sources"}  # of observations
     body = {"place", "both_hands", "looked_at"}
     for name, each in questions().items():
         taken = {parameter.name for parameter in each.parameters}

@@ -111,6 +111,8 @@ ONE_OF_EACH = {
         "cup: the mesh cup.obj is not closed, it has 6 open edges",
     notice("earlier", was="no-unit", text="the file states no unit"): "the file states no unit",
     notice("rule-violation", violation="violation(x)"): "violation(x)",
+    notice("nothing-acts"):
+        'no sensor acts, so no action is told; state role = "acts" for the hands and feet that do',
 }  # fmt: skip
 
 
