@@ -3,7 +3,7 @@
 import json
 import struct
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import mujoco
 import numpy as np
@@ -25,9 +25,12 @@ RATE_HZ = 30.0
 MILLIMETRE = 1e-3
 TENTH_DEG = float(np.radians(0.1))
 
+Moved: TypeAlias = tuple[Human, np.ndarray, np.ndarray]
+"""A body, times [s], and what each joint does."""
+
 
 @pytest.fixture(scope="module")
-def moved() -> tuple[Human, np.ndarray, np.ndarray]:
+def moved() -> Moved:
     """A child that moves every joint and turns round."""
     human = Human.of(ready_made("child"))
     times = np.arange(0.0, 2.0, 1.0 / RATE_HZ)
@@ -40,7 +43,7 @@ def angles_between(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     return np.asarray(geometry.angle_between(first, second))
 
 
-def test_a_bvh_is_read_back_to_the_same_poses(moved, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_a_bvh_is_read_back_to_the_same_poses(moved: Moved, tmp_path: Path) -> None:
     human, times, motion = moved
     path = tmp_path / "motion.bvh"
     path.write_text(bvh_text(human, times, motion))
@@ -57,7 +60,7 @@ def test_a_bvh_is_read_back_to_the_same_poses(moved, tmp_path: Path) -> None:  #
         assert angles_between(quaternions, poses.orientations[:, number]).max() < TENTH_DEG
 
 
-def test_a_table_and_a_model_give_mujoco_the_same_poses(moved, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_a_table_and_a_model_give_mujoco_the_same_poses(moved: Moved, tmp_path: Path) -> None:
     human, times, motion = moved
     write_npz(tmp_path / "motion.npz", human, times, motion)
     (tmp_path / "body.xml").write_text(mjcf_text(human))
@@ -92,7 +95,7 @@ def _array(document: dict[str, Any], data: bytes, number: int) -> np.ndarray:
     return flat.reshape(accessor["count"], wide)
 
 
-def test_a_glb_animates_its_nodes_to_the_same_poses(moved) -> None:  # type: ignore[no-untyped-def]
+def test_a_glb_animates_its_nodes_to_the_same_poses(moved: Moved) -> None:
     human, times, motion = moved
     document, data = _glb(glb_bytes(human, times, motion))
     poses, frame = poses_of(human, motion), 41
@@ -124,7 +127,7 @@ def test_a_glb_animates_its_nodes_to_the_same_poses(moved) -> None:  # type: ign
         assert (expected.inv() * turn).magnitude() < TENTH_DEG
 
 
-def test_a_glb_is_loaded_by_trimesh_as_tall_as_the_child(moved, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_a_glb_is_loaded_by_trimesh_as_tall_as_the_child(moved: Moved, tmp_path: Path) -> None:
     human, times, _ = moved
     standing = np.tile(human.posture(), (len(times), 1))
     (tmp_path / "body.glb").write_bytes(glb_bytes(human, times, standing))
@@ -133,7 +136,7 @@ def test_a_glb_is_loaded_by_trimesh_as_tall_as_the_child(moved, tmp_path: Path) 
     assert low[1] == pytest.approx(0.0, abs=0.02)
 
 
-def test_the_same_motion_is_the_same_bytes(moved) -> None:  # type: ignore[no-untyped-def]
+def test_the_same_motion_is_the_same_bytes(moved: Moved) -> None:
     human, times, motion = moved
     assert glb_bytes(human, times, motion) == glb_bytes(human, times, motion)
     assert bvh_text(human, times, motion) == bvh_text(human, times, motion)

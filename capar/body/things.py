@@ -48,10 +48,10 @@ class Thing:
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
-    """What is there; the floor is z = 0."""
+class Things:
+    """Things by name."""
 
-    things: Mapping[str, Thing] = field(default_factory=dict)
+    things: Mapping[str, Thing]
 
     def __post_init__(self) -> None:
         """Make the things read-only."""
@@ -66,6 +66,13 @@ class Scene:
         if name not in self.things:
             raise UnknownNameError("thing", name, self.things, where="scene")
         return self.things[name]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene(Things):
+    """What is there; the floor is z = 0."""
+
+    things: Mapping[str, Thing] = field(default_factory=dict)
 
     @property
     def table(self) -> Thing | None:

@@ -2,7 +2,7 @@
 
 import errno
 import os
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import copymode
@@ -13,7 +13,7 @@ import typer
 from capar.model.errors import FileError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Sequence
 
     from rich.console import Console
 
@@ -56,6 +56,15 @@ def print_json(value: Any, *, sort_keys: bool = False) -> None:
 
     text = json.dumps(_plain(value), ensure_ascii=False, indent=2, sort_keys=sort_keys, default=str)
     typer.echo(text)
+
+
+def print_names(names: Iterable[str], *, json: bool) -> None:
+    """Names, a line each."""
+    if json:
+        print_json(list(names))
+        return
+    for name in names:
+        typer.echo(name)
 
 
 def print_fields(title: str, fields: Mapping[str, Collection[str]], *, json: bool) -> None:

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from capar.cli._options import Place, Wait, require_actionary
-from capar.cli._output import print_fields, print_json
+from capar.cli._output import print_fields, print_json, print_names
 
 app = typer.Typer(no_args_is_help=True)
 
@@ -48,11 +48,7 @@ def list_agents(actionary: Place = None, json: Json = False) -> None:
 
     with Actionary.open(actionary, read_only=True) as opened:
         found = opened.agents()
-    if json:
-        print_json(list(found))
-        return
-    for each in found:
-        typer.echo(each)
+    print_names(found, json=json)
 
 
 @app.command()

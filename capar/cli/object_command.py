@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from capar.cli._options import Place
-from capar.cli._output import print_fields, print_json
+from capar.cli._output import print_fields, print_names
 
 app = typer.Typer(no_args_is_help=True)
 
@@ -24,11 +24,7 @@ def list_objects(actionary: Place = None, json: Json = False) -> None:
 
     with Actionary.open(actionary, read_only=True) as opened:
         found = opened.object_kinds()
-    if json:
-        print_json(list(found))
-        return
-    for each in found:
-        typer.echo(each)
+    print_names(found, json=json)
 
 
 @app.command()

@@ -1,25 +1,21 @@
 """The scene that a motion is made for: things where they stand, and where the performer stands."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 
 import numpy as np
 from jaxtyping import Float
 
-from capar.body.things import Thing
+from capar.body.things import Thing, Things
 from capar.model.capture import Shape, TagType
-from capar.model.errors import UnknownNameError
 
 ON_M = 0.02
 """A thing whose lowest point is this near above another one's top stands on it [m]."""
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(Things):
     """Things, the floor, and the stance."""
 
-    things: Mapping[str, Thing]
     place: tuple[float, float]
     """Where the performer stands [m]."""
 
@@ -28,20 +24,6 @@ class Scene:
 
     floor_m: float = 0.0
     """Height of the floor [m]."""
-
-    def __post_init__(self) -> None:
-        """Make the things read-only."""
-        object.__setattr__(self, "things", MappingProxyType(dict(self.things)))
-
-    def thing(self, name: str) -> Thing:
-        """The thing of that name.
-
-        Raises:
-            UnknownNameError: There is none.
-        """
-        if name not in self.things:
-            raise UnknownNameError("thing", name, self.things, where="scene")
-        return self.things[name]
 
     def support(self, name: str) -> str:
         """What a thing stands on; empty where nothing is beneath it."""
