@@ -55,12 +55,12 @@ def heavy_figures(minutes: float, *, faces: int) -> dict[str, Any]:
     observer = LiveObserver(capture, known)
     frames = replayed(capture)
     events, start = [], time.process_time()
-    for each in frames:
-        events += observer.push([each])
+    for frame in frames:
+        events += observer.push([frame])
     at_the_end, result = observer.finish()
     spent = time.process_time() - start
     assert result is not None
-    late = [each.late_s for each in events if each.status is Status.SETTLED]
+    late = [event.late_s for event in events if event.status is Status.SETTLED]
     offline = observe_measured(capture, measure(capture, known))
     told = {(each.ee, each.first, each.last, each.name, each.objects) for each in result.segments}
     whole = {(each.ee, each.first, each.last, each.name, each.objects) for each in offline.segments}

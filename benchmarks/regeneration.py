@@ -53,8 +53,8 @@ def summary(trips: list[Trip]) -> str:
 if __name__ == "__main__":
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 2
     everything: list[Trip] = []
-    for each in sys.argv[2:] or ACTIONS:
-        found = run(each, count)
-        print(f"{each}: {summary(found)}", flush=True)
+    for action in sys.argv[2:] or ACTIONS:
+        found = run(action, count)
+        print(f"{action}: {summary(found)}", flush=True)
         everything += found
     print(f"all: {summary(everything)}")

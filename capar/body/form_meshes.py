@@ -26,7 +26,7 @@ def form_mesh(form: Form) -> trimesh.Trimesh:
 
 def joined(group: list[trimesh.Trimesh]) -> trimesh.Trimesh:
     """Several surfaces as one."""
-    starts = np.cumsum([0, *(len(each.vertices) for each in group)])
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in group)])
     faces = [np.array(each.faces) + start for each, start in zip(group, starts, strict=False)]
-    vertices = np.concatenate([np.array(each.vertices) for each in group])
+    vertices = np.concatenate([np.array(mesh.vertices) for mesh in group])
     return trimesh.Trimesh(vertices, np.concatenate(faces), process=False)

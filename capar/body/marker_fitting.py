@@ -122,13 +122,13 @@ def _by_landmarks(
     spec, bones = body_spec(measures), skeleton(measures)
     places = {name: each.place for name, each in exact.items()}
     known = {name: points[name] for name in exact}
-    for segment in (each for each in clusters if each in bones):
+    for segment in (name for name in clusters if name in bones):
         bone = bones[segment]
         middle = 0.5 * (bone.tip - bone.origin)
         spec.body(segment).add_site(name=f"middle_{segment}", pos=middle, size=[0.006, 0.0, 0.0])
         known[f"middle_{segment}"] = mean_of(points, clusters[segment])
         places[f"middle_{segment}"] = f"middle_{segment}"
-    weights = {each: MIDDLE_WEIGHT for each in places.values() if each.startswith("middle_")}
+    weights = {place: MIDDLE_WEIGHT for place in places.values() if place.startswith("middle_")}
     human = Human(measures, spec.compile())
     return fit_skeleton(known, _convention(places, weights), human=human)
 

@@ -62,6 +62,6 @@ def _frame(model: mujoco.MjModel, place: str) -> tuple[bool, int]:
         return True, int(site)
     body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, place)
     if body < 0:
-        known = [model.body(each).name for each in range(1, model.nbody)]
+        known = [model.body(index).name for index in range(1, model.nbody)]
         raise UnknownNameError("place on the body", place, known)
     return False, int(body)

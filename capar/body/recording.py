@@ -160,7 +160,7 @@ def _sensor(made: Performance, mount: Mount, stream: Stream) -> Sensor:
         )  # fmt: skip
     shape = None
     if part == "hand":
-        parts = tuple(f"{side}_{each}" for each in HAND_SEGMENTS)
+        parts = tuple(f"{side}_{segment}" for segment in HAND_SEGMENTS)
         shape = _moved(segment_surface(made.human.measures, parts, f"{side}_hand"), seat)
     acts = part in {"hand", "foot"}
     link = f"{side}_{LINKS[part]}" if acts else f"{side}_{part}" if side else mount.place

@@ -42,9 +42,9 @@ def poses_of(human: Human, motion: Float[np.ndarray, "frames posture"]) -> Poses
         data.qpos[:] = posture
         mujoco.mj_kinematics(model, data)
         positions[frame], orientations[frame] = data.xpos[1:], data.xquat[1:]
-    parents = tuple(int(model.body_parentid[each]) - 1 for each in bodies)
+    parents = tuple(int(model.body_parentid[body]) - 1 for body in bodies)
     return Poses(
-        tuple(model.body(each).name for each in bodies),
+        tuple(model.body(body).name for body in bodies),
         parents,
         np.array(model.body_pos[1:]),
         positions,

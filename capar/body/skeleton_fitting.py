@@ -221,7 +221,7 @@ def _followed(
 
 def _ease_costs(human: Human) -> Float[np.ndarray, "dofs"]:
     """Weight of each hinge's angle; none for the pelvis's pose."""
-    spine = np.array([without_side(each).startswith(SPINE) for each in human.joints])
+    spine = np.array([without_side(joint).startswith(SPINE) for joint in human.joints])
     return np.r_[np.zeros(6), np.where(spine, SPINE_EASE_COST, EASE_COST)]
 
 
