@@ -1,9 +1,11 @@
 """What all tests share: this folder, whose observations and motions they import, and patience."""
 
 import signal
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from motion_files import recordings_folder
 
 # The same examples every time: what a build says depends on the code alone.
 settings.register_profile("patient", deadline=None, derandomize=True)
@@ -16,3 +18,11 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Run what takes long in one test first, so that no worker is left alone with it at the end."""
     items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
+@pytest.fixture
+def recordings(monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of real recordings, where the examples look for it too."""
+    folder = recordings_folder()
+    monkeypatch.setenv("CAPAR_DATA", str(folder))
+    return folder

@@ -103,7 +103,7 @@ def test_recorded_walks_are_followed_and_told_by_marker(
     assert len(answer["sensors"]) >= 16
 
 
-@recorded
+@pytest.mark.usefixtures("recordings")
 def test_a_body_of_poses_is_followed_from_its_capture() -> None:
     found = whole_body(EXAMPLES / "omomo_intermimic:sub3_largebox_003")
     assert found is not None
@@ -113,7 +113,7 @@ def test_a_body_of_poses_is_followed_from_its_capture() -> None:
     assert made.motion.shape[0] == 60
 
 
-@recorded
+@pytest.mark.usefixtures("recordings")
 def test_a_capture_of_sensors_has_no_whole_body() -> None:
     assert whole_body(EXAMPLES / "bimacs_optitrack:take0") is None
 
