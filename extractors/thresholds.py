@@ -247,6 +247,10 @@ class Thresholds(FaultThresholds):
     co_motion_least: float = 0.2
     """Who moves as one with a thing for a smaller share of its motion does so by chance [1]."""
 
+    company_reach_m: float = 0.1
+    """Of a hand or thing whose box is farther than this from what moves as one with it, the
+    distance of the boxes is told for that of the surfaces [m]: no hand carries what is so far."""
+
     touch_quantile: float = 0.95
     """Quantile of the distances in frames of evidence that counts as touching [1] (spec 10)."""
 

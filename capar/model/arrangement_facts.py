@@ -96,7 +96,10 @@ class Passage(Observed):
 
 @dataclass(frozen=True, slots=True, order=True)
 class MovesWith(Observed):
-    """A travelling object is steady in another body's frame, so far from touching it [mm]."""
+    """A travelling object is steady in another body's frame, so far from touching it [mm].
+
+    Of a hand or thing that is far away, at least so far.
+    """
 
     predicate = "moves_with"
     declaration = Declaration(

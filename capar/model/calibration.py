@@ -206,11 +206,16 @@ class Calibration:
         Raises:
             UnknownNameError: Their contact is not sought.
         """
-        for pair in self.pairs:
-            if (pair.first, pair.second) == (first, second):
-                return pair
-        known = [f"{pair.first}-{pair.second}" for pair in self.pairs]
-        raise UnknownNameError("pair", f"{first}-{second}", known, where="calibration")
+        found = self.sought(first, second)
+        if found is None:
+            known = [f"{pair.first}-{pair.second}" for pair in self.pairs]
+            raise UnknownNameError("pair", f"{first}-{second}", known, where="calibration")
+        return found
+
+    def sought(self, first: str, second: str) -> PairCalibration | None:
+        """That of two bodies; None where their contact is not sought."""
+        pairs = (pair for pair in self.pairs if (pair.first, pair.second) == (first, second))
+        return next(pairs, None)
 
     def foot_level(self, agent: str) -> float:
         """Height on which an agent's feet stand [m]; infinite where no foot rests."""

@@ -26,6 +26,26 @@ def quaternions(rotation: "Rotation") -> Float[np.ndarray, "*frames 4"]:
     return rotation.as_quat(scalar_first=True)
 
 
+def products(
+    first: Float[np.ndarray, "#frames 4"], second: Float[np.ndarray, "#frames 4"]
+) -> Float[np.ndarray, "frames 4"]:
+    """Unit quaternions (w x y z) of the second rotation followed by the first, frame by frame.
+
+    SciPy 1.17 takes twenty times as long for many frames.
+    """
+    a, b, c, d = first.T
+    w, x, y, z = second.T
+    return np.stack(
+        [
+            a * w - b * x - c * y - d * z,
+            a * x + b * w + c * z - d * y,
+            a * y - b * z + c * w + d * x,
+            a * z + b * y - c * x + d * w,
+        ],
+        axis=-1,
+    )
+
+
 def transforms(
     positions: Float[np.ndarray, "*frames 3"], orientations: Float[np.ndarray, "*frames 4"]
 ) -> "RigidTransform":

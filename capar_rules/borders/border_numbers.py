@@ -7,6 +7,7 @@ rule meets a border only with its neighbour, and grounding stays linear in the n
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 from capar.model.facts import (
     Displaced,
@@ -55,34 +56,30 @@ class _Scene:
     """The measurements by what they are about, in order of time."""
 
     def __init__(self, facts: Sequence[Fact]) -> None:
-        self.links: list[Link] = []
         self.stretches = Stretches(facts)
         self.seats = by_pair(facts)
-        self.displaced = [each for each in facts if isinstance(each, Displaced)]
-        self.frames = Frames(0, 0)
-        self.rate = 0.0
         self.touching: dict[str, list[Touching]] = defaultdict(list)
         self.moving: dict[str, list[Moving]] = defaultdict(list)
         self.crossings: dict[str, list[int]] = defaultdict(list)
         self.pauses: dict[str, list[int]] = defaultdict(list)
         self.rests: dict[str, list[Resting]] = defaultdict(list)
+        kinds: dict[type, list[Any]] = defaultdict(list)
         for fact in facts:
-            if isinstance(fact, Touching):
-                self.touching[fact.body].append(fact)
-            elif isinstance(fact, Moving):
-                self.moving[fact.object].append(fact)
-            elif isinstance(fact, ZeroCrossing):
-                self.crossings[fact.ee].append(fact.frame)
-            elif isinstance(fact, Pause):
-                self.pauses[fact.ee].append(fact.frame)
-            elif isinstance(fact, Resting):
-                self.rests[fact.ee].append(fact)
-            elif isinstance(fact, Link):
-                self.links.append(fact)
-            elif isinstance(fact, Frames):
-                self.frames = fact
-            elif isinstance(fact, RateMhz):
-                self.rate = fact.rate / 1000.0
+            kinds[type(fact)].append(fact)
+        self.links: list[Link] = kinds[Link]
+        self.displaced: list[Displaced] = kinds[Displaced]
+        self.frames: Frames = next(iter(kinds[Frames]), Frames(0, 0))
+        self.rate = next((each.rate / 1000.0 for each in kinds[RateMhz]), 0.0)
+        for touch in kinds[Touching]:
+            self.touching[touch.body].append(touch)
+        for move in kinds[Moving]:
+            self.moving[move.object].append(move)
+        for crossing in kinds[ZeroCrossing]:
+            self.crossings[crossing.ee].append(crossing.frame)
+        for pause in kinds[Pause]:
+            self.pauses[pause.ee].append(pause.frame)
+        for rest in kinds[Resting]:
+            self.rests[rest.ee].append(rest)
         for touches in self.touching.values():
             touches.sort(key=lambda each: each.first)
         self.by_object = {link.ee: by_object(self.touching[link.ee]) for link in self.links}

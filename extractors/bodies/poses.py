@@ -1,6 +1,7 @@
 """A body's pose at every frame as extraction uses it: gaps filled, noise taken out, fixed held."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -132,14 +133,20 @@ def rotation_matrices(
     orientations: Float[np.ndarray, "frames 4"],
 ) -> Float[np.ndarray, "frames 3 3"]:
     """Rotation matrices of unit quaternions; those of lost frames are NaN."""
-    w, x, y, z = orientations.T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
+    if len(orientations) == 1:
+        return np.array([_rows(*orientations[0].tolist())])
+    rows = _rows(*orientations.T)
     out = np.empty((len(orientations), 3, 3))
     for i, row in enumerate(rows):
         for j, entry in enumerate(row):
             out[:, i, j] = entry
     return out
+
+
+def _rows(w: Any, x: Any, y: Any, z: Any) -> list[list[Any]]:
+    """The entries of rotation matrices, row by row, of numbers or of columns of them."""
+    return [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]

@@ -8,7 +8,6 @@ from jaxtyping import Float
 
 from capar.model.calibration import Calibration, Found
 from capar.model.capture import Capture
-from capar.model.errors import UnknownNameError
 from capar.model.facts import Fact, Moving
 from extractors.bodies.bodies import Bodies
 from extractors.contact.contacts import Contact, points_apart
@@ -44,12 +43,9 @@ def arrivals(
     """
     motions = [each for each in moves if isinstance(each, Moving)]
     for touch in touches:
-        try:
-            pair = calibration.pair(touch.first, touch.second)
-        except UnknownNameError:
-            yield touch
-            continue
-        if not pair.pivots or pair.found not in SETTLES or touch.first not in bodies.sensors:
+        pair = calibration.sought(touch.first, touch.second)
+        settles = pair is not None and pair.pivots and pair.found in SETTLES
+        if pair is None or not settles or touch.first not in bodies.sensors:
             yield touch
             continue
         one, two = bodies.sensors[touch.first], bodies.objects[touch.second]

@@ -25,12 +25,20 @@ def steady_in(carrier: Stream, thing: Stream, thresholds: Thresholds) -> Bool[np
     means that it strays there by no more than a centimetre, or by no more than a share of
     its way through the world, within the window of co-motion.
     """
+    return steady(in_either_frame(carrier, thing), thing, thresholds)
+
+
+def in_either_frame(one: Stream, other: Stream) -> tuple[Points, Points]:
+    """The origin of each of two bodies in the other's frame [m]."""
+    return relative(one, other), relative(other, one)
+
+
+def steady(
+    places: tuple[Points, Points], thing: Stream, thresholds: Thresholds
+) -> Bool[np.ndarray, "frames"]:
+    """The same, given a carrier's and the thing's origin in the frame of the other [m]."""
     way = spread(thing.positions, thing, thresholds)
-    strays = [
-        spread(relative(one, other), thing, thresholds)
-        for one, other in ((carrier, thing), (thing, carrier))
-    ]
-    stray = np.minimum(*strays)
+    stray = np.minimum(*(spread(each, thing, thresholds) for each in places))
     limit = np.maximum(thresholds.co_motion_stray_m, thresholds.co_motion_share * way)
     with np.errstate(invalid="ignore"):
         return np.asarray((way >= thresholds.co_motion_way_m) & (stray <= limit))

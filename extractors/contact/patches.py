@@ -110,12 +110,13 @@ def places(
     one, two = some[:, 1] - some[:, 0], some[:, 2] - some[:, 0]
     normal = np.cross(one, two)
     length = np.linalg.norm(normal, axis=1)
-    steps = np.stack([_steps(one, spacing_m), _steps(two, spacing_m)], axis=1)
+    steps = _steps(one, spacing_m) * (2 * MOST_STEPS) + _steps(two, spacing_m)
     found = [(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0))]
-    for along, across in np.unique(steps, axis=0):
-        rows = np.flatnonzero((steps == (along, across)).all(axis=1) & (length > 0.0))
-        count = len(_spread(int(along), int(across))[0])
-        for group, u, v in _cells(some, rows, box, int(along), int(across)):
+    for both in np.unique(steps).tolist():
+        along, across = divmod(both, 2 * MOST_STEPS)
+        rows = np.flatnonzero((steps == both) & (length > 0.0))
+        count = len(_spread(along, across)[0])
+        for group, u, v in _cells(some, rows, box, along, across):
             points = some[group, None, 0] + u[:, None] * one[group, None]
             points = points + v[:, None] * two[group, None]
             inside = ((points >= box[0]) & (points <= box[1])).all(axis=2)

@@ -60,8 +60,9 @@ def _common(
     span: Interval, ones: Iterable[Interval], twos: Iterable[Interval]
 ) -> Iterator[Interval]:
     """The frames of an interval that lie in one of either kind as well."""
+    then = [two for two in twos if two[0] <= span[1] and two[1] >= span[0]]
     for one in ones:
-        for two in twos:
+        for two in then if one[0] <= span[1] and one[1] >= span[0] else ():
             first, last = max(span[0], one[0], two[0]), min(span[1], one[1], two[1])
             if first <= last:
                 yield first, last
@@ -70,8 +71,14 @@ def _common(
 def _parted(meeting: tuple[Body, Body, Body], span: Interval, reach_m: float) -> bool:
     """Whether the third of three bodies is between the others, at most of some frames."""
     frames = np.unique(np.linspace(*span, ASKED_FRAMES).round().astype(int))
-    between = [_between(*meeting, int(frame), reach_m) for frame in frames]
-    return 2 * sum(between) > len(between)
+    most, asked = len(frames) // 2 + 1, iter(frames)
+    needed, spare = most, len(frames) - most
+    while needed > 0 and spare >= 0:
+        if _between(*meeting, int(next(asked)), reach_m):
+            needed -= 1
+        else:
+            spare -= 1
+    return needed == 0
 
 
 def _between(one: Body, two: Body, third: Body, frame: int, reach_m: float) -> bool:

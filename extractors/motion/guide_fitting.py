@@ -15,6 +15,12 @@ ROUNDS = 3
 """How often the orientation that angles are counted from is averaged anew [1]: the first round
 takes it from one frame, the second from all, the third changes it by less than a microradian."""
 
+ROUNDED = 1e-9
+"""By this share a bound is wider than what it bounds [1], as numbers are rounded."""
+
+_INVERSE = np.array([1.0, -1.0, -1.0, -1.0])
+"""What a unit quaternion's parts are multiplied with to make it the opposite rotation's [1]."""
+
 _Vector: TypeAlias = Float[np.ndarray, "3"]
 _Frames: TypeAlias = Float[np.ndarray, "frames"]
 
@@ -57,6 +63,19 @@ class GuideFit:
         """Root mean square of what is left [m]: stray of the middle, and of the rim by turning."""
         left = self.stray_m**2 + (self.lever_m * self.stray_rad) ** 2
         return float(np.sqrt(np.nanmean(left)))
+
+
+def in_one_plane(body: BodyGeometry, within_m: float) -> bool:
+    """Whether a body's middle may be within a distance [m] of some plane at every frame.
+
+    On a hinge or a rail it is; where the mean square from the best plane is more, it never is.
+    """
+    _, middles, _ = _known(body)
+    if not len(middles):
+        return True
+    offset = middles - middles.mean(axis=0)
+    least = np.linalg.eigvalsh(offset.T @ offset / len(offset))[0]
+    return bool(least <= within_m**2 * (1.0 + ROUNDED))
 
 
 def fit_hinge(body: BodyGeometry) -> GuideFit | None:
@@ -127,18 +146,17 @@ def _axis_and_angles(
     """The axis, the angle about it at each frame, and by how much the orientation is off it."""
     if not len(turns):
         return None
-    rotations = geometry.rotations(turns)
-    base = rotations[0]
+    base = turns[:1]
     for _ in range(ROUNDS):
-        moved = geometry.continuous(geometry.quaternions(rotations * base.inv()))
+        moved = geometry.continuous(geometry.products(turns, base * _INVERSE))
         found = _main_direction(moved[:, 1:])
         if found is None:
             return None
         axis = found
         angles = np.unwrap(2.0 * np.arctan2(moved[:, 1:] @ axis, moved[:, 0]))
-        back = geometry.rotations(_about(axis, -angles)) * rotations
-        base = back.mean()
-    stray_rad = np.asarray((back * base.inv()).magnitude())
+        back = geometry.products(_about(axis, -angles), turns)
+        base = geometry.quaternions(geometry.rotations(back).mean())[None]
+    stray_rad = geometry.angle_between(back, base)
     return axis, angles, stray_rad
 
 

@@ -177,8 +177,15 @@ def between(body: BodyGeometry, one: BodyGeometry, other: BodyGeometry) -> Holds
 
 def gap(body: BodyGeometry, other: BodyGeometry) -> Float[np.ndarray, "frames"]:
     """Distance of the boxes of two bodies along the world's axes [m]; zero where they overlap."""
-    low, high = body.boxes
-    bottom, top = other.boxes
+    return boxes_apart(body, other, slice(None))
+
+
+def boxes_apart(
+    body: BodyGeometry, other: BodyGeometry, frames: Int[np.ndarray, "some"] | slice
+) -> Float[np.ndarray, "some"]:
+    """The same at some frames."""
+    low, high = (ends[frames] for ends in body.boxes)
+    bottom, top = (ends[frames] for ends in other.boxes)
     outside = np.maximum(np.maximum(low - top, bottom - high), 0.0)
     return np.asarray(np.linalg.norm(outside, axis=1))
 

@@ -8,14 +8,14 @@ from jaxtyping import Bool, Float
 from capar.model import geometry
 from capar.model.calibration import Calibration, Found
 from capar.model.capture import Capture, Stream, TagType
-from capar.model.errors import UnknownNameError
 from capar.model.facts import MovesWith, Travels
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.contact.co_motion import relative, steady_in, travelling
+from extractors.contact.co_motion import in_either_frame, steady, travelling
 from extractors.contact.proximity import distance
 from extractors.contact.touch_distances import touchable_at
 from extractors.contact.touch_points import TouchPoints
+from extractors.relations.arrangement import boxes_apart
 from extractors.signals.intervals import (
     FramePredicate,
     Interval,
@@ -39,6 +39,7 @@ def company(
     it then was in the other's frame than fingers open about what they let go.
     """
     mobile = [body.name for body in capture.objects if body.tag is TagType.MOBILE]
+    carriers = {*mobile, *(sensor.name for sensor in capture.acting)}
     for name in mobile:
         thing = bodies.objects[name]
         travels = travelling(thing.poses.settled, thresholds)
@@ -52,9 +53,10 @@ def company(
             if other.name == name or other.poses is thing.poses:
                 continue
             parts = bodies.on_end_effector(other.name) if other.name in bodies.parts else (other,)
+            reach_m = thresholds.company_reach_m if other.name in carriers else np.inf
             for one, span in _any_together(parts, thing, capture, thresholds):
                 near = parts if one is other else (one,)
-                gaps = [_gap(part, thing, span, calibration) for part in near]
+                gaps = [_gap(part, thing, span, calibration, reach_m) for part in near]
                 gap = min(filter(np.isfinite, gaps), default=np.inf)
                 if np.isfinite(gap):
                     yield MovesWith(name, other.name, *span, round(1000.0 * gap))
@@ -72,10 +74,10 @@ def _any_together(
 def _together(
     carrier: Stream, thing: Stream, capture: Capture, thresholds: Thresholds
 ) -> list[Interval]:
-    frames = steady_in(carrier, thing, thresholds)
+    places = in_either_frame(carrier, thing)
+    frames = steady(places, thing, thresholds)
     if not frames.any():
         return []
-    places = relative(carrier, thing), relative(thing, carrier)
     out = frames.copy()
     for first, last in geometry.runs(frames):
         before = last_where(_strays(places, first, thresholds.touch_margin_m), first)
@@ -107,15 +109,22 @@ def _spans(
 
 
 def _gap(
-    other: BodyGeometry, thing: BodyGeometry, span: Interval, calibration: Calibration
+    other: BodyGeometry,
+    thing: BodyGeometry,
+    span: Interval,
+    calibration: Calibration,
+    reach_m: float,
 ) -> float:
-    """How much farther apart than where they touch two bodies are in a stretch [m]."""
+    """How much farther apart than where they touch two bodies are in a stretch [m].
+
+    Where their boxes are farther apart than the reach, the distance of the boxes is told, which is
+    no more than that of the surfaces.
+    """
     some = np.unique(np.linspace(*span, SAMPLES).round().astype(int))
     points, touch_m, pivots = TouchPoints(), 0.0, other.shape is None or thing.shape is None
     for first, second in ((other.name, thing.name), (thing.name, other.name)):
-        try:
-            pair = calibration.pair(first, second)
-        except UnknownNameError:
+        pair = calibration.sought(first, second)
+        if pair is None:
             continue
         touch_m, pivots = pair.touch_m, pair.pivots
         if pair.found is Found.NEVER:
@@ -128,8 +137,10 @@ def _gap(
         apart = points.apart(other.poses.settled, thing.poses.settled)[some]
     else:
         lost = other.poses.lost[some] | thing.poses.lost[some]
-        known = map(int, some[~lost])
-        apart = np.array([_surfaces_apart(other, thing, frame) for frame in known])
+        known = some[~lost]
+        apart = boxes_apart(other, thing, known)
+        if not known.size or np.median(apart) <= reach_m:
+            apart = np.array([_surfaces_apart(other, thing, int(frame)) for frame in known])
     known_m = apart[~np.isnan(apart)]
     return max(0.0, float(np.median(known_m)) - touch_m) if known_m.size else float("nan")
 

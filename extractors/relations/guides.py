@@ -26,7 +26,7 @@ from jaxtyping import Float
 
 from capar.model import geometry
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.motion.guide_fitting import HINGE, RAIL, GuideFit, fit_hinge, fit_rail
+from extractors.motion.guide_fitting import HINGE, RAIL, GuideFit, fit_hinge, fit_rail, in_one_plane
 from extractors.motion.object_motion import Floor
 from extractors.relations.guide_places import (
     confined,
@@ -121,9 +121,11 @@ def _before_opening(
 
 def _fit(body: BodyGeometry, floor: Floor, thresholds: Thresholds) -> GuideFit | None:
     """The line that the body never leaves, if it moves far enough to tell."""
-    rail, hinge = fit_rail(body), fit_hinge(body)
     least = thresholds.guide_floors
-    for fit, own in ((rail, floor.position_m), (hinge, floor.rotation_rad)):
+    if not in_one_plane(body, floor.position_m):
+        return None
+    for fitted, own in ((fit_rail, floor.position_m), (fit_hinge, floor.rotation_rad)):
+        fit = fitted(body)
         if fit is not None and fit.span >= least * own and _keeps_to(fit, floor):
             return fit
     return None
