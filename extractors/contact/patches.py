@@ -1,12 +1,12 @@
 """The patch where two surfaces meet: places on either that face the other close by."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 
 SPACING_M = 0.0025
@@ -36,6 +36,9 @@ LEAST_SHARE = 0.01
 Box = Float[np.ndarray, "2 3"]
 """Lowest and highest corner [m]."""
 
+_Near = tuple[Int[np.ndarray, "near"], Int[np.ndarray, "near"]]
+"""Which places of a surface are near another one, and to which of its places each is nearest."""
+
 
 @dataclass(frozen=True, eq=False)
 class Places:
@@ -46,11 +49,6 @@ class Places:
     areas: Float[np.ndarray, "places"]
     outward: bool = True
     """Whether normals point out of a solid; of an open sheet nobody knows."""
-
-    def of(self, some: Bool[np.ndarray, "places"]) -> "Places":
-        """Some of them."""
-        points, normals, areas = self.points[some], self.normals[some], self.areas[some]
-        return replace(self, points=points, normals=normals, areas=areas)
 
 
 def facing_normal(
@@ -81,10 +79,10 @@ def facing_normal(
     two = places(other, box, spacing_m=spacing_m, outward=solid[1])
     if not len(one.points) or not len(two.points):
         return None
-    one, two = _patch(one, two, max(depth_m, spacing_m))
-    total = _faced(two, one) - _faced(one, two)
+    near_one, near_two = _patch(one, two, max(depth_m, spacing_m))
+    total = _faced(two, one, *near_two) - _faced(one, two, *near_one)
     length = float(np.linalg.norm(total))
-    area = float(one.areas.sum() + two.areas.sum())
+    area = float(one.areas[near_one[0]].sum() + two.areas[near_two[0]].sum())
     return total / length if length > LEAST_SHARE * area else None
 
 
@@ -181,35 +179,44 @@ def _spacing(box: Box) -> float:
     return float(np.sqrt(sides[1] * sides[2] / MANY_PLACES))
 
 
-def _patch(one: Places, two: Places, depth_m: float) -> tuple[Places, Places]:
-    """What of either surface is near the other one."""
+def _patch(one: Places, two: Places, depth_m: float) -> tuple[_Near, _Near]:
+    """What of either surface is near the other one, and to which place of it."""
     tree = _tree(two)
     some = tree.query(one.points[::SAMPLED])[0]
     bound = (float(some.min()) + depth_m) * (1.0 + ROUNDED)
-    far_one = tree.query(one.points, distance_upper_bound=bound)[0]
+    far_one, to_two = tree.query(one.points, distance_upper_bound=bound)
     # The nearest pair is the same from either side.
     reach = float(far_one.min()) + depth_m
-    far_two = _tree(one).query(two.points, distance_upper_bound=bound)[0]
-    return one.of(far_one <= reach), two.of(far_two <= reach)
+    far_two, to_one = _tree(one).query(two.points, distance_upper_bound=bound)
+    near_one, near_two = np.flatnonzero(far_one <= reach), np.flatnonzero(far_two <= reach)
+    return (near_one, to_two[near_one]), (near_two, to_one[near_two])
 
 
 def _tree(of: Places) -> cKDTree:
-    """A search tree that is built faster than it could be searched, for it is used twice."""
+    """A search tree that is built faster than it could be searched, for few points ask it."""
     return cKDTree(of.points, balanced_tree=False, compact_nodes=False)
 
 
-def _faced(own: Places, others: Places) -> Float[np.ndarray, "3"]:
+def _faced(
+    own: Places, others: Places, some: Int[np.ndarray, "near"], nearest: Int[np.ndarray, "near"]
+) -> Float[np.ndarray, "3"]:
     """The sum of a patch's normals by area, as far as each faces the nearest of the others.
 
     Of an open sheet nobody knows which side is out: there what faces it looks towards it.
+
+    Args:
+        own: Places of a surface.
+        others: Those of the other one.
+        some: Which of its own are near the other surface.
+        nearest: To which of the others each of those is nearest.
     """
     if not own.outward:
         return np.zeros(3)
-    nearest = cKDTree(others.points).query(own.points)[1]
-    faces = -np.einsum("ij,ij->i", own.normals, others.normals[nearest])
+    normals = own.normals[some]
+    faces = -np.einsum("ij,ij->i", normals, others.normals[nearest])
     if others.outward:
         faces = np.maximum(faces, 0.0)
     else:
-        ahead = np.einsum("ij,ij->i", own.normals, others.points[nearest] - own.points)
+        ahead = np.einsum("ij,ij->i", normals, others.points[nearest] - own.points[some])
         faces = np.where(ahead >= -SPACING_M, np.abs(faces), 0.0)
-    return np.asarray((own.areas * faces) @ own.normals)
+    return np.asarray((own.areas[some] * faces) @ normals)
