@@ -40,9 +40,10 @@ from capar.model.errors import CaptureError
 from extractors.bodies.bodies import Bodies, bodies_of
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.contact.contacts import contact_tolerance, pair_distances
+from extractors.contact.footing import FOOT, moving_grounds
 from extractors.motion.leaning import upright_axis
 from extractors.motion.object_motion import motion_floor, rest_poses
-from extractors.relations.weight_bearing import FOOT, foot_level
+from extractors.relations.weight_bearing import foot_level
 from extractors.signals.clock import frame_rate, time_step
 from extractors.signals.filters import cutoff, filter_support_s, speed
 from extractors.thresholds import Thresholds
@@ -67,6 +68,8 @@ def calibrated(capture: Capture, thresholds: Thresholds) -> tuple[Calibration, B
     step_s = time_step(capture.times)
     tolerance_m = contact_tolerance(capture, bodies, thresholds)
     dropout, minimum = capture.contact_dropout_s, capture.contact_minimum_s
+    pairs = tuple(pair_distances(capture, bodies, tolerance_m, thresholds))
+    touch_m = {(pair.first, pair.second): pair.touch_m for pair in pairs}
     known = Calibration(
         step_s=step_s,
         cutoff_hz=cutoff(1.0 / step_s, thresholds),
@@ -75,10 +78,11 @@ def calibrated(capture: Capture, thresholds: Thresholds) -> tuple[Calibration, B
         contact_minimum_s=thresholds.contact_minimum_s if minimum is None else minimum,
         sensors=tuple(_body(capture, each, bodies.sensors, thresholds) for each in capture.sensors),
         objects=tuple(_body(capture, each, bodies.objects, thresholds) for each in capture.objects),
-        pairs=tuple(pair_distances(capture, bodies, tolerance_m, thresholds)),
+        pairs=pairs,
         foot_levels=tuple(_foot_levels(capture, bodies, thresholds)),
         horizons=_horizons(step_s, thresholds),
         thresholds=asdict(thresholds),
+        moving_grounds=tuple(moving_grounds(capture, bodies, touch_m, thresholds)),
     )
     return known, bodies
 

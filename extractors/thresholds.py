@@ -8,11 +8,11 @@ can be found.
 
 from dataclasses import dataclass
 
-from extractors.fault_thresholds import FaultThresholds
+from extractors.foot_thresholds import FootThresholds
 
 
 @dataclass(frozen=True, slots=True)
-class Thresholds(FaultThresholds):
+class Thresholds(FootThresholds):
     """What separates motion from rest, contact from nearness and a gap from a loss."""
 
     cutoff_hz: float = 8.0
@@ -170,18 +170,6 @@ class Thresholds(FaultThresholds):
 
     fall_minimum_s: float = 0.06
     """A shorter fall is none [s]: it falls less than two centimetres meanwhile."""
-
-    touch_load_share: float = 0.2
-    """A foot that bears less than this share of the weight merely touches [1]: what physiotherapy
-    calls touch-down weight bearing; if both are down the other one bears all the rest."""
-
-    feet_apart_m: float = 0.1
-    """Feet nearer than this share the weight in unknown parts [m]: the width of a foot, within
-    which the middle of the body is not known better than to a fifth."""
-
-    off_feet_m: float = 0.3
-    """A body whose middle is further from its feet than this is supported by something else too, or
-    falls [m]: the length of a large foot."""
 
     ride_share: float = 0.25
     """What is borne goes along while it shifts on its bearer by no more than this share of the

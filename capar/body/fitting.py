@@ -28,6 +28,15 @@ POSTURE_COST = 0.05
 DAMPING_COST = 0.03
 """Weight of a radian's step from frame to frame: without it solutions chatter at joint limits."""
 
+LOWER = ("pelvis", "thigh", "shank", "foot", "toes")
+"""How the names of segments of the lower body end."""
+
+UPRIGHT_COST = 0.5
+"""Weight of a radian of the pelvis's tilt where nothing below the chest is seen."""
+
+STANDING_COST = (5.0, 0.5)
+"""Weights of a metre of a foot's height and of a radian of its tilt, likewise."""
+
 BRIDGE_COST = 0.5
 """Weight of the posture where a sensor is lost."""
 
@@ -134,6 +143,27 @@ class Follower:
             mink.VelocityLimit(human.model, speeds),
         ]
         self.configuration = mink.Configuration(human.model)
+        self.stance = [] if self._sees_legs() else self._stance(rest)
+
+    def _sees_legs(self) -> bool:
+        """Whether a sensor is on the pelvis or below it."""
+        return any(places()[place].endswith(LOWER) for place in self.targets)
+
+    def _stance(self, rest: Float[np.ndarray, "posture"]) -> list[mink.FrameTask]:
+        """Tasks of a body of which only the upper part is seen: it stands, wherever that is.
+
+        The pelvis keeps upright, and the feet flat at the height at which they are in the
+        reference posture; else a body that bends forward would tilt as one piece.
+        """
+        self.configuration.update(rest)
+        level = [1.0, 1.0, 0.0]
+        upright = np.multiply(UPRIGHT_COST, level)
+        height, flat = np.array([0.0, 0.0, STANDING_COST[0]]), np.multiply(STANDING_COST[1], level)
+        tasks = [mink.FrameTask("pelvis", "body", 0.0, upright)]
+        tasks += [mink.FrameTask(f"{s}_foot", "body", height, flat) for s in ("right", "left")]
+        for task in tasks:
+            task.set_target_from_configuration(self.configuration)
+        return tasks
 
     def run(
         self, frames: range, start: Float[np.ndarray, "posture"], iterations: int
@@ -178,7 +208,7 @@ class Follower:
         tasks = [task for task in self.frames.values() if task.cost[0] > 0.0]
         velocity = mink.solve_ik(
             self.configuration,
-            [*tasks, self.posture, self.damping],
+            [*tasks, *self.stance, self.posture, self.damping],
             STEP_S,
             SOLVER,
             limits=self.limits,

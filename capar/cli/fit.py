@@ -27,6 +27,9 @@ def fit(
     glb: Annotated[
         Path | None, typer.Option(help="Write the moving mannequin: binary glTF, y up, metres.")
     ] = None,
+    c3d: Annotated[
+        Path | None, typer.Option(help="Write the segments' poses: C3D, ROTATION data, z up, mm.")
+    ] = None,
     npz: Annotated[
         Path | None, typer.Option(help="Write postures, joint angles and poses as NumPy arrays.")
     ] = None,
@@ -42,7 +45,7 @@ def fit(
     from extractors.readers.bundle.capture_toml import read_capture
 
     made = fit_body(capture, read_capture(capture))
-    _write(made, {"bvh": bvh, "glb": glb, "npz": npz, "csv": csv, "mjcf": mjcf})
+    _write(made, {"bvh": bvh, "glb": glb, "c3d": c3d, "npz": npz, "csv": csv, "mjcf": mjcf})
     if as_json:
         typer.echo(json.dumps(_answer(made), indent=2))
     else:
@@ -53,6 +56,7 @@ def _write(made: "Fit", wanted: "Mapping[str, Path | None]") -> None:
     """Write the files that are wanted, each whole or not at all."""
     from capar.cli._output import written
     from capar.export.bvh import bvh_text
+    from capar.export.c3d import c3d_bytes
     from capar.export.glb import glb_bytes
     from capar.export.motion_tables import csv_text, mjcf_text, write_npz
 
@@ -60,6 +64,7 @@ def _write(made: "Fit", wanted: "Mapping[str, Path | None]") -> None:
     makers = {
         "bvh": lambda: bvh_text(*motion).encode(),
         "glb": lambda: glb_bytes(*motion),
+        "c3d": lambda: c3d_bytes(*motion),
         "csv": lambda: csv_text(*motion).encode(),
         "mjcf": lambda: mjcf_text(made.human).encode(),
     }

@@ -117,6 +117,16 @@ class FootLevel:
 
 
 @dataclass(frozen=True, slots=True)
+class MovingGround:
+    """A ground whose surface moves under an agent's feet, such as the belt of a treadmill."""
+
+    agent: str
+    ground: str
+    velocity_mps: tuple[float, float]
+    """Level velocity of its surface along the world's x and y axes [m/s]."""
+
+
+@dataclass(frozen=True, slots=True)
 class Horizons:
     """How far measurements look: what is farther from a frame than this has no part in it.
 
@@ -175,6 +185,9 @@ class Calibration:
     thresholds: Mapping[str, float]
     """Every number that extraction decides by, by its name in ``extractors.thresholds``."""
 
+    moving_grounds: tuple[MovingGround, ...] = ()
+    """Grounds that go by under feet that walk on the spot."""
+
     def __post_init__(self) -> None:
         """Make the thresholds read-only."""
         object.__setattr__(self, "thresholds", MappingProxyType(dict(self.thresholds)))
@@ -221,6 +234,11 @@ class Calibration:
         """Height on which an agent's feet stand [m]; infinite where no foot rests."""
         known = {level.agent: level.height_m for level in self.foot_levels}
         return known.get(agent, float("inf"))
+
+    def ground_velocity(self, agent: str, ground: str) -> tuple[float, float]:
+        """Level velocity of a ground under an agent's feet [m/s]; zero of what stands."""
+        known = {(each.agent, each.ground): each.velocity_mps for each in self.moving_grounds}
+        return known.get((agent, ground), (0.0, 0.0))
 
 
 def _named(kind: str, name: str, known: tuple[BodyCalibration, ...]) -> BodyCalibration:

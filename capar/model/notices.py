@@ -232,6 +232,11 @@ KINDS: Mapping[str, NoticeKind] = {
     ),
     "objects-left-out": NoticeKind(_objects_left_out, "groups of objects left out"),
     "assumed-support": NoticeKind("{0!r} is assumed: {assumed}", "assumed supports"),
+    "moving-ground": NoticeKind(
+        "{0!r} goes by under the feet of {agent} at {speed_mps:.2f} m/s, as a treadmill does: feet "
+        "that move with it stand",
+        "grounds that go by under the feet",
+    ),
     "pivot-distance": NoticeKind(
         _pivot_distance, "pairs that touch by the distance of their origins"
     ),

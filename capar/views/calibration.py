@@ -1,5 +1,6 @@
 """A calibration as tables for people."""
 
+from math import hypot
 from typing import TYPE_CHECKING
 
 from capar.model.calibration import BodyCalibration, Calibration, Found, PairCalibration
@@ -40,6 +41,10 @@ def whole_rows(calibration: Calibration) -> tuple[tuple[str, str], ...]:
         *(
             (f"feet of {level.agent} stand at", f"{level.height_m:.3f} m")
             for level in calibration.foot_levels
+        ),
+        *(
+            (f"{each.ground} under {each.agent} moves at", f"{hypot(*each.velocity_mps):.2f} m/s")
+            for each in calibration.moving_grounds
         ),
         ("half length of the low-pass", f"{horizons.filter_s:.3f} s"),
         ("extrema of speed compared within", f"{horizons.extremum_s:.3f} s"),

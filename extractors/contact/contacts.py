@@ -12,6 +12,7 @@ from capar.model.capture import Capture, PivotContact, TagType
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import Poses
+from extractors.contact.footing import gliding, soles
 from extractors.contact.own_hands import counted_meetings
 from extractors.contact.passing import in_passing
 from extractors.contact.proximity import Body, distance, near
@@ -93,7 +94,7 @@ def contacts(
 ) -> tuple[Contact, ...]:
     """Every contact that is watched for: acting sensors and mobile objects with tag objects.
 
-    What merely brushes past is none.
+    What merely brushes past is none, nor is a foot that glides over the ground fast.
 
     A contact that is there before and after a body was lost is taken to last in between, however
     long; one that is there on one side alone ends, or begins, where the body was last, or first,
@@ -107,6 +108,7 @@ def contacts(
     """
     surfaces = {each: touchable(each) for pair in watched(capture, bodies) for each in pair}
     found: list[Contact] = []
+    feet = soles(capture)
     for first, second in watched(capture, bodies):
         one, two = surfaces[first], surfaces[second]
         pair = calibration.pair(first.name, second.name)
@@ -123,6 +125,9 @@ def contacts(
                 touching = bridged(touching, near_by, edge=edge)
         # Where a body was lost nothing begins or ends: what touched before and after has touched.
         touching = bridged(touching, first.poses.lost | second.poses.lost)
+        if first.name in feet and second.poses.fixed is not None:
+            ground_mps = calibration.ground_velocity(feet[first.name], second.name)
+            touching &= ~gliding(first, second, limits, ground_mps)
         for interval in intervals(
             touching,
             capture.times,

@@ -10,14 +10,12 @@ from capar.model.capture import Capture, Sensor
 from capar.model.facts import Bears, Touching
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
+from extractors.contact.footing import FOOT
 from extractors.contact.normals import contact_normal
 from extractors.contact.touching_part import touching_part
 from extractors.motion.rest import resting
 from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
-
-FOOT = "foot"
-"""The general type of an end-effector that may bear the body."""
 
 TRUNK = ("pelvis", "l5", "hips", "waist", "spine", "torso", "trunk", "chest", "neck")
 """General types of sensors on the trunk, those first that are nearest to the body's middle."""

@@ -3,9 +3,9 @@
 import mujoco
 import numpy as np
 import pytest
+from virtual_bodies.sizes import PEOPLE, READY
 
 from capar.body.anthropometry import (
-    Measures,
     MeasuresError,
     estimate_measures,
     measure_names,
@@ -19,24 +19,6 @@ from capar.body.model import body_spec, sensor_sites, site_rows
 from capar.body.skeleton import skeleton
 from capar.model.capture import Agent
 from capar.model.errors import UnknownNameError
-
-READY = ("man", "woman", "child")
-LIMBS = ("upper_arm", "forearm", "thigh", "shank")
-
-
-def _random(seed: int) -> Measures:
-    """A person of random age, sex and stature, some of whose measures differ from the usual."""
-    rng = np.random.default_rng(seed)
-    sex = str(rng.choice(["male", "female"]))
-    age = float(rng.uniform(6.0, 60.0))
-    usual = estimate_measures(sex=sex, age=age, percentile=float(rng.uniform(2.0, 98.0)))
-    names = ["upper_arm", "forearm", "thigh", "shank", "mass", "hand_length"]
-    some = rng.choice(names, size=int(rng.integers(0, 5)), replace=False)
-    given = {str(n): usual[str(n)] * float(rng.uniform(0.95, 1.05)) for n in some}
-    return estimate_measures(sex=sex, age=age, given={"stature": usual["stature"]} | given)
-
-
-PEOPLE = {name: ready_made(name) for name in READY} | {f"seed {n}": _random(n) for n in range(200)}
 
 
 @pytest.mark.parametrize("who", PEOPLE)

@@ -73,6 +73,9 @@ ONE_OF_EACH = {
     notice("stand-in-shape", "mug", shape="ball of {radius}"):
         "'mug' is a stand-in: ball of {radius}",
     notice("assumed-support", "table", assumed="a box"): "'table' is assumed: a box",
+    notice("moving-ground", "floor", agent="guest", speed_mps=1.129):
+        "'floor' goes by under the feet of guest at 1.13 m/s, as a treadmill does: feet that move "
+        "with it stand",
     notice("long-gap", "mug"): "mug is lost throughout",
     notice("long-gap", "mug", start_s=0.5, end_s=0.994): "mug is lost from 0.50 s to 0.99 s",
     notice("long-gap", "mug", times=1, fixed=False):

@@ -1,4 +1,7 @@
-"""Captures of known truth: minimum-jerk people who drink, touch, slide, lift and hit."""
+"""Captures of known truth: minimum-jerk people who drink, touch, slide, lift and hit.
+
+Which of them a human body can perform is told in ``POSSIBLE.md``.
+"""
 
 from motions.drink import drink_from_mug as drink_from_mug
 from motions.handing import hand_over as hand_over
