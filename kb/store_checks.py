@@ -158,7 +158,7 @@ def _within(nlt: str, size: str) -> bool:
         place, lengths = nlt_of(nlt).position, numbers(size)
     except LiteralError:
         return True
-    return all(
+    return not any(lengths) or all(  # without a shape, a thing has no size
         abs(share * length if length > 0 else share) <= length + REACH_M
         for share, length in zip(place, lengths, strict=True)
     )

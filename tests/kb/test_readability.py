@@ -4,13 +4,14 @@ from pathlib import Path
 
 import pytest
 from observations import drink_from_mug
-from pyoxigraph import NamedNode, Quad
+from pyoxigraph import Literal, NamedNode, Quad
 from pyoxigraph import Store as Oxigraph
 
 from kb.actionary import Actionary
 from kb.errors import DamagedError
 from kb.store.embedded import DATA_FOLDER, EmbeddedStore
 from kb.store_checks import check
+from ontology import CAPAR
 
 INDICES = 7
 """Six orders of a statement's terms, and the terms by their numbers."""
@@ -62,3 +63,19 @@ def test_a_reference_to_nothing_is_found(folder: Path) -> None:
     (problem,) = check(actionary.store)
     assert problem.observation == "DrinkFromMug"
     assert "mentions points to DrinkFromMug#nowhere" in problem.message
+
+
+def test_a_place_beyond_a_things_reach_is_found_where_its_size_is_known() -> None:
+    graph = NamedNode("https://w3id.org/capar/data/observation/DrinkFromMug")
+    for size, told in (("0.0 0.0 0.0", 0), ("0.1 0.1 0.1", 1)):
+        actionary = Actionary.in_memory()
+        actionary.add(drink_from_mug())
+        place, thing = (NamedNode(f"{graph.value}#{each}") for each in ("far", "thing"))
+        for node, word, value in (
+            (place, "dominant", thing),
+            (place, "eeNlt", Literal("9 0 0 1 0 0 0", datatype=CAPAR.nlt)),
+            (thing, "size", Literal(size, datatype=CAPAR.vector)),
+        ):
+            actionary.store.insert([Quad(node, getattr(CAPAR, word), value, graph)])
+        found = [each for each in check(actionary.store) if "outside the reach" in each.message]
+        assert len(found) == told
