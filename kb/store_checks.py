@@ -24,6 +24,9 @@ REACH_M = 0.1
 _SHARED = ("agents", "objects", "actions")
 """The graphs of what observations say alike."""
 
+_MENTIONED = f"SELECT DISTINCT ?thing {{ ?observation {CAPAR.mentions} ?thing }}"
+"""What is judged of them: what a user declares may say less."""
+
 Sizes: TypeAlias = Mapping[object, object]
 """Lengths of things, as they are stated."""
 
@@ -58,7 +61,9 @@ def check(store: Store, *, full: bool = False) -> tuple[Problem, ...]:
     store.check_readable()
     shared = [quad for name in _SHARED for quad in store.graph(names.GRAPHS[name])]
     kinds, sizes = _classes(shared), _sizes(shared)
-    found = [Problem("", *_split(line)) for line in _faults(shared, kinds, sizes)]
+    seen = {row[0] for row in store.ask(_MENTIONED).rows}
+    common = [each for each in shared if each.subject in seen]
+    found = [Problem("", *_split(line)) for line in _faults(common, kinds, sizes)]
     named = {quad.subject for quad in shared} | ontology_kinds().keys()
     for each in observations(store):
         own = store.graph(names.observation(each.name))
