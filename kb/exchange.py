@@ -1,4 +1,4 @@
-"""The Actionary in and out: Turtle, TriG, N-Quads and JSON-LD."""
+"""The Actionary in and out: Turtle, TriG, N-Quads, JSON-LD and RDF/XML."""
 
 from collections.abc import Iterable
 from functools import cache
@@ -19,6 +19,7 @@ from pyoxigraph import (
 
 from capar.model.errors import FileError, UnknownNameError
 from kb.errors import SchemaError, ShapeError
+from kb.json_ld import with_context
 from kb.lookup.agents import aliases, joined
 from kb.lookup.stored import observations
 from kb.schema_steps import STEPS, migration
@@ -37,8 +38,12 @@ FORMATS = {
     "trig": RdfFormat.TRIG,
     "nquads": RdfFormat.N_QUADS,
     "jsonld": RdfFormat.JSON_LD,
+    "rdfxml": RdfFormat.RDF_XML,
 }
-"""Formats by name; Turtle has no graphs, and gets them back by what its statements are about."""
+"""Formats by name.
+
+Turtle and RDF/XML have no graphs, and get them back by what their statements are about.
+"""
 
 SUFFIXES = {
     ".ttl": "turtle",
@@ -48,6 +53,8 @@ SUFFIXES = {
     ".nquads": "nquads",
     ".jsonld": "jsonld",
     ".json": "jsonld",
+    ".rdf": "rdfxml",
+    ".owl": "rdfxml",
 }
 """Formats by a file's ending."""
 
@@ -97,7 +104,11 @@ def export(
         return turtle(dict.fromkeys(quad.triple for quad in quads), form=form).encode()
     if form == RdfFormat.TRIG:
         return turtle(quads, form=form).encode()
-    return serialize(quads, format=form) or b""
+    if form == RdfFormat.RDF_XML:
+        triples = dict.fromkeys(quad.triple for quad in quads)
+        return serialize(triples, format=form, prefixes=dict(PREFIXES)) or b""
+    data = serialize(quads, format=form) or b""
+    return with_context(data) if form == RdfFormat.JSON_LD else data
 
 
 def misplaced(store: Store) -> int:

@@ -1,9 +1,10 @@
 """Checks of what is stored: shapes, NLTs, dangling references, incomplete observations."""
 
-from collections.abc import Iterable
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, TypeAlias
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
@@ -12,7 +13,7 @@ from kb.lookup.stored import observations
 from kb.store import names, shacl_validation
 from kb.store.consistency import inconsistencies
 from kb.store.literals import LiteralError, nlt_of, numbers
-from kb.store.sparql import fill
+from kb.store.statements import TYPE
 from kb.store.stores import Store
 from ontology import BASE, CAPAR, DATA
 from ontology.files import ontology, ontology_kinds, shape_files, subclasses
@@ -20,12 +21,14 @@ from ontology.files import ontology, ontology_kinds, shape_files, subclasses
 REACH_M = 0.1
 """How far from an object's origin, beyond its own size, its constraints may lie [m]."""
 
-_DANGLING = f"""SELECT DISTINCT ?thing ?property ?nowhere
-WHERE {{
-  GRAPH @graph@ {{ ?thing ?property ?nowhere }}
-  FILTER(isIRI(?nowhere) && STRSTARTS(STR(?nowhere), "{DATA}"))
-  FILTER NOT EXISTS {{ ?nowhere ?any ?value }}
-}}"""
+_SHARED = ("agents", "objects", "actions")
+"""The graphs of what observations say alike."""
+
+_MENTIONED = f"SELECT DISTINCT ?thing {{ ?observation {CAPAR.mentions} ?thing }}"
+"""What is judged of them: what a user declares may say less."""
+
+Sizes: TypeAlias = Mapping[object, object]
+"""Lengths of things, as they are stated."""
 
 _NLTS = (
     (CAPAR.eeNlt, CAPAR.dominant),
@@ -45,40 +48,59 @@ class Problem:
     message: str
 
 
-def check(store: Store, *, full: bool = True) -> tuple[Problem, ...]:
-    """The faults of a store, observation by observation.
+def check(store: Store, *, full: bool = False) -> tuple[Problem, ...]:
+    """The faults of a store, observation by observation, then those of what they share.
 
     Args:
         store: What to look at.
-        full: Whether SHACL itself judges (pySHACL), rather than our fast reading of the shapes.
+        full: Whether SHACL itself (pySHACL) judges beside our fast reading of the shapes.
 
     Raises:
         DamagedError: A statement cannot be read.
     """
     store.check_readable()
-    found: list[Problem] = []
+    shared = [quad for name in _SHARED for quad in store.graph(names.GRAPHS[name])]
+    kinds, sizes = _classes(shared), _sizes(shared)
+    seen = {row[0] for row in store.ask(_MENTIONED).rows}
+    common = [each for each in shared if each.subject in seen]
+    found = [Problem("", *_split(line)) for line in _faults(common, kinds, sizes)]
+    named = {quad.subject for quad in shared} | ontology_kinds().keys()
     for each in observations(store):
-        quads = part(store, each.name)
-        triples = [quad.triple for quad in quads]
-        judged = by_shacl(triples) if full else _by_rules(triples)
-        found += [Problem(each.name, thing, message) for thing, message in judged]
-        found += [
-            Problem(each.name, *_split(line)) for line in shacl_validation.nlt_problems(triples)
-        ]
-        found += [Problem(each.name, *_split(line)) for line in inconsistencies(triples)]
-        found += [Problem(each.name, *_split(line)) for line in _out_of_reach(quads)]
-        found += [Problem(each.name, *_split(line)) for line in _dangling(store, each.name)]
+        own = store.graph(names.observation(each.name))
+        lines = [*_faults(own, kinds, sizes), *_dangling(store, own, named)]
+        found += [Problem(each.name, *_split(line)) for line in lines]
+        if full:
+            judged = by_shacl([quad.triple for quad in part(store, each.name)])
+            found += [Problem(each.name, thing, message) for thing, message in judged]
     found += _unlisted(store)
     return tuple(sorted(set(found)))
+
+
+def _faults(quads: list[Quad], kinds: Mapping[object, list[object]], sizes: Sizes) -> list[str]:
+    """What is wrong with statements by shapes, NLTs, units and reach, as lines."""
+    return [
+        *shacl_validation.violations(quads, elsewhere=lambda thing: kinds.get(thing, ())),
+        *shacl_validation.nlt_problems(quads),
+        *inconsistencies(quads),
+        *_out_of_reach(quads, sizes),
+    ]
+
+
+def _classes(quads: Iterable[Quad]) -> dict[object, list[object]]:
+    found: dict[object, list[object]] = defaultdict(list)
+    for each in quads:
+        if each.predicate == TYPE:
+            found[each.subject].append(each.object)
+    return found
+
+
+def _sizes(quads: Iterable[Quad]) -> Sizes:
+    return {each.subject: each.object for each in quads if each.predicate == CAPAR.size}
 
 
 def _split(line: str) -> tuple[str, str]:
     thing, _, message = line.partition(": ")
     return thing, message
-
-
-def _by_rules(triples: list[Triple]) -> list[tuple[str, str]]:
-    return [_split(line) for line in shacl_validation.violations(triples)]
 
 
 def by_shacl(triples: Iterable[Triple]) -> list[tuple[str, str]]:
@@ -117,20 +139,21 @@ def _shapes() -> Any:
     return graph
 
 
-def _out_of_reach(quads: list[Quad]) -> list[str]:
+def _out_of_reach(quads: list[Quad], sizes: Sizes) -> list[str]:
     """NLTs that lie further from an object's origin than the object is large."""
-    said: dict[tuple[object, NamedNode], object] = {
-        (each.subject, each.predicate): each.object for each in quads
-    }
+    owners = {owner for _, owner in _NLTS}
+    owned = {(e.subject, e.predicate): e.object for e in quads if e.predicate in owners}
+    sizes = {**sizes, **_sizes(quads)}
     found = []
-    for (thing, predicate), value in said.items():
+    for each in quads:
         for nlt, owner in _NLTS:
-            if predicate == nlt and isinstance(value, Literal):
-                size = said.get((said.get((thing, owner)), CAPAR.size))
-                if isinstance(size, Literal) and not _within(value.value, size.value):
+            if each.predicate == nlt and isinstance(each.object, Literal):
+                size = sizes.get(owned.get((each.subject, owner)))
+                if isinstance(size, Literal) and not _within(each.object.value, size.value):
                     found.append(
-                        f"{_tail(thing)}: {predicate.value.removeprefix(BASE)} {value.value!r} "
-                        f"lies outside the reach of an object of {size.value} m"
+                        f"{_tail(each.subject)}: {nlt.value.removeprefix(BASE)} "
+                        f"{each.object.value!r} lies outside the reach of an object of "
+                        f"{size.value} m"
                     )
     return sorted(found)
 
@@ -140,20 +163,37 @@ def _within(nlt: str, size: str) -> bool:
         place, lengths = nlt_of(nlt).position, numbers(size)
     except LiteralError:
         return True
-    return all(
+    return not any(lengths) or all(  # without a shape, a thing has no size
         abs(share * length if length > 0 else share) <= length + REACH_M
         for share, length in zip(place, lengths, strict=True)
     )
 
 
-def _dangling(store: Store, name: str) -> list[str]:
-    """Things that an observation refers to and that have no statements."""
-    graph = names.observation(name)
-    rows = store.ask(fill(_DANGLING, graph=str(graph))).rows
-    return [
-        f"{_tail(thing)}: {_tail(predicate)} points to {_tail(nowhere)}, of which nothing is said"
-        for thing, predicate, nowhere in rows
+def _dangling(store: Store, quads: list[Quad], known: Collection[object]) -> Iterator[str]:
+    """References of an observation to things of which nothing is said anywhere."""
+    own = {each.subject for each in quads}
+    doubtful = [
+        each
+        for each in quads
+        if isinstance(each.object, NamedNode)
+        and each.object not in own
+        and each.object not in known
+        and each.object.value.startswith(DATA)
     ]
+    said = _said(store, {str(each.object) for each in doubtful})
+    for each in doubtful:
+        if each.object not in said:
+            yield (
+                f"{_tail(each.subject)}: {_tail(each.predicate)} points to "
+                f"{_tail(each.object)}, of which nothing is said"
+            )
+
+
+def _said(store: Store, things: Collection[str]) -> set[object]:
+    """Those of which the store says something."""
+    listed = " ".join(sorted(things))
+    query = f"SELECT DISTINCT ?thing {{ VALUES ?thing {{ {listed} }} ?thing ?property ?value }}"
+    return {row[0] for row in store.ask(query).rows} if things else set()
 
 
 def _tail(term: object) -> str:

@@ -12,25 +12,26 @@ app = typer.Typer()
 
 @app.command()
 def check(
-    fast: Annotated[
+    shacl: Annotated[
         bool,
-        typer.Option("--fast", help="Judge by our own reading of the shapes, without pySHACL."),
+        typer.Option("--shacl", help="Have pySHACL judge every observation as well; minutes."),
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print the problems as JSON.")] = False,
     actionary: Place = None,
 ) -> None:
-    """Check every observation: SHACL shapes, NLTs, and references to what is not there."""
+    """Check that every statement can be read, and every observation: shapes, NLTs, references."""
     from kb import Actionary
     from kb.store_checks import check as checked
 
     with Actionary.open(actionary, read_only=True) as opened:
-        problems = checked(opened.store, full=not fast)
+        problems = checked(opened.store, full=shacl)
         count = len(opened.observations())
     if json:
         print_json(problems)
     else:
         for each in problems:
-            typer.echo(f"{each.observation}: {each.thing}: {each.message}")
+            whose = f"{each.observation}: " if each.observation else ""
+            typer.echo(f"{whose}{each.thing}: {each.message}")
         typer.echo(f"{count} observations, {len(problems)} problems")
     if problems:
         raise typer.Exit(2)

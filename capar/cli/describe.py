@@ -1,11 +1,14 @@
 """A capture in; what happened out, in plain English."""
 
 from enum import StrEnum
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from capar.cli._options import Beside, Rules, rule_base
+
+if TYPE_CHECKING:
+    from capar.model.observation import Observation
 
 app = typer.Typer()
 
@@ -30,6 +33,12 @@ def describe(
     profile: Annotated[
         str, typer.Option(help="The rules to reason with: extended, or thesis to the letter.")
     ] = "extended",
+    corrected: Annotated[
+        bool,
+        typer.Option(
+            "--corrected", help="Say what persons claim of segments (`capar correct`) instead."
+        ),
+    ] = False,
     rules: Rules = None,
     actionary: Beside = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
@@ -42,6 +51,8 @@ def describe(
     from kb.language.describe import describe as told
 
     observation = observe(capture, rules=rule_base(profile, rules, actionary))
+    if corrected:
+        observation = _corrected(observation, actionary)
     words = rule_words(rules, actionary)
     text = told(observation, detail=detail.value, timed=timed, words=words)
     notices = reservations(observation.notices)
@@ -50,3 +61,16 @@ def describe(
         print_json(told_of | {"notices": [each.document() for each in notices]}, sort_keys=True)
     else:
         typer.echo("\n".join((text, *reservation_lines(notices))))
+
+
+def _corrected(observation: "Observation", actionary: str | None) -> "Observation":
+    """The same with the segments that persons claim in an Actionary."""
+    from dataclasses import replace
+
+    from kb import Actionary
+    from kb.corrected_links import corrected_links
+    from kb.corrections import claims
+
+    with Actionary.open(actionary, read_only=True) as opened:
+        said = claims(opened.store, observation.capture)
+    return replace(observation, links=corrected_links(observation.links, said))

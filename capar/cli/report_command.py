@@ -41,6 +41,10 @@ def linguistics(
     cases: Annotated[
         Path | None, typer.Option(help="Folder of rule cases that count as proof, as tests/rules.")
     ] = None,
+    corrected: Annotated[
+        bool,
+        typer.Option("--corrected", help="Count what persons say of segments (`capar correct`)."),
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
 ) -> None:
     """Which verbs and classes of verbs the system addresses, with what proves it."""
@@ -53,7 +57,12 @@ def linguistics(
     if out is not None:
         check_writable(out)
     files = primitive_files(rule_base("extended", rules, opened(actionary)).added)
-    with open_words(actionary) as store:
+    with open_words(actionary) as opened_store:
+        store = opened_store
+        if corrected and store is not None:
+            from kb.corrected_view import corrected as corrected_copy
+
+            store = corrected_copy(store)
         report = report_of(files, store=store, cases=cases_of(files, cases))
     text = write(report, Format.JSON.value if json else form.value)
     if out is None:

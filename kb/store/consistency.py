@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
+from functools import lru_cache
 from math import isclose, isfinite
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
@@ -18,6 +19,14 @@ LARGEST_M = 50.0
 FRAMES_APART = 2.0
 """How many frames, and a hundredth more, a time may lie from its frame, as clocks are uneven."""
 
+_COMPARED = frozenset(
+    {
+        *(CAPAR.start, CAPAR.end, CAPAR.duration, CAPAR.frames, CAPAR.rate, CAPAR.size),
+        *(CAPAR.firstFrame, CAPAR.lastFrame, CAPAR.frame, CAPAR.time),
+    }
+)
+"""The properties whose values must agree with others of the same thing, or with the capture."""
+
 Said = Mapping[NamedNode, list[object]]
 
 
@@ -30,8 +39,12 @@ def inconsistencies(statements: Iterable[Triple | Quad]) -> tuple[str, ...]:
     found = set()
     for each in statements:
         if isinstance(each.subject, NamedNode):
-            said[each.subject.value][each.predicate].append(each.object)
-            found |= {f"{_short(each.subject.value)}: {word}" for word in _unknown_words(each)}
+            predicate, value = each.predicate, each.object
+            if predicate in _COMPARED:
+                said[each.subject.value][predicate].append(value)
+            stated = value if predicate == TYPE and isinstance(value, NamedNode) else None
+            if words := _unknown_words(predicate, stated):
+                found |= {f"{_short(each.subject.value)}: {word}" for word in words}
     for thing, own in said.items():
         capture = said.get(f"{thing.partition('#')[0]}#capture", {})
         problems = (*_durations(own), *_clock(own), *_times(own, capture), *_sizes(own))
@@ -49,17 +62,20 @@ def check_consistent(name: str, statements: Iterable[Triple | Quad]) -> None:
         raise ShapeError(f"observation {name!r}", found)
 
 
-def _unknown_words(statement: Triple | Quad) -> Iterator[str]:
-    """The property, and the class that is stated, if they look like ours and are not."""
-    words = [("property", statement.predicate)]
-    if statement.predicate == TYPE and isinstance(statement.object, NamedNode):
-        words.append(("class", statement.object))
-    for kind, word in words:
-        name = word.value.removeprefix(BASE)
-        if word.value.startswith(BASE) and name not in terms():
-            near = get_close_matches(name, terms(), n=1)
-            hint = f" Did you mean capar:{near[0]}?" if near else ""
-            yield f"The ontology has no {kind} capar:{name}.{hint}"
+@lru_cache(maxsize=1024)
+def _unknown_words(predicate: NamedNode, stated: NamedNode | None) -> tuple[str, ...]:
+    """What is wrong with the property, and with the class, if they look like ours and are not."""
+    words = [("property", predicate), *([("class", stated)] if stated else [])]
+    return tuple(text for kind, word in words if (text := _unknown(kind, word.value)))
+
+
+def _unknown(kind: str, iri: str) -> str:
+    name = iri.removeprefix(BASE)
+    if not iri.startswith(BASE) or name in terms():
+        return ""
+    near = get_close_matches(name, terms(), n=1)
+    hint = f" Did you mean capar:{near[0]}?" if near else ""
+    return f"The ontology has no {kind} capar:{name}.{hint}"
 
 
 def _durations(said: Said) -> Iterator[str]:

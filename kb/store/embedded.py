@@ -13,6 +13,7 @@ from kb.store import answers, sparql
 from kb.store import timed_query as bounded
 from kb.store.answers import Answer
 from kb.store.lock import WriterLock
+from kb.store.readability import read_all
 from kb.store.readonly_folder import check_whole, open_reader, read, unusable
 
 _T = TypeVar("_T")
@@ -106,7 +107,7 @@ class EmbeddedStore:
 
     def check_readable(self) -> None:
         """Read every statement by way of every index, so that damage anywhere is found."""
-        self._read(_read_all)
+        self._read(read_all)
 
     def dataset(self) -> Any:
         """The same as rdflib's dataset, whose default graph is the union of all."""
@@ -162,20 +163,6 @@ def _functions(store: Oxigraph) -> dict[NamedNode, Any]:
     from kb.store.track_functions import track_functions  # most of a second, for few queries
 
     return dict(track_functions(store))
-
-
-def _read_all(store: Oxigraph) -> None:
-    terms: set[tuple[Any, ...]] = set()
-    for quad in store:
-        for graph in (quad.graph_name, None):
-            terms |= {
-                (quad.subject, None, None, graph),
-                (None, quad.predicate, None, graph),
-                (None, None, quad.object, graph),
-            }
-    for pattern in terms:
-        for _ in store.quads_for_pattern(*pattern):
-            pass
 
 
 def _locked(folder: Path, wait_s: float) -> WriterLock:

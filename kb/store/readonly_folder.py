@@ -15,6 +15,9 @@ TRIES = 60
 PAUSE_S = 0.02
 """How long it waits between [s]."""
 
+LASTING = "block checksum mismatch"
+"""What the database reports of damage that no other try mends; finished files never change."""
+
 _T = TypeVar("_T")
 
 
@@ -64,6 +67,8 @@ def _again(action: Callable[[], _T], data: Path) -> _T:
         except SyntaxError:
             raise
         except (OSError, RuntimeError) as error:
+            if LASTING in str(error):
+                raise unusable(data.parent, error) from None
             problem = error
             time.sleep(PAUSE_S)
     raise unusable(data.parent, problem)

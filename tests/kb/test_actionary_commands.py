@@ -164,7 +164,7 @@ def test_check_finds_what_is_wrong_and_ends_with_2(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert "lies outside the reach" in done.stdout
     assert "of which nothing is said" in done.stdout
-    problems = json.loads(capar("check", "--fast", "--json", at=place).stdout)
+    problems = json.loads(capar("check", "--json", at=place).stdout)
     assert {each["observation"] for each in problems} == {"DrinkFromMug"}
 
 

@@ -15,10 +15,14 @@ from capar.evaluation.label_files import read_labels
 from capar.evaluation.labels import Kind
 from capar.model.errors import UnknownNameError
 from capar.model.segment_address import SegmentAddress
+from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.actionary import Actionary
+from kb.corrected_links import corrected_links
 from kb.corrected_view import corrected
 from kb.corrections import Correction, Span, account, claims, correct, overlay
 from kb.errors import CorrectionError
+from kb.language.describe import describe as described
+from kb.lexicon.evidence import seen_in
 from kb.store_checks import check
 
 CAPTURE = "DrinkFromMug"
@@ -111,6 +115,37 @@ def test_questions_are_answered_by_the_account_on_request(drunk: Actionary) -> N
     assert copy.ask("follows", action="Sip") == [{"next": said(drunk)[2][0], "times": 1}]
     (claim,) = drunk.ask("corrections")
     assert (claim["person"], claim["action"]) == ("Ada", "Sip")
+
+
+def test_the_corrected_links_are_the_account_and_are_described(drunk: Actionary) -> None:
+    seen = drink_from_mug()
+    machine = said(drunk)
+    _, start, end, _ = machine[1]
+    correct(drunk.store, at(1), Correction(split_s=(start + end) / 2), by="Ada")
+    correct(drunk.store, at(2), Correction(name="Lift"), by="Ada")
+    found = replace(seen, links=corrected_links(seen.links, claims(drunk.store, CAPTURE)))
+    (hand,) = (each for each in found.links if each.ee == "right_hand")
+    assert [(e.name, e.start_s, e.end_s) for e in hand.segments] == [e[:3] for e in said(drunk)]
+    assert [each.index for each in hand.segments] == list(range(len(machine) + 1))
+    assert all(one.last == two.first for one, two in pairwise(hand.segments))
+    words = primitive_words(primitive_files())
+    assert "moved it to the mouth, lifted it, drank" in described(found, words=words)
+    assert "lifted" not in described(seen, words=words)
+
+
+def test_what_nobody_claims_stays_as_it_was() -> None:
+    seen = drink_from_mug()
+    assert corrected_links(seen.links, ()) == seen.links
+    assert (
+        corrected_links(seen.links, [Span("left_foot", 0.0, 1.0, "Kick", by="Ada")]) == seen.links
+    )
+
+
+def test_the_report_counts_what_persons_say_on_request(drunk: Actionary) -> None:
+    correct(drunk.store, at(1), Correction(name="Sip"), by="Ada")
+    counted = {each.primitive: each.count for each in seen_in(corrected(drunk.store))}
+    assert counted["Sip"] == 1
+    assert "Sip" not in {each.primitive for each in seen_in(drunk.store)}
 
 
 @pytest.mark.parametrize(

@@ -116,9 +116,9 @@ def test_rdflib_reads_as_many_statements_as_there_are(name: str, capture: str) -
     actionary = Actionary.in_memory()
     actionary.add(without_objects(capture))
     quads = said(actionary)
-    form = {"jsonld": "json-ld"}.get(name, name)
+    form = {"jsonld": "json-ld", "rdfxml": "xml"}.get(name, name)
     found = Dataset().parse(data=export(actionary.store, name), format=form)
-    expected = {each.triple for each in quads} if name == "turtle" else quads
+    expected = {each.triple for each in quads} if name in {"turtle", "rdfxml"} else quads
     assert len(list(found.quads())) == len(expected)
     assert {str(each) for each, *_ in found.quads()} == {each.subject.value for each in quads}
     assert [each.name for each in actionary.observations()] == [capture]
@@ -163,10 +163,12 @@ def test_what_breaks_the_model_is_not_taken_in() -> None:
 def test_a_file_that_is_not_what_it_says_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="no turtle"):
         read(b"<a> <b>", "turtle", path=tmp_path / "x.ttl")
-    with pytest.raises(UnknownNameError, match="jsonld, nquads, trig, turtle"):
+    with pytest.raises(UnknownNameError, match="jsonld, nquads, rdfxml, trig, turtle"):
         format_of("facts.docx")
     for nameless in ("-", ".", "facts"):
-        with pytest.raises(FileError, match=r"add --format: jsonld, nquads, trig or turtle"):
+        with pytest.raises(
+            FileError, match=r"add --format: jsonld, nquads, rdfxml, trig or turtle"
+        ):
             format_of(nameless)
     assert format_of("facts.nq") == "nquads"
 
