@@ -1,6 +1,6 @@
 """All batteries of scenes, and all their scenes."""
 
-import os
+from combinations import EVERY as ALL
 
 from scenes.hands import SCENES as HANDS
 from scenes.hands.scene import Scene
@@ -21,7 +21,7 @@ SCENES = {
 }
 """The scenes of all batteries, each under its battery's name and its own."""
 
-EVERY = 1 if os.environ.get("CAPAR_SCENES") == "all" else 16
+EVERY = 1 if ALL else 16
 """Of the scenes, which do not change any more, tests of their soundness take one in so many.
 
 `CAPAR_SCENES=all pytest tests/scenes` takes each, as whoever writes a scene or a builder does.
