@@ -3,6 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
+from combinations import EVERY
 
 from capar.body.anthropometry import (
     Measures,
@@ -36,7 +37,12 @@ def _random(seed: int) -> Measures:
     return estimate_measures(sex=sex, age=age, given={"stature": usual["stature"]} | given)
 
 
-PEOPLE = {name: ready_made(name) for name in READY} | {f"seed {n}": _random(n) for n in range(200)}
+DRAWN = 200 if EVERY else 40
+"""How many bodies are drawn; `CAPAR_SCENES=all` draws more."""
+
+PEOPLE = {name: ready_made(name) for name in READY} | {
+    f"seed {n}": _random(n) for n in range(DRAWN)
+}
 
 
 @pytest.mark.parametrize("who", PEOPLE)
