@@ -18,6 +18,8 @@ from capar.pipelines.observation import observe, observe_measured
 from extractors.measure import measure
 from extractors.readers.bundle.capture_toml import read_capture, takes
 
+pytestmark = pytest.mark.long
+
 EXAMPLES = Path(__file__).parents[1] / "examples"
 MOVES = {"MoveObj", "MoveObjTo"}
 

@@ -11,6 +11,8 @@ from motions.uses import USES
 
 from capar.pipelines.observation import observe
 
+pytestmark = pytest.mark.long
+
 Act = Callable[..., motions.Trial]
 
 

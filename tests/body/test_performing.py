@@ -25,6 +25,8 @@ from capar.body.things import Scene, Thing, box, cup, scene, table
 from capar.model.errors import UnknownNameError
 from extractors.readers.bundle.capture_toml import read_capture
 
+pytestmark = pytest.mark.long
+
 RATE_HZ = 40.0
 
 

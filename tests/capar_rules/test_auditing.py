@@ -8,6 +8,8 @@ import pytest
 from capar_rules.engine.profiles import profile
 from capar_rules.lint.audit import Audit, audit
 
+pytestmark = pytest.mark.long
+
 
 @cache
 def audited(name: str) -> Audit:

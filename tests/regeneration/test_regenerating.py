@@ -21,6 +21,8 @@ from capar.regeneration.planning import plan
 from capar.regeneration.quality import quality
 from capar.regeneration.scenes import raised, resized
 
+pytestmark = pytest.mark.long
+
 RATE_HZ = 30.0
 
 
