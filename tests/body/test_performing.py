@@ -27,7 +27,7 @@ from extractors.readers.bundle.capture_toml import read_capture
 
 pytestmark = pytest.mark.long
 
-RATE_HZ = 40.0
+RATE_HZ = 30.0
 
 
 def _scene(human: Human) -> Scene:

@@ -6,7 +6,6 @@ from functools import cache
 
 import motions
 import numpy as np
-from combinations import EVERY
 from flickering import flickering
 from motions import doors, encounters, figure, shapes, uses
 from motions.handled import BLOCK, Leg, Stage, beside, handle, place
@@ -227,9 +226,8 @@ def _stories() -> Iterator[tuple[str, Story]]:
         motions.resume_posture,
     )
     once = (*rows, motions.roll_object, *uses.USES, *encounters.ENCOUNTERS, *OPENED)
-    for number, motion in enumerate(thesis):
-        people = (motions.TALL_MAN, motions.CHILD)
-        for performer in people if EVERY else people[number % 2 :][:1]:
+    for motion in thesis:
+        for performer in (motions.TALL_MAN, motions.CHILD):
             yield (
                 f"{motion.__name__}_{performer.name}",
                 Story(_by(motion, performer), steps=MEANT.get(motion.__name__)),
