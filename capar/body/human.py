@@ -108,9 +108,10 @@ class Human:
         data = mujoco.MjData(self.model)
         places = {name: np.empty((len(motion), 3)) for name in getters}
         turns = {name: np.empty((len(motion), 4)) for name in getters}
-        views = {"body": (data.xpos, data.xmat), "site": (data.site_xpos, data.site_xmat)}
+        spots = {"body": data.xpos, "site": data.site_xpos}
+        matrices = {"body": data.xmat, "site": data.site_xmat}
         rows = [
-            (places[name], turns[name], *(view[number] for view in views[kind]))
+            (places[name], turns[name], spots[kind][number], matrices[kind][number])
             for name, (kind, number) in getters.items()
         ]
         for frame, posture in enumerate(motion):
