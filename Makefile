@@ -12,10 +12,12 @@ SOURCES := $(shell find capar extractors capar_rules kb ontology -type f -not -n
 demo: $(VENV)/ready  ## Observe the shipped capture: six steps of drinking from a mug, and a picture.
 	$(VENV)/bin/capar demo
 
+# What is imported is compiled by whoever imports it first, and kept; the rest need not be compiled.
+test: export PYTHONDONTWRITEBYTECODE =
 test: $(TESTED)/ready  ## Build the wheel, install it, and test it from another folder.
 	mkdir -p .make/elsewhere
 	cd .make/elsewhere && ../venv/bin/python -m pytest -c $(CURDIR)/pyproject.toml --rootdir $(CURDIR) \
-		-n $(WORKERS) --dist worksteal $(CURDIR)/tests $(ARGS)
+		-n $(WORKERS) --dist loadfile --no-loadscope-reorder $(CURDIR)/tests $(ARGS)
 
 check: $(VENV)/developing  ## Style, types and the import contract, as the tests check them too.
 	$(VENV)/bin/ruff format --check .
@@ -43,12 +45,12 @@ $(VENV)/developing: $(VENV)/ready
 $(TESTED)/ready: pyproject.toml README.md $(SOURCES)
 	$(PYTHON) -m venv $(TESTED)
 	rm -rf .make/dist
-	$(TESTED)/bin/python -m pip install --quiet --quiet --disable-pip-version-check build
-	$(TESTED)/bin/python -m build --wheel --outdir .make/dist . >.make/build.log 2>&1 || (cat .make/build.log; exit 1)
-	$(TESTED)/bin/python -m pip install --quiet --quiet --disable-pip-version-check \
+	$(TESTED)/bin/python -m pip wheel --disable-pip-version-check --no-deps --wheel-dir .make/dist . \
+		>.make/build.log 2>&1 || (cat .make/build.log; exit 1)
+	if $(TESTED)/bin/python -m pip show --quiet --quiet capar; then \
+		$(TESTED)/bin/python -m pip uninstall --quiet --yes capar; fi
+	$(TESTED)/bin/python -m pip install --quiet --quiet --disable-pip-version-check --no-compile \
 		"$$(ls .make/dist/capar-*.whl)[dev]"
-	$(TESTED)/bin/python -m pip install --quiet --quiet --disable-pip-version-check --no-deps --force-reinstall \
-		.make/dist/capar-*.whl
 	touch $@
 
 clean:

@@ -1,5 +1,6 @@
 """What all tests share: this folder, whose observations and motions they import, and patience."""
 
+import gc
 import signal
 from pathlib import Path
 
@@ -16,8 +17,17 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Run what takes long in one test first, so that no worker is left alone with it at the end."""
+    """Run first what takes long, so that no worker is left alone with it at the end.
+
+    A worker takes whole files, in the order of their first tests.
+    """
     items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
+def pytest_collection_finish() -> None:
+    """Spare the garbage collector the modules and thousands of tests, which stay to the end."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture

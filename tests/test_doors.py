@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import motions
 import pytest
+from combinations import meeting
 from motions.doors import DOORS, open_and_close_door, open_and_close_drawer
 
 from capar.pipelines.observation import observe
@@ -21,9 +22,9 @@ RECORDED = {
 }
 
 
-@pytest.mark.parametrize("options", RECORDED.values(), ids=RECORDED)
-@pytest.mark.parametrize("performer", motions.PERFORMERS, ids=lambda each: each.name)
-@pytest.mark.parametrize("act", DOORS, ids=lambda each: each.__name__)
+@pytest.mark.parametrize(
+    ("act", "performer", "options"), meeting(DOORS, motions.PERFORMERS, RECORDED)
+)
 def test_the_steps_are_those_that_were_performed(
     act: Act, performer: motions.Performer, options: dict[str, float]
 ) -> None:

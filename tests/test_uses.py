@@ -5,10 +5,13 @@ from dataclasses import replace
 
 import motions
 import pytest
+from combinations import meeting
 from motions.encounters import ENCOUNTERS, kick
 from motions.uses import USES
 
 from capar.pipelines.observation import observe
+
+pytestmark = pytest.mark.long
 
 Act = Callable[..., motions.Trial]
 
@@ -19,9 +22,9 @@ RECORDED = {
 }
 
 
-@pytest.mark.parametrize("options", RECORDED.values(), ids=RECORDED)
-@pytest.mark.parametrize("performer", motions.PERFORMERS, ids=lambda each: each.name)
-@pytest.mark.parametrize("act", (*USES, *ENCOUNTERS), ids=lambda each: each.__name__)
+@pytest.mark.parametrize(
+    ("act", "performer", "options"), meeting((*USES, *ENCOUNTERS), motions.PERFORMERS, RECORDED)
+)
 def test_the_steps_are_those_that_were_performed(
     act: Act, performer: motions.Performer, options: dict[str, float]
 ) -> None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import motions
 import pytest
+from combinations import meeting
 from motions.trials import Options
 from motions.whole import WHOLE, pinch, walk
 from test_uses import RECORDED
@@ -32,9 +33,9 @@ def names_of(seen: Observation) -> dict[str, tuple[str, ...]]:
     }
 
 
-@pytest.mark.parametrize("options", RECORDED.values(), ids=RECORDED)
-@PEOPLE
-@pytest.mark.parametrize("act", WHOLE, ids=lambda each: each.__name__)
+@pytest.mark.parametrize(
+    ("act", "performer", "options"), meeting(WHOLE, motions.PERFORMERS, RECORDED)
+)
 def test_the_steps_are_those_that_were_performed(
     act: Act, performer: motions.Performer, options: dict[str, float]
 ) -> None:

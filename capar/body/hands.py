@@ -1,6 +1,7 @@
 """A simple grasp: fingers and thumb closed until a given width fits between their tips."""
 
 import numpy as np
+from jaxtyping import Float
 
 from capar.body.human import Human
 from capar.model.errors import CaparError
@@ -30,7 +31,7 @@ def grasp(human: Human, side: str, width_m: float | None) -> dict[str, float]:
     if width_m is None:
         return _angles(side, 0.0)
     grid = np.linspace(0.0, 1.0, 201)
-    widths = np.array([_aperture(human, side, each) for each in grid])
+    widths = _apertures(human, side, grid)
     closing = int(np.argmin(widths)) + 1
     if not widths[:closing].min() <= width_m <= widths[0]:
         raise GraspError(
@@ -45,9 +46,16 @@ def _angles(side: str, share: float) -> dict[str, float]:
     return {f"{side}_{n}": (1.0 - share) * OPEN[n] + share * FIST[n] for n in OPEN}
 
 
-def _aperture(human: Human, side: str, share: float) -> float:
-    """Distance between finger tip and thumb tip [m]."""
-    posture = human.posture(_angles(side, share))[None]
+def _apertures(
+    human: Human, side: str, shares: Float[np.ndarray, "shares"]
+) -> Float[np.ndarray, "shares"]:
+    """Distance between finger tip and thumb tip of a hand so far closed [m]."""
+    postures = np.array([human.posture(_angles(side, float(each))) for each in shares])
     tips = (f"{side}_fingertip", f"{side}_thumb_tip")
-    places = human.sites(posture, tips)
-    return float(np.linalg.norm(places[tips[0]][0] - places[tips[1]][0]))
+    places = human.sites(postures, tips)
+    return np.array(
+        [
+            np.linalg.norm(finger - thumb)
+            for finger, thumb in zip(places[tips[0]][0], places[tips[1]][0], strict=True)
+        ]
+    )

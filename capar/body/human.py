@@ -108,14 +108,18 @@ class Human:
         data = mujoco.MjData(self.model)
         places = {name: np.empty((len(motion), 3)) for name in getters}
         turns = {name: np.empty((len(motion), 4)) for name in getters}
+        spots = {"body": data.xpos, "site": data.site_xpos}
+        matrices = {"body": data.xmat, "site": data.site_xmat}
+        rows = [
+            (places[name], turns[name], spots[kind][number], matrices[kind][number])
+            for name, (kind, number) in getters.items()
+        ]
         for frame, posture in enumerate(motion):
             data.qpos[:] = posture
             mujoco.mj_kinematics(self.model, data)
-            for name, (kind, number) in getters.items():
-                body = kind == "body"
-                places[name][frame] = (data.xpos if body else data.site_xpos)[number]
-                matrix = (data.xmat if body else data.site_xmat)[number]
-                mujoco.mju_mat2Quat(turns[name][frame], matrix)
+            for place, turn, spot, matrix in rows:
+                place[frame] = spot
+                mujoco.mju_mat2Quat(turn[frame], matrix)
         return {name: (places[name], turns[name]) for name in getters}
 
     def centre_of_mass(self, posture: Float[np.ndarray, "posture"]) -> Float[np.ndarray, "3"]:

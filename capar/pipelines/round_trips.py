@@ -15,6 +15,7 @@ from capar.pipelines.observation import observe
 from capar.pipelines.trials import trial_of
 from capar.regeneration.captures import capture_of
 from capar.regeneration.errors import PlanError
+from capar.regeneration.motions import Motion
 from capar.regeneration.quality import Quality
 from capar.regeneration.regenerating import regenerate
 from capar.regeneration.scene_files import drawn_scene
@@ -42,6 +43,9 @@ class Trip:
     same_relations: bool
     names: str
     """What was done according to the second observation, where that differs."""
+
+    motion: Motion | None
+    """What was performed; None where it was refused."""
 
     @property
     def passed(self) -> bool:
@@ -93,7 +97,7 @@ def _trip(source: Source, agent: str, human: Human, number: int, scene: Scene) -
     try:
         motion, quality = regenerate(source, human, scene)
     except PlanError as error:
-        return Trip(agent, number, str(error), None, False, False, False, "")
+        return Trip(agent, number, str(error), None, False, False, False, "", None)
     made = capture_of(motion, name=source.capture.name, agent=agent)
     first, again = source.observation, observe(made, rules=source.observation.profile)
     one, two = first.complex_par, again.complex_par
@@ -104,6 +108,7 @@ def _trip(source: Source, agent: str, human: Human, number: int, scene: Scene) -
         _contacts(first) == _contacts(again),
         one.relations == two.relations,
         _names(again) if differ else "",
+        motion,
     )  # fmt: skip
 
 

@@ -4,7 +4,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 
 import clingo
 
@@ -64,7 +64,7 @@ class Recorder:
             [ERRORS_ONLY, "--models=1"], logger=lambda _, text: messages.append(text)
         )
         try:
-            symbols = [fact.symbol() for fact in facts]
+            symbols = [_symbol(fact) for fact in facts]
             measured = frozenset((each.name, len(each.arguments)) for each in symbols)
             control.add("base", [], self.text(measured))
             with control.backend() as backend:
@@ -169,6 +169,12 @@ def _shown(control: clingo.Control) -> list[clingo.Symbol]:
         if model is None:
             raise RuleError("the rules contradict each other over these facts")
         return list(model.symbols(shown=True))
+
+
+@lru_cache(maxsize=1 << 14)
+def _symbol(fact: Fact) -> clingo.Symbol:
+    """A fact as the solver has it; the windows of neighbouring segments share most facts."""
+    return fact.symbol()
 
 
 def _plain(symbol: clingo.Symbol) -> str:

@@ -3,7 +3,9 @@
 import mujoco
 import numpy as np
 import pytest
-from virtual_bodies.sizes import PEOPLE, READY
+from combinations import EVERY
+from virtual_bodies.sizes import PEOPLE as SIZES
+from virtual_bodies.sizes import READY
 
 from capar.body.anthropometry import (
     MeasuresError,
@@ -19,6 +21,11 @@ from capar.body.model import body_spec, sensor_sites, site_rows
 from capar.body.skeleton import skeleton
 from capar.model.capture import Agent
 from capar.model.errors import UnknownNameError
+
+DRAWN = len(SIZES) if EVERY else 40
+"""How many sizes are tried; `CAPAR_SCENES=all` tries all."""
+
+PEOPLE = dict(list(SIZES.items())[:DRAWN])
 
 
 @pytest.mark.parametrize("who", PEOPLE)

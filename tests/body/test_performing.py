@@ -25,7 +25,9 @@ from capar.body.things import Scene, Thing, box, cup, scene, table
 from capar.model.errors import UnknownNameError
 from extractors.readers.bundle.capture_toml import read_capture
 
-RATE_HZ = 40.0
+pytestmark = pytest.mark.long
+
+RATE_HZ = 30.0
 
 
 def _scene(human: Human) -> Scene:

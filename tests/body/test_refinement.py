@@ -18,11 +18,13 @@ from capar.body.human import Human
 from capar.body.mounting import Calibration, calibrate
 from capar.body.refinement import Refinement, RefinementError, refine
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module", params=[0.97, 1.03])
 def wrong_arms(request: pytest.FixtureRequest) -> tuple[Trial, Fit, Calibration, Refinement]:
     """A body whose arms were guessed 3 % off, fitted, and what its motion says."""
-    trial = virtual_trial(seconds=6.0)
+    trial = virtual_trial(seconds=4.0)
     body = Human.of(guessed(trial.human.measures, arms=request.param))
     found = calibrate(body, trial.streams)
     made = fit(body, trial.streams, found)
@@ -57,7 +59,7 @@ def test_a_motion_adds_knowledge_and_never_takes_it_away(
 
 
 def test_arms_measured_3_percent_wrong_do_no_harm_either() -> None:
-    trial = virtual_trial(seconds=6.0)
+    trial = virtual_trial(seconds=4.0)
     body = Human.of(measured(trial.human.measures, arms=1.03))
     found = calibrate(body, trial.streams)
     better = refine(fit(body, trial.streams, found), trial.streams, found, samples=40)

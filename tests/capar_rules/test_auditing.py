@@ -1,16 +1,25 @@
 """The audit: shipped rules are clean, and what is wrong with others is found."""
 
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 from capar_rules.engine.profiles import profile
-from capar_rules.lint.audit import audit
+from capar_rules.lint.audit import Audit, audit
+
+pytestmark = pytest.mark.long
 
 
-@pytest.fixture(scope="module", params=["thesis", "extended"])
+@cache
+def audited(name: str) -> Audit:
+    """The audit of shipped rules, made once for all that is asked of it."""
+    return audit(profile(name))
+
+
+@pytest.fixture(params=["thesis", "extended"])
 def shipped(request):
-    return audit(profile(request.param))
+    return audited(request.param)
 
 
 def test_the_shipped_rules_are_clean(shipped):
@@ -21,11 +30,11 @@ def test_the_shipped_rules_are_clean(shipped):
 
 
 def test_every_feature_set_has_a_name_by_the_rules_that_we_observe_by():
-    assert audit(profile("extended")).uncovered == ()
+    assert audited("extended").uncovered == ()
 
 
 def test_every_case_that_the_published_rules_leave_has_one_reason():
-    shipped = audit(profile("thesis"))
+    shipped = audited("thesis")
     assert shipped.uncovered
     assert sorted({features for features, _ in shipped.excused}) == list(shipped.uncovered)
     assert all(len(reason.split()) > 5 for _, reason in shipped.excused)

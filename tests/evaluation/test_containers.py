@@ -17,6 +17,8 @@ from capar.model.capture import Capture, ShapeSource
 from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture, takes
 
+pytestmark = pytest.mark.long
+
 SCENES = Path(__file__).parents[2] / "examples" / "boxed_vr" / "scenes.toml"
 
 

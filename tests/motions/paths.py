@@ -105,11 +105,13 @@ class Moves:
 
     def at(self, times: Float[np.ndarray, "frames"]) -> RigidTransform:
         """``T_world_body`` at each time [s]."""
-        out = self.moves[0].at(times).as_matrix()
-        for move in self.moves[1:]:
-            later = times >= move.start_s
-            if later.any():
-                out[later] = move.at(times[later]).as_matrix()
+        out = np.empty((len(times), 4, 4))
+        latest = np.zeros(len(times), dtype=int)
+        for number, move in enumerate(self.moves[1:], 1):
+            latest[times >= move.start_s] = number
+        for number in np.unique(latest):
+            now = latest == number
+            out[now] = self.moves[number].at(times[now]).as_matrix()
         return RigidTransform.from_matrix(out)
 
 

@@ -9,6 +9,8 @@ from live_runs import live_run
 from capar.model.json_form import to_json
 from capar.pipelines.live.events import SegmentEvent, Status
 
+pytestmark = pytest.mark.long
+
 SHORT = ("demo", "slide", "both hands", "one leg")
 ONE_LEG = "one leg"
 LONG = "sliding on and on"

@@ -21,6 +21,8 @@ from capar.regeneration.planning import plan
 from capar.regeneration.quality import quality
 from capar.regeneration.scenes import raised, resized
 
+pytestmark = pytest.mark.long
+
 RATE_HZ = 30.0
 
 
@@ -66,7 +68,8 @@ def test_a_child_drinks_at_its_own_mouth_and_the_same_action_is_observed() -> No
     assert trip.quality.passed, trip.quality.failed
     assert trip.same_par
     assert trip.same_contacts
-    motion, _ = _done("drink", "child")
+    motion = trip.motion
+    assert motion is not None
     meeting = source.meetings[0]
     lips = motion.plan.human.sites(motion.postures, ["mouth"])["mouth"][0][meeting.first]
     mug = motion.plan.things["mug"][meeting.first]

@@ -1,9 +1,12 @@
 """All batteries of scenes, and all their scenes."""
 
-import os
+from functools import cache
+
+from combinations import EVERY as ALL
 
 from scenes.hands import SCENES as HANDS
 from scenes.hands.scene import Scene
+from scenes.hands.stage import Stage
 from scenes.household import SCENES as HOUSEHOLD
 from scenes.objects import SCENES as OBJECTS
 
@@ -21,7 +24,7 @@ SCENES = {
 }
 """The scenes of all batteries, each under its battery's name and its own."""
 
-EVERY = 1 if os.environ.get("CAPAR_SCENES") == "all" else 16
+EVERY = 1 if ALL else 16
 """Of the scenes, which do not change any more, tests of their soundness take one in so many.
 
 `CAPAR_SCENES=all pytest tests/scenes` takes each, as whoever writes a scene or a builder does.
@@ -29,3 +32,9 @@ EVERY = 1 if os.environ.get("CAPAR_SCENES") == "all" else 16
 
 SOME = dict(list(SCENES.items())[::EVERY])
 """The scenes that are looked at for soundness."""
+
+
+@cache
+def performed(scene: Scene) -> Stage:
+    """A scene as it is performed, for tests that only look at it."""
+    return scene.stage()

@@ -11,6 +11,8 @@ from scenes.explanations import checked
 from scenes.hands import SCENES as HANDS
 from scenes.objects import SCENES as OBJECTS
 
+pytestmark = pytest.mark.long
+
 RULES = profile("extended")
 SOME = {
     "return": (OBJECTS, "drawer_half_shut_and_shut", "ResumePosture"),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from capar.model.capture import TagType
-from scenes.batteries import BATTERIES, SOME
+from scenes.batteries import BATTERIES, SOME, performed
 from scenes.hands.clearance import Placed, gap, moving
 from scenes.hands.performer import Hand
 from scenes.hands.scene import Scene
@@ -106,7 +106,9 @@ def pairs(stage: Stage) -> Iterator[tuple[Hand | Thing, Hand | Thing]]:
 @pytest.mark.parametrize("battery", BATTERIES.values(), ids=BATTERIES)
 def test_there_are_enough_scenes_and_few_alternatives(battery: dict[str, Scene]) -> None:
     """At least sixty scenes, and an alternative for at most one unit in ten."""
-    units = [unit for scene in battery.values() for unit in scene.stage().expectation(100.0).units]
+    units = [
+        unit for scene in battery.values() for unit in performed(scene).expectation(100.0).units
+    ]
     assert len(battery) >= 60
     assert sum(bool(unit.alternative) for unit in units) <= len(units) / 10
 
@@ -137,7 +139,7 @@ def test_steps_cover_the_capture(scene: Scene, rate_hz: float) -> None:
 @each_scene
 def test_the_truth_itself_is_counted_as_right(scene: Scene) -> None:
     """Steps as written score, and steps with a border too late score by their names only."""
-    for unit in scene.stage().expectation(100.0).units:
+    for unit in performed(scene).expectation(100.0).units:
         for steps in filter(None, (unit.steps, unit.alternative)):
             outcome = judged(scene.name, unit, steps)
             assert outcome.named
@@ -161,7 +163,7 @@ def test_same_seed_same_capture(scene: Scene) -> None:
 @each_scene
 def test_hands_are_on_what_they_touch_and_off_what_they_do_not(scene: Scene) -> None:
     """Contact as it is written down is contact of the surfaces."""
-    stage = scene.stage()
+    stage = performed(scene)
     for time in moments(stage):
         for hand in stage.hands:
             palm = Placed.at(hand, time)
@@ -177,7 +179,7 @@ def test_hands_are_on_what_they_touch_and_off_what_they_do_not(scene: Scene) -> 
 @each_scene
 def test_nothing_goes_through_anything(scene: Scene) -> None:
     """No two bodies overlap by more than a pressed hand does."""
-    stage = scene.stage()
+    stage = performed(scene)
     for time in moments(stage, 0.33):
         bodies: list[Hand | Thing] = [*stage.hands, *stage.things]
         placed = {each.name: Placed.at(each, time) for each in bodies}
@@ -189,7 +191,7 @@ def test_nothing_goes_through_anything(scene: Scene) -> None:
 @each_scene
 def test_nothing_moves_by_itself(scene: Scene) -> None:
     """A thing moves only rigidly with a hand that touches something, or where it is told free."""
-    stage = scene.stage()
+    stage = performed(scene)
     times = stage.times(50.0)
     for thing in stage.things:
         own = thing.body.poses(times)
@@ -215,7 +217,7 @@ def test_nothing_moves_by_itself(scene: Scene) -> None:
 @each_scene
 def test_things_rest_on_something(scene: Scene) -> None:
     """What no hand holds stands on another thing, at the first frame and at the last."""
-    stage = scene.stage()
+    stage = performed(scene)
     for time in (0.0, stage.duration_s):
         for thing in (each for each in stage.things if each.tag is TagType.MOBILE):
             others = [each for each in stage.things if each is not thing]
@@ -228,7 +230,7 @@ def test_things_rest_on_something(scene: Scene) -> None:
 @each_scene
 def test_hands_are_not_too_fast(scene: Scene) -> None:
     """Hands move as people's do."""
-    stage = scene.stage()
+    stage = performed(scene)
     times = stage.times(100.0)
     for hand in stage.hands:
         places = hand.body.poses(times)[:, :3, 3]

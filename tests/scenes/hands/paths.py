@@ -91,10 +91,12 @@ class Body:
     def poses(self, times: Times) -> Poses:
         """Poses at times [s]."""
         out = np.tile(self.first, (len(times), 1, 1))
-        for piece in self.pieces:
-            late = times >= piece.start
-            if late.any():
-                out[late] = piece.law(np.minimum(times[late], piece.end))
+        latest = np.full(len(times), -1)
+        for number, piece in enumerate(self.pieces):
+            latest[times >= piece.start] = number
+        for number in np.unique(latest[latest >= 0]):
+            now, piece = latest == number, self.pieces[number]
+            out[now] = piece.law(np.minimum(times[now], piece.end))
         return out
 
     def at(self, time: float) -> Float[np.ndarray, "4 4"]:

@@ -1,7 +1,7 @@
 """Surfaces of hands and things, each as convex parts in metres."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -79,6 +79,14 @@ def pointing_hand() -> Form:
 
 def ring(inner: float, outer: float, low: float, high: float, sections: int = 20) -> list[Trimesh]:
     """A round wall as convex wedges."""
+    return [each.copy() for each in _wedges(inner, outer, low, high, sections)]
+
+
+@cache
+def _wedges(
+    inner: float, outer: float, low: float, high: float, sections: int
+) -> tuple[Trimesh, ...]:
+    """The wedges of a wall; many scenes have the same mug."""
     angles = np.linspace(0.0, 2.0 * np.pi, sections + 1)
     wedges = []
     for first, last in pairwise(angles):
@@ -89,11 +97,16 @@ def ring(inner: float, outer: float, low: float, high: float, sections: int = 20
             for z in (low, high)
         ]
         wedges.append(trimesh.convex.convex_hull(corners))
-    return wedges
+    return tuple(wedges)
 
 
 def disc(radius: float, low: float, high: float, sections: int = 20) -> Trimesh:
     """A round plate as a prism with the same corners as a ring."""
+    return _plate(radius, low, high, sections).copy()
+
+
+@cache
+def _plate(radius: float, low: float, high: float, sections: int) -> Trimesh:
     angles = np.linspace(0.0, 2.0 * np.pi, sections + 1)[:-1]
     corners = [(radius * np.cos(a), radius * np.sin(a), z) for a in angles for z in (low, high)]
     return trimesh.convex.convex_hull(corners)

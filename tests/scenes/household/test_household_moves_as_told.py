@@ -43,8 +43,11 @@ def parts(stage: Stage) -> dict[str, tuple[Thing, list[Step]]]:
     return found
 
 
-FURNISHED = {name: scene for name, scene in SCENES.items() if parts(scene.stage())}
-each_furnished = pytest.mark.parametrize("scene", FURNISHED.values(), ids=FURNISHED)
+@pytest.fixture(scope="module")
+def furnished() -> dict[str, Stage]:
+    """Every scene in which furniture is opened or closed, as it is performed."""
+    stages = {name: scene.stage() for name, scene in SCENES.items()}
+    return {name: stage for name, stage in stages.items() if parts(stage)}
 
 
 def travelled(thing: Thing, step: Step) -> np.ndarray:
@@ -53,19 +56,16 @@ def travelled(thing: Thing, step: Step) -> np.ndarray:
     return np.asarray(ends[1] - ends[0])
 
 
-def test_most_kinds_of_furniture_are_there() -> None:
+def test_most_kinds_of_furniture_are_there(furnished: dict[str, Stage]) -> None:
     """Drawers, doors, lids, flaps and gates are opened or closed."""
-    kinds = {
-        part.form.kind for scene in FURNISHED.values() for part, _ in parts(scene.stage()).values()
-    }
+    kinds = {part.form.kind for stage in furnished.values() for part, _ in parts(stage).values()}
     assert {"drawer", "door", "lid", "flap"} <= kinds
 
 
-@each_furnished
-def test_parts_keep_to_a_rail_or_to_a_hinge(scene: Scene) -> None:
+def test_parts_keep_to_a_rail_or_to_a_hinge(furnished: dict[str, Stage]) -> None:
     """A part goes along one level axis, or turns about one axis through its origin."""
-    stage = scene.stage()
-    for part, _ in parts(stage).values():
+    every = [(stage, each) for stage in furnished.values() for each in parts(stage).values()]
+    for stage, (part, _) in every:
         poses = part.body.poses(stage.times(20.0))
         ranges = np.ptp(poses[:, :3, 3], axis=0)
         if ranges.max() > 1e-6:
@@ -77,11 +77,12 @@ def test_parts_keep_to_a_rail_or_to_a_hinge(scene: Scene) -> None:
             assert (np.ptp(turns, axis=0) > 1e-6).sum() == 1
 
 
-@each_furnished
-def test_open_leads_away_from_the_closed_place_and_close_back(scene: Scene) -> None:
+def test_open_leads_away_from_the_closed_place_and_close_back(
+    furnished: dict[str, Stage],
+) -> None:
     """At the end of Open a part is further from its closed place, at the end of Close nearer."""
-    stage = scene.stage()
-    for part, steps in parts(stage).values():
+    every = [(stage, each) for stage in furnished.values() for each in parts(stage).values()]
+    for stage, (part, steps) in every:
         poses = {time: part.body.at(time) for step in steps for time in (step.start_s, step.end_s)}
         shut = poses[steps[0].start_s] if steps[0].name == "Open" else poses[steps[-1].end_s]
 

@@ -10,7 +10,6 @@ from scipy.spatial.transform import Rotation
 
 from scenes.hands.expectation import Step
 from scenes.hands.performer import PRESS
-from scenes.hands.scene import Scene
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 from scenes.objects import SCENES
@@ -32,8 +31,11 @@ def parts(stage: Stage) -> list[tuple[Thing, Thing]]:
     return [(part, body) for part, body in pairs if part and body]
 
 
-FURNISHED = {name: scene for name, scene in SCENES.items() if parts(scene.stage())}
-each_furnished = pytest.mark.parametrize("scene", FURNISHED.values(), ids=FURNISHED)
+@pytest.fixture(scope="module")
+def furnished() -> dict[str, Stage]:
+    """Every scene with furniture, as it is performed."""
+    stages = {name: scene.stage() for name, scene in SCENES.items()}
+    return {name: stage for name, stage in stages.items() if parts(stage)}
 
 
 def openness(part: Thing, body: Thing, time: float) -> float:
@@ -50,37 +52,40 @@ def steps_of(stage: Stage, part: Thing, *names: str) -> list[Step]:
     return [each for each in steps if each.name in names and each.objects[0] == part.name]
 
 
-def test_most_kinds_of_furniture_are_there() -> None:
+def test_most_kinds_of_furniture_are_there(furnished: dict[str, Stage]) -> None:
     """Drawers, doors and chests' lids each have several scenes."""
-    found = [part.name for scene in FURNISHED.values() for part, _ in parts(scene.stage())]
+    found = [part.name for stage in furnished.values() for part, _ in parts(stage)]
     assert all(found.count(part) >= 4 for part in BODIES)
 
 
-@each_furnished
-def test_open_leads_away_from_the_closed_place_and_close_back(scene: Scene) -> None:
+def test_open_leads_away_from_the_closed_place_and_close_back(
+    furnished: dict[str, Stage],
+) -> None:
     """At the end of Open a part is further from its closed place, at the end of Close nearer."""
-    stage = scene.stage()
-    for part, body in parts(stage):
+    every = [(stage, each) for stage in furnished.values() for each in parts(stage)]
+    for stage, (part, body) in every:
         for step in steps_of(stage, part, "Open", "Close"):
             change = openness(part, body, step.end_s) - openness(part, body, step.start_s)
             assert (change > 0.05) if step.name == "Open" else (change < -0.05)
 
 
-@each_furnished
-def test_pull_is_said_only_where_the_closed_place_is_never_seen(scene: Scene) -> None:
+def test_pull_is_said_only_where_the_closed_place_is_never_seen(
+    furnished: dict[str, Stage],
+) -> None:
     """A part is closed at some time exactly where its motion is called Open or Close."""
-    stage = scene.stage()
-    for part, body in parts(stage):
+    every = [(stage, each) for stage in furnished.values() for each in parts(stage)]
+    for stage, (part, body) in every:
         if steps := steps_of(stage, part, "Open", "Close", "Pull"):
             nearest = min(openness(part, body, time) for time in stage.times(20.0))
             assert (nearest < 1e-6) == all(each.name != "Pull" for each in steps)
 
 
-@each_furnished
-def test_parts_keep_to_their_rails_and_hinges(scene: Scene) -> None:
+def test_parts_keep_to_their_rails_and_hinges(
+    furnished: dict[str, Stage],
+) -> None:
     """A drawer moves along x only and never turns; a hinge's axis never moves."""
-    stage = scene.stage()
-    for part, _ in parts(stage):
+    every = [(stage, each) for stage in furnished.values() for each in parts(stage)]
+    for stage, (part, _) in every:
         poses = part.body.poses(stage.times(20.0))
         if part.name == "drawer":
             assert np.ptp(poses[:, 1:3, 3], axis=0).max() < 1e-9

@@ -1,0 +1,28 @@
+"""Which combinations of what may vary are tested: those in which each two meet."""
+
+import os
+from collections.abc import Mapping, Sequence
+from itertools import product
+from typing import Any
+
+import pytest
+
+EVERY = os.environ.get("CAPAR_SCENES") == "all"
+"""Whether whole families of tests are run, as with `CAPAR_SCENES=all pytest tests`."""
+
+
+def meeting(
+    acts: Sequence[Any], performers: Sequence[Any], recorded: Mapping[str, Any]
+) -> list[Any]:
+    """Act, performer and recording such that each two of them meet in one case at least.
+
+    Acts and performers meet in each way once, and recordings take turns, so that each act and
+    each performer is recorded in each way if there are as many performers as recordings.
+    `CAPAR_SCENES=all` takes all combinations of the three.
+    """
+    numbered = product(enumerate(acts), enumerate(performers), enumerate(recorded.items()))
+    return [
+        pytest.param(act, performer, options, id=f"{act.__name__}-{performer.name}-{name}")
+        for (i, act), (j, performer), (k, (name, options)) in numbered
+        if EVERY or (i + j) % len(recorded) == k
+    ]
