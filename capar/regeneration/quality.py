@@ -12,13 +12,11 @@ from capar.body.human import ROOT_SIZE
 from capar.regeneration.collisions import Pair, Surroundings
 from capar.regeneration.motions import Motion
 from capar.regeneration.path_mapping import way
+from capar.regeneration.solving import vectors
 from capar.regeneration.sources import SETTLED_M, Hold
 
 LEAVING_S = 0.3
-"""So long before and after a hold a hand may be near what stands beside [s]."""
-
-TAKING_S = 0.5
-"""Likewise near what it holds [s]."""
+"""So long before and after a hold a hand may be near what it holds and what stands beside [s]."""
 
 MOVING_M = 0.05
 """A shorter path has no profile of speed [m]."""
@@ -169,8 +167,9 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
     around = Surroundings(plan.human, plan.scene)
     far = (Pair(np.inf, "", ""), -1)
     deepest, nearest, thumb = far, far, far
+    things = {name: vectors(path) for name, path in plan.things.items()}
     for frame in range(len(motion.postures)):
-        around.pose(motion.postures[frame], {n: p[frame] for n, p in plan.things.items()})
+        around.place(motion.postures[frame], {n: rows[frame] for n, rows in things.items()})
         for pair in around.near():
             side = pair.part.partition("_")[0]
             if pair.part.endswith("_thumb") and _takes(motion, side, pair.thing, frame):
@@ -211,7 +210,7 @@ def _is_free(motion: Motion, pair: Pair, frame: int) -> bool:
 def _takes(motion: Motion, side: str, thing: str, frame: int) -> bool:
     """Whether a hand holds that thing, or is about to, or has just let it go."""
     own = (hold for hold in _holds(motion, side) if hold.thing == thing)
-    return any(_near_hold(motion, hold, frame, TAKING_S) for hold in own)
+    return any(_near_hold(motion, hold, frame, LEAVING_S) for hold in own)
 
 
 def _holds(motion: Motion, side: str) -> list[Hold]:
