@@ -11,6 +11,7 @@ from capar.regeneration.collisions import Surroundings
 from capar.regeneration.path_mapping import STRAIGHT, Detour, mapped
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, vectors
+from capar.regeneration.style_kinds import Kind
 
 LIFTS_M = (0.0, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3)
 """How far a way is lifted half-way, in order [m]."""
@@ -28,8 +29,8 @@ STRIDE = 2
 class Carrying:
     """Ways of held things through a scene."""
 
-    def __init__(self, human: Human, scene: Scene) -> None:
-        self.scene = scene
+    def __init__(self, human: Human, scene: Scene, kind: Kind) -> None:
+        self.scene, self.kind = scene, kind
         self.around = Surroundings(human, scene)
         self.posture = Solver(human, (*scene.place, scene.floor_m), scene.heading).rest
 
@@ -67,7 +68,8 @@ class Carrying:
         turn: float,
         detour: Detour,
     ) -> RigidTransform:
-        return mapped(part, *ends, turn=turn, detour=detour, heading=self.scene.heading)
+        facing = self.scene.heading
+        return mapped(part, *ends, turn=turn, detour=detour, heading=facing, kind=self.kind)
 
     def _short(
         self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]

@@ -12,6 +12,7 @@ from capar.regeneration.grips import Grip, Gripping, turns
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, Targets, vectors
 from capar.regeneration.sources import Hold, Source
+from capar.regeneration.styles import Style
 from capar.regeneration.thing_paths import thing_goals, thing_paths
 
 REACH_M, REACH_RAD = 0.0009, float(np.radians(0.9))
@@ -35,19 +36,24 @@ class Draft:
     """A plan whose grips are still open."""
 
     def __init__(
-        self, source: Source, scene: Scene, human: Human, watched: frozenset[int] = frozenset()
+        self,
+        source: Source,
+        scene: Scene,
+        human: Human,
+        style: Style,
+        watched: frozenset[int] = frozenset(),
     ) -> None:
         self.source, self.scene = source, scene
         self.old = body_frames(source.human, source.scene)
         self.new = body_frames(human, scene)
         self.goals = thing_goals(source, scene, self.old, self.new)
-        self.things, self.told = thing_paths(source, scene, self.goals, human)
+        self.things, self.told = thing_paths(source, scene, self.goals, human, style)
         self.head = head_path(source, self.old, self.new)
         self.firmness = attending.around(source, source.meetings, SETTLE_S)
         self.looks = attending.looks(source, self.things, self.head)
         self.gripping = Gripping(source, scene, self.old, self.new)
         self.grips: tuple[Grip, ...] = ()
-        self.watched = watched
+        self.watched, self.style = watched, style
 
     def reachable_grips(self, most: int = MOST_TURNS) -> tuple[list[Grip], str | None]:
         """A grip for every hold with the least turn that reaches; what is missed if none does."""

@@ -14,9 +14,10 @@ from capar.regeneration.path_mapping import STRAIGHT, Detour, mapped
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, vectors
 from capar.regeneration.sources import Hold, Source
+from capar.regeneration.styles import Style
 
-LIFTS_M = (0.0, 0.04, 0.08, 0.12, 0.18, 0.25)
-BACKS_M = (0.0, 0.05, 0.1, 0.15, 0.2)
+LIFTS_M = (0.0, 0.04, 0.08, 0.12, 0.18, 0.25, 0.35)
+BACKS_M = (0.0, 0.05, 0.1, 0.15, 0.2, 0.3)
 OFFS_M = (0.0, 0.003, 0.02, 0.05)
 """Detours that are tried [m]."""
 
@@ -53,6 +54,7 @@ def hand_paths(
     things: Mapping[str, RigidTransform],
     *,
     care: Care,
+    style: Style,
 ) -> tuple[dict[str, RigidTransform], dict[tuple[str, int], Detour]]:
     """``T_world_hand`` by side at every frame, and the detours that were taken."""
     turn = scene.heading - source.scene.heading
@@ -72,7 +74,7 @@ def hand_paths(
             start = poses[first] if before else rest_pose(source, old, new, side, 0)
             goal = poses[last] if after else rest_pose(source, old, new, side, last)
             touched = {each.thing for each in (before, after) if each}
-            part = source.hands[side].path[first : last + 1]
+            part = style.hands[side][first : last + 1]
             away = _away(start, before), _away(goal, after)
 
             def path(
@@ -82,7 +84,13 @@ def hand_paths(
                 away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = away,
             ) -> RigidTransform:
                 return mapped(
-                    part, *ends, turn=turn, detour=detour, heading=scene.heading, away=away
+                    part,
+                    *ends,
+                    turn=turn,
+                    detour=detour,
+                    heading=scene.heading,
+                    away=away,
+                    kind=style.kind,
                 )
 
             best = clearance.first_clear(side, path, first, touched)

@@ -6,6 +6,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.regeneration.coordinate_systems import CoordinateError, frame_between, replayed
+from capar.regeneration.style_kinds import Kind
+
 SHORT_M = 0.05
 """A shorter way from start to goal has no direction of its own [m]."""
 
@@ -82,6 +85,7 @@ def mapped(
     detour: Detour = STRAIGHT,
     heading: float = 0.0,
     away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = NOWHERE,
+    kind: Kind = Kind.PATH,
 ) -> RigidTransform:
     """A path with other ends.
 
@@ -96,20 +100,48 @@ def mapped(
         detour: What is added between the ends.
         heading: Which way the performer faces [rad].
         away: Directions in which a detour draws off, at the start and at the goal.
+        kind: What of the path is kept.
     """
     old = path.translation
-    shares = arc_shares(old)
-    along = _along(old, shares)
+    shares = arc_shares(old) if kind is not Kind.EVEN else minimum_jerk(len(path))
+    straight = kind in {Kind.VEL, Kind.EVEN}
+    along = shares if straight else _along(old, shares)
     chord, new = old[-1] - old[0], goal.translation - start.translation
     angle = _turn(chord, new, turn)
     about = Rotation.from_euler("z", angle)
     aside = about.apply(old - old[0] - np.outer(along, chord))
+    if straight:
+        aside = np.zeros_like(old)
+    elif kind is Kind.FRAME:
+        aside = _in_frames(old, start.translation, goal.translation, along, new, aside)
     spots = start.translation + np.outer(along, new) + aside
     spots = spots + detour.offset(shares, heading, away)
     spots = _retimed(spots, shares)
     return RigidTransform.from_components(
         spots, _turns(path.rotation, start.rotation, goal.rotation, shares, about)
     )
+
+
+def minimum_jerk(frames: int) -> Float[np.ndarray, "frames"]:
+    """Shares of the way with the least jerk (Flash & Hogan 1985) [1]."""
+    s = np.linspace(0.0, 1.0, frames)
+    return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
+
+
+def _in_frames(
+    old: Float[np.ndarray, "frames 3"],
+    start: Float[np.ndarray, "3"],
+    goal: Float[np.ndarray, "3"],
+    along: Float[np.ndarray, "frames"],
+    new: Float[np.ndarray, "3"],
+    usual: Float[np.ndarray, "frames 3"],
+) -> Float[np.ndarray, "frames 3"]:
+    """What deviates from the straight way in the frame of object and hand; as usual without one."""
+    try:
+        before, after = frame_between(old[-1], old[0]), frame_between(goal, start)
+    except CoordinateError:
+        return usual
+    return np.asarray(replayed(old, before, after) - start - np.outer(along, new))
 
 
 def _along(

@@ -19,6 +19,7 @@ from capar.regeneration.path_mapping import Detour
 from capar.regeneration.scenes import Scene, raised
 from capar.regeneration.solving import Targets, vectors
 from capar.regeneration.sources import Source
+from capar.regeneration.styles import Style, own_style
 from capar.regeneration.thing_paths import Goal
 
 FEW_TURNS = 6
@@ -51,6 +52,7 @@ class Plan:
     hands: Mapping[str, RigidTransform]
     """``T_world_hand`` by side at every frame, the frame on the hand."""
 
+    style: Style
     grasps: Mapping[str, Float[np.ndarray, "frames"]]
     """How firmly each hand is kept there [1]."""
 
@@ -93,7 +95,11 @@ def plan(source: Source, scene: Scene, human: Human, *, care: Care | None = None
 
 
 def reachable(
-    source: Source, scene: Scene, human: Human, watched: frozenset[int] = frozenset()
+    source: Source,
+    scene: Scene,
+    human: Human,
+    style: Style | None = None,
+    watched: frozenset[int] = frozenset(),
 ) -> Draft:
     """Goals, and grips that reach them, from where it stands or, unless it stays, from nearby.
 
@@ -101,19 +107,21 @@ def reachable(
         source: The recorded performance.
         scene: Where it is performed.
         human: Who performs.
+        style: How it is done; as it was recorded, unless stated.
         watched: Frames at which reach is tried besides the usual ones.
 
     Raises:
         PlanError: As ``plan`` says.
     """
+    style = style or own_style(source)
     try:
-        return _draft(source, scene, human, watched)
+        return _draft(source, scene, human, style, watched)
     except PlanError as error:
         if not scene.stays:
             for ahead_m, aside_m in STEPS_M:
                 nearby = _beside(scene, ahead_m, aside_m)
                 if _possible(source, nearby, human):
-                    found = _draft(source, nearby, human, watched)
+                    found = _draft(source, nearby, human, style, watched)
                     way = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
                     found.told.append(f"stands {way} of the given place, since there {error}")
                     return found
@@ -129,17 +137,21 @@ def led(draft: Draft, care: Care) -> Plan:
     """
     source, scene = draft.source, draft.scene
     held = {grip.hold: grip.pose for grip in draft.grips}
-    hands, detours = hand_paths(source, scene, draft.old, draft.new, held, draft.things, care=care)
+    hands, detours = hand_paths(
+        source, scene, draft.old, draft.new, held, draft.things, care=care, style=draft.style
+    )
     return Plan(
         source, scene, draft.new.human, draft.new, draft.goals, draft.grips, detours, hands,
-        attending.grasps(source, care.firm_s), draft.things, draft.head, draft.firmness,
-        draft.looks, (*_notes(source, draft.grips, draft.goals), *draft.told),
+        draft.style, attending.grasps(source, care.firm_s), draft.things, draft.head,
+        draft.firmness, draft.looks, (*_notes(source, draft.grips, draft.goals), *draft.told),
     )  # fmt: skip
 
 
-def _draft(source: Source, scene: Scene, human: Human, watched: frozenset[int]) -> Draft:
+def _draft(
+    source: Source, scene: Scene, human: Human, style: Style, watched: frozenset[int]
+) -> Draft:
     check_stance(scene, human)
-    draft = Draft(source, scene, human, watched)
+    draft = Draft(source, scene, human, style, watched)
     grips, missed = draft.reachable_grips()
     if missed is not None:
         raise PlanError(missed)
@@ -171,7 +183,7 @@ def _remedy(source: Source, scene: Scene, human: Human) -> str:
 def _possible(source: Source, scene: Scene, human: Human) -> bool:
     try:
         check_stance(scene, human)
-        return Draft(source, scene, human).reachable_grips(FEW_TURNS)[1] is None
+        return Draft(source, scene, human, own_style(source)).reachable_grips(FEW_TURNS)[1] is None
     except PlanError:
         return False
 

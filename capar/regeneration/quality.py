@@ -12,8 +12,10 @@ from capar.body.human import ROOT_SIZE
 from capar.regeneration.collisions import Pair, Surroundings
 from capar.regeneration.motions import Motion
 from capar.regeneration.path_mapping import way
+from capar.regeneration.planning import Plan
 from capar.regeneration.solving import vectors
 from capar.regeneration.sources import SETTLED_M, Hold
+from capar.regeneration.style_kinds import Kind
 
 LEAVING_S = 0.3
 """So long before and after a hold a hand may be near what it holds and what stands beside [s]."""
@@ -261,10 +263,10 @@ def _still_gate(motion: Motion) -> Gate:
 
 
 def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
-    """Correlation of the speeds of hands along their paths with the recorded ones, at worst."""
+    """Correlation of the speeds of hands along their paths with those of the style, at worst."""
     plan, worst = motion.plan, (1.0, -1, "")
     for side, hand in hands.items():
-        new, old = hand.translation, plan.source.hands[side].path.translation
+        new, old = hand.translation, _model(plan, side).translation
         if min(way(new)[-1], way(old)[-1]) < MOVING_M + 2.0 * SETTLED_M:
             continue
         for first, last in _pieces(motion, side):
@@ -273,6 +275,11 @@ def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
                 value = float(np.corrcoef(one, two)[0, 1])
                 worst = min(worst, (value, first, f"{side} hand"))
     return Gate("speed profile", worst[0], 0.98, "r", True, worst[1], worst[2])
+
+
+def _model(plan: Plan, side: str) -> RigidTransform:
+    """The way of a hand whose timing is to be kept: the planned one where none is recorded."""
+    return plan.hands[side] if plan.style.kind is Kind.EVEN else plan.style.hands[side]
 
 
 def _pieces(motion: Motion, side: str) -> list[tuple[int, int]]:

@@ -9,6 +9,7 @@ from capar.regeneration.planning import led, reachable
 from capar.regeneration.quality import Quality, quality
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source
+from capar.regeneration.styles import Style
 
 CARES = (Care(), Care(0.03, 0.015), Care(0.03, 0.015, 1.0), Care(0.05, 0.02, 1.0))
 """How free hands keep from things; the next where a motion is too near something."""
@@ -23,20 +24,23 @@ GRIPS = 2
 """So often other grips are sought, which reach also where the motion was worst [1]."""
 
 
-def regenerate(source: Source, human: Human, scene: Scene | None = None) -> tuple[Motion, Quality]:
+def regenerate(
+    source: Source, human: Human, scene: Scene | None = None, style: Style | None = None
+) -> tuple[Motion, Quality]:
     """Let a body do in a scene what was recorded; verified at every frame.
 
     Args:
         source: The recorded performance.
         human: Who performs.
         scene: Where; as it was recorded, unless stated.
+        style: How; as it was recorded, unless stated.
 
     Raises:
         PlanError: It is out of reach or impossible; the message says what would help.
     """
     best: tuple[Motion, Quality] | None = None
     scene = scene or source.scene
-    best = _careful(reachable(source, scene, human))
+    best = _careful(reachable(source, scene, human, style))
     watched: frozenset[int] = frozenset()
     for _ in range(GRIPS):
         held = [gate for gate in best[1].gates if not gate.passed and gate.name in BY_GRIP]
@@ -44,7 +48,7 @@ def regenerate(source: Source, human: Human, scene: Scene | None = None) -> tupl
             break
         watched |= {gate.frame for gate in held}
         try:
-            found = _careful(reachable(source, scene, human, watched))
+            found = _careful(reachable(source, scene, human, style, watched))
         except PlanError:
             break
         best = min(best, found, key=_failures)

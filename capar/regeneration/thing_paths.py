@@ -17,6 +17,7 @@ from capar.regeneration.path_mapping import STRAIGHT, Detour
 from capar.regeneration.scenes import Scene, moved
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import MOVES_M, Meeting, Source
+from capar.regeneration.styles import Style
 
 STILL_M = 0.005
 """A stretch in which a thing stays so near where it was is one of rest [m]."""
@@ -63,22 +64,22 @@ def thing_goals(
 
 
 def thing_paths(
-    source: Source, scene: Scene, goals: dict[str, list[Goal]], human: Human
+    source: Source, scene: Scene, goals: dict[str, list[Goal]], human: Human, style: Style
 ) -> tuple[dict[str, RigidTransform], list[str]]:
     """``T_world_thing`` at every frame, and what is to be told of their ways.
 
     Other things stand where they were at first while a way is sought.
     """
     count, turn = len(source.times), scene.heading - source.scene.heading
-    carrying = Carrying(human, scene)
+    carrying = Carrying(human, scene, style.kind)
     still = {name: thing.pose for name, thing in scene.things.items()}
     out, told = {}, []
     for name, recorded in source.paths.items():
         poses = [scene.thing(name).pose] * count
         for start, goal in zip(goals.get(name, []), goals.get(name, [])[1:], strict=False):
-            part = recorded[start.frame : goal.frame + 1]
+            part = style.things[name][start.frame : goal.frame + 1]
             if goal.frame > start.frame:
-                if _rests(part, start.pose, goal.pose):
+                if _rests(recorded[start.frame : goal.frame + 1], start.pose, goal.pose):
                     poses[start.frame : goal.frame + 1] = [start.pose] * len(part)
                 else:
                     ends = start.pose, goal.pose
