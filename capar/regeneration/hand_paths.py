@@ -93,7 +93,8 @@ def hand_paths(
                     kind=style.kind,
                 )
 
-            best = clearance.first_clear(side, path, first, touched)
+            held = before is not None, after is not None
+            best = clearance.first_clear(side, path, first, touched, held)
             poses[first : last + 1] = list(path(best))
             if best != STRAIGHT:
                 detours[side, first] = best
@@ -134,11 +135,12 @@ class _Clearance:
         path: Callable[[Detour], RigidTransform],
         first: int,
         touched: set[str],
+        held: tuple[bool, bool],
     ) -> Detour:
         """The smallest detour that is clear, or else the one that comes nearest to it."""
         best, least = STRAIGHT, np.inf
         for detour in DETOURS:
-            short = self._short(side, path(detour), first, touched, least)
+            short = self._short(side, path(detour), first, touched, held, least)
             if short < least:
                 best, least = detour, short
             if least <= 0.0:
@@ -146,20 +148,37 @@ class _Clearance:
         return best
 
     def _short(
-        self, side: str, path: RigidTransform, first: int, touched: set[str], enough: float
+        self,
+        side: str,
+        path: RigidTransform,
+        first: int,
+        touched: set[str],
+        held: tuple[bool, bool],
+        enough: float,
     ) -> float:
-        """By how much the path is too near, at worst; not further than is decided [m]."""
+        """By how much the path is too near, at worst; not further than is decided [m].
+
+        A hand may be as near as where it hangs at ease, and around a hold as near as there.
+        """
         around, margin_m = self._seen_from(side, path, first), self.care.margin_m
         ends = [self._gaps(side, around, k) for k in (0, len(path) - 1)]
+        beside = [{name: gap.get(name, margin_m) - 0.001 for name in self.things} for gap in ends]
+        resting = [gaps for gaps, holds in zip(beside, held, strict=True) if not holds]
         wanted = {
-            name: min(margin_m, *(gap.get(name, margin_m) - 0.001 for gap in ends))
-            for name in self.things
+            near: {name: min([margin_m, *(gaps[name] for gaps in some)]) for name in self.things}
+            for near, some in ((True, beside), (False, resting))
         }
         worst = 0.0
         for frame in range(0, len(path), STRIDE):
             near = min(frame, len(path) - 1 - frame) <= self.leaving
             for name, gap in self._gaps(side, around, frame).items():
-                least = wanted[name] if name not in touched else -CUT_M if near else self.care.off_m
+                least = (
+                    wanted[near][name]
+                    if name not in touched
+                    else -CUT_M
+                    if near
+                    else self.care.off_m
+                )
                 worst = max(worst, least - gap)
             if worst >= enough:
                 break

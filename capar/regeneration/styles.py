@@ -8,7 +8,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation, Slerp
 
 from capar.regeneration.errors import PlanError
-from capar.regeneration.sources import Source
+from capar.regeneration.sources import Hold, Meeting, Source
 from capar.regeneration.style_kinds import Kind
 
 SHORTEST_S = 0.15
@@ -67,7 +67,7 @@ def paced(source: Source, duration_s: float) -> Source:
         PlanError: A hold would become shorter than can be observed.
     """
     pace = duration_s / float(source.times[-1] - source.times[0])
-    for span in (*source.holds, *source.meetings):
+    for span in _spans(source):
         held_s = float(source.times[span.last] - source.times[span.first])
         if held_s * pace < SHORTEST_S:
             least = SHORTEST_S * duration_s / (held_s * pace)
@@ -76,6 +76,10 @@ def paced(source: Source, duration_s: float) -> Source:
                 f"{held_s * pace:.2f} s, too short to be observed; at least {least:.1f} s would do"
             )
     return replace(source, pace=source.pace * pace)
+
+
+def _spans(source: Source) -> list[Hold | Meeting]:
+    return [*source.holds, *source.meetings]
 
 
 def _steps(source: Source) -> list[tuple[str, ...]]:
@@ -97,7 +101,7 @@ def _number(order: list[str], thing: str) -> int:
 
 def _events(source: Source) -> Float[np.ndarray, "events"]:
     """Frames at which holds and meetings begin and end, the capture's ends included."""
-    spans = (*source.holds, *source.meetings)
+    spans = _spans(source)
     edges = {0, len(source.times) - 1} | {e for s in spans for e in (s.first, s.last)}
     return np.array(sorted(edges), dtype=float)
 
