@@ -14,6 +14,8 @@ demo: $(VENV)/ready  ## Observe the shipped capture: six steps of drinking from 
 
 # What is imported is compiled by whoever imports it first, and kept; the rest need not be compiled.
 test: export PYTHONDONTWRITEBYTECODE =
+# Matrices here are small: threads of linear algebra would only wait for each other.
+test: export OPENBLAS_NUM_THREADS = 1
 test: $(TESTED)/ready  ## Build the wheel, install it, and test it from another folder.
 	mkdir -p .make/elsewhere
 	cd .make/elsewhere && ../venv/bin/python -m pytest -c $(CURDIR)/pyproject.toml --rootdir $(CURDIR) \

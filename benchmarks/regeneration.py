@@ -12,6 +12,7 @@ from capar.pipelines.round_trips import Trip, observed_source, round_trips
 
 AGENTS = ("man", "woman", "child")
 SEED = 7
+RATE_HZ = 30.0
 
 
 def line(action: str, trip: Trip, seconds: float) -> str:
@@ -30,7 +31,7 @@ def line(action: str, trip: Trip, seconds: float) -> str:
 
 
 def run(action: str, scenes: int) -> list[Trip]:
-    source = observed_source(action_capture(action))
+    source = observed_source(action_capture(action, rate_hz=RATE_HZ))
     trips, began = [], time.process_time()
     for trip in round_trips(source, AGENTS, scenes=scenes, seed=SEED):
         print(line(action, trip, time.process_time() - began), flush=True)

@@ -33,21 +33,49 @@ def regenerate(
         Path | None,
         typer.Option(help="A new folder for the capture bundle.", show_default=False),
     ] = None,
+    style: Annotated[
+        str,
+        typer.Option(
+            help="What of the recorded way is kept: path (shape and timing), frame (likewise, "
+            "enlarged with the way), vel (timing), even (nothing: least jerk)."
+        ),
+    ] = "path",
+    style_of: Annotated[
+        str | None,
+        typer.Option(help="Another capture of the same, whose style is taken.", show_default=False),
+    ] = None,
+    duration: Annotated[
+        float | None, typer.Option(help="How long it takes [s].", show_default=False, min=0.1)
+    ] = None,
+    hand: Annotated[
+        str | None,
+        typer.Option(help="Which hand does it: right or left.", show_default=False),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
     """Perform the action of CAPTURE on another body, verify every frame, and write a capture."""
     from capar.cli._output import check_new_folder, print_json
-    from capar.pipelines.round_trips import body, observed_source
+    from capar.pipelines.round_trips import body, by_hand, observed_source
     from capar.regeneration.captures import capture_of, write_motion
     from capar.regeneration.regenerating import regenerate as perform
     from capar.regeneration.scene_files import read_scene
+    from capar.regeneration.style_kinds import style_kind
+    from capar.regeneration.styles import borrowed_style, own_style, paced
 
     if output:
         check_new_folder(output)
-    source = observed_source(capture)
-    human = body(agent, source)
-    place = read_scene(scene, source.scene) if scene else source.scene
-    motion, quality = perform(source, human, place)
+    kind = style_kind(style)
+    recorded = observed_source(capture)
+    human = body(agent, recorded)
+    place = read_scene(scene, recorded.scene) if scene else recorded.scene
+    source = by_hand(recorded, hand) if hand else recorded
+    chosen = own_style(source, kind)
+    if style_of:
+        other = observed_source(style_of)
+        chosen = borrowed_style(source, by_hand(other, hand) if hand else other, kind)
+    if duration:
+        source = paced(source, duration)
+    motion, quality = perform(source, human, place, chosen)
     if output:
         name = agent if agent != "same" else source.capture.agent.name
         made = capture_of(motion, name=source.capture.name, agent=name)

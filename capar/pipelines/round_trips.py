@@ -9,12 +9,14 @@ import numpy as np
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.model.capture import Capture
+from capar.model.errors import UnknownNameError
 from capar.model.facts import Touching
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from capar.pipelines.trials import trial_of
 from capar.regeneration.captures import capture_of
 from capar.regeneration.errors import PlanError
+from capar.regeneration.mirroring import OTHER, mirrored
 from capar.regeneration.motions import Motion
 from capar.regeneration.quality import Quality
 from capar.regeneration.regenerating import regenerate
@@ -62,6 +64,24 @@ def observed_source(capture: Capture | Path | str) -> Source:
     """
     trial = trial_of(capture)
     return source_of(trial, observe(trial))
+
+
+def by_hand(source: Source, side: str) -> Source:
+    """The same done by a hand: mirrored, where it was the other one that took something.
+
+    Raises:
+        UnknownNameError: There is no such side.
+        PlanError: Both hands take something.
+    """
+    if side not in OTHER:
+        raise UnknownNameError("hand", side, sorted(OTHER))
+    acting = {hold.side for hold in source.holds}
+    if len(acting) > 1:
+        raise PlanError("both hands take something; leave out which hand does it")
+    if side in acting:
+        return source
+    scene = source.scene
+    return observed_source(mirrored(source.capture, scene.place, scene.heading))
 
 
 def body(agent: str, source: Source) -> Human:

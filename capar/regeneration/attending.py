@@ -16,26 +16,31 @@ FAR_M = 3.0
 SHIFT_S = 0.3
 """How long a shift of gaze takes [s]."""
 
-GRASP_S = 0.5
-"""How long before a hold the hand is led more and more firmly [s]."""
+REST_S = 0.5
+"""Over so long it is seen whether a hand rests [s]."""
 
 REST_M, REST_SHARE = 0.02, 0.5
 """A hand that stays so near for a while rests [m], and how firmly it is kept there [1]."""
 
 
-def grasps(source: Source) -> dict[str, Float[np.ndarray, "frames"]]:
-    """How firmly each hand is led [1]: in holds, and less so at rest beside a body that leans."""
+def grasps(source: Source, firm_s: float) -> dict[str, Float[np.ndarray, "frames"]]:
+    """How firmly each hand is led [1]: in holds, and less so at rest beside a body that leans.
+
+    Args:
+        source: The recorded performance.
+        firm_s: How long before a hold the hand is led more and more firmly [s].
+    """
     out = {}
     for side, hand in source.hands.items():
         holds = [hold for hold in source.holds if hold.side == side]
-        firm = around(source, holds, GRASP_S)
+        firm = around(source, holds, firm_s)
         out[side] = np.maximum(firm, REST_SHARE * _rests(source, hand.path.translation))
     return out
 
 
 def _rests(source: Source, spots: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
     """One where something hardly moves for a while, smoothly falling to zero beside that."""
-    half = max(round(0.5 * GRASP_S * source.rate_hz), 1)
+    half = max(round(0.5 * REST_S * source.rate_hz), 1)
     padded = np.pad(spots, ((half, half), (0, 0)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0)
     still = (np.ptp(windows, axis=2).max(axis=1) < REST_M).astype(float)

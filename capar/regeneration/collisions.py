@@ -13,6 +13,7 @@ from capar.body.human import Human
 from capar.body.model import body_spec
 from capar.model.capture import Shape
 from capar.regeneration.scenes import Scene
+from capar.regeneration.solving import vectors
 
 NEAR_M = 0.08
 """Larger distances are not measured [m]."""
@@ -57,10 +58,16 @@ class Surroundings:
         self, posture: Float[np.ndarray, "posture"], things: Mapping[str, RigidTransform]
     ) -> None:
         """Put the body and the things somewhere."""
+        self.place(posture, {name: vectors(pose) for name, pose in things.items()})
+
+    def place(
+        self, posture: Float[np.ndarray, "posture"], things: Mapping[str, Float[np.ndarray, "7"]]
+    ) -> None:
+        """Likewise, of poses as quaternions and positions."""
         self.data.qpos[:] = posture
         for name, pose in things.items():
-            self.data.mocap_pos[self.bodies[name]] = pose.translation
-            self.data.mocap_quat[self.bodies[name]] = pose.rotation.as_quat(scalar_first=True)
+            self.data.mocap_quat[self.bodies[name]] = pose[:4]
+            self.data.mocap_pos[self.bodies[name]] = pose[4:]
         mujoco.mj_kinematics(self.model, self.data)
 
     def near(self, parts: Iterable[str] | None = None) -> list[Pair]:

@@ -1,8 +1,10 @@
 """Where hands are throughout: on what they hold, and in between on paths clear of the scene."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform
 
 from capar.body.recording import HAND_SEGMENTS
@@ -10,18 +12,37 @@ from capar.regeneration.body_frames import BodyFrames, rest_pose
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.path_mapping import STRAIGHT, Detour, mapped
 from capar.regeneration.scenes import Scene
-from capar.regeneration.solving import Solver
+from capar.regeneration.solving import Solver, vectors
 from capar.regeneration.sources import Hold, Source
+from capar.regeneration.styles import Style
 
-LIFTS_M = (0.0, 0.04, 0.08, 0.12, 0.18, 0.25)
-BACKS_M = (0.0, 0.05, 0.1, 0.15, 0.2)
+LIFTS_M = (0.0, 0.04, 0.08, 0.12, 0.18, 0.25, 0.35)
+BACKS_M = (0.0, 0.05, 0.1, 0.15, 0.2, 0.3)
+OFFS_M = (0.0, 0.003, 0.02, 0.05)
 """Detours that are tried [m]."""
 
 STRIDE = 2
 """Frames between two at which a path is checked."""
 
+LEAVING_S = 0.3
+"""So long after it let something go a hand may be near it [s]."""
+
 CUT_M = 0.0003
 """How far a hand may cut what it is about to hold or has just left [m]."""
+
+
+@dataclass(frozen=True)
+class Care:
+    """How carefully free hands move."""
+
+    margin_m: float = 0.013
+    """How far they keep from what they do not touch [m]."""
+
+    off_m: float = 0.0103
+    """How far they are from what they let go after ``LEAVING_S`` [m]."""
+
+    firm_s: float = 0.5
+    """How long before and after a hold they are led firmly [s]."""
 
 
 def hand_paths(
@@ -32,10 +53,12 @@ def hand_paths(
     grips: Mapping[Hold, RigidTransform],
     things: Mapping[str, RigidTransform],
     *,
-    margin_m: float,
+    care: Care,
+    style: Style,
 ) -> tuple[dict[str, RigidTransform], dict[tuple[str, int], Detour]]:
     """``T_world_hand`` by side at every frame, and the detours that were taken."""
-    clearance = _Clearance(scene, new, things, margin_m)
+    turn = scene.heading - source.scene.heading
+    clearance = _Clearance(scene, new, things, care, source.rate_hz)
     out, detours = {}, {}
     for side in source.hands:
         holds = [hold for hold in source.holds if hold.side == side]
@@ -51,23 +74,42 @@ def hand_paths(
             start = poses[first] if before else rest_pose(source, old, new, side, 0)
             goal = poses[last] if after else rest_pose(source, old, new, side, last)
             touched = {each.thing for each in (before, after) if each}
-            part = source.hands[side].path[first : last + 1]
-            turn = scene.heading - source.scene.heading
-            options = {
-                detour: mapped(part, start, goal, turn=turn, detour=detour, heading=scene.heading)
-                for detour in DETOURS
-            }
-            best = clearance.first_clear(side, options, first, touched)
-            poses[first : last + 1] = list(options[best])
+            part = style.hands[side][first : last + 1]
+            away = _away(start, before), _away(goal, after)
+
+            def path(
+                detour: Detour,
+                part: RigidTransform = part,
+                ends: tuple[RigidTransform, RigidTransform] = (start, goal),
+                away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = away,
+            ) -> RigidTransform:
+                return mapped(
+                    part,
+                    *ends,
+                    turn=turn,
+                    detour=detour,
+                    heading=scene.heading,
+                    away=away,
+                    kind=style.kind,
+                )
+
+            held = before is not None, after is not None
+            best = clearance.first_clear(side, path, first, touched, held)
+            poses[first : last + 1] = list(path(best))
             if best != STRAIGHT:
                 detours[side, first] = best
         out[side] = RigidTransform.concatenate(poses)
     return out, detours
 
 
+def _away(hand: RigidTransform, hold: Hold | None) -> Float[np.ndarray, "3"]:
+    """Off what a hand holds, along its palm; nowhere where it holds nothing."""
+    return np.asarray(hand.rotation.apply([0.0, 0.0, -1.0])) if hold else np.zeros(3)
+
+
 DETOURS = sorted(
-    (Detour(lift, back) for lift in LIFTS_M for back in BACKS_M),
-    key=lambda each: each.lift_m + each.back_m,
+    (Detour(lift, back, off) for lift in LIFTS_M for back in BACKS_M for off in OFFS_M),
+    key=lambda each: each.size,
 )
 
 
@@ -75,19 +117,30 @@ class _Clearance:
     """How far a hand on its way is from things, whatever the arm does."""
 
     def __init__(
-        self, scene: Scene, new: BodyFrames, things: Mapping[str, RigidTransform], margin_m: float
+        self,
+        scene: Scene,
+        new: BodyFrames,
+        things: Mapping[str, RigidTransform],
+        care: Care,
+        rate_hz: float,
     ) -> None:
         self.around = Surroundings(new.human, scene)
         self.posture = Solver(new.human, (*scene.place, scene.floor_m), scene.heading).rest
-        self.new, self.things, self.margin_m = new, things, margin_m
+        self.new, self.things, self.care = new, things, care
+        self.leaving = round(LEAVING_S * rate_hz)
 
     def first_clear(
-        self, side: str, options: Mapping[Detour, RigidTransform], first: int, touched: set[str]
+        self,
+        side: str,
+        path: Callable[[Detour], RigidTransform],
+        first: int,
+        touched: set[str],
+        held: tuple[bool, bool],
     ) -> Detour:
         """The smallest detour that is clear, or else the one that comes nearest to it."""
         best, least = STRAIGHT, np.inf
-        for detour, path in options.items():
-            short = self._short(side, path, first, touched, least)
+        for detour in DETOURS:
+            short = self._short(side, path(detour), first, touched, held, least)
             if short < least:
                 best, least = detour, short
             if least <= 0.0:
@@ -95,27 +148,54 @@ class _Clearance:
         return best
 
     def _short(
-        self, side: str, path: RigidTransform, first: int, touched: set[str], enough: float
+        self,
+        side: str,
+        path: RigidTransform,
+        first: int,
+        touched: set[str],
+        held: tuple[bool, bool],
+        enough: float,
     ) -> float:
-        """By how much the path is too near, at worst; not further than is decided [m]."""
-        ends = [self._gaps(side, path[k], first + k) for k in (0, len(path) - 1)]
+        """By how much the path is too near, at worst; not further than is decided [m].
+
+        A hand may be as near as where it hangs at ease, and around a hold as near as there.
+        """
+        around, margin_m = self._seen_from(side, path, first), self.care.margin_m
+        ends = [self._gaps(side, around, k) for k in (0, len(path) - 1)]
+        beside = [{name: gap.get(name, margin_m) - 0.001 for name in self.things} for gap in ends]
+        resting = [gaps for gaps, holds in zip(beside, held, strict=True) if not holds]
         wanted = {
-            name: min(self.margin_m, *(gap.get(name, self.margin_m) - 0.001 for gap in ends))
-            for name in self.things
+            near: {name: min([margin_m, *(gaps[name] for gaps in some)]) for name in self.things}
+            for near, some in ((True, beside), (False, resting))
         }
-        wanted |= dict.fromkeys(touched, -CUT_M)
         worst = 0.0
         for frame in range(0, len(path), STRIDE):
-            for name, gap in self._gaps(side, path[frame], first + frame).items():
-                worst = max(worst, wanted[name] - gap)
+            near = min(frame, len(path) - 1 - frame) <= self.leaving
+            for name, gap in self._gaps(side, around, frame).items():
+                least = (
+                    wanted[near][name]
+                    if name not in touched
+                    else -CUT_M
+                    if near
+                    else self.care.off_m
+                )
+                worst = max(worst, least - gap)
             if worst >= enough:
                 break
         return worst
 
-    def _gaps(self, side: str, hand: RigidTransform, frame: int) -> dict[str, float]:
-        """The hand's distance from each thing near it: the scene is moved to the hand at ease."""
-        shift = self.new.rest[side] * hand.inv()
-        self.around.pose(self.posture, {n: shift * path[frame] for n, path in self.things.items()})
+    def _seen_from(
+        self, side: str, path: RigidTransform, first: int
+    ) -> dict[str, Float[np.ndarray, "frames 7"]]:
+        """Where things are if the scene is moved so that the hand stays at ease."""
+        shift, part = self.new.rest[side] * path.inv(), slice(first, first + len(path))
+        return {name: vectors(shift * track[part]) for name, track in self.things.items()}
+
+    def _gaps(
+        self, side: str, around: Mapping[str, Float[np.ndarray, "frames 7"]], frame: int
+    ) -> dict[str, float]:
+        """The hand's distance from each thing near it."""
+        self.around.place(self.posture, {name: rows[frame] for name, rows in around.items()})
         out: dict[str, float] = {}
         for pair in self.around.near([f"{side}_{each}" for each in HAND_SEGMENTS]):
             out[pair.thing] = min(out.get(pair.thing, np.inf), pair.distance_m)

@@ -24,10 +24,11 @@ def perform_plan(plan: Plan) -> Motion:
     """Follow a plan frame by frame."""
     scene = plan.scene
     solver = Solver(plan.human, (*scene.place, scene.floor_m), scene.heading)
-    solver.follow(plan.targets(0), most=SETTLING)
+    targets = plan.targets()
+    solver.follow(targets[0], most=SETTLING)
     solver.frame.bound(1.0 / plan.source.rate_hz)
     postures = np.empty((len(plan.source.times), len(solver.posture)))
     for frame in range(len(postures)):
-        solver.follow(plan.targets(frame))
+        solver.follow(targets[frame])
         postures[frame] = solver.posture
     return Motion(plan, postures)

@@ -12,13 +12,13 @@ from capar.body.human import ROOT_SIZE
 from capar.regeneration.collisions import Pair, Surroundings
 from capar.regeneration.motions import Motion
 from capar.regeneration.path_mapping import way
+from capar.regeneration.planning import Plan
+from capar.regeneration.solving import vectors
 from capar.regeneration.sources import SETTLED_M, Hold
+from capar.regeneration.style_kinds import Kind
 
 LEAVING_S = 0.3
-"""So long before and after a hold a hand may be near what stands beside [s]."""
-
-TAKING_S = 0.5
-"""Likewise near what it holds [s]."""
+"""So long before and after a hold a hand may be near what it holds and what stands beside [s]."""
 
 MOVING_M = 0.05
 """A shorter path has no profile of speed [m]."""
@@ -169,8 +169,9 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
     around = Surroundings(plan.human, plan.scene)
     far = (Pair(np.inf, "", ""), -1)
     deepest, nearest, thumb = far, far, far
+    things = {name: vectors(path) for name, path in plan.things.items()}
     for frame in range(len(motion.postures)):
-        around.pose(motion.postures[frame], {n: p[frame] for n, p in plan.things.items()})
+        around.place(motion.postures[frame], {n: rows[frame] for n, rows in things.items()})
         for pair in around.near():
             side = pair.part.partition("_")[0]
             if pair.part.endswith("_thumb") and _takes(motion, side, pair.thing, frame):
@@ -211,7 +212,7 @@ def _is_free(motion: Motion, pair: Pair, frame: int) -> bool:
 def _takes(motion: Motion, side: str, thing: str, frame: int) -> bool:
     """Whether a hand holds that thing, or is about to, or has just let it go."""
     own = (hold for hold in _holds(motion, side) if hold.thing == thing)
-    return any(_near_hold(motion, hold, frame, TAKING_S) for hold in own)
+    return any(_near_hold(motion, hold, frame, LEAVING_S) for hold in own)
 
 
 def _holds(motion: Motion, side: str) -> list[Hold]:
@@ -262,10 +263,10 @@ def _still_gate(motion: Motion) -> Gate:
 
 
 def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
-    """Correlation of the speeds of hands along their paths with the recorded ones, at worst."""
+    """Correlation of the speeds of hands along their paths with those of the style, at worst."""
     plan, worst = motion.plan, (1.0, -1, "")
     for side, hand in hands.items():
-        new, old = hand.translation, plan.source.hands[side].path.translation
+        new, old = hand.translation, _model(plan, side).translation
         if min(way(new)[-1], way(old)[-1]) < MOVING_M + 2.0 * SETTLED_M:
             continue
         for first, last in _pieces(motion, side):
@@ -274,6 +275,11 @@ def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
                 value = float(np.corrcoef(one, two)[0, 1])
                 worst = min(worst, (value, first, f"{side} hand"))
     return Gate("speed profile", worst[0], 0.98, "r", True, worst[1], worst[2])
+
+
+def _model(plan: Plan, side: str) -> RigidTransform:
+    """The way of a hand whose timing is to be kept: the planned one where none is recorded."""
+    return plan.hands[side] if plan.style.kind is Kind.EVEN else plan.style.hands[side]
 
 
 def _pieces(motion: Motion, side: str) -> list[tuple[int, int]]:

@@ -1,37 +1,70 @@
 """The whole way from a capture to a verified motion of another body."""
 
 from capar.body.human import Human
+from capar.regeneration.drafts import Draft
+from capar.regeneration.errors import PlanError
+from capar.regeneration.hand_paths import Care
 from capar.regeneration.motions import Motion, perform_plan
-from capar.regeneration.planning import plan
+from capar.regeneration.planning import led, reachable
 from capar.regeneration.quality import Quality, quality
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source
+from capar.regeneration.styles import Style
 
-MARGINS_M = (0.013, 0.03, 0.05)
-"""How far free hands keep from things; the next where a motion is too near something [m]."""
+CARES = (Care(), Care(0.03, 0.015), Care(0.03, 0.015, 1.0), Care(0.05, 0.02, 1.0))
+"""How free hands keep from things; the next where a motion is too near something."""
 
-BY_MARGIN = {"penetration", "free hand clear"}
-"""The gates that a wider margin may mend."""
+BY_CARE = {"penetration", "free hand clear"}
+"""The gates that more care may mend."""
+
+BY_GRIP = {"on the way", "event position", "event rotation", "penetration"}
+"""The gates that another grip may mend."""
+
+GRIPS = 2
+"""So often other grips are sought, which reach also where the motion was worst [1]."""
 
 
-def regenerate(source: Source, human: Human, scene: Scene | None = None) -> tuple[Motion, Quality]:
+def regenerate(
+    source: Source, human: Human, scene: Scene | None = None, style: Style | None = None
+) -> tuple[Motion, Quality]:
     """Let a body do in a scene what was recorded; verified at every frame.
 
     Args:
         source: The recorded performance.
         human: Who performs.
         scene: Where; as it was recorded, unless stated.
+        style: How; as it was recorded, unless stated.
 
     Raises:
         PlanError: It is out of reach or impossible; the message says what would help.
     """
     best: tuple[Motion, Quality] | None = None
-    for margin_m in MARGINS_M:
-        motion = perform_plan(plan(source, scene or source.scene, human, margin_m=margin_m))
-        found = motion, quality(motion)
-        if best is None or len(found[1].failed) < len(best[1].failed):
-            best = found
-        if not BY_MARGIN & set(found[1].failed):
+    scene = scene or source.scene
+    best = _careful(reachable(source, scene, human, style))
+    watched: frozenset[int] = frozenset()
+    for _ in range(GRIPS):
+        held = [gate for gate in best[1].gates if not gate.passed and gate.name in BY_GRIP]
+        if not held or watched.issuperset(gate.frame for gate in held):
             break
-    assert best is not None
+        watched |= {gate.frame for gate in held}
+        try:
+            found = _careful(reachable(source, scene, human, style, watched))
+        except PlanError:
+            break
+        best = min(best, found, key=_failures)
     return best
+
+
+def _careful(draft: Draft) -> tuple[Motion, Quality]:
+    """The best motion of some grips, hands being led with more care where it takes that."""
+    tried: list[tuple[Motion, Quality]] = []
+    for care in CARES:
+        motion = perform_plan(led(draft, care))
+        tried.append((motion, quality(motion)))
+        if not BY_CARE & set(tried[-1][1].failed):
+            break
+    return min(tried, key=_failures)
+
+
+def _failures(made: tuple[Motion, Quality]) -> int:
+    return len(made[1].failed)

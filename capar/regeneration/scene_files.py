@@ -51,7 +51,9 @@ def read_scene(path: Path, scene: Scene) -> Scene:
     x, y = _numbers(path, "stance.place", stance.get("place", scene.place), 2)
     heading = _number(path, "heading_deg", stance.get("heading_deg", np.degrees(scene.heading)))
     floor = _number(path, "floor_m", stance.get("floor_m", scene.floor_m))
-    return replace(scene, place=(x, y), heading=float(np.radians(heading)), floor_m=floor)
+    stays = scene.stays or "place" in stance
+    turn = float(np.radians(heading))
+    return replace(scene, place=(x, y), heading=turn, floor_m=floor, stays=stays)
 
 
 def drawn_scene(scene: Scene, rng: np.random.Generator) -> Scene:

@@ -25,6 +25,9 @@ class Scene(Things):
     floor_m: float = 0.0
     """Height of the floor [m]."""
 
+    stays: bool = False
+    """Whether the performer has to stand just there."""
+
     def support(self, name: str) -> str:
         """What a thing stands on; empty where nothing is beneath it."""
         thing = self.thing(name)

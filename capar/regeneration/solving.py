@@ -55,14 +55,14 @@ NEAR_M, NEAR_RAD = 4e-4, 4e-3
 class Targets:
     """Where the body's parts are to be at one moment."""
 
-    palms: Mapping[str, RigidTransform]
-    """``T_world_palm`` by side; a side that is left out hangs at ease."""
+    palms: Mapping[str, Float[np.ndarray, "7"]]
+    """``T_world_palm`` by side, as ``vectors`` has it; a side that is left out hangs at ease."""
 
     grasps: Mapping[str, float]
     """How firmly each palm is kept there [1]."""
 
-    head: RigidTransform
-    """``T_world_eyes``: between the eyes."""
+    head: Float[np.ndarray, "7"]
+    """``T_world_eyes``: between the eyes, as ``vectors`` has it."""
 
     firmness: float
     """How firmly the head is kept there [1]."""
@@ -112,7 +112,8 @@ class Solver:
         self.palms = {s: mink.FrameTask(f"{s}_palm", "site", *PALM_COST) for s in SIDES}
         self.head = mink.FrameTask("between_eyes", "site", *HEAD_COST)
         self.looks = look_tasks()
-        self.home = {side: self.palm(side) for side in SIDES}
+        self.home = {side: vectors(self.palm(side)) for side in SIDES}
+        self.goals = {side: pose[4:] for side, pose in self.home.items()}
         self.tasks = [*self.palms.values(), self.head, *self.looks.values(), *self._stance()]
         self.frame = FrameLimit(len(human.joints))
         self.limits = [self.frame, mink.ConfigurationLimit(human.model)]
@@ -149,12 +150,14 @@ class Solver:
     def follow(self, targets: Targets, *, most: int = MOST) -> None:
         """Go on to the targets."""
         for side, task in self.palms.items():
-            task.set_target(_se3(targets.palms.get(side, self.home[side])))
+            goal = targets.palms.get(side, self.home[side])
+            self.goals[side] = goal[4:]
+            task.set_target(mink.SE3(goal))
             firm = targets.grasps.get(side, 0.0)
             costs = [c * (f + (1.0 - f) * firm) for c, f in zip(PALM_COST, FREE_PALM, strict=True)]
             task.set_position_cost(costs[0])
             task.set_orientation_cost(costs[1])
-        self.head.set_target(_se3(targets.head))
+        self.head.set_target(mink.SE3(targets.head))
         firm = FREE_HEAD + (1.0 - FREE_HEAD) * targets.firmness
         self.head.set_position_cost(HEAD_COST[0] * firm)
         self.head.set_orientation_cost(HEAD_COST[1] * firm)
@@ -175,14 +178,17 @@ class Solver:
                 return
 
     def missed(self, targets: Targets) -> tuple[float, float]:
-        """How far the worst palm that holds something is from its target [m, rad]."""
+        """How far the worst palm that holds something is from its target [m, rad].
+
+        Of the targets that were followed last.
+        """
         metres, radians = 0.0, 0.0
-        for side, goal in targets.palms.items():
-            if targets.grasps.get(side, 0.0) > 0.5:
-                palm = self.palm(side)
-                metres = max(metres, float(np.linalg.norm(palm.translation - goal.translation)))
-                turned = (palm.rotation.inv() * goal.rotation).magnitude()
-                radians = max(radians, float(turned))
+        for side, goal in self.goals.items():
+            if side in targets.palms and targets.grasps.get(side, 0.0) > 0.5:
+                spot = self.configuration.data.site(f"{side}_palm").xpos
+                twist = self.palms[side].compute_error(self.configuration)
+                metres = max(metres, float(np.linalg.norm(spot - goal)))
+                radians = max(radians, float(np.linalg.norm(twist[3:])))
         return metres, radians
 
     def _step(self) -> None:
@@ -191,5 +197,6 @@ class Solver:
         self.frame.gone += velocity
 
 
-def _se3(pose: RigidTransform) -> mink.SE3:
-    return mink.SE3(np.concatenate([pose.rotation.as_quat(scalar_first=True), pose.translation]))
+def vectors(pose: RigidTransform) -> Float[np.ndarray, "*frames 7"]:
+    """Unit quaternions (w, x, y, z) and positions of one pose or of many."""
+    return np.concatenate([pose.rotation.as_quat(scalar_first=True), pose.translation], axis=-1)

@@ -94,16 +94,18 @@ class Source:
     holds: tuple[Hold, ...]
     meetings: tuple[Meeting, ...]
     notes: tuple[str, ...]
+    pace: float = 1.0
+    """How many times as long everything takes as it did [1]."""
 
     @property
     def times(self) -> Float[np.ndarray, "frames"]:
         """[s]."""
-        return self.capture.times
+        return np.asarray(self.capture.times * self.pace)
 
     @property
     def rate_hz(self) -> float:
         """Frames a second."""
-        return self.capture.rate_hz
+        return self.capture.rate_hz / self.pace
 
 
 def source_of(capture: Capture, observation: Observation) -> Source:

@@ -7,14 +7,17 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.body.human import Human
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
+from capar.regeneration.carrying import Carrying
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.contact_points import contact_points
 from capar.regeneration.errors import PlanError
-from capar.regeneration.path_mapping import mapped
+from capar.regeneration.path_mapping import STRAIGHT, Detour
 from capar.regeneration.scenes import Scene, moved
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import MOVES_M, Meeting, Source
+from capar.regeneration.styles import Style
 
 STILL_M = 0.005
 """A stretch in which a thing stays so near where it was is one of rest [m]."""
@@ -61,31 +64,43 @@ def thing_goals(
 
 
 def thing_paths(
-    source: Source, scene: Scene, goals: dict[str, list[Goal]]
-) -> dict[str, RigidTransform]:
-    """``T_world_thing`` at every frame."""
+    source: Source, scene: Scene, goals: dict[str, list[Goal]], human: Human, style: Style
+) -> tuple[dict[str, RigidTransform], list[str]]:
+    """``T_world_thing`` at every frame, and what is to be told of their ways.
+
+    Other things stand where they were at first while a way is sought.
+    """
     count, turn = len(source.times), scene.heading - source.scene.heading
-    out = {}
+    carrying = Carrying(human, scene, style.kind)
+    still = {name: thing.pose for name, thing in scene.things.items()}
+    out, told = {}, []
     for name, recorded in source.paths.items():
         poses = [scene.thing(name).pose] * count
         for start, goal in zip(goals.get(name, []), goals.get(name, [])[1:], strict=False):
-            part = recorded[start.frame : goal.frame + 1]
+            part = style.things[name][start.frame : goal.frame + 1]
             if goal.frame > start.frame:
-                piece = _piece(part, start.pose, goal.pose, turn, scene.heading)
-                poses[start.frame : goal.frame + 1] = list(piece)
+                if _rests(recorded[start.frame : goal.frame + 1], start.pose, goal.pose):
+                    poses[start.frame : goal.frame + 1] = [start.pose] * len(part)
+                else:
+                    ends = start.pose, goal.pose
+                    piece, detour = carrying.way(name, part, ends, still, turn)
+                    poses[start.frame : goal.frame + 1] = list(piece)
+                    if detour != STRAIGHT:
+                        told.append(_lifted(name, source.times[start.frame], detour))
             poses[goal.frame :] = [goal.pose] * (count - goal.frame)
         out[name] = RigidTransform.concatenate(poses)
-    return out
+    return out, told
 
 
-def _piece(
-    part: RigidTransform, start: RigidTransform, goal: RigidTransform, turn: float, heading: float
-) -> RigidTransform:
+def _lifted(name: str, at_s: float, detour: Detour) -> str:
+    over = f"{1e3 * detour.lift_m:.0f} mm over what stands in its way"
+    return f"{name!r} is lifted {over} at {at_s:.2f} s"
+
+
+def _rests(part: RigidTransform, start: RigidTransform, goal: RigidTransform) -> bool:
     apart = np.linalg.norm(part.translation - part.translation[0], axis=1)
     near = np.linalg.norm(goal.translation - start.translation) < 1e-9
-    if apart.max() < STILL_M and near:
-        return RigidTransform.concatenate([start] * len(part))
-    return mapped(part, start, goal, turn=turn, heading=heading)
+    return bool(apart.max() < STILL_M and near)
 
 
 def _handled(source: Source, name: str) -> list[tuple[int, int]]:

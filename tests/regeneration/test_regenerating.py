@@ -133,7 +133,7 @@ def test_a_spoilt_motion_does_not_pass(spoilt: object, gate: str) -> None:
 
 def test_out_of_reach_is_decided_before_anything_moves_with_what_would_help() -> None:
     source = _source("touch")
-    scene = replace(source.scene, place=(-0.8, 0.0))
+    scene = replace(source.scene, place=(-0.8, 0.0), stays=True)
     with pytest.raises(PlanError, match=r"misses by \d+ mm.*; standing \d\.\d\d m further ahead"):
         plan(source, scene, source.human)
 
@@ -141,7 +141,7 @@ def test_out_of_reach_is_decided_before_anything_moves_with_what_would_help() ->
 def test_nobody_stands_inside_a_table() -> None:
     source = _source("touch")
     with pytest.raises(PlanError, match="inside 'table'; stand further back"):
-        plan(source, replace(source.scene, place=(0.3, 0.0)), source.human)
+        plan(source, replace(source.scene, place=(0.3, 0.0), stays=True), source.human)
 
 
 def test_the_same_input_gives_the_same_motion() -> None:

@@ -1,0 +1,96 @@
+"""The way of a held thing between two goals, lifted over what stands in it."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform
+
+from capar.body.human import Human
+from capar.regeneration.collisions import Surroundings
+from capar.regeneration.path_mapping import STRAIGHT, Detour, mapped
+from capar.regeneration.scenes import Scene
+from capar.regeneration.solving import Solver, vectors
+from capar.regeneration.style_kinds import Kind
+
+LIFTS_M = (0.0, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3)
+"""How far a way is lifted half-way, in order [m]."""
+
+BESIDE_M = 0.01
+"""How far a held thing keeps from what stands beside its way [m]."""
+
+SLACK_M = 0.0005
+"""How much nearer than at both ends it may come [m]."""
+
+STRIDE = 2
+"""Frames between two at which a way is checked."""
+
+
+class Carrying:
+    """Ways of held things through a scene."""
+
+    def __init__(self, human: Human, scene: Scene, kind: Kind) -> None:
+        self.scene, self.kind = scene, kind
+        self.around = Surroundings(human, scene)
+        self.posture = Solver(human, (*scene.place, scene.floor_m), scene.heading).rest
+
+    def way(
+        self,
+        name: str,
+        part: RigidTransform,
+        ends: tuple[RigidTransform, RigidTransform],
+        others: Mapping[str, RigidTransform],
+        turn: float,
+    ) -> tuple[RigidTransform, Detour]:
+        """``T_world_thing`` from one goal to the next, and the detour that it makes.
+
+        Args:
+            name: Of the thing.
+            part: As it was recorded.
+            ends: Where it starts and where it has to go.
+            others: Where the other things are meanwhile.
+            turn: How far the scene's way is turned about z [rad].
+        """
+        best, least = STRAIGHT, np.inf
+        for detour in (Detour(lift) for lift in LIFTS_M):
+            path = self._mapped(part, ends, turn, detour)
+            short = self._short(name, path, others)
+            if short < least:
+                best, least = detour, short
+            if least <= 0.0:
+                break
+        return self._mapped(part, ends, turn, best), best
+
+    def _mapped(
+        self,
+        part: RigidTransform,
+        ends: tuple[RigidTransform, RigidTransform],
+        turn: float,
+        detour: Detour,
+    ) -> RigidTransform:
+        facing = self.scene.heading
+        return mapped(part, *ends, turn=turn, detour=detour, heading=facing, kind=self.kind)
+
+    def _short(
+        self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]
+    ) -> float:
+        """By how much it comes too near something, at worst [m]."""
+        poses, still = vectors(path), {n: vectors(pose) for n, pose in others.items()}
+        ends = [dict(self._gaps(name, poses[row], still)) for row in (0, -1)]
+        worst = 0.0
+        for row in range(0, len(path), STRIDE):
+            for other, gap in self._gaps(name, poses[row], still):
+                least = min(BESIDE_M, *(each.get(other, BESIDE_M) for each in ends))
+                worst = max(worst, least - SLACK_M - gap)
+        return worst
+
+    def _gaps(
+        self,
+        name: str,
+        pose: Float[np.ndarray, "7"],
+        others: Mapping[str, Float[np.ndarray, "7"]],
+    ) -> Iterator[tuple[str, float]]:
+        self.around.place(self.posture, {**others, name: pose})
+        for pair in self.around.things_near():
+            if name in (pair.part, pair.thing):
+                yield (pair.thing if pair.part == name else pair.part), pair.distance_m

@@ -1,0 +1,173 @@
+"""What is decided of a performance before hands' ways are: goals, and grips that reach."""
+
+import numpy as np
+
+from capar.body.human import Human
+from capar.body.recording import HAND_SEGMENTS
+from capar.regeneration import attending
+from capar.regeneration.body_frames import body_frames, head_path
+from capar.regeneration.collisions import Pair, Surroundings
+from capar.regeneration.errors import PlanError
+from capar.regeneration.grips import Grip, Gripping, turns
+from capar.regeneration.scenes import Scene
+from capar.regeneration.solving import Solver, Targets, vectors
+from capar.regeneration.sources import Hold, Source
+from capar.regeneration.styles import Style
+from capar.regeneration.thing_paths import thing_goals, thing_paths
+
+REACH_M, REACH_RAD = 0.0009, float(np.radians(0.9))
+"""A hand that misses a goal by more cannot reach it: a little less than the gates allow."""
+
+CUT_M = 0.001
+"""How deep a part of the body may be inside a thing [m]."""
+
+KEYS = 6
+"""Key postures in a hold, besides those at goals."""
+
+KEY_ITERATIONS = 40
+MOST_TURNS = 90
+"""Turns of a grip that are tried."""
+
+SETTLE_S = 0.45
+"""How long the head takes to be firmly where it is to be [s]."""
+
+
+class Draft:
+    """A plan whose grips are still open."""
+
+    def __init__(
+        self,
+        source: Source,
+        scene: Scene,
+        human: Human,
+        style: Style,
+        watched: frozenset[int] = frozenset(),
+    ) -> None:
+        self.source, self.scene = source, scene
+        self.old = body_frames(source.human, source.scene)
+        self.new = body_frames(human, scene)
+        self.goals = thing_goals(source, scene, self.old, self.new)
+        self.things, self.told = thing_paths(source, scene, self.goals, human, style)
+        self.head = head_path(source, self.old, self.new)
+        self.firmness = attending.around(source, source.meetings, SETTLE_S)
+        self.looks = attending.looks(source, self.things, self.head)
+        self.gripping = Gripping(source, scene, self.old, self.new)
+        self.grips: tuple[Grip, ...] = ()
+        self.watched, self.style = watched, style
+
+    def reachable_grips(self, most: int = MOST_TURNS) -> tuple[list[Grip], str | None]:
+        """A grip for every hold with the least turn that reaches; what is missed if none does."""
+        chosen: list[Grip] = []
+        for group in _groups(self.source.holds):
+            best, found = None, False
+            options = turns(self.scene.thing(group[0].thing))
+            for turn in list(options)[:most]:
+                grips = [self.gripping.grip(hold, turn) for hold in group]
+                enough = np.inf if best is None else max(best[0][0], 1.0)
+                miss = self._missed(chosen + grips, group, enough)
+                if best is None or miss[0] < best[0][0]:
+                    best = (miss, grips)
+                if miss[0] <= 1.0:
+                    found = True
+                    break
+            assert best is not None
+            chosen += best[1]
+            if not found:
+                return chosen, best[0][1]
+        return chosen, None
+
+    def _missed(self, grips: list[Grip], group: list[Hold], enough: float) -> tuple[float, str]:
+        """How far the key postures of some holds are missed, in units of what is allowed.
+
+        No further than is enough to be worse than another grip.
+        """
+        solver = Solver(self.new.human, (*self.scene.place, self.scene.floor_m), self.scene.heading)
+        worst = (0.0, "")
+        for frame in self._keys(group):
+            palms = {
+                grip.hold.side: vectors(
+                    self.things[grip.hold.thing][frame] * grip.pose * self.new.palms[grip.hold.side]
+                )
+                for grip in grips
+                if grip.hold.first <= frame <= grip.hold.last
+            }
+            firm = dict.fromkeys(palms, 1.0)
+            head = vectors(self.head[frame])
+            goal = Targets(palms, firm, head, float(self.firmness[frame]), self.looks[frame])
+            solver.follow(goal, most=KEY_ITERATIONS)
+            metres, radians = solver.missed(goal)
+            ratio = max(metres / REACH_M, radians / REACH_RAD)
+            if ratio > worst[0]:
+                worst = (ratio, self._sentence(group, frame, metres, radians))
+            pair = self._cut(solver, grips, frame)
+            if pair and -pair.distance_m / CUT_M > worst[0]:
+                depth, sides = -pair.distance_m, _sides(group)
+                worst = (
+                    depth / CUT_M,
+                    f"while the {sides} hand has {group[0].thing!r} at "
+                    f"{self.source.times[frame]:.2f} s, {pair.part} is {1e3 * depth:.0f} mm inside "
+                    f"{pair.thing!r}",
+                )
+            if ratio > enough:
+                break
+        return worst
+
+    def _sentence(self, group: list[Hold], frame: int, metres: float, radians: float) -> str:
+        at_s = self.source.times[frame]
+        return (
+            f"the {_sides(group)} hand cannot follow {group[0].thing!r} at {at_s:.2f} s: "
+            f"it misses by {metres * 1000:.0f} mm and {np.degrees(radians):.0f} degrees"
+        )
+
+    def _cut(self, solver: Solver, grips: list[Grip], frame: int) -> Pair | None:
+        """The part of the body that is deepest inside a thing, but for hands in what they hold."""
+        around = self.gripping.around
+        around.pose(solver.posture, {name: path[frame] for name, path in self.things.items()})
+        held = {(g.hold.side, g.hold.thing) for g in grips}
+        pairs = [p for p in around.near() if not _holds_it(p, held) and p.distance_m < 0.0]
+        return min(pairs, default=None)
+
+    def _keys(self, group: list[Hold]) -> list[int]:
+        first, last = min(h.first for h in group), max(h.last for h in group)
+        keys = {int(each) for each in np.linspace(first, last, KEYS)}
+        keys |= {frame for frame in self.watched if first <= frame <= last}
+        for goals in self.goals.values():
+            keys |= {goal.frame for goal in goals if first <= goal.frame <= last}
+        return sorted(keys)
+
+
+def _sides(group: list[Hold]) -> str:
+    return " and ".join(sorted({hold.side for hold in group}))
+
+
+def _holds_it(pair: Pair, held: set[tuple[str, str]]) -> bool:
+    side, _, part = pair.part.partition("_")
+    return part in (*HAND_SEGMENTS, "thumb") and (side, pair.thing) in held
+
+
+def check_stance(scene: Scene, human: Human) -> None:
+    """Whoever stands at ease stands in nothing."""
+    around = Surroundings(human, scene)
+    solver = Solver(human, (*scene.place, scene.floor_m), scene.heading)
+    around.pose(solver.rest, {name: thing.pose for name, thing in scene.things.items()})
+    for pair in around.near():
+        if pair.distance_m < 0.0:
+            raise PlanError(
+                f"standing at ({scene.place[0]:.2f}, {scene.place[1]:.2f}) m the performer's "
+                f"{pair.part} is {-pair.distance_m * 1000:.0f} mm inside {pair.thing!r}; stand "
+                "further back, or put it elsewhere"
+            )
+
+
+def _groups(holds: tuple[Hold, ...]) -> list[list[Hold]]:
+    """Holds of one thing that overlap, in order of time."""
+    out: list[list[Hold]] = []
+    for hold in holds:
+        for group in out:
+            same = group[0].thing == hold.thing
+            if same and any(o.first <= hold.last and hold.first <= o.last for o in group):
+                group.append(hold)
+                break
+        else:
+            out.append([hold])
+    return out

@@ -1,0 +1,89 @@
+"""A capture as a mirror shows it: what one hand did, the other does."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+from capar.model.capture import Capture, PivotContact, Shape, Stream
+
+LOCAL = np.diag([1.0, -1.0, 1.0])
+"""How each body's own frame is mirrored, so that it stays right-handed."""
+
+OTHER = {"right": "left", "left": "right"}
+
+
+def mirrored(capture: Capture, place: tuple[float, float], heading: float) -> Capture:
+    """The capture mirrored at the performer's median plane, hands renamed.
+
+    Args:
+        capture: As it was recorded.
+        place: Where the performer stands [m].
+        heading: Which way the performer faces [rad].
+    """
+    normal = np.array([-np.sin(heading), np.cos(heading), 0.0])
+    plane = np.eye(3) - 2.0 * np.outer(normal, normal)
+    origin = np.array([*place, 0.0])
+    names = {each.name: _renamed(each.name) for each in capture.sensors}
+    sensors = tuple(
+        replace(
+            each,
+            name=names[each.name],
+            side=OTHER.get(each.side, each.side),
+            link=_renamed(each.link),
+            stream=_stream(each.stream, plane, origin),
+            shape=_shape(each.shape),
+            gaze=_vector(each.gaze),
+            eye=_vector(each.eye),
+            part_of=names.get(each.part_of, each.part_of),
+        )
+        for each in capture.sensors
+    )
+    objects = tuple(
+        replace(each, stream=_stream(each.stream, plane, origin), shape=_shape(each.shape))
+        for each in capture.objects
+    )
+    return replace(
+        capture,
+        sensors=sensors,
+        objects=objects,
+        pivot_contacts=tuple(_pivot(each, names) for each in capture.pivot_contacts),
+        purposes=(),
+        conventions={names.get(name, name): each for name, each in capture.conventions.items()},
+    )
+
+
+def _pivot(each: PivotContact, names: Mapping[str, str]) -> PivotContact:
+    first, second = each.first, each.second
+    return replace(each, first=names.get(first, first), second=names.get(second, second))
+
+
+def _renamed(name: str) -> str:
+    """``right_hand`` and ``hand_right`` for the other side."""
+    return "_".join(OTHER.get(part, part) for part in name.split("_"))
+
+
+def _stream(
+    stream: Stream, plane: Float[np.ndarray, "3 3"], origin: Float[np.ndarray, "3"]
+) -> Stream:
+    known = ~stream.lost
+    spots, turns = np.full_like(stream.positions, np.nan), np.full_like(stream.orientations, np.nan)
+    spots[known] = (stream.positions[known] - origin) @ plane + origin
+    before = Rotation.from_quat(stream.orientations[known], scalar_first=True).as_matrix()
+    turned = Rotation.from_matrix(plane @ before @ LOCAL)
+    turns[known] = turned.as_quat(scalar_first=True)
+    return Stream(np.array(stream.times), spots, turns)
+
+
+def _shape(shape: Shape | None) -> Shape | None:
+    if shape is None:
+        return None
+    faces = np.array(shape.faces)[:, ::-1]
+    return Shape(np.array(shape.vertices) @ LOCAL, faces, shape.source, shape.description)
+
+
+def _vector(vector: tuple[float, float, float]) -> tuple[float, float, float]:
+    x, y, z = vector
+    return (x, -y, z)

@@ -1,0 +1,81 @@
+"""A reach is replayed for new goals in a frame of object and hand, or object and shoulder."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from capar.body.scripted_actions import performed
+from capar.regeneration.coordinate_systems import (
+    CoordinateError,
+    frame_between,
+    replayed,
+    replays,
+)
+
+ASIDE = np.array([[0.1, 0.0, 0.0], [0.0, 0.12, 0.05], [-0.05, -0.1, 0.1], [0.08, 0.1, -0.1]])
+numbers = st.floats(-1.0, 1.0)
+spots = st.tuples(numbers, numbers, numbers).map(np.array)
+
+
+def _reach() -> tuple[np.ndarray, np.ndarray]:
+    """The palm's path to the mug, and the shoulder before it."""
+    made = performed("drink", rate_hz=30.0)
+    start, end = (next(p for p in made.phases if p[0] == "reach"))[1:]
+    rows = (made.times >= start) & (made.times <= end)
+    palm = made.human.sites(made.motion, ["right_palm"])["right_palm"][0][rows]
+    return palm, np.array([0.0, -0.18, 1.45])
+
+
+@given(goal=spots, base=spots, new=spots, path=st.lists(spots, min_size=2, max_size=5))
+def test_a_replay_enlarges_every_distance_by_the_same_factor(
+    goal: np.ndarray, base: np.ndarray, new: np.ndarray, path: list[np.ndarray]
+) -> None:
+    try:
+        before, after = frame_between(goal, base), frame_between(new, base)
+    except CoordinateError:
+        return
+    old = np.stack(path)
+    made = replayed(old, before, after)
+    factor = after.length_m / before.length_m
+    steps = np.linalg.norm(np.diff(old, axis=0), axis=1) * factor
+    np.testing.assert_allclose(np.linalg.norm(np.diff(made, axis=0), axis=1), steps, atol=1e-9)
+    np.testing.assert_allclose(before.axes.T @ before.axes, np.eye(3), atol=1e-9)
+    assert np.linalg.det(after.axes.T @ before.axes) == pytest.approx(1.0)
+
+
+def test_in_the_frame_of_object_and_hand_nothing_jumps_and_in_that_of_the_shoulder_it_does() -> (
+    None
+):
+    path, shoulder = _reach()
+    for each in replays(path, shoulder, path[-1] + ASIDE):
+        by_hand_m, by_shoulder_m = each.gaps(path[0])
+        assert by_hand_m < 1e-12
+        assert by_shoulder_m > 0.02
+        assert max(each.misses) < 1e-12
+
+
+def test_reaches_that_are_chained_in_the_frame_of_object_and_hand_leave_no_gap() -> None:
+    path, shoulder = _reach()
+    hand = path[0]
+    for goal in path[-1] + ASIDE:
+        (made,) = replays(path, shoulder, goal[None], hand=hand)
+        np.testing.assert_allclose(made.by_hand[0], hand, atol=1e-12)
+        hand = made.by_hand[-1]
+
+
+def test_a_reach_to_where_it_went_is_the_same() -> None:
+    path, shoulder = _reach()
+    (made,) = replays(path, shoulder, path[-1:])
+    np.testing.assert_allclose(made.by_hand, path, atol=1e-12)
+    np.testing.assert_allclose(made.by_shoulder, path, atol=1e-12)
+
+
+def test_straight_above_each_other_takes_a_direction_aside() -> None:
+    low, high = np.zeros(3), np.array([0.0, 0.0, 0.5])
+    with pytest.raises(CoordinateError, match="x has no direction"):
+        frame_between(low, high)
+    made = frame_between(low, high, aside=np.array([0.0, 1.0, 0.0]))
+    np.testing.assert_allclose(made.axes[:, 0], [0.0, 1.0, 0.0], atol=1e-12)
+    with pytest.raises(CoordinateError, match="0 mm apart"):
+        frame_between(low, low)

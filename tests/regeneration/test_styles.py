@@ -1,0 +1,108 @@
+"""How something is done may be another's, in another time, or by the other hand."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from capar.body.scripted_actions import action_capture
+from capar.model.errors import UnknownNameError
+from capar.pipelines.observation import observe
+from capar.pipelines.round_trips import by_hand, observed_source
+from capar.regeneration import PlanError, Source, capture_of, regenerate
+from capar.regeneration.mirroring import mirrored
+from capar.regeneration.path_mapping import arc_shares, mapped
+from capar.regeneration.style_kinds import Kind, style_kind
+from capar.regeneration.styles import borrowed_style, own_style, paced
+
+
+@cache
+def _source(action: str, who: str = "man") -> Source:
+    return observed_source(action_capture(action, who, rate_hz=30.0))
+
+
+def test_mirrored_twice_is_as_it_was() -> None:
+    capture = _source("touch").capture
+    twice = mirrored(mirrored(capture, (0.1, 0.2), 0.7), (0.1, 0.2), 0.7)
+    for name, body in capture.bodies.items():
+        again = twice.bodies[name].stream
+        np.testing.assert_allclose(again.positions, body.stream.positions, atol=1e-9)
+        turned = np.abs(np.sum(again.orientations * body.stream.orientations, axis=1))
+        np.testing.assert_allclose(turned, 1.0, atol=1e-9)
+
+
+def test_the_left_hand_does_what_the_right_one_did_with_the_same_things() -> None:
+    source = _source("touch")
+    left = by_hand(source, "left")
+    assert {hold.side for hold in left.holds} == {"left"}
+    motion, found = regenerate(left, left.human, source.scene)
+    assert found.passed, found.failed
+    crate = source.scene.thing("crate")
+    np.testing.assert_allclose(motion.plan.things["crate"].translation[0], crate.place)
+    again = observe(capture_of(motion, name="left", agent="man"))
+    names = {link.ee: [each.name for each in link.segments] for link in again.links}
+    first = {link.ee: link.segments for link in source.observation.links}
+    assert names["left_hand"] == [each.name for each in first["right_hand"]]
+    assert by_hand(source, "right") is source
+
+
+def test_both_hands_are_not_one() -> None:
+    with pytest.raises(UnknownNameError, match="hand"):
+        by_hand(_source("touch"), "upper")
+    with pytest.raises(PlanError, match="both hands take something"):
+        by_hand(_source("pick_up"), "left")
+
+
+@pytest.mark.parametrize("duration_s", [3.5, 8.0])
+def test_in_another_time_everything_takes_as_much_longer(duration_s: float) -> None:
+    source = paced(_source("touch"), duration_s)
+    motion, found = regenerate(source, source.human)
+    assert found.passed, found.failed
+    again = observe(capture_of(motion, name="paced", agent="man"))
+    assert again.complex_par.signature == source.observation.complex_par.signature
+    assert motion.plan.source.times[-1] == pytest.approx(duration_s)
+
+
+def test_what_is_too_fast_to_be_seen_is_refused_with_the_time_that_would_do() -> None:
+    source = _source("touch")
+    with pytest.raises(PlanError, match=r"at least (\d+\.\d) s would do") as refused:
+        paced(source, 0.5)
+    least_s = float(str(refused.value).split("at least ")[1].split()[0])
+    paced(source, least_s + 0.1)
+
+
+def test_a_borrowed_style_has_the_events_of_one_and_the_ways_of_the_other() -> None:
+    source, other = _source("drink"), _source("drink", "woman")
+    style = borrowed_style(source, other)
+    hold, theirs = source.holds[0], other.holds[0]
+    ends = style.hands["right"].translation[[hold.first, hold.last]]
+    true = other.hands["right"].path.translation[[theirs.first, theirs.last]]
+    np.testing.assert_allclose(ends, true, atol=1e-9)
+    own = borrowed_style(source, source)
+    for side, hand in source.hands.items():
+        np.testing.assert_allclose(own.hands[side].translation, hand.path.translation, atol=1e-9)
+
+
+def test_the_style_of_something_else_is_refused() -> None:
+    with pytest.raises(PlanError, match="another order of events"):
+        borrowed_style(_source("drink"), _source("touch"))
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+def test_every_style_leads_from_the_start_to_the_goal(kind: Kind) -> None:
+    source = _source("touch")
+    path = own_style(source).hands["right"][: source.holds[0].first + 1]
+    start, goal = path[0], source.hands["left"].path[0]
+    made = mapped(path, start, goal, kind=kind)
+    np.testing.assert_allclose(made.translation[[0, -1]], [start.translation, goal.translation])
+    if kind is not Kind.EVEN:
+        shares = arc_shares(made.translation)
+        np.testing.assert_allclose(shares, arc_shares(path.translation), atol=0.02)
+    if kind in {Kind.VEL, Kind.EVEN}:
+        way = np.linalg.norm(np.diff(made.translation, axis=0), axis=1).sum()
+        assert way == pytest.approx(np.linalg.norm(made.translation[-1] - made.translation[0]))
+
+
+def test_an_unknown_style_is_told_which_there_are() -> None:
+    with pytest.raises(UnknownNameError, match="even, frame, path, vel"):
+        style_kind("fast")
