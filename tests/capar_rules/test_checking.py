@@ -6,6 +6,7 @@ from pathlib import Path
 
 import hostile_rules
 import pytest
+from combinations import EVERY
 
 from capar_rules.authoring.glossary import glossary
 from capar_rules.engine.profiles import profile
@@ -161,7 +162,8 @@ def test_every_word_of_rules_can_stand_in_one_and_no_such_rule_is_said_never_to_
     }
     rules = parse_text(
         "\n".join(
-            f"speaks(S) :- segment(S,_,_), {name}({inside})." for (name, _), inside in words.items()
+            f"speaks(S) :- segment(S,_,_), {name}({inside})."
+            for (name, _), inside in sorted(words.items())[:: 1 if EVERY else 4]
         )
     )
     found = list(world_findings(rules, base_of("extended")))
