@@ -125,7 +125,7 @@ def contacts(
                 touching = bridged(touching, near_by, edge=edge)
         # Where a body was lost nothing begins or ends: what touched before and after has touched.
         touching = bridged(touching, first.poses.lost | second.poses.lost)
-        if first.name in feet and second.poses.fixed is not None:
+        if first.name in feet and second.poses.fixed is not None and touching.any():
             ground_mps = calibration.ground_velocity(feet[first.name], second.name)
             touching &= ~gliding(first, second, limits, ground_mps)
         for interval in intervals(
