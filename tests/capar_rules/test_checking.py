@@ -6,7 +6,6 @@ from pathlib import Path
 
 import hostile_rules
 import pytest
-from combinations import EVERY
 
 from capar_rules.authoring.glossary import glossary
 from capar_rules.engine.profiles import profile
@@ -153,7 +152,6 @@ def test_rules_over_words_of_which_the_world_has_few_are_not_judged_but_noted(tm
     ]  # fmt: skip
 
 
-@pytest.mark.long
 def test_every_word_of_rules_can_stand_in_one_and_no_such_rule_is_said_never_to_fire():
     words = {
         each.signature: ",".join("S" if name == "Segment" else "_" for name in each.arguments)
@@ -162,8 +160,7 @@ def test_every_word_of_rules_can_stand_in_one_and_no_such_rule_is_said_never_to_
     }
     rules = parse_text(
         "\n".join(
-            f"speaks(S) :- segment(S,_,_), {name}({inside})."
-            for (name, _), inside in sorted(words.items())[:: 1 if EVERY else 4]
+            f"speaks(S) :- segment(S,_,_), {name}({inside})." for (name, _), inside in words.items()
         )
     )
     found = list(world_findings(rules, base_of("extended")))
