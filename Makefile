@@ -27,7 +27,7 @@ check: $(VENV)/developing  ## Style, types and the import contract, as the tests
 	$(VENV)/bin/mypy
 	$(VENV)/bin/lint-imports
 
-bench: $(VENV)/developing  ## Ratios side by side; takes minutes.
+bench: $(VENV)/developing  ## Ratios side by side; takes more than an hour.
 	for each in benchmarks/*.py; do $(VENV)/bin/python $$each || exit 1; done
 
 docs: $(VENV)/developing  ## The reference of capture.toml, from its schema.

@@ -20,7 +20,7 @@ def worst(measures: Measures) -> tuple[float, float]:
     """Error of the mass [kg] and the largest of a limb's length [m]."""
     human = Human.of(measures)
     mass = abs(float(human.model.body_subtreemass[0]) - measures["mass"])
-    names = [f"right_{each}" for limb in LIMBS for each in (limb, ENDS[limb])]
+    names = [f"right_{part}" for limb in LIMBS for part in (limb, ENDS[limb])]
     at = human.sites(human.posture()[None], names)
     lengths = (
         abs(
@@ -47,7 +47,7 @@ def gaze(who: str) -> float:
 
 def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else len(PEOPLE)
-    found = np.array([worst(each) for each in list(PEOPLE.values())[:count]])
+    found = np.array([worst(measures) for measures in list(PEOPLE.values())[:count]])
     mass, length = found.max(axis=0)
     print(f"{count} sizes: mass to {mass:.1e} kg, limbs to {1e3 * length:.1e} mm")
     for who in READY:

@@ -41,11 +41,11 @@ def plot(path: np.ndarray, shoulder: np.ndarray, made: list[Replay], file: str) 
         axes.set_title(name)
         axes.plot(*path.T, color="black", linewidth=2.5, label="recorded")
         axes.scatter(*shoulder, color="black", marker="^", label="shoulder")
-        for each in made:
-            way = each.by_shoulder if number == 1 else each.by_hand
+        for replay in made:
+            way = replay.by_shoulder if number == 1 else replay.by_hand
             (line,) = axes.plot(*way.T)
             axes.scatter(*way[0], color=line.get_color(), marker=".")
-            axes.scatter(*each.goal, color=line.get_color(), marker="s")
+            axes.scatter(*replay.goal, color=line.get_color(), marker="s")
         axes.set_xlabel("x [m]")
         axes.set_ylabel("y [m]")
         axes.set_zlabel("z [m]")
@@ -58,14 +58,14 @@ def main(file: str) -> None:
     path, shoulder = recorded()
     made = replays(path, shoulder, path[-1] + GOALS_M)
     print("goal   gap in object-hand   gap in object-shoulder")
-    for number, each in enumerate(made, start=1):
-        hand_m, shoulder_m = each.gaps(path[0])
+    for number, replay in enumerate(made, start=1):
+        hand_m, shoulder_m = replay.gaps(path[0])
         print(f"{number:4}   {1e3 * hand_m:15.3f} mm   {1e3 * shoulder_m:19.1f} mm")
     hand, chained = path[0], []
     for goal in path[-1] + GOALS_M:
-        (each,) = replays(path, shoulder, goal[None], hand=hand)
-        chained.append(each.gaps(hand))
-        hand = each.by_hand[-1]
+        (replay,) = replays(path, shoulder, goal[None], hand=hand)
+        chained.append(replay.gaps(hand))
+        hand = replay.by_hand[-1]
     worst = 1e3 * np.max(chained, axis=0)
     print(
         f"chained: gap at most {worst[0]:.3f} mm in object-hand, {worst[1]:.1f} in object-shoulder"

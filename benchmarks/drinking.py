@@ -36,9 +36,9 @@ def main() -> None:
     found = [row(who, n, noise_mm, rate_hz) for who in AGENTS for n in range(len(SCENES))]
     for profile in PROFILES:
         kinds: dict[tuple[str, ...], int] = {}
-        for each in found:
-            kinds[each[profile]] = kinds.get(each[profile], 0) + 1
-        for steps, count in sorted(kinds.items(), key=lambda each: -each[1]):
+        for trial in found:
+            kinds[trial[profile]] = kinds.get(trial[profile], 0) + 1
+        for steps, count in sorted(kinds.items(), key=lambda kind: -kind[1]):
             print(f"{profile}: {count} of {len(found)}: {', '.join(steps)}")
 
 

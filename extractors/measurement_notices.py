@@ -35,9 +35,9 @@ def notices_of(
         elif body.shape is not None and body.shape.source is ShapeSource.STAND_IN:
             yield notice("stand-in-shape", body.name, shape=body.shape.description)
     yield from _pose_notices(capture, thresholds)
-    for each in calibration.moving_grounds:
-        pace = math.hypot(*each.velocity_mps)
-        yield notice("moving-ground", each.ground, agent=each.agent, speed_mps=pace)
+    for belt in calibration.moving_grounds:
+        pace = math.hypot(*belt.velocity_mps)
+        yield notice("moving-ground", belt.ground, agent=belt.agent, speed_mps=pace)
 
 
 def _distance_notices(calibration: Calibration) -> Iterator[Notice]:

@@ -31,7 +31,7 @@ def _corrected(link: ObservedLink, claims: Sequence[Span]) -> ObservedLink:
 
 
 def _segment(machine: Sequence[Segment], index: int, span: Span) -> Segment:
-    basis = max(machine, key=lambda each: _overlap(each, span))
+    basis = max(machine, key=lambda segment: _overlap(segment, span))
     lasts = basis.end_s - basis.start_s
     frame_s = lasts / (basis.last - basis.first) if basis.last > basis.first else 0.0
 
@@ -58,7 +58,7 @@ def _segment(machine: Sequence[Segment], index: int, span: Span) -> Segment:
 
 def _general(machine: Sequence[Segment], name: str) -> tuple[str, ...]:
     """What an action specialises, where another segment of that name tells."""
-    return next((each.general for each in machine if each.name == name), ())
+    return next((segment.general for segment in machine if segment.name == name), ())
 
 
 def _overlap(segment: Segment, span: Span) -> float:

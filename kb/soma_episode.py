@@ -27,7 +27,7 @@ def episode(store: Store, observation: str) -> tuple[Triple, ...]:
     Raises:
         UnknownNameError: There is no such observation.
     """
-    known = [each.name for each in observations(store)]
+    known = [observation.name for observation in observations(store)]
     if observation not in known:
         raise UnknownNameError("observation", observation, known, where=store.place)
     template = (files("kb") / "soma_episode.rq").read_text(encoding="utf-8")

@@ -5,14 +5,11 @@ import signal
 from pathlib import Path
 
 import pytest
-from combinations import EVERY
 from hypothesis import settings
 from motion_files import recordings_folder
 
 # The same examples every time: what a build says depends on the code alone.
-settings.register_profile(
-    "patient", deadline=None, derandomize=True, max_examples=100 if EVERY else 50
-)
+settings.register_profile("patient", deadline=None, derandomize=True)
 settings.load_profile("patient")
 
 # In the background of a shell Ctrl-C is ignored, by all that is started from there too.

@@ -3,17 +3,15 @@
 import json
 import struct
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
-from virtual_bodies.moving import swinging
+from virtual_bodies.moving import MILLIMETRE, TENTH_DEG, Moved, turning
 
-from capar.body.anthropometry import ready_made
-from capar.body.human import Human
 from capar.body.segment_poses import poses_of
 from capar.export.bvh import AXES, UNIT_M, bvh_text
 from capar.export.glb import glb_bytes
@@ -22,21 +20,12 @@ from capar.model import geometry
 from extractors.readers.registry import read_recording
 
 RATE_HZ = 30.0
-MILLIMETRE = 1e-3
-TENTH_DEG = float(np.radians(0.1))
-
-Moved: TypeAlias = tuple[Human, np.ndarray, np.ndarray]
-"""A body, times [s], and what each joint does."""
 
 
 @pytest.fixture(scope="module")
 def moved() -> Moved:
     """A child that moves every joint and turns round."""
-    human = Human.of(ready_made("child"))
-    times = np.arange(0.0, 2.0, 1.0 / RATE_HZ)
-    motion = swinging(human, times, 7, still_s=0.1)
-    motion[:, 3:7] = Rotation.from_euler("z", 4.0 * times[:, None]).as_quat(scalar_first=True)
-    return human, times, motion
+    return turning("child", rate_hz=RATE_HZ, seed=7, turns_radps=4.0)
 
 
 def angles_between(first: np.ndarray, second: np.ndarray) -> np.ndarray:

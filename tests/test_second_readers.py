@@ -1,13 +1,13 @@
 """Programs of others read the exports of a fitted body to the same poses."""
 
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from second_readers import gltf_report, gltf_validator_missing
-from virtual_bodies.moving import swinging
+from virtual_bodies.moving import MILLIMETRE, TENTH_DEG, Moved, turning
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
@@ -20,21 +20,12 @@ from capar.model.errors import CaparError
 from extractors.readers.registry import read_recording
 
 RATE_HZ = 60.0
-MILLIMETRE = 1e-3
-TENTH_DEG = float(np.radians(0.1))
-
-Moved: TypeAlias = tuple[Human, np.ndarray, np.ndarray]
-"""A body, times [s], and what each joint does."""
 
 
 @pytest.fixture(scope="module")
 def moved() -> Moved:
     """A woman who moves every joint and turns round twice."""
-    human = Human.of(ready_made("woman"))
-    times = np.arange(0.0, 2.0, 1.0 / RATE_HZ)
-    motion = swinging(human, times, 11, still_s=0.1)
-    motion[:, 3:7] = Rotation.from_euler("z", 6.0 * times[:, None]).as_quat(scalar_first=True)
-    return human, times, motion
+    return turning("woman", rate_hz=RATE_HZ, seed=11, turns_radps=6.0)
 
 
 def agree(

@@ -50,7 +50,7 @@ def _apertures(
     human: Human, side: str, shares: Float[np.ndarray, "shares"]
 ) -> Float[np.ndarray, "shares"]:
     """Distance between finger tip and thumb tip of a hand so far closed [m]."""
-    postures = np.array([human.posture(_angles(side, float(each))) for each in shares])
+    postures = np.array([human.posture(_angles(side, float(share))) for share in shares])
     tips = (f"{side}_fingertip", f"{side}_thumb_tip")
     places = human.sites(postures, tips)
     return np.array(

@@ -146,5 +146,5 @@ def _value(value: Value) -> bytes:
     if isinstance(value, str):
         return struct.pack("<bBB", -1, 1, len(value)) + value.encode("ascii")
     wide = max(map(len, value))
-    text = "".join(each.ljust(wide) for each in value)
+    text = "".join(word.ljust(wide) for word in value)
     return struct.pack("<bBBB", -1, 2, wide, len(value)) + text.encode("ascii")

@@ -237,7 +237,7 @@ class Calibration:
 
     def ground_velocity(self, agent: str, ground: str) -> tuple[float, float]:
         """Level velocity of a ground under an agent's feet [m/s]; zero of what stands."""
-        known = {(each.agent, each.ground): each.velocity_mps for each in self.moving_grounds}
+        known = {(belt.agent, belt.ground): belt.velocity_mps for belt in self.moving_grounds}
         return known.get((agent, ground), (0.0, 0.0))
 
 

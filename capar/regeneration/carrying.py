@@ -80,7 +80,7 @@ class Carrying:
         worst = 0.0
         for row in range(0, len(path), STRIDE):
             for other, gap in self._gaps(name, poses[row], still):
-                least = min(BESIDE_M, *(each.get(other, BESIDE_M) for each in ends))
+                least = min(BESIDE_M, *(end.get(other, BESIDE_M) for end in ends))
                 worst = max(worst, least - SLACK_M - gap)
         return worst
 

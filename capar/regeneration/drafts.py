@@ -129,7 +129,7 @@ class Draft:
 
     def _keys(self, group: list[Hold]) -> list[int]:
         first, last = min(h.first for h in group), max(h.last for h in group)
-        keys = {int(each) for each in np.linspace(first, last, KEYS)}
+        keys = {int(frame) for frame in np.linspace(first, last, KEYS)}
         keys |= {frame for frame in self.watched if first <= frame <= last}
         for goals in self.goals.values():
             keys |= {goal.frame for goal in goals if first <= goal.frame <= last}

@@ -26,38 +26,40 @@ def mirrored(capture: Capture, place: tuple[float, float], heading: float) -> Ca
     normal = np.array([-np.sin(heading), np.cos(heading), 0.0])
     plane = np.eye(3) - 2.0 * np.outer(normal, normal)
     origin = np.array([*place, 0.0])
-    names = {each.name: _renamed(each.name) for each in capture.sensors}
+    names = {sensor.name: _renamed(sensor.name) for sensor in capture.sensors}
     sensors = tuple(
         replace(
-            each,
-            name=names[each.name],
-            side=OTHER.get(each.side, each.side),
-            link=_renamed(each.link),
-            stream=_stream(each.stream, plane, origin),
-            shape=_shape(each.shape),
-            gaze=_vector(each.gaze),
-            eye=_vector(each.eye),
-            part_of=names.get(each.part_of, each.part_of),
+            sensor,
+            name=names[sensor.name],
+            side=OTHER.get(sensor.side, sensor.side),
+            link=_renamed(sensor.link),
+            stream=_stream(sensor.stream, plane, origin),
+            shape=_shape(sensor.shape),
+            gaze=_vector(sensor.gaze),
+            eye=_vector(sensor.eye),
+            part_of=names.get(sensor.part_of, sensor.part_of),
         )
-        for each in capture.sensors
+        for sensor in capture.sensors
     )
     objects = tuple(
-        replace(each, stream=_stream(each.stream, plane, origin), shape=_shape(each.shape))
-        for each in capture.objects
+        replace(thing, stream=_stream(thing.stream, plane, origin), shape=_shape(thing.shape))
+        for thing in capture.objects
     )
     return replace(
         capture,
         sensors=sensors,
         objects=objects,
-        pivot_contacts=tuple(_pivot(each, names) for each in capture.pivot_contacts),
+        pivot_contacts=tuple(_pivot(pair, names) for pair in capture.pivot_contacts),
         purposes=(),
-        conventions={names.get(name, name): each for name, each in capture.conventions.items()},
+        conventions={
+            names.get(name, name): convention for name, convention in capture.conventions.items()
+        },
     )
 
 
-def _pivot(each: PivotContact, names: Mapping[str, str]) -> PivotContact:
-    first, second = each.first, each.second
-    return replace(each, first=names.get(first, first), second=names.get(second, second))
+def _pivot(pair: PivotContact, names: Mapping[str, str]) -> PivotContact:
+    first, second = pair.first, pair.second
+    return replace(pair, first=names.get(first, first), second=names.get(second, second))
 
 
 def _renamed(name: str) -> str:

@@ -87,7 +87,7 @@ def _steps(source: Source) -> list[tuple[str, ...]]:
     order = _moved(source)
     holds = [(h.first, "hold", h.side, str(_number(order, h.thing))) for h in source.holds]
     meetings = [(m.first, "meet", m.part, str(_number(order, m.thing))) for m in source.meetings]
-    return [tuple(each[1:]) for each in sorted([*holds, *meetings])]
+    return [tuple(event[1:]) for event in sorted([*holds, *meetings])]
 
 
 def _moved(source: Source) -> list[str]:

@@ -109,7 +109,7 @@ def moving_grounds(
     feet: dict[str, list[BodyGeometry]] = {}
     for name, agent in soles(capture).items():
         feet.setdefault(agent, []).append(bodies.sensors[name])
-    grounds = [each.name for each in capture.objects if each.tag is TagType.FIXED]
+    grounds = [thing.name for thing in capture.objects if thing.tag is TagType.FIXED]
     for agent, own in feet.items():
         if len(own) < 2 or any(resting(foot.poses, limits) for foot in own):
             continue
@@ -143,8 +143,8 @@ def _common_velocity(
     if np.hypot(*middle) <= limits.foot_glides_mps:
         return None
     steady = [np.linalg.norm(own - middle, axis=1) <= limits.foot_glides_mps for own in moves]
-    if min(each.mean() for each in steady) < limits.belt_share:
+    if min(frames.mean() for frames in steady) < limits.belt_share:
         return None
-    with_it = np.concatenate([own[each] for own, each in zip(moves, steady, strict=True)])
+    with_it = np.concatenate([own[frames] for own, frames in zip(moves, steady, strict=True)])
     x, y = (float(value) for value in np.median(with_it, axis=0))
     return x, y

@@ -12,7 +12,10 @@ _KINDS = {"text": "string", "number": "number"}
 
 def description() -> Mapping[str, Any]:
     """The OpenAPI 3.1 document: the protocol's paths, and one for each named question."""
-    asked = {f"/questions/{each.name}": {"get": _operation(each)} for each in questions().values()}
+    asked = {
+        f"/questions/{question.name}": {"get": _operation(question)}
+        for question in questions().values()
+    }
     return {
         "openapi": "3.1.0",
         "info": {"title": "Actionary", "version": str(SCHEMA)},
@@ -39,7 +42,7 @@ def description() -> Mapping[str, Any]:
 
 
 def _operation(asked: Question) -> Mapping[str, Any]:
-    return _plain(asked.text, [_parameter(each) for each in asked.parameters])
+    return _plain(asked.text, [_parameter(wanted) for wanted in asked.parameters])
 
 
 def _plain(summary: str, parameters: list[Mapping[str, Any]]) -> dict[str, Any]:
@@ -64,9 +67,9 @@ def _in_path(name: str) -> Mapping[str, Any]:
 def page() -> str:
     """The same for people, without scripts."""
     rows = "".join(
-        f"<tr><td><a href='/questions/{escape(each.name)}'>{escape(each.name)}</a></td>"
-        f"<td>{escape(each.text)}</td><td>{escape(_names(each))}</td></tr>"
-        for each in questions().values()
+        f"<tr><td><a href='/questions/{escape(question.name)}'>{escape(question.name)}</a></td>"
+        f"<td>{escape(question.text)}</td><td>{escape(_names(question))}</td></tr>"
+        for question in questions().values()
     )
     return (
         "<!doctype html><html lang='en'><meta charset='utf-8'><title>Actionary</title>"
@@ -80,4 +83,6 @@ def page() -> str:
 
 
 def _names(asked: Question) -> str:
-    return ", ".join(each.name if each.required else f"[{each.name}]" for each in asked.parameters)
+    return ", ".join(
+        wanted.name if wanted.required else f"[{wanted.name}]" for wanted in asked.parameters
+    )

@@ -44,10 +44,10 @@ def chosen(accept: str, offered: Iterable[str]) -> str:
         RefusedError: It accepts none of them.
     """
     known = list(offered)
-    wanted = [_range(each) for each in (accept or "*/*").split(",")]
+    wanted = [_range(part) for part in (accept or "*/*").split(",")]
     rated = [
-        (max((q for pattern, q in wanted if _matches(pattern, each)), default=0.0), -at, each)
-        for at, each in enumerate(known)
+        (max((q for pattern, q in wanted if _matches(pattern, media)), default=0.0), -at, media)
+        for at, media in enumerate(known)
     ]
     quality, _, best = max(rated)
     if quality <= 0.0:
@@ -56,9 +56,9 @@ def chosen(accept: str, offered: Iterable[str]) -> str:
 
 
 def _range(text: str) -> tuple[str, float]:
-    pattern, *parameters = (each.strip() for each in text.split(";"))
-    for each in parameters:
-        name, _, value = each.partition("=")
+    pattern, *parameters = (part.strip() for part in text.split(";"))
+    for parameter in parameters:
+        name, _, value = parameter.partition("=")
         if name.strip() == "q":
             try:
                 return pattern.lower(), float(value)

@@ -86,7 +86,7 @@ class Service:
                 raise RefusedError(
                     415, "send application/sparql-query or application/x-www-form-urlencoded"
                 )
-        if any(each in given for each in DATASET):
+        if any(name in given for name in DATASET):
             raise RefusedError(400, "state graphs in the query, by FROM or GRAPH")
         asked = (text,) if text is not None else given.get("query", ())
         if len(asked) != 1:
@@ -97,7 +97,7 @@ class Service:
 
     def _question(self, request: Request, name: str) -> Response:
         if not name:
-            return _json([_listed(each) for each in questions()])
+            return _json([_listed(name) for name in questions()])
         given = {key: values[-1] for key, values in request.query.items()}
         text = question(name).bind(given)
         with self._opened() as actionary:
@@ -109,7 +109,7 @@ class Service:
     def _observation(self, request: Request, name: str) -> Response:
         with self._opened() as actionary:
             if not name:
-                return _json([asdict(each) for each in actionary.observations()])
+                return _json([asdict(observation) for observation in actionary.observations()])
             kind = chosen(request.headers.get("accept", ""), EXPORTS)
             return Response(200, kind, export(actionary.store, EXPORTS[kind], observation=name))
 
@@ -135,7 +135,7 @@ class Service:
 
 def page_hint(routes: Mapping[str, object]) -> str:
     """Which paths there are."""
-    return f"there are {', '.join(f'/{each}' for each in routes)}"
+    return f"there are {', '.join(f'/{route}' for route in routes)}"
 
 
 def _page(_: Request, __: str) -> Response:

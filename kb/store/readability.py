@@ -50,6 +50,6 @@ def _lookup(key: Sequence[str], terms: Iterable[_Row]) -> str:
 
 
 def _drain(store: Oxigraph, query: str) -> None:
-    rows: Iterator[Any] = iter(store.query(query))  # type: ignore[arg-type]
+    rows: Any = store.query(query)
     for _ in rows:
         pass

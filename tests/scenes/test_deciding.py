@@ -3,7 +3,6 @@
 import random
 
 import pytest
-from combinations import EVERY
 
 from capar.model.facts import Fact, Frames, Link, RateMhz, Touching
 from capar_rules.engine.profiles import profile
@@ -16,11 +15,10 @@ pytestmark = pytest.mark.long
 
 RULES = profile("extended")
 SOME = {
+    "return": (OBJECTS, "drawer_half_shut_and_shut", "ResumePosture"),
     "hold": (HANDS, "touch_and_return", "Touch"),
     "transit": (OBJECTS, "can_out_of_a_chest", "Lower"),
 }
-if EVERY:
-    SOME["return"] = (OBJECTS, "drawer_half_shut_and_shut", "ResumePosture")
 
 
 @pytest.fixture(scope="module")

@@ -1,12 +1,22 @@
 """Motions of a body in closed form: hinges swing smoothly out of the standing posture."""
 
 from collections.abc import Mapping
+from typing import TypeAlias
 
 import numpy as np
 from jaxtyping import Float
+from scipy.spatial.transform import Rotation
 
+from capar.body.anthropometry import ready_made
 from capar.body.data_files import mirrored
 from capar.body.human import ROOT_SIZE, Human
+
+MILLIMETRE = 1e-3
+TENTH_DEG = float(np.radians(0.1))
+"""How exactly a motion that was written is to be read back [m], [rad]."""
+
+Moved: TypeAlias = tuple[Human, np.ndarray, np.ndarray]
+"""A body, times [s], and what each joint does."""
 
 SPINE = ("lumbar_lower", "lumbar_upper", "thorax_lower", "thorax_upper")
 HINGES = {
@@ -30,6 +40,16 @@ HINGES = {
 
 AXES = {"flexion": 25, "bend": 10, "turn": 15}
 """Largest sum over spine, and over neck and head [degrees], shared as the levels' ranges are."""
+
+
+def turning(who: str, *, rate_hz: float, seed: int, turns_radps: float) -> Moved:
+    """Two seconds of somebody who moves every joint while turning round so fast."""
+    human = Human.of(ready_made(who))
+    times = np.arange(0.0, 2.0, 1.0 / rate_hz)
+    motion = swinging(human, times, seed, still_s=0.1)
+    heading = Rotation.from_euler("z", turns_radps * times[:, None])
+    motion[:, 3:7] = heading.as_quat(scalar_first=True)
+    return human, times, motion
 
 
 def swinging(
