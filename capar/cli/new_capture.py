@@ -61,6 +61,6 @@ def _write_draft(files: list[Path], output: Path, *, force: bool) -> None:
         typer.echo(f"it cannot be read yet: {error}")
     else:
         typer.echo(
-            f"it reads as {len(capture.sensors)} sensors and {len(capture.objects)} objects, "
-            f"{len(capture.times)} frames at {capture.rate_hz:.4g} Hz"
+            f"it reads as a capture of {len(capture.times)} frames at {capture.rate_hz:.4g} Hz; "
+            f"sensors: {len(capture.sensors)}, objects: {len(capture.objects)}"
         )

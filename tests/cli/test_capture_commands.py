@@ -24,7 +24,7 @@ def test_a_new_capture_is_read_back_once_its_axes_are_right(kind: str, tmp_path:
     path = write(tmp_path / name)
     result = RUNNER.invoke(app, ["new-capture", str(path), "-o", str(tmp_path / "capture.toml")])
     assert result.exit_code == 0, result.output
-    assert "look at" in result.output or "it reads as" in result.output
+    assert "look at" in result.output or "it reads as a capture" in result.output
     text = (tmp_path / "capture.toml").read_text()
     (tmp_path / "capture.toml").write_text(text.replace('unit = "m" ', 'unit = "dm" '))
     assert len(read_capture(tmp_path).sensors) >= 1

@@ -182,7 +182,8 @@ def _capsules(entry: "CapsulesShape", frame: Frame) -> Described:
     for name in {name for pair in pairs for name in pair} - {""}:
         points[name] = _point(entry, "capsules", frame, name)
     meshes = [_capsule_between(points[a], points[b], entry.radius_m) for a, b in pairs]
-    return *joined(meshes), f"{len(pairs)} capsules of radius {entry.radius_m:.3g} m"
+    what = "a capsule" if len(pairs) == 1 else f"{len(pairs)} capsules"
+    return *joined(meshes), f"{what} of radius {entry.radius_m:.3g} m"
 
 
 def _pairs(entry: "CapsulesShape", frame: Frame) -> list[tuple[str, str]]:
