@@ -26,40 +26,53 @@ def contact_normal(
 ) -> Float[np.ndarray, "3"] | None:
     """The unit normal of a contact, from the other to the body, in the world; None if unknown.
 
-    Contacts and seats ask for the same ones, so they are kept as long as both bodies are.
+    Contacts and seats ask for the same ones, either way about, so those of patches are kept as
+    long as both bodies are: the other way about a normal is the opposite one, to the last digit.
 
     It is the mean normal of the patch where the true surfaces meet: what stands in a bowl lies on
     the bowl's bottom, however high the bowl's rim. Where either body has no shape, or the patch
     has no direction, it is the axis along which their outlines are furthest apart.
     """
-    kept = _KEPT.setdefault(body, WeakKeyDictionary()).setdefault(other, {})
-    key = frame, thresholds.patch_m
+    if np.isnan(body.middles[frame] - other.middles[frame]).any():
+        return None
+    found = _kept_normal(body, other, frame, thresholds.patch_m)
+    return _between_outlines(body, other, frame) if found is None else found
+
+
+def _kept_normal(
+    body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
+) -> Float[np.ndarray, "3"] | None:
+    key = frame, depth_m
+    turned = _kept(other, body)
+    if key in turned:
+        opposite = turned[key]
+        return None if opposite is None else -opposite
+    kept = _kept(body, other)
     if key not in kept:
-        kept[key] = _contact_normal(body, other, frame, thresholds)
+        kept[key] = _patch_normal(body, other, frame, depth_m)
     return kept[key]
 
 
-def _contact_normal(
-    body: BodyGeometry, other: BodyGeometry, frame: int, thresholds: Thresholds
+def _kept(body: BodyGeometry, other: BodyGeometry) -> _Normals:
+    return _KEPT.setdefault(body, WeakKeyDictionary()).setdefault(other, {})
+
+
+def _patch_normal(
+    body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
 ) -> Float[np.ndarray, "3"] | None:
-    offset = body.middles[frame] - other.middles[frame]
-    if np.isnan(offset).any():
+    """The mean normal of the patch where two surfaces meet; None where either has no shape."""
+    if body.shape is None or other.shape is None:
         return None
-    if body.shape is not None and other.shape is not None:
-        one, two = surface(body.shape), surface(other.shape)
-        depth_m = thresholds.patch_m
-        corners = _placed(one.corners, body, frame), _placed(two.corners, other, frame)
-        box = meeting_box(*corners, depth_m=depth_m)
-        found = facing_normal(
-            _triangles(one, body, frame, box),
-            _triangles(two, other, frame, box),
-            depth_m=depth_m,
-            solid=(one.closed, two.closed),
-            box=box,
-        )
-        if found is not None:
-            return found
-    return _between_outlines(body, other, frame)
+    one, two = surface(body.shape), surface(other.shape)
+    corners = _placed(one.corners, body, frame), _placed(two.corners, other, frame)
+    box = meeting_box(*corners, depth_m=depth_m)
+    return facing_normal(
+        _triangles(one, body, frame, box),
+        _triangles(two, other, frame, box),
+        depth_m=depth_m,
+        solid=(one.closed, two.closed),
+        box=box,
+    )
 
 
 def _triangles(

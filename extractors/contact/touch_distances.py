@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import trimesh
@@ -167,7 +168,9 @@ def _surface_distances(
 
 def touchable(each: BodyGeometry) -> Body:
     """The surface of a body at its poses; of one without a shape, a speck at its origin."""
-    return body(_surface(each), each.poses.settled, rests=each.poses.rests)
+    if each not in _TOUCHABLE:
+        _TOUCHABLE[each] = body(_surface(each), each.poses.settled, rests=each.poses.rests)
+    return _TOUCHABLE[each]
 
 
 def touchable_at(each: BodyGeometry, frame: int) -> Body:
@@ -185,3 +188,6 @@ def _speck() -> Shape:
 
 
 _SPECK = _speck()
+
+_TOUCHABLE: WeakKeyDictionary[BodyGeometry, Body] = WeakKeyDictionary()
+"""Of bodies that were asked for before: each is in many pairs."""

@@ -67,7 +67,9 @@ def _before(times: Float[np.ndarray, "frames"], frame: int, span_s: float) -> in
 
 def release_speed(thing: BodyGeometry, frame: int) -> float:
     """How fast a body's middle goes at a frame [m/s]; zero where it is lost there."""
-    pace = float(speed(thing.middles, thing.poses.smooth.times)[frame])
+    about = slice(max(frame - 1, 0), frame + 2)
+    places, times = thing.middles[about], thing.poses.smooth.times[about]
+    pace = float(speed(places, times)[frame - about.start])
     return 0.0 if np.isnan(pace) else pace
 
 

@@ -171,8 +171,10 @@ def between(body: BodyGeometry, one: BodyGeometry, other: BodyGeometry) -> Holds
         )
         off = np.linalg.norm(body.middles - one.middles - share[:, None] * line, axis=1)
         wide = np.minimum(_radius(one), _radius(other))
-        tube = (share > 0.0) & (share < 1.0) & (off <= wide)
-        return np.asarray(tube & ~_holds(one, body.middles) & ~_holds(other, body.middles))
+        tube = np.flatnonzero((share > 0.0) & (share < 1.0) & (off <= wide))
+    out = np.zeros(len(share), dtype=bool)
+    out[tube] = ~_holds(one, body.middles, tube) & ~_holds(other, body.middles, tube)
+    return out
 
 
 def gap(body: BodyGeometry, other: BodyGeometry) -> Float[np.ndarray, "frames"]:
@@ -235,6 +237,9 @@ def _radius(body: BodyGeometry) -> float:
     return float(np.linalg.norm(body.corners, axis=1).max())
 
 
-def _holds(box: BodyGeometry, points: Float[np.ndarray, "frames 3"]) -> Holds:
-    low, high = box.boxes
-    return np.asarray(((points >= low) & (points <= high)).all(axis=1))
+def _holds(
+    box: BodyGeometry, points: Float[np.ndarray, "frames 3"], frames: Int[np.ndarray, "some"]
+) -> Bool[np.ndarray, "some"]:
+    low, high = (ends[frames] for ends in box.boxes)
+    some = points[frames]
+    return np.asarray(((some >= low) & (some <= high)).all(axis=1))

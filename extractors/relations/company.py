@@ -11,7 +11,7 @@ from capar.model.capture import Capture, Stream, TagType
 from capar.model.facts import MovesWith, Travels
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.contact.co_motion import in_either_frame, steady, travelling
+from extractors.contact.co_motion import in_either_frame, steady_in, travelling
 from extractors.contact.proximity import distance
 from extractors.contact.touch_distances import touchable_at
 from extractors.contact.touch_points import TouchPoints
@@ -74,28 +74,25 @@ def _any_together(
 def _together(
     carrier: Stream, thing: Stream, capture: Capture, thresholds: Thresholds
 ) -> list[Interval]:
-    places = in_either_frame(carrier, thing)
-    frames = steady(places, thing, thresholds)
-    if not frames.any():
-        return []
+    frames = steady_in(carrier, thing, thresholds)
     out = frames.copy()
     for first, last in geometry.runs(frames):
-        before = last_where(_strays(places, first, thresholds.touch_margin_m), first)
-        after = first_where(_strays(places, last, thresholds.touch_margin_m), last, len(out))
+        before = last_where(_strays(carrier, thing, first, thresholds.touch_margin_m), first)
+        strays = _strays(carrier, thing, last, thresholds.touch_margin_m)
+        after = first_where(strays, last, len(out))
         out[0 if before is None else before + 1 : first] = True
         out[last:after] = True
     return _spans(out, capture, thresholds)
 
 
-def _strays(
-    places: tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]],
-    edge: int,
-    margin_m: float,
-) -> FramePredicate:
+def _strays(carrier: Stream, thing: Stream, edge: int, margin_m: float) -> FramePredicate:
     """Whether both of two bodies have left their places at a frame, each in the other's frame."""
+    then = in_either_frame(carrier, thing, slice(edge, edge + 1))
 
     def strays(some: slice) -> Bool[np.ndarray, "some"]:
-        ways = [np.linalg.norm(place[some] - place[edge], axis=1) for place in places]
+        places = in_either_frame(carrier, thing, some)
+        pairs = zip(places, then, strict=True)
+        ways = [np.linalg.norm(place - at_edge, axis=1) for place, at_edge in pairs]
         return ~np.asarray(np.minimum(*ways) <= margin_m)
 
     return strays

@@ -54,7 +54,7 @@ def test_a_ball_in_a_hollow_ball_is_pressed_along_the_radius_wherever_it_lies(
     st.integers(0, 10_000),
 )
 @settings(max_examples=25, deadline=None)
-def test_a_box_on_a_tilted_board_is_pressed_along_the_boards_normal_and_back_by_as_much(
+def test_a_box_on_a_tilted_board_is_pressed_along_the_boards_normal_and_back_by_exactly_as_much(
     gap_m: float, aside_m: float, spin: float, seed: int
 ) -> None:
     tilt = Rotation.from_rotvec(np.random.default_rng(seed).uniform(-1.0, 1.0, 3))
@@ -66,7 +66,8 @@ def test_a_box_on_a_tilted_board_is_pressed_along_the_boards_normal_and_back_by_
     found = facing_normal(thing, board, depth_m=DEPTH_M)
     back = facing_normal(board, thing, depth_m=DEPTH_M)
     assert found == pytest.approx(tilt.apply([0.0, 0.0, 1.0]), abs=0.02)
-    assert back == pytest.approx(-np.asarray(found), abs=1e-9)
+    assert back is not None
+    assert np.array_equal(back, -np.asarray(found)), "to the last digit, so that either will do"
 
 
 def test_what_stands_deep_in_a_cup_lies_on_its_bottom_though_the_rim_is_higher() -> None:
