@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import clingo
 
-from capar.model import arrangement_facts, contact_facts, motion_facts, scene_facts
+from capar.model import arrangement_facts, contact_facts, motion_facts, phase_facts, scene_facts
 from capar.model.arrangement_facts import Bears as Bears
 from capar.model.arrangement_facts import Between as Between
 from capar.model.arrangement_facts import Lies as Lies
@@ -25,22 +25,22 @@ from capar.model.declarations import Observed as Observed
 from capar.model.errors import FactError
 from capar.model.motion_facts import Displaced as Displaced
 from capar.model.motion_facts import Distance as Distance
-from capar.model.motion_facts import DrawsBack as DrawsBack
-from capar.model.motion_facts import Flies as Flies
-from capar.model.motion_facts import Guided as Guided
-from capar.model.motion_facts import Leans as Leans
-from capar.model.motion_facts import Lengthwise as Lengthwise
-from capar.model.motion_facts import Opening as Opening
-from capar.model.motion_facts import Phase as Phase
 from capar.model.motion_facts import Place as Place
 from capar.model.motion_facts import Posture as Posture
 from capar.model.motion_facts import Resting as Resting
-from capar.model.motion_facts import Reverses as Reverses
-from capar.model.motion_facts import Rolls as Rolls
 from capar.model.motion_facts import SweptAzimuth as SweptAzimuth
-from capar.model.motion_facts import Swings as Swings
 from capar.model.motion_facts import Travelled as Travelled
-from capar.model.motion_facts import Travels as Travels
+from capar.model.phase_facts import DrawsBack as DrawsBack
+from capar.model.phase_facts import Flies as Flies
+from capar.model.phase_facts import Guided as Guided
+from capar.model.phase_facts import Leans as Leans
+from capar.model.phase_facts import Lengthwise as Lengthwise
+from capar.model.phase_facts import Opening as Opening
+from capar.model.phase_facts import Phase as Phase
+from capar.model.phase_facts import Reverses as Reverses
+from capar.model.phase_facts import Rolls as Rolls
+from capar.model.phase_facts import Swings as Swings
+from capar.model.phase_facts import Travels as Travels
 from capar.model.scene_facts import ForceTransfer as ForceTransfer
 from capar.model.scene_facts import Frames as Frames
 from capar.model.scene_facts import Gap as Gap
@@ -108,6 +108,7 @@ class MovedBy(Observed):
 MEASURED: tuple[type[Observed], ...] = (
     *kinds_of(scene_facts),
     *kinds_of(motion_facts),
+    *kinds_of(phase_facts),
     *kinds_of(contact_facts),
     *kinds_of(arrangement_facts),
 )

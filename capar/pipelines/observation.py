@@ -7,9 +7,10 @@ from pathlib import Path
 from capar import __version__
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Notice, notice
-from capar.model.facts import Fact, FlickerCorrection
+from capar.model.facts import Fact
 from capar.model.locations import ConstraintLocation, GuideLocation
 from capar.model.observation import Observation, Segment
+from capar.pipelines.flicker import flicker_notices
 from capar.pipelines.freed_memory import return_freed_memory
 from capar.pipelines.movers import unmoved_notices
 from capar.pipelines.trials import trial_of
@@ -111,7 +112,7 @@ def observe_measured(
         sources=capture.sources,
         notices=(
             *measurements.notices,
-            *_doubts(facts, capture.rate_hz),
+            *flicker_notices(facts, capture.rate_hz),
             *unmoved_notices((*facts, *moved), capture.times),
             *_violations(inference),
         ),
@@ -183,16 +184,3 @@ def _guides(measurements: Measurements) -> Iterable[GuideLocation]:
 
 def _violations(inference: Inference) -> Iterable[Notice]:
     return (notice("rule-violation", violation=each) for each in inference.violations)
-
-
-def _doubts(facts: Iterable[Fact], rate_hz: float) -> Iterable[Notice]:
-    for each in facts:
-        if isinstance(each, FlickerCorrection):
-            yield notice(
-                "flicker",
-                *dict.fromkeys((each.body, each.other)),
-                start_s=each.first / rate_hz,
-                end_s=each.last / rate_hz,
-                length_s=(each.last - each.first + 1) / rate_hz,
-                taken=each.taken,
-            )

@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import pytest
 
-from capar.model import arrangement_facts, contact_facts, motion_facts, scene_facts
+from capar.model import arrangement_facts, contact_facts, motion_facts, phase_facts, scene_facts
 from capar.model import facts as exported
 from capar.model.declarations import Declaration, Observed, Span, kinds_of
 from capar.model.errors import FactError
@@ -109,7 +109,7 @@ def test_explanations_have_a_sentence_for_each_way_to_doubt() -> None:
 
 
 def test_facts_are_written_in_the_order_of_their_definitions() -> None:
-    modules = (scene_facts, motion_facts, contact_facts, arrangement_facts)
+    modules = (scene_facts, motion_facts, phase_facts, contact_facts, arrangement_facts)
     assert tuple(kind for module in modules for kind in kinds_of(module)) == MEASURED
     assert (*MEASURED, FlickerCorrection, MovedBy) == ALL_FACT_KINDS
     assert MEASURED[0] is Frames

@@ -10,15 +10,15 @@ from capar import __version__
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Notice, notice
 from capar.model.errors import CaptureError
-from capar.model.facts import MEASURED, Fact, FlickerCorrection, Frames, Observed, RateMhz
-from capar.model.locations import ConstraintLocation
+from capar.model.facts import MEASURED, Fact, Frames, Observed, RateMhz
 from capar.model.observation import JointAction, Observation, ObservedLink, ObservedObject, Segment
-from capar.model.par import Style
 from capar.model.sampled_track import SampledTrack
+from capar.pipelines.flicker import flicker_notices
 from capar.pipelines.live.carried_poses import CarriedPoses
 from capar.pipelines.live.carried_sums import CarriedSums
 from capar.pipelines.live.fact_ledger import FactLedger
 from capar.pipelines.live.frames import Window
+from capar.pipelines.live.segment_details import SegmentDetails, segment_details
 from capar.pipelines.live.segment_ledger import SettledSegment
 from capar.pipelines.movers import unmoved_notices
 from capar_rules.borders.deflicker import steady
@@ -27,24 +27,11 @@ from capar_rules.movers.movers import movers
 from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key
 from capar_rules.pars.naming_rules import naming_rules
-from capar_rules.pars.primitive_pars import Measured, ipars, upars
+from capar_rules.pars.primitive_pars import ipars, upars
 from extractors.bodies.observed_objects import observed_object
-from extractors.calibration import thresholds_of
 from extractors.measure import Measurements, measured
 from extractors.relations.guide_locations import guide_location
-from extractors.segments.locations import constraint_location
-from extractors.segments.motion_kinds import moved_path
 from extractors.segments.sampled_tracks import track_of
-from extractors.segments.styles import style
-
-
-@dataclass(frozen=True, slots=True)
-class _Details:
-    """What is measured of a settled segment, once its zero crossings are settled too."""
-
-    measured: Measured
-    location: ConstraintLocation | None
-    style: Style
 
 
 @dataclass
@@ -79,13 +66,12 @@ class LiveResult:
     ) -> None:
         self._rig, self._calibration, self._rules, self._name = rig, calibration, rules, name
         self._rate_mhz = rate_mhz
-        self._limits = thresholds_of(calibration)
         self._ledger = FactLedger()
         self._facts: list[Observed] = []
         self._always: dict[Fact, None] = {}
         self._settled: dict[Key, SettledSegment] = {}
         self._waiting: list[SettledSegment] = []
-        self._details: dict[Key, _Details] = {}
+        self._details: dict[Key, SegmentDetails] = {}
         self._joint: list[JointAction] = []
         self._common: frozenset[Key] = frozenset()
         self._violations: dict[str, None] = {}
@@ -132,7 +118,8 @@ class LiveResult:
         self._waiting = [each for each in self._waiting if each.segment.last > frontier]
         for settled in ready:
             key = settled.segment.ee, settled.segment.index
-            self._details[key] = self._detailed(window, measurements, settled)
+            self.inexact.clipped_segments += int(settled.segment.first < window.first)
+            self._details[key] = segment_details(window, measurements, settled)
 
     def segments(self, done: Sequence[SettledSegment], inference: Inference) -> None:
         """Take the segments that an answer of the rules settles, and what several do jointly."""
@@ -186,7 +173,7 @@ class LiveResult:
         steadied = steady(facts) if self._rules.steady else tuple(facts)
         moved = () if self._rules.crossings_only else movers(steadied)
         ordered = [segment for link in inference.links for segment in link.segments]
-        details = [_for_purpose(self._details[each.ee, each.index], each) for each in ordered]
+        details = [self._details[each.ee, each.index].for_purpose(each.purpose) for each in ordered]
         rate_hz = self._rate_mhz / 1000.0
         guides = {} if self._rules.crossings_only else self._last.guides
         objects = self._last.bodies.objects
@@ -215,7 +202,7 @@ class LiveResult:
             sources=self._rig.sources,
             notices=(
                 *self._notices.values(),
-                *_flicker_notices(steadied, rate_hz),
+                *flicker_notices(steadied, rate_hz),
                 *unmoved_notices((*steadied, *moved), times),
                 *(notice("rule-violation", violation=each) for each in self._violations),
             ),
@@ -272,33 +259,6 @@ class LiveResult:
                 return
         self._joint.append(joint)
 
-    def _detailed(
-        self, window: Window, measurements: Measurements, settled: SettledSegment
-    ) -> _Details:
-        """Motion, places and style of a settled segment, from a window in which it lies."""
-        segment = settled.segment
-        first = max(segment.first - window.first, 0)
-        self.inexact.clipped_segments += int(segment.first < window.first)
-        part = replace(segment, first=first, last=segment.last - window.first)
-        capture = window.capture
-        motion, path = moved_path(capture, measurements, part, self._limits)
-        first_object, second = settled.conditions.colliding
-        location = None
-        if second >= 0 and "1" in segment.features.rel_end:
-            location = constraint_location(
-                capture,
-                measurements.bodies,
-                measurements.attention,
-                part,
-                dominant=segment.objects[first_object] if first_object >= 0 else "",
-                goal=segment.objects[second],
-            )
-            location = replace(location, frame=segment.last)
-        track = measurements.tracks[segment.ee]
-        return _Details(
-            Measured(motion, path), location, style(part, track, capture.times, self._limits)
-        )
-
     def _keep_places(
         self, window: Window, measurements: Measurements, first: int, last: int
     ) -> None:
@@ -314,27 +274,3 @@ class LiveResult:
         assert self._last is not None
         for name, pose in sorted(self._last.bodies.poses.items()):
             yield track_of(name, np.concatenate(self._tracks[name]), times, rests=pose.rests)
-
-
-def _for_purpose(details: _Details, segment: Segment) -> _Details:
-    """Details with the purpose of their segment, which is known later than they may be."""
-    location = details.location
-    if location is not None:
-        location = replace(location, purpose=segment.purpose)
-    style_of_it = replace(details.style, purpose=segment.purpose)
-    return _Details(details.measured, location, style_of_it)
-
-
-def _flicker_notices(facts: Sequence[Fact], rate_hz: float) -> list[Notice]:
-    return [
-        notice(
-            "flicker",
-            *dict.fromkeys((each.body, each.other)),
-            start_s=each.first / rate_hz,
-            end_s=each.last / rate_hz,
-            length_s=(each.last - each.first + 1) / rate_hz,
-            taken=each.taken,
-        )
-        for each in facts
-        if isinstance(each, FlickerCorrection)
-    ]
