@@ -35,8 +35,8 @@ def boundary_frames(facts: Iterable[Fact], acting: Iterable[str], last_frame: in
             own |= frames[name]
         out[ee] |= own
         ordered = sorted(own)
-        for each in touches[ee]:
-            out[each.other].update(_around(ordered, each.first, each.last))
+        for touch in touches[ee]:
+            out[touch.other].update(_around(ordered, touch.first, touch.last))
     return {name: tuple(sorted(out[name])) for name in sorted(out)}
 
 

@@ -22,16 +22,16 @@ def set_values(calibration: Calibration, settings: Iterable[str]) -> Calibration
         CaparError: It is not of that form, or the value is no number above zero.
         UnknownNameError: There is no such key, body or pair.
     """
-    for each in settings:
-        key, given, text = each.partition("=")
+    for setting in settings:
+        key, given, text = setting.partition("=")
         name, _, of = key.strip().partition(":")
         if not given:
-            raise CaparError(f"{each!r} has no value; {FORM}")
+            raise CaparError(f"{setting!r} has no value; {FORM}")
         if name not in KEYS:
-            raise UnknownNameError("calibration value", name, KEYS, where=f"--set {each}")
+            raise UnknownNameError("calibration value", name, KEYS, where=f"--set {setting}")
         if of and name in WHOLE:
-            raise CaparError(f"--set {each}: {name} is of the whole capture, not of {of!r}")
-        calibration = KEYS[name](calibration, of.strip(), _number(each, text))
+            raise CaparError(f"--set {setting}: {name} is of the whole capture, not of {of!r}")
+        calibration = KEYS[name](calibration, of.strip(), _number(setting, text))
     return calibration
 
 

@@ -42,8 +42,8 @@ def back_up_rules(folder: Path | None, file: Path) -> Sequence[Path]:
     rules = sorted(folder.glob("*.lp")) if folder and folder.is_dir() else []
     beside = file.with_name(f"{file.stem}.rules")
     copies = []
-    for each in rules:
+    for rule_file in rules:
         beside.mkdir(exist_ok=True)
-        copies.append(beside / each.name)
-        copies[-1].write_bytes(each.read_bytes())
+        copies.append(beside / rule_file.name)
+        copies[-1].write_bytes(rule_file.read_bytes())
     return copies

@@ -55,11 +55,11 @@ def _segments(own: Sequence[Quad], ee: str) -> dict[NamedNode, Properties]:
     """The machine's segments of an end-effector, each with all that is said of it."""
     stated = {(each.subject, each.predicate, each.object) for each in own}
     found: dict[NamedNode, Properties] = {}
-    for each in own:
-        node, value = each.subject, each.object
+    for statement in own:
+        node, value = statement.subject, statement.object
         asked = {(node, TYPE, CAPAR.Segment), (node, CAPAR.ee, Literal(ee))}
         if asked <= stated and isinstance(node, NamedNode) and isinstance(value, Term):
-            found.setdefault(node, []).append((each.predicate, value))
+            found.setdefault(node, []).append((statement.predicate, value))
     return found
 
 

@@ -65,13 +65,13 @@ def check(store: Store, *, full: bool = False) -> tuple[Problem, ...]:
     common = [each for each in shared if each.subject in seen]
     found = [Problem("", *_split(line)) for line in _faults(common, kinds, sizes)]
     named = {quad.subject for quad in shared} | ontology_kinds().keys()
-    for each in observations(store):
-        own = store.graph(names.observation(each.name))
+    for stored in observations(store):
+        own = store.graph(names.observation(stored.name))
         lines = [*_faults(own, kinds, sizes), *_dangling(store, own, named)]
-        found += [Problem(each.name, *_split(line)) for line in lines]
+        found += [Problem(stored.name, *_split(line)) for line in lines]
         if full:
-            judged = by_shacl([quad.triple for quad in part(store, each.name)])
-            found += [Problem(each.name, thing, message) for thing, message in judged]
+            judged = by_shacl([quad.triple for quad in part(store, stored.name)])
+            found += [Problem(stored.name, thing, message) for thing, message in judged]
     found += _unlisted(store)
     return tuple(sorted(set(found)))
 
@@ -88,9 +88,9 @@ def _faults(quads: list[Quad], kinds: Mapping[object, list[object]], sizes: Size
 
 def _classes(quads: Iterable[Quad]) -> dict[object, list[object]]:
     found: dict[object, list[object]] = defaultdict(list)
-    for each in quads:
-        if each.predicate == TYPE:
-            found[each.subject].append(each.object)
+    for quad in quads:
+        if quad.predicate == TYPE:
+            found[quad.subject].append(quad.object)
     return found
 
 
@@ -145,14 +145,14 @@ def _out_of_reach(quads: list[Quad], sizes: Sizes) -> list[str]:
     owned = {(e.subject, e.predicate): e.object for e in quads if e.predicate in owners}
     sizes = {**sizes, **_sizes(quads)}
     found = []
-    for each in quads:
+    for quad in quads:
         for nlt, owner in _NLTS:
-            if each.predicate == nlt and isinstance(each.object, Literal):
-                size = sizes.get(owned.get((each.subject, owner)))
-                if isinstance(size, Literal) and not _within(each.object.value, size.value):
+            if quad.predicate == nlt and isinstance(quad.object, Literal):
+                size = sizes.get(owned.get((quad.subject, owner)))
+                if isinstance(size, Literal) and not _within(quad.object.value, size.value):
                     found.append(
-                        f"{_tail(each.subject)}: {nlt.value.removeprefix(BASE)} "
-                        f"{each.object.value!r} lies outside the reach of an object of "
+                        f"{_tail(quad.subject)}: {nlt.value.removeprefix(BASE)} "
+                        f"{quad.object.value!r} lies outside the reach of an object of "
                         f"{size.value} m"
                     )
     return sorted(found)
@@ -181,11 +181,11 @@ def _dangling(store: Store, quads: list[Quad], known: Collection[object]) -> Ite
         and each.object.value.startswith(DATA)
     ]
     said = _said(store, {str(each.object) for each in doubtful})
-    for each in doubtful:
-        if each.object not in said:
+    for quad in doubtful:
+        if quad.object not in said:
             yield (
-                f"{_tail(each.subject)}: {_tail(each.predicate)} points to "
-                f"{_tail(each.object)}, of which nothing is said"
+                f"{_tail(quad.subject)}: {_tail(quad.predicate)} points to "
+                f"{_tail(quad.object)}, of which nothing is said"
             )
 
 

@@ -87,10 +87,10 @@ def closure(pairs: list[tuple[str, str]]) -> dict[str, set[str]]:
 def ontology_kinds() -> Mapping[NamedNode, tuple[NamedNode, ...]]:
     """The classes of each thing that the ontology itself states."""
     found: dict[NamedNode, tuple[NamedNode, ...]] = {}
-    for each in ontology():
-        if each.predicate.value == RDF + "type" and isinstance(each.object, NamedNode):
-            assert isinstance(each.subject, NamedNode)
-            found[each.subject] = (*found.get(each.subject, ()), each.object)
+    for quad in ontology():
+        if quad.predicate.value == RDF + "type" and isinstance(quad.object, NamedNode):
+            assert isinstance(quad.subject, NamedNode)
+            found[quad.subject] = (*found.get(quad.subject, ()), quad.object)
     return found
 
 

@@ -136,8 +136,8 @@ class Actor:
             self.configuration.update(self.rest)
             self.drinks = float(drinks)
             self.point = self._looked_at("ahead") if drinks else end.translation
-            for each in SIDES:
-                self._aim(each, end * grip if each == side else self.home[each])
+            for arm in SIDES:
+                self._aim(arm, end * grip if arm == side else self.home[arm])
             for _ in range(20):
                 self._step()
             palm, goal = self.palm(side), end * grip

@@ -54,13 +54,18 @@ def _toml(capture: Capture) -> list[str]:
         "[agent]", f'name = "{capture.agent.name}"', f'kind = "{capture.agent.kind}"',
         f"measures = {{ {measures} }}",
     ]  # fmt: skip
-    for each in capture.sensors:
-        out += ["", "[[sensor]]", f'name = "{each.name}"', f'end_effector = "{each.end_effector}"']
-        out += [f'side = "{each.side}"'] * (each.side != "none")
-        out += [f'link = "{each.link}"', f'role = "{each.role}"', f'body = "{each.name}"']
-        if each.role is Role.ATTENDS:
-            out += [f"eye = {_list(each.eye)}", f"gaze = {_list(each.gaze)}"]
-        out += _mesh_line(each)
+    for sensor in capture.sensors:
+        out += [
+            "",
+            "[[sensor]]",
+            f'name = "{sensor.name}"',
+            f'end_effector = "{sensor.end_effector}"',
+        ]
+        out += [f'side = "{sensor.side}"'] * (sensor.side != "none")
+        out += [f'link = "{sensor.link}"', f'role = "{sensor.role}"', f'body = "{sensor.name}"']
+        if sensor.role is Role.ATTENDS:
+            out += [f"eye = {_list(sensor.eye)}", f"gaze = {_list(sensor.gaze)}"]
+        out += _mesh_line(sensor)
     for thing in capture.objects:
         out += ["", "[[object]]", f'name = "{thing.name}"', f'tag = "{thing.tag}"']
         out += [f'kind = "{thing.kind}"'] * bool(thing.kind) + _where(thing) + _mesh_line(thing)

@@ -113,9 +113,9 @@ def _sequence(ee: str, names: str, seen: _Scene) -> tuple[bool, str]:
     """The whole sequence of an end-effector; ... stands for any steps."""
     segments = _of(ee, seen)
     wanted = [each.strip() for each in re.split(r",\s*(?![^()]*\))", names)]
-    for each in wanted:
-        if each != "...":
-            seen.names.step(each)
+    for step in wanted:
+        if step != "...":
+            seen.names.step(step)
     found = ", ".join(segment.name for segment in segments)
     return _follows(wanted, list(segments)), f"{ee}: {found}"
 
@@ -152,9 +152,9 @@ def _event(text: str, seen: _Scene) -> Iterator[Span]:
 def _looks(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
     pair = seen.names.sensor(found[1]), seen.names.object(found[3])
     ending = found[2] != "at"
-    for each in _facts(seen, LookingAt):
-        if (each.sensor, each.object) == pair and not (ending and _cut_off(each.last, seen)):
-            yield _when(each.first, each.last, seen, ending=ending)
+    for look in _facts(seen, LookingAt):
+        if (look.sensor, look.object) == pair and not (ending and _cut_off(look.last, seen)):
+            yield _when(look.first, look.last, seen, ending=ending)
 
 
 def _meets(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
@@ -172,9 +172,9 @@ def _meets(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
 
 def _moves(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
     name = seen.names.object(found[1])
-    for each in _facts(seen, Moving):
-        if each.object == name:
-            yield _when(each.first, each.last, seen, ending=False)
+    for motion in _facts(seen, Moving):
+        if motion.object == name:
+            yield _when(motion.first, motion.last, seen, ending=False)
 
 
 def _step(found: re.Match[str], seen: _Scene) -> Iterator[Span]:

@@ -70,9 +70,9 @@ class Names:
         """The text, if it is a step whose primitive and objects there are."""
         name, objects = parts(text)
         self._one("primitive", name, self.primitives)
-        for each in objects or ():
-            if each != "_":
-                self._one("object", each, self.objects | self.ees)
+        for thing in objects or ():
+            if thing != "_":
+                self._one("object", thing, self.objects | self.ees)
         return text
 
     def _one(self, kind: str, name: str, known: Collection[str]) -> str:

@@ -94,9 +94,9 @@ def _confusions(scored: Mapping[str, Any]) -> "Table":
         table.add_column(column, overflow="fold")
     table.add_column("frames", justify="right")
     table.add_column("share", justify="right")
-    for each in wrong[:SHOWN]:
-        share = f"{100 * each['frames'] / scored['frames']:.1f} %"
-        table.add_row(each["true"], each["predicted"], str(each["frames"]), share)
+    for confusion in wrong[:SHOWN]:
+        share = f"{100 * confusion['frames'] / scored['frames']:.1f} %"
+        table.add_row(confusion["true"], confusion["predicted"], str(confusion["frames"]), share)
     if len(wrong) > SHOWN:
         table.add_row("...", "...", str(sum(each["frames"] for each in wrong[SHOWN:])), "")
     return table
@@ -110,9 +110,9 @@ def _worst(found: Sequence[Mapping[str, Any]]) -> "Table":
         )
     from rich.markup import escape
 
-    for each in found:
-        texts = [escape(each[key]) for key in ("capture", "channel", "true", "found", "segments")]
-        times = (f"{each['start_s']:.2f}", f"{each['end_s']:.2f}")
+    for span in found:
+        texts = [escape(span[key]) for key in ("capture", "channel", "true", "found", "segments")]
+        times = (f"{span['start_s']:.2f}", f"{span['end_s']:.2f}")
         table.add_row(*texts[:2], *times, *texts[2:])
     return table
 

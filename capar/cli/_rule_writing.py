@@ -98,12 +98,16 @@ def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) 
     from capar.model.segment_address import SegmentAddress
     from capar.rulebook.changes import NOTHING
 
-    for each in changes:
-        what = f"{each.before} -> {each.after}"
-        if NOTHING in (each.before, each.after):
-            what = f"{each.before} vanishes" if each.after == NOTHING else f"{each.after} appears"
-        address = SegmentAddress(each.ee, each.index, each.capture)
-        typer.echo(f"{address}  {each.start_s:.2f} to {each.end_s:.2f} s: {what}")
+    for change in changes:
+        what = f"{change.before} -> {change.after}"
+        if NOTHING in (change.before, change.after):
+            what = (
+                f"{change.before} vanishes"
+                if change.after == NOTHING
+                else f"{change.after} appears"
+            )
+        address = SegmentAddress(change.ee, change.index, change.capture)
+        typer.echo(f"{address}  {change.start_s:.2f} to {change.end_s:.2f} s: {what}")
     typer.echo("1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change")
     print_others(others)
 
@@ -168,8 +172,8 @@ def print_glossary(found: "Glossary") -> None:
         within.setdefault(file, []).append(f"{name}/{arity}")
     for file, words in groupby(found.words, key=lambda each: each.file):
         typer.echo(file)
-        for each in words:
-            typer.echo(f"  {each}  {each.meaning}")
+        for word in words:
+            typer.echo(f"  {word}  {word.meaning}")
         if file in within:
             typer.echo(f"  within this file alone: {', '.join(within.pop(file))}")
         typer.echo()

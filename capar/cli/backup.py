@@ -43,8 +43,8 @@ def backup(
         print_json({"file": str(target), "statements": statements, "rules": list(map(str, rules))})
         return
     typer.echo(f"{target}: {statements} statements")
-    for each in rules:
-        typer.echo(str(each))
+    for rule_file in rules:
+        typer.echo(str(rule_file))
     typer.echo(f"To restore: capar import {target} --actionary NEW_FOLDER --new")
 
 

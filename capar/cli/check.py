@@ -29,9 +29,9 @@ def check(
     if json:
         print_json(problems)
     else:
-        for each in problems:
-            whose = f"{each.observation}: " if each.observation else ""
-            typer.echo(f"{whose}{each.thing}: {each.message}")
+        for problem in problems:
+            whose = f"{problem.observation}: " if problem.observation else ""
+            typer.echo(f"{whose}{problem.thing}: {problem.message}")
         typer.echo(f"{count} observations, {len(problems)} problems")
     if problems:
         raise typer.Exit(2)

@@ -78,11 +78,11 @@ def _print(capture: str, spans: "Sequence[Span]", *, json: bool) -> None:
         print_json(list(spans))
         return
     counts: dict[str, int] = {}
-    for each in spans:
-        at = counts[each.ee] = counts.get(each.ee, -1) + 1
-        who = f"  says {each.by}" if each.by else ""
+    for span in spans:
+        at = counts[span.ee] = counts.get(span.ee, -1) + 1
+        who = f"  says {span.by}" if span.by else ""
         typer.echo(
-            f"{capture}/{each.ee}/{at}  {each.start_s:.3f} to {each.end_s:.3f} s  {each.name}{who}"
+            f"{capture}/{span.ee}/{at}  {span.start_s:.3f} to {span.end_s:.3f} s  {span.name}{who}"
         )
 
 
@@ -90,6 +90,6 @@ def _write_labels(path: Path, spans: "Sequence[Span]") -> None:
     with written(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(COLUMNS)
-        for each in spans:
-            first = each.objects.split(" ")[0]
-            table.writerow((each.ee, each.start_s, each.end_s, each.name, first))
+        for span in spans:
+            first = span.objects.split(" ")[0]
+            table.writerow((span.ee, span.start_s, span.end_s, span.name, first))

@@ -19,6 +19,6 @@ def forget(
     from kb import Actionary
 
     with Actionary.open(actionary, wait_s=wait) as opened:
-        for each in names:
-            opened.forget(each)
-            typer.echo(f"forgot {each}")
+        for name in names:
+            opened.forget(name)
+            typer.echo(f"forgot {name}")

@@ -24,8 +24,8 @@ def migrate(
     actionary: Place = None,
 ) -> None:
     """Bring the Actionary, or FILES of observations, to the present schema; a backup first."""
-    for each in files or ():
-        _migrate_file(each)
+    for file in files or ():
+        _migrate_file(file)
     if actionary is None and files:
         return
     from kb.migration import migrate as migrated

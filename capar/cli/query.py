@@ -98,10 +98,10 @@ def _given(parameters: list[str]) -> dict[str, str]:
     from capar.model.errors import CaparError
 
     given = {}
-    for each in parameters:
-        name, equals, value = each.partition("=")
+    for parameter in parameters:
+        name, equals, value = parameter.partition("=")
         if not equals:
-            raise CaparError(f"{each!r} is no parameter; one is written NAME=VALUE")
+            raise CaparError(f"{parameter!r} is no parameter; one is written NAME=VALUE")
         given[name] = value
     return given
 

@@ -61,9 +61,9 @@ def list_rules(
     if json:
         print_json([asdict(each) for each in found])
         return
-    for each in found:
-        general = f" < {', '.join(each.general)}" if each.general else ""
-        typer.echo(f"{each.origin}  {each.name}{general}: {each.definition}")
+    for entry in found:
+        general = f" < {', '.join(entry.general)}" if entry.general else ""
+        typer.echo(f"{entry.origin}  {entry.name}{general}: {entry.definition}")
 
 
 @app.command()
@@ -96,8 +96,8 @@ def check(
     if json:
         print_json([each.as_json() for each in findings])
     else:
-        for each in findings:
-            typer.echo(str(each))
+        for finding in findings:
+            typer.echo(str(finding))
         if not findings:
             typer.echo(f"{file}: nothing is wrong")
     if errors(findings):
@@ -118,8 +118,8 @@ def test(
     admit(beside, profile=profile)
     require(file, checked(file, profile=profile, beside=beside))
     failures = try_rule(file, base=profile, beside=beside)
-    for each in failures:
-        typer.echo(each)
+    for failure in failures:
+        typer.echo(failure)
     if failures:
         raise typer.Exit(2)
     typer.echo(f"{file}: its examples hold")

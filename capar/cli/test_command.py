@@ -84,8 +84,8 @@ def test(
     if json:
         _print_json(suites)
     else:
-        for each in suites:
-            _print(each)
+        for suite in suites:
+            _print(suite)
     _end(suites)
 
 
@@ -107,11 +107,11 @@ def _judged(path: Path, rules: Path | None, actionary: str | None) -> _Suite:
 
 
 def _print(suite: _Suite) -> None:
-    for each in suite.verdicts:
-        mark = "holds" if each.holds else "ERROR" if each.mistake else "FAILS"
-        typer.echo(f"{mark}  {each.capture}: {each.claim}")
-        if not each.holds:
-            typer.echo(f"       {each.mistake or f'found {each.found}'}")
+    for verdict in suite.verdicts:
+        mark = "holds" if verdict.holds else "ERROR" if verdict.mistake else "FAILS"
+        typer.echo(f"{mark}  {verdict.capture}: {verdict.claim}")
+        if not verdict.holds:
+            typer.echo(f"       {verdict.mistake or f'found {verdict.found}'}")
     if suite.mistake:
         typer.echo(f"ERROR  {suite.path} was not judged")
     else:

@@ -80,9 +80,9 @@ def _print_verb(answer: "VerbAnswer", *, json: bool) -> None:
     console = Console(highlight=False, soft_wrap=True)
     console.print(f"[bold]{answer.verb}[/]: {answer.standing.words}.")
     shown = [each for each in answer.senses if each.motion or each.sense.number <= FIRST_SENSES]
-    for each in shown:
-        mark, gloss = "→" if each.motion else " ", each.synset.definition
-        console.print(f" {mark} {each.sense.number}. {gloss} [dim]{each.sense.key}[/]")
+    for sense in shown:
+        mark, gloss = "→" if sense.motion else " ", sense.synset.definition
+        console.print(f" {mark} {sense.sense.number}. {gloss} [dim]{sense.sense.key}[/]")
     if len(shown) < len(answer.senses):
         console.print(f"   and {len(answer.senses) - len(shown)} more senses (--json shows all)")
     _print_classes(console, answer)
@@ -106,14 +106,16 @@ def _in_all(seen: "Iterable[Seen]") -> str:
 
 
 def _print_classes(console: "Console", answer: "VerbAnswer") -> None:
-    for each in answer.classes:
-        title = f"Levin {each.levin.number} {each.levin.title}" if each.levin else "no Levin class"
-        verbnet = f", VerbNet {each.verbnet}" if each.verbnet else ""
-        roles = f": {', '.join(each.roles)}" if each.roles else ""
+    for found in answer.classes:
+        title = (
+            f"Levin {found.levin.number} {found.levin.title}" if found.levin else "no Levin class"
+        )
+        verbnet = f", VerbNet {found.verbnet}" if found.verbnet else ""
+        roles = f": {', '.join(found.roles)}" if found.roles else ""
         console.print(f"{title}{verbnet}{roles}")
-        if each.frame and each.frame.example:
-            meaning = " ".join(map(str, each.frame.semantics))
-            console.print(f"   “{each.frame.example}” [dim]{meaning}[/]")
+        if found.frame and found.frame.example:
+            meaning = " ".join(map(str, found.frame.semantics))
+            console.print(f"   “{found.frame.example}” [dim]{meaning}[/]")
     if not any(each.verbnet for each in answer.classes):
         console.print("[dim]VerbNet's classes come with `capar lexicon import verbnet DIR`.[/]")
 
@@ -127,8 +129,8 @@ def _print_kinds(lemma: str, names: tuple[str, ...], store: "Store | None", *, j
         print_json({"verb": lemma, "primitives": names, "seen": seen}, sort_keys=True)
         return
     typer.echo(f"{lemma}, and every kind of it: {', '.join(names) or 'no primitive'}")
-    for each in summed(seen):
-        typer.echo(f"  {each.observation}: {each.primitive}, {often(each.count)}")
+    for row in summed(seen):
+        typer.echo(f"  {row.observation}: {row.primitive}, {often(row.count)}")
 
 
 def _print_fits(fits: "tuple[Fit, ...]", *, json: bool) -> None:

@@ -121,12 +121,12 @@ def _pivots(scene: Capture, hand: Sensor, name: str) -> tuple[PivotContact, ...]
 
 def _fixed(scene: Capture, times: np.ndarray) -> Iterator[TagObject]:
     """The fixed objects, where they are in the scene, on another clock."""
-    for each in scene.objects:
-        if each.tag is TagType.FIXED:
-            frame = int(np.argmax(~each.stream.lost))
+    for thing in scene.objects:
+        if thing.tag is TagType.FIXED:
+            frame = int(np.argmax(~thing.stream.lost))
             still = Stream(
                 times,
-                np.repeat(each.stream.positions[[frame]], len(times), axis=0),
-                np.repeat(each.stream.orientations[[frame]], len(times), axis=0),
+                np.repeat(thing.stream.positions[[frame]], len(times), axis=0),
+                np.repeat(thing.stream.orientations[[frame]], len(times), axis=0),
             )
-            yield replace(each, stream=still)
+            yield replace(thing, stream=still)

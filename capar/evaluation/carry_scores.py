@@ -152,14 +152,14 @@ def _recorded(pair: Pair, plan: Plan, base: Profile) -> Scored:
     parts: dict[str, CarryCounts] = {}
     channels: list[Channel] = []
     last_s = 0.0
-    for each in carry_captures(pair.capture, plan.carries):
-        mark = Label("", each.start_s, each.end_s, CARRY, each.object)
-        observation = observe(each.capture, rules=base)
+    for carry in carry_captures(pair.capture, plan.carries):
+        mark = Label("", carry.start_s, carry.end_s, CARRY, carry.object)
+        observation = observe(carry.capture, rules=base)
         labels = Labels(Path(pair.capture), (mark,), in_frames=False)
-        scored = compare_carries(pair.name, labels, observation, each.capture, plan.carries)
+        scored = compare_carries(pair.name, labels, observation, carry.capture, plan.carries)
         parts |= scored.parts
         channels += scored.channels
-        last_s = max(last_s, float(each.capture.times[-1]))
+        last_s = max(last_s, float(carry.capture.times[-1]))
     clock = np.arange(0.0, last_s + 0.02, 0.02)
     return Scored(pair.name, clock, tuple(channels), parts, summed(parts.values()))
 

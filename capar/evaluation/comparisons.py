@@ -88,8 +88,8 @@ def inside(
 ) -> Bool[np.ndarray, "frames"]:
     """Whether each frame lies in one of the intervals: [start, end)."""
     out = np.zeros(len(times), dtype=bool)
-    for each in intervals:
-        out |= within(each, times)
+    for interval in intervals:
+        out |= within(interval, times)
     return out
 
 

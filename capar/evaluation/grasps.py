@@ -74,11 +74,13 @@ def _passes(observation: Observation, times: Times) -> Iterable[Change]:
     for segment in observation.segments:
         if "Give" not in (segment.name, *segment.general):
             continue
-        for each in touches:
-            taken = each.other in segment.objects and each.body != segment.ee
-            if taken and each.first <= segment.first <= each.last:
-                start = times[each.first]
-                yield Change(float(start), segment.start_s, PASS, segment.ee, each.other, each.body)
+        for touch in touches:
+            taken = touch.other in segment.objects and touch.body != segment.ee
+            if taken and touch.first <= segment.first <= touch.last:
+                start = times[touch.first]
+                yield Change(
+                    float(start), segment.start_s, PASS, segment.ee, touch.other, touch.body
+                )
 
 
 def _over(observation: Observation, times: Times) -> Iterable[Change]:

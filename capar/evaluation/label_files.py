@@ -214,18 +214,20 @@ def _number(place: str, text: str) -> float:
 def _annotated(path: Path, found: Sequence[Annotation], kind: Kind) -> list[Label]:
     """Marks from tiers: a tier is who acts, a text what is done, touched or carried."""
     out = []
-    for each in found:
-        if not each.text.strip():
+    for annotation in found:
+        if not annotation.text.strip():
             continue
-        first, _, second = each.text.strip().partition(" ")
+        first, _, second = annotation.text.strip().partition(" ")
         label, thing = {
-            Kind.ACTIONS: (each.text.strip(), ""),
-            Kind.CONTACTS: ("contact", each.text.strip()),
-            Kind.CARRIES: ("carry", each.text.strip()),
+            Kind.ACTIONS: (annotation.text.strip(), ""),
+            Kind.CONTACTS: ("contact", annotation.text.strip()),
+            Kind.CARRIES: ("carry", annotation.text.strip()),
             Kind.EVENTS: (first, second.strip()),
         }[kind]
-        link = "" if kind is Kind.CARRIES else each.tier
-        out.append(Label(link, each.start_s, each.end_s, label, thing, where=each.where))
+        link = "" if kind is Kind.CARRIES else annotation.tier
+        out.append(
+            Label(link, annotation.start_s, annotation.end_s, label, thing, where=annotation.where)
+        )
     return out
 
 

@@ -86,10 +86,10 @@ def check_known(labels: Labels, kind: str, known: Iterable[str], *, at: str) -> 
         UnknownNameError: One does not exist; it says file and line, and lists those that do.
     """
     names = set(known)
-    for each in labels.marks:
-        name = getattr(each, at)
+    for mark in labels.marks:
+        name = getattr(mark, at)
         if name and name not in names:
-            raise UnknownNameError(kind, name, names, where=each.where or str(labels.path))
+            raise UnknownNameError(kind, name, names, where=mark.where or str(labels.path))
 
 
 def in_seconds(labels: Labels, times: Float[np.ndarray, "frames"]) -> Labels:
@@ -104,11 +104,11 @@ def in_seconds(labels: Labels, times: Float[np.ndarray, "frames"]) -> Labels:
     """
     if not labels.in_frames:
         return labels
-    for each in labels.marks:
-        if each.start < 0 or each.end > len(times):
+    for mark in labels.marks:
+        if mark.start < 0 or mark.end > len(times):
             raise FileError(
-                each.where or labels.path,
-                f"frames from {each.start:.0f} to {each.end:.0f} are marked, but the recording "
+                mark.where or labels.path,
+                f"frames from {mark.start:.0f} to {mark.end:.0f} are marked, but the recording "
                 f"has frames 0 to {len(times) - 1}.",
                 "Labels count the frames of the file that the capture is read from.",
             )
@@ -132,11 +132,11 @@ def check_span(labels: Labels, times: Float[np.ndarray, "frames"]) -> None:
         FileError: One does; it says file and line.
     """
     step = _after_last(times) - float(times[-1])
-    for each in labels.marks:
-        if each.start < float(times[0]) - 1.5 * step or each.end > float(times[-1]) + 1.5 * step:
+    for mark in labels.marks:
+        if mark.start < float(times[0]) - 1.5 * step or mark.end > float(times[-1]) + 1.5 * step:
             raise FileError(
-                each.where or labels.path,
-                f"{shown(each, 'second')} is outside of the capture, which lasts from "
+                mark.where or labels.path,
+                f"{shown(mark, 'second')} is outside of the capture, which lasts from "
                 f"{times[0]:.2f} to {times[-1]:.2f} s.",
                 "Give times in seconds of the capture's own clock.",
             )

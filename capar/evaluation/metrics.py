@@ -146,13 +146,13 @@ def pooled(tallies: Iterable[Tally]) -> Tally:
 def merged(intervals: Iterable[Interval]) -> tuple[Interval, ...]:
     """Intervals in order of time, neighbours of one label as one, empty ones left out."""
     out: list[Interval] = []
-    for each in sorted(intervals):
-        if each.end_s <= each.start_s:
+    for interval in sorted(intervals):
+        if interval.end_s <= interval.start_s:
             continue
-        if out and out[-1].label == each.label and each.start_s <= out[-1].end_s:
-            out[-1] = Interval(out[-1].start_s, max(out[-1].end_s, each.end_s), each.label)
+        if out and out[-1].label == interval.label and interval.start_s <= out[-1].end_s:
+            out[-1] = Interval(out[-1].start_s, max(out[-1].end_s, interval.end_s), interval.label)
         else:
-            out.append(each)
+            out.append(interval)
     return tuple(out)
 
 
@@ -161,8 +161,8 @@ def frame_labels(
 ) -> tuple[str, ...]:
     """The label at each time; empty where there is none. The last frame closes its interval."""
     names = np.full(len(times), "", dtype=object)
-    for each in intervals:
-        names[within(each, times)] = each.label
+    for interval in intervals:
+        names[within(interval, times)] = interval.label
     last = intervals[-1].end_s if intervals else float("nan")
     if len(times) and not names[-1] and abs(times[-1] - last) <= SAME_S:
         names[-1] = intervals[-1].label

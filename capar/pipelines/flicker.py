@@ -13,13 +13,13 @@ def flicker_notices(facts: Iterable[Fact], rate_hz: float) -> Iterator[Notice]:
         facts: Measurements and corrections.
         rate_hz: Frames a second.
     """
-    for each in facts:
-        if isinstance(each, FlickerCorrection):
+    for fact in facts:
+        if isinstance(fact, FlickerCorrection):
             yield notice(
                 "flicker",
-                *dict.fromkeys((each.body, each.other)),
-                start_s=each.first / rate_hz,
-                end_s=each.last / rate_hz,
-                length_s=(each.last - each.first + 1) / rate_hz,
-                taken=each.taken,
+                *dict.fromkeys((fact.body, fact.other)),
+                start_s=fact.first / rate_hz,
+                end_s=fact.last / rate_hz,
+                length_s=(fact.last - fact.first + 1) / rate_hz,
+                taken=fact.taken,
             )

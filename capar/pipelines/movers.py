@@ -21,11 +21,11 @@ def unmoved_notices(facts: Iterable[Fact], times: Float[np.ndarray, "frames"]) -
     """
     moved: dict[str, int] = defaultdict(int)
     lacking: dict[str, list[MovedBy]] = defaultdict(list)
-    for each in facts:
-        if isinstance(each, Displaced):
-            moved[each.object] += each.last - each.first + 1
-        elif isinstance(each, MovedBy) and each.how == UNKNOWN:
-            lacking[each.object].append(each)
+    for fact in facts:
+        if isinstance(fact, Displaced):
+            moved[fact.object] += fact.last - fact.first + 1
+        elif isinstance(fact, MovedBy) and fact.how == UNKNOWN:
+            lacking[fact.object].append(fact)
     for thing, parts in sorted(lacking.items()):
         worst = max(parts, key=lambda part: part.last - part.first)
         frames = sum(part.last - part.first + 1 for part in parts)

@@ -116,13 +116,13 @@ def _measured(capture: str, rules: Profile, actionary: str | None) -> tuple[str,
     """A capture's name and its facts: as it is read now, or as they are stored."""
     if actionary is not None and not Path(capture).exists():
         with Actionary.open(actionary, read_only=True) as store:
-            for each in store.observations():
-                if each.name == capture:
-                    if each.profile != rules.name:
+            for stored in store.observations():
+                if stored.name == capture:
+                    if stored.profile != rules.name:
                         raise RuleError(
-                            f"{capture!r} was observed with the profile {each.profile}, and is cut "
-                            f"into segments otherwise by {rules.name}; say --profile "
-                            f"{each.profile}"
+                            f"{capture!r} was observed with the profile {stored.profile}, and is "
+                            f"cut into segments otherwise by {rules.name}; say --profile "
+                            f"{stored.profile}"
                         )
                     return capture, facts(store.store, capture)
     trial = read_capture(capture)

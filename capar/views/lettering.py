@@ -112,12 +112,12 @@ def _is_plain(wanted: Placed, placed: Sequence[Placed], others: Sequence[float])
         placed: The names before it.
         others: Middles of the other bars that do not hold their own names.
     """
-    for each in placed:
-        apart = abs(each.centre_s - wanted.centre_s) >= each.half_s + wanted.half_s
-        if each.row == wanted.row and not apart:
+    for letter in placed:
+        apart = abs(letter.centre_s - wanted.centre_s) >= letter.half_s + wanted.half_s
+        if letter.row == wanted.row and not apart:
             return False
-        if wanted.row == 1 and each.row == 2 and wanted.covers(each.middle_s):
+        if wanted.row == 1 and letter.row == 2 and wanted.covers(letter.middle_s):
             return False
-        if wanted.row == 2 and each.row == 1 and each.covers(wanted.middle_s):
+        if wanted.row == 2 and letter.row == 1 and letter.covers(wanted.middle_s):
             return False
     return wanted.row == 2 or not any(wanted.covers(each) for each in others)

@@ -27,8 +27,8 @@ def reservations(
 def note_lines(notices: Iterable[Notice]) -> tuple[str, ...]:
     """Notices one a line; those of a code that has more than five of them as one line."""
     alike: dict[str, list[Notice]] = {}
-    for each in notices:
-        alike.setdefault(each.code, []).append(each)
+    for notice in notices:
+        alike.setdefault(notice.code, []).append(notice)
     return tuple(
         f"note [{code}]: {text}" for code, group in alike.items() for text in _texts(code, group)
     )

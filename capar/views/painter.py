@@ -190,9 +190,10 @@ class Painter:
         self._name(
             axes, self._rows[index].label, bar + tall / 2, fontsize=9.5, color=INK, weight="bold"
         )
-        for each in self._placed[index]:
-            self._box(axes, each.span, bar, tall, **self.look(each.span, Kind.SEGMENTS), zorder=2)
-            self._letter(axes, each, bar, tall, Kind.SEGMENTS)
+        for placed in self._placed[index]:
+            look = self.look(placed.span, Kind.SEGMENTS)
+            self._box(axes, placed.span, bar, tall, **look, zorder=2)
+            self._letter(axes, placed, bar, tall, Kind.SEGMENTS)
 
     def _letter(self, axes: "Axes", each: Placed, bar: float, tall: float, kind: Kind) -> None:
         if each.row < 0:
@@ -224,10 +225,10 @@ class Painter:
 
     def _looks(self, axes: "Axes", index: int, low: float) -> None:
         self._name(axes, self._rows[index].label, low - 0.12)
-        for each in self._placed[index]:
-            look = self.look(each.span, Kind.NAMES)
-            self._box(axes, each.span, low - 0.21, 0.18, **look, zorder=2)
-            self._letter(axes, each, low - 0.21, 0.18, Kind.NAMES)
+        for placed in self._placed[index]:
+            look = self.look(placed.span, Kind.NAMES)
+            self._box(axes, placed.span, low - 0.21, 0.18, **look, zorder=2)
+            self._letter(axes, placed, low - 0.21, 0.18, Kind.NAMES)
 
     def _curve(self, axes: "Axes", index: int, low: float) -> None:
         curve = self._rows[index].curve

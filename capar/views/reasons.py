@@ -18,13 +18,15 @@ def reasons_svg(told: Sequence[Explanation]) -> str:
     """One SVG document with a tree for each explanation."""
     rows: list[str] = []
     y = ROW
-    for each in told:
-        address = SegmentAddress(each.ee, each.index)
-        title = f"{address}  {each.start_s:.2f} to {each.end_s:.2f} s: {each.summary}"
+    for explained in told:
+        address = SegmentAddress(explained.ee, explained.index)
+        title = (
+            f"{address}  {explained.start_s:.2f} to {explained.end_s:.2f} s: {explained.summary}"
+        )
         lines = _lines(title, TEXT + STRIP, BOLD)
         rows.append(f'<text x="8" y="{y}" font-weight="bold">{_set(lines, 8)}</text>')
         y += ROW + (len(lines) - 1) * LINE
-        tree = each.reason.with_sentences()
+        tree = explained.reason.with_sentences()
         span, above = _span(tree), y
         for depth, reason in _rows(tree, 0):
             drawn, height = _row(reason, depth, y, span, above=above)
@@ -78,8 +80,8 @@ def _set(lines: Sequence[str], x: int) -> str:
 
 def _rows(reason: Reason, depth: int) -> Iterator[tuple[int, Reason]]:
     yield depth, reason
-    for each in reason.because:
-        yield from _rows(each, depth + 1)
+    for deeper in reason.because:
+        yield from _rows(deeper, depth + 1)
 
 
 def _span(tree: Reason) -> tuple[int, int]:

@@ -208,8 +208,8 @@ def _object_rows(observation: Observation, clock: Callable[[int], float]) -> lis
     acting = {each.ee for each in observation.links}
     between = [each for each in _touching(observation) if each.body not in acting]
     pairs: dict[frozenset[str], list[Touching]] = {}
-    for each in between:
-        pairs.setdefault(frozenset((each.body, each.other)), []).append(each)
+    for relation in between:
+        pairs.setdefault(frozenset((relation.body, relation.other)), []).append(relation)
     out = []
     for found in pairs.values():
         names = (found[0].body, found[0].other)

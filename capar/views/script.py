@@ -115,13 +115,14 @@ def _applicability(par: Upar, names: Sequence[str], parameters: str) -> str:
 
 def _preparation(par: Upar, names: Sequence[str], parameters: str) -> str:
     out = f"def preparatory_spec({parameters}):\n"
-    for each in par.preparation:
-        objects = _tuple(_term(name, names) for name in each.action.objects)
+    for prepared in par.preparation:
+        objects = _tuple(_term(name, names) for name in prepared.action.objects)
         fields = {"agents": par.agent, "objects": objects}
-        if each.action.purpose:
-            fields["purpose"] = repr(each.action.purpose)
-        body = f"actions = {{'PRIMITIVE': {_action(each.action.action, fields)}}}\nreturn actions\n"
-        out += f"{INDENT}if not ({_test(each.condition, names)}):\n{_indented(_indented(body))}"
+        if prepared.action.purpose:
+            fields["purpose"] = repr(prepared.action.purpose)
+        action = _action(prepared.action.action, fields)
+        body = f"actions = {{'PRIMITIVE': {action}}}\nreturn actions\n"
+        out += f"{INDENT}if not ({_test(prepared.condition, names)}):\n{_indented(_indented(body))}"
     return out + f"{INDENT}return 1\n"
 
 

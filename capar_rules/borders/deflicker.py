@@ -82,10 +82,10 @@ Span = tuple[int, int, int]
 def _relations(facts: Iterable[Fact]) -> dict[Key, list[tuple[int, int]]]:
     """The intervals of every relation, in order of time."""
     found: dict[Key, list[tuple[int, int]]] = defaultdict(list)
-    for each in facts:
-        key = relation_of(each)
-        if key and isinstance(each, Observed):
-            first, last = each.ends()
+    for fact in facts:
+        key = relation_of(fact)
+        if key and isinstance(fact, Observed):
+            first, last = fact.ends()
             found[key].append((first, last))
     return {key: sorted(spans) for key, spans in found.items()}
 
@@ -151,10 +151,10 @@ def _corrected(stretches: Sequence[Span], doubted: Iterable[int]) -> list[tuple[
 def _restated(facts: Iterable[Fact], corrected: dict[Key, list[tuple[int, int]]]) -> Iterator[Fact]:
     """The facts in their order, those of corrected relations in place of the measured ones."""
     written = set()
-    for each in facts:
-        key = relation_of(each)
-        if key is None or key not in corrected or not isinstance(each, Observed):
-            yield each
+    for fact in facts:
+        key = relation_of(fact)
+        if key is None or key not in corrected or not isinstance(fact, Observed):
+            yield fact
         elif key not in written:
             written.add(key)
-            yield from (each.between(*span) for span in corrected[key])
+            yield from (fact.between(*span) for span in corrected[key])

@@ -119,9 +119,9 @@ Seats = dict[tuple[str, str], list[Seated]]
 def by_pair(facts: Iterable[Fact]) -> Seats:
     """When bodies are down on others, by the two."""
     out: Seats = {}
-    for each in facts:
-        if isinstance(each, Seated):
-            out.setdefault((each.body, each.other), []).append(each)
+    for fact in facts:
+        if isinstance(fact, Seated):
+            out.setdefault((fact.body, fact.other), []).append(fact)
     return {pair: sorted(seats, key=lambda each: each.first) for pair, seats in out.items()}
 
 

@@ -14,8 +14,8 @@ Contacts = Mapping[str, Sequence[Touching]]
 def by_object(touching: Iterable[Touching]) -> dict[str, list[Touching]]:
     """Contacts of one end-effector, in order of time, by what it touches."""
     out: dict[str, list[Touching]] = {}
-    for each in touching:
-        out.setdefault(each.other, []).append(each)
+    for touch in touching:
+        out.setdefault(touch.other, []).append(touch)
     return out
 
 

@@ -25,8 +25,8 @@ def undisturbed(
     """
     begins = [each.first for each in own]
     latest = list(accumulate((each.last for each in own), max))
-    for each in rests:
-        first, last = bisect_left(ticks, each.first), bisect_right(ticks, each.last) - 1
+    for rest in rests:
+        first, last = bisect_left(ticks, rest.first), bisect_right(ticks, rest.last) - 1
         if first > last:
             continue
         before = bisect_right(begins, ticks[last])

@@ -73,8 +73,8 @@ def _components(graph: Graph) -> dict[Signature, int]:
     component: dict[Signature, int] = {}
     done: set[Signature] = set()
     for number, start in enumerate(reversed(order)):
-        for each in _walk(backward, start, done):
-            component[each] = number
+        for member in _walk(backward, start, done):
+            component[member] = number
     return component
 
 
@@ -104,10 +104,10 @@ def _path(graph: Graph, start: Signature, goal: Signature) -> list[Signature]:
     for node in waiting:
         if node == goal:
             break
-        for each in sorted(graph[node]):
-            if each not in before and each != start:
-                before[each] = node
-                waiting.append(each)
+        for successor in sorted(graph[node]):
+            if successor not in before and successor != start:
+                before[successor] = node
+                waiting.append(successor)
     path = [goal]
     while path[-1] != start:
         path.append(before[path[-1]])

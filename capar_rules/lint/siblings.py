@@ -97,13 +97,13 @@ def _relaxed(rule: Statement, name: str, names: set[str], open_: set[str]) -> st
     base = [f"segment({segment},_,_)", *positive]
     bound = _bound(base, rule)
     body, choices = [*base, *_equalities(rule, bound)], ""
-    for each in rule.body:
-        if each.text in open_ and each.kind == "atom":
-            atom = _free(each, bound)
-            body.append(f"not {atom}" if each.sign == 1 else atom)
+    for literal in rule.body:
+        if literal.text in open_ and literal.kind == "atom":
+            atom = _free(literal, bound)
+            body.append(f"not {atom}" if literal.sign == 1 else atom)
             choices += f"{{ {atom} }} :- {'; '.join([*base, *_equalities(rule, bound)])}.\n"
-        elif _is_test(each) and each.text not in open_ and _variables(each.text) <= bound:
-            body.append(_about_names(each, names))
+        elif _is_test(literal) and literal.text not in open_ and _variables(literal.text) <= bound:
+            body.append(_about_names(literal, names))
     return f'{choices}_may({segment},"{name}") :- {"; ".join(body)}.\n'
 
 
@@ -137,9 +137,9 @@ def _bound(conditions: Sequence[str], rule: Statement) -> set[str]:
 
 
 def _equations(rule: Statement) -> Iterator[tuple[str, str]]:
-    for each in rule.body:
-        sides = each.text.split(" = ")
-        if each.kind == "comparison" and len(sides) == 2 and not each.sign:
+    for literal in rule.body:
+        sides = literal.text.split(" = ")
+        if literal.kind == "comparison" and len(sides) == 2 and not literal.sign:
             yield sides[0], sides[1]
 
 

@@ -92,27 +92,28 @@ def static_findings(own: Sequence[Statement], base: Known, *, file: str) -> Iter
 
 
 def _statements(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
-    for each in own:
-        if each.kind not in HARMLESS:
-            why = REFUSED.get(each.kind, "a rule file holds rules and facts alone")
+    for statement in own:
+        if statement.kind not in HARMLESS:
+            why = REFUSED.get(statement.kind, "a rule file holds rules and facts alone")
             yield Finding(
-                each.place, "refused-statement", f"#{each.kind} is refused: {why}.",
+                statement.place, "refused-statement", f"#{statement.kind} is refused: {why}.",
                 "Remove it; write rules as head :- body.",
             )  # fmt: skip
-        for place in each.external:
+        for place in statement.external:
             yield Finding(
                 place, "external-function", "an @function calls code; rules are logic alone.",
                 "Compute with + - * / and comparisons, or take a measurement of the extractors.",
             )  # fmt: skip
-        if each.kind == "definition" and each.defines in base.constants:
+        if statement.kind == "definition" and statement.defines in base.constants:
             yield Finding(
-                each.place, "taken-constant", f"constant {each.defines} is set by the rule base.",
+                statement.place, "taken-constant",
+                f"constant {statement.defines} is set by the rule base.",
                 "Give yours another name.",
             )  # fmt: skip
-        if each.head_kind in HEADS:
-            message, remedy = HEADS[each.head_kind]
-            yield Finding(each.place, f"{each.head_kind}-head", f"{message}.", remedy)
-        for literal in each.body:
+        if statement.head_kind in HEADS:
+            message, remedy = HEADS[statement.head_kind]
+            yield Finding(statement.place, f"{statement.head_kind}-head", f"{message}.", remedy)
+        for literal in statement.body:
             if literal.kind == "theory":
                 yield Finding(
                     literal.place, "refused-statement", "theories are not known here.",
@@ -123,8 +124,8 @@ def _statements(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
 def _heads(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
     taken = base.heads | base.inputs
     arities = dict(AUTHORED.keys())
-    for each in own:
-        for head in each.heads:
+    for statement in own:
+        for head in statement.heads:
             if head.signature in AUTHORED:
                 continue
             name, arity = head.signature
@@ -145,8 +146,8 @@ def _heads(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
 def _bodies(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
     words = base.heads | base.inputs | heads_of(own) | set(AUTHORED)
     words -= {("because", 3), ("because_part", 3)}
-    for each in own:
-        for literal in each.body:
+    for statement in own:
+        for literal in statement.body:
             for atom in literal.atoms:
                 if atom.signature not in words:
                     yield _unknown(atom, words)
@@ -177,8 +178,8 @@ def introduced_names(own: Iterable[Statement]) -> set[str]:
 
 def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Finding]:
     mine = introduced_names(own)
-    for each in own:
-        for head in each.heads:
+    for statement in own:
+        for head in statement.heads:
             arguments = split_arguments(head.text)
             name = head.signature[0]
             taken = base.primitives.get(arguments[0].strip('"')) if name == "primitive" else None
@@ -236,11 +237,11 @@ def _circular(arguments: Sequence[str], rules: Iterable[Statement]) -> bool:
 
 
 def _ordered(head: Atom, arguments: Sequence[str], names: set[str]) -> Iterator[Finding]:
-    for each in arguments:
-        if each.strip('"') not in names:
-            close = get_close_matches(each.strip('"'), sorted(names), n=1)
+    for argument in arguments:
+        if argument.strip('"') not in names:
+            close = get_close_matches(argument.strip('"'), sorted(names), n=1)
             yield Finding(
-                head.place, "unknown-primitive", f"there is no primitive {each}.",
+                head.place, "unknown-primitive", f"there is no primitive {argument}.",
                 f"Did you mean {close[0]}?" if close else f"There are {', '.join(sorted(names))}.",
             )  # fmt: skip
 

@@ -35,11 +35,11 @@ def slip_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
     words = closed([*base.rules, *(each for each in own if not _authored(each))])
     yield from _names(own)
     constants = base.constants | {each.defines for each in own if isinstance(each.defines, str)}
-    for each in own:
-        if each.kind != "rule":
+    for statement in own:
+        if statement.kind != "rule":
             continue
-        yield from _heads(each, mine)
-        for literal in each.body:
+        yield from _heads(statement, mine)
+        for literal in statement.body:
             for atom in literal.atoms:
                 if atom.signature == FITS:
                     yield from _fits(atom, names)
@@ -133,8 +133,8 @@ def _foreign(
 
 def _names(own: Iterable[Statement]) -> Iterator[Finding]:
     """Names that a primitive may not have."""
-    for each in own:
-        for head in each.heads:
+    for statement in own:
+        for head in statement.heads:
             if head.signature == ("primitive", 1):
                 (argument,) = split_arguments(head.text)
                 name = argument.strip('"')
@@ -159,8 +159,8 @@ def fitting_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]
         for each in heads
         if each.signature in where
     }
-    for each in own:
-        for head in each.heads:
+    for statement in own:
+        for head in statement.heads:
             if head.signature == ("primitive", 1):
                 (argument,) = split_arguments(head.text)
                 if argument.strip('"') not in spoken:

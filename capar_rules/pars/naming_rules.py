@@ -71,9 +71,9 @@ class _Dependencies:
 
     def __init__(self, statements: Iterable[_Statement]) -> None:
         self._defining: dict[str, list[_Statement]] = defaultdict(list)
-        for each in statements:
-            for head in each.heads:
-                self._defining[head].append(each)
+        for statement in statements:
+            for head in statement.heads:
+                self._defining[head].append(statement)
 
     def words(self, name: str) -> frozenset[str]:
         own = self._defining.get(f"fits {name}", [])
@@ -83,10 +83,10 @@ class _Dependencies:
         while waiting:
             read, file = waiting.pop()
             seen.add((read, file))
-            for each in self._defining.get(read, ()):
-                if not file or each.file.name in {file, THRESHOLDS}:
-                    found |= each.words
-                    waiting |= {(below, each.file.name) for below in each.reads} - seen
+            for statement in self._defining.get(read, ()):
+                if not file or statement.file.name in {file, THRESHOLDS}:
+                    found |= statement.words
+                    waiting |= {(below, statement.file.name) for below in statement.reads} - seen
         return frozenset(found)
 
 

@@ -47,9 +47,9 @@ def blows(
             held = _held(touches, acting, around, set(motions) - {name})
             if _touched(touches, name, {*acting, *held}, around):
                 continue
-            for each in acting:
-                if each != name:
-                    yield from _blow_of_any(each, name, frame, bodies, calibration, thresholds)
+            for other in acting:
+                if other != name:
+                    yield from _blow_of_any(other, name, frame, bodies, calibration, thresholds)
             for first, second in ((min(each, name), max(each, name)) for each in held):
                 pair, one = calibration.pair(first, second), bodies.objects[first]
                 if not pair.pivots:

@@ -154,12 +154,12 @@ def of_end_effectors(
     """Contacts with those of the parts of an end-effector as its own: it touches where any does."""
     wholes = {each.name: each.part_of for each in capture.sensors if each.part_of}
     several: dict[tuple[str, str], list[Contact]] = {}
-    for each in found:
-        whole = wholes.get(each.first, each.first)
+    for contact in found:
+        whole = wholes.get(contact.first, contact.first)
         if whole in wholes.values():
-            several.setdefault((whole, each.second), []).append(each)
+            several.setdefault((whole, contact.second), []).append(contact)
         else:
-            yield each
+            yield contact
     for (whole, other), parts in several.items():
         touching = mask([each.interval for each in parts], len(capture.times))
         dropout_s = calibration.contact_dropout_s
@@ -245,9 +245,9 @@ def _margin(first: Poses, second: Poses, rate_hz: float, thresholds: Thresholds)
 
 
 def _pivot(capture: Capture, first: str, second: str) -> PivotContact | None:
-    for each in capture.pivot_contacts:
-        if {each.first, each.second} == {first, second}:
-            return each
+    for pivot in capture.pivot_contacts:
+        if {pivot.first, pivot.second} == {first, second}:
+            return pivot
     return None
 
 

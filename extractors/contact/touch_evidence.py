@@ -179,8 +179,8 @@ class Evidence:
 
     def _any(self, masks: Iterable[Frames]) -> Frames:
         out = np.zeros(len(self.capture.times), dtype=bool)
-        for each in masks:
-            out |= each
+        for frames in masks:
+            out |= frames
         return out
 
 

@@ -125,8 +125,8 @@ class FrameCollector:
 def frame_of(readings: Sequence[SensorReading], sensors: int, *, cycle: int | None = None) -> Frame:
     """The frame of some sensors' readings; the others are NaN."""
     positions, orientations = np.full((sensors, 3), np.nan), np.full((sensors, 4), np.nan)
-    for each in readings:
-        positions[each.index] = each.position
-        orientations[each.index] = each.orientation
+    for reading in readings:
+        positions[reading.index] = reading.position
+        orientations[reading.index] = reading.orientation
     first = min(readings, key=lambda each: each.host_s)
     return Frame(first.host_s, first.device_s, positions, orientations, cycle)

@@ -89,9 +89,9 @@ class MotionStarSimulator(Simulator):
         self._datagrams.bind(("127.0.0.1", self.port))
 
     def _unplug(self) -> None:
-        for each in (self._listening, self._datagrams, self._client):
-            if each is not None:
-                each.close()
+        for connection in (self._listening, self._datagrams, self._client):
+            if connection is not None:
+                connection.close()
         self._listening = self._datagrams = self._client = self._peer = None
 
     def _handles(self) -> list[int]:

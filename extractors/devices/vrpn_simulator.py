@@ -67,9 +67,9 @@ class VrpnSimulator(Simulator):
         self.port = self._listening.getsockname()[1]
 
     def _unplug(self) -> None:
-        for each in (self._listening, self._client):
-            if each is not None:
-                each.close()
+        for connection in (self._listening, self._client):
+            if connection is not None:
+                connection.close()
         self._listening = self._client = None
         self._ready = False
 

@@ -20,8 +20,8 @@ def resting(poses: Poses, thresholds: Thresholds) -> tuple[Interval, ...]:
     floor = motion_floor(poses.noise, rate_hz, own_m=None, thresholds=thresholds)
     calm = slow_frames(stream, poses.noise, rate_hz, thresholds)
     found: list[Interval] = []
-    for each in rest_poses(poses, floor, thresholds):
-        first, last = each.interval
+    for rest in rest_poses(poses, floor, thresholds):
+        first, last = rest.interval
         inside = first + np.flatnonzero(calm[first : last + 1])
         if inside.size:
             span = int(inside[0]), int(inside[-1])

@@ -50,10 +50,10 @@ def _doubts(verb: str, classes: Sequence[str], senses: Sequence[str]) -> Iterato
     known = wordnet().of_lemma(verb)
     if verb and not known:
         yield f"WordNet has no verb {verb!r}{the_nearest(nearest_verbs(verb))}"
-    for each in classes:
-        if each not in known_classes():
-            close = get_close_matches(each, known_classes(), n=MOST)
-            yield f"Levin has no class {each!r}{the_nearest(close)}"
+    for number in classes:
+        if number not in known_classes():
+            close = get_close_matches(number, known_classes(), n=MOST)
+            yield f"Levin has no class {number!r}{the_nearest(close)}"
     for each in senses:
         if sense_key(verb, each) in wordnet():
             continue

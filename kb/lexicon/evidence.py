@@ -65,8 +65,8 @@ def seen_in(store: Store) -> tuple[Seen, ...]:
 def summed(seen: Iterable[Seen]) -> tuple[Seen, ...]:
     """The same with one count for each primitive and observation, whatever it was done for."""
     counts = Counter[tuple[str, str]]()
-    for each in seen:
-        counts[each.primitive, each.observation] += each.count
+    for use in seen:
+        counts[use.primitive, use.observation] += use.count
     return tuple(sorted(Seen(*key, count) for key, count in counts.items()))
 
 

@@ -80,10 +80,10 @@ def _text(value: str) -> str:
 
 
 def _classes() -> Iterator[str]:
-    for each in levin_classes().values():
-        yield _fact("class", each.number)
-        if each.broader:
-            yield _fact("within", each.number, each.broader)
+    for levin in levin_classes().values():
+        yield _fact("class", levin.number)
+        if levin.broader:
+            yield _fact("within", levin.number, levin.broader)
 
 
 def _members(members: Members) -> Iterator[str]:
@@ -116,18 +116,18 @@ def _every_verb(words: Sequence[PrimitiveWords], members: Members) -> set[str]:
 
 def _senses(words: Sequence[PrimitiveWords], verbs: set[str]) -> Iterator[str]:
     """Which of the verbs mean the same as a primitive's verb, or a kind of it, as motions."""
-    for each in words:
-        for link in sense_links(each):
+    for word in words:
+        for link in sense_links(word):
             if link.key not in wordnet():
                 continue
             synset = wordnet().of_key(link.key)
             for lemma in synset.lemmas:
                 if lemma in verbs and lemma != link.verb:
-                    yield _fact("same_sense", each.name, lemma)
+                    yield _fact("same_sense", word.name, lemma)
             for other in verbs:
                 steps = _steps_to(synset, other)
                 if steps:
-                    yield f"kind_of({_text(each.name)}, {_text(other)}, {steps})."
+                    yield f"kind_of({_text(word.name)}, {_text(other)}, {steps})."
 
 
 def _steps_to(synset: Synset, verb: str) -> int:
@@ -142,10 +142,10 @@ def verbnet_members(classes: Iterable[VerbClass]) -> dict[str, frozenset[str]]:
     """The verbs of each Levin class by the members of VerbNet's classes of it."""
     found: dict[str, set[str]] = {}
     by_name = {name: each.number for each in levin_classes().values() for name in each.verbnet}
-    for each in classes:
-        number = by_name.get(_top(each.id), each.levin)
+    for verb_class in classes:
+        number = by_name.get(_top(verb_class.id), verb_class.levin)
         if number in levin_classes():
-            verbs = {member.lemma.replace("_", " ") for member in each.members}
+            verbs = {member.lemma.replace("_", " ") for member in verb_class.members}
             found.setdefault(number, set()).update(verbs)
     return {number: frozenset(verbs) for number, verbs in found.items()}
 

@@ -51,8 +51,8 @@ def fitting(
     named = {each.name: each for each in words}
     found = list(_by_rules(seen, named))
     linked = _linked_classes(seen, named)
-    for each in classes:
-        found += _by_class(seen, each, linked)
+    for verb_class in classes:
+        found += _by_class(seen, verb_class, linked)
     best: dict[str, Fit] = {}
     for fit in sorted(found, key=lambda each: (-each.score, each.verb, each.source)):
         best.setdefault(fit.verb, fit)

@@ -28,16 +28,16 @@ REFERENCE = NamedNode(terms.ONTOLEX + "reference")
 
 def levin_triples() -> Triples:
     """Levin's classes, with the thesis's claims and our remarks about them."""
-    for each in levin_classes().values():
-        node = terms.levin(each.number)
+    for levin in levin_classes().values():
+        node = terms.levin(levin.number)
         yield Triple(node, TYPE, CAPAR.LevinClass)
-        yield Triple(node, LABEL, Literal(each.title, language="en"))
-        yield Triple(node, NOTATION, Literal(each.number))
-        if each.broader:
-            yield Triple(node, BROADER, terms.levin(each.broader))
-        if each.size:
-            yield Triple(node, CAPAR.classSize, terms.number(each.size))
-        for name in each.verbnet:
+        yield Triple(node, LABEL, Literal(levin.title, language="en"))
+        yield Triple(node, NOTATION, Literal(levin.number))
+        if levin.broader:
+            yield Triple(node, BROADER, terms.levin(levin.broader))
+        if levin.size:
+            yield Triple(node, CAPAR.classSize, terms.number(levin.size))
+        for name in levin.verbnet:
             yield Triple(node, CLOSE_MATCH, terms.verbnet(name))
     yield from _claims()
     yield from _remarks()

@@ -19,8 +19,8 @@ NOTATION = NamedNode(terms.SKOS + "notation")
 def verbnet_triples(classes: Iterable[VerbClass], words: WordNet) -> Triples:
     """Every class with what it states itself; senses where that WordNet has them."""
     for top in classes:
-        for each in top.family:
-            yield from _class(each, words)
+        for verb_class in top.family:
+            yield from _class(verb_class, words)
 
 
 def _class(value: VerbClass, words: WordNet) -> Triples:
@@ -40,8 +40,8 @@ def _class(value: VerbClass, words: WordNet) -> Triples:
         yield Triple(own, TYPE, CAPAR.ThematicRole)
         yield Triple(own, LABEL, Literal(role.name))
         yield Triple(own, CAPAR.index, terms.number(index))
-        for each in role.restrictions:
-            yield Triple(own, CAPAR.restriction, Literal(each))
+        for restriction in role.restrictions:
+            yield Triple(own, CAPAR.restriction, Literal(restriction))
     for index, frame in enumerate(value.frames):
         yield from _frame(node, index, frame)
 

@@ -26,8 +26,8 @@ def wordnet_triples(words: WordNet) -> Triples:
         yield Triple(node, TYPE, WORD)
         yield Triple(node, LABEL, written)
     sentences = {str(each): Literal(frame_sentence(str(each))) for each in range(1, 36)}
-    for each in words:
-        yield from synset_triples(each, sentences)
+    for word in words:
+        yield from synset_triples(word, sentences)
 
 
 def synset_triples(value: Synset, sentences: dict[str, Literal]) -> Triples:

@@ -96,8 +96,8 @@ class VerbClass:
     def family(self) -> Iterator["VerbClass"]:
         """The class and every class below it, top down."""
         yield self
-        for each in self.subclasses:
-            yield from each.family
+        for subclass in self.subclasses:
+            yield from subclass.family
 
 
 def is_event(argument: str) -> bool:

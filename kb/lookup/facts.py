@@ -78,10 +78,10 @@ def _facts(kind: type[Observed], said: Said) -> Iterator[Fact]:
 
 def _fact(kind: type[Observed], known: FactForm, said: Said) -> Fact:
     values: dict[str, object] = {}
-    for each in fields(cast(Any, kind)):
-        text = said[known.properties[each.name]]
-        power = known.powers.get(each.name, 0)
-        values[each.name] = _number(text, power) if each.type is int else text
+    for field in fields(cast(Any, kind)):
+        text = said[known.properties[field.name]]
+        power = known.powers.get(field.name, 0)
+        values[field.name] = _number(text, power) if field.type is int else text
     return cast(Fact, cast(Any, kind)(**values))
 
 

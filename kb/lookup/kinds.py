@@ -41,8 +41,8 @@ def define(store: Store, name: str, broader: str) -> None:
         Quad(names.shared("kind", lower), CAPAR.isA, names.shared("kind", upper), graph)
         for lower, upper in sorted(closed - known)
     ]
-    for each in (name, broader):
-        quads += described(each)
+    for kind in (name, broader):
+        quads += described(kind)
     node, general = names.shared("kind", name), names.shared("kind", broader)
     quads.append(Quad(node, CAPAR.broaderKind, general, graph))
     store.change(insertion(quads))

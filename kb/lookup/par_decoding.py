@@ -85,8 +85,8 @@ def ipar(of: StatementIndex, node: NamedNode) -> Ipar:
 
 def _preparation(of: StatementIndex, node: NamedNode) -> tuple[Preparation, ...]:
     found = []
-    for each in of.ordered(node, CAPAR.preparation, by=CAPAR.index):
-        needed, remedy = of.one(each, CAPAR.condition), of.one(each, CAPAR.remedy)
+    for preparation in of.ordered(node, CAPAR.preparation, by=CAPAR.index):
+        needed, remedy = of.one(preparation, CAPAR.condition), of.one(preparation, CAPAR.remedy)
         if needed and remedy:
             found.append(Preparation(condition(of, needed), _call(of, remedy)))
     return tuple(found)
@@ -128,8 +128,8 @@ def _core(of: StatementIndex, owner: NamedNode) -> CoreSemantics:
 def complex_par(of: StatementIndex, node: NamedNode) -> ComplexPar:
     """The complex action as an observation saw it."""
     links: dict[str, list[NamedNode]] = {}
-    for each in of.ordered(node, CAPAR.step, by=CAPAR.index):
-        links.setdefault(of.text(each, CAPAR.ee), []).append(each)
+    for step in of.ordered(node, CAPAR.step, by=CAPAR.index):
+        links.setdefault(of.text(step, CAPAR.ee), []).append(step)
     common = links.pop(COMMON, [])
     order = of.words(node, CAPAR.effectors)
     return ComplexPar(

@@ -13,10 +13,10 @@ class StatementIndex:
 
     def __init__(self, statements: Iterable[Quad | Triple]) -> None:
         self._said: dict[object, dict[NamedNode, list[NamedNode | Literal]]] = {}
-        for each in statements:
-            if isinstance(each.object, NamedNode | Literal):
-                said = self._said.setdefault(each.subject, {})
-                said.setdefault(each.predicate, []).append(each.object)
+        for statement in statements:
+            if isinstance(statement.object, NamedNode | Literal):
+                said = self._said.setdefault(statement.subject, {})
+                said.setdefault(statement.predicate, []).append(statement.object)
 
     def __contains__(self, node: NamedNode) -> bool:
         """Whether anything is said of a thing."""

@@ -100,9 +100,9 @@ def as_table(answer: Answer) -> str:
 def listing() -> Answer:
     """The named questions with their parameters, those in brackets not needed."""
     rows = []
-    for each in questions().values():
-        names = (p.name if p.required else f"[{p.name}]" for p in each.parameters)
-        rows.append(tuple(map(Literal, (each.name, " ".join(names), each.text))))
+    for question in questions().values():
+        names = (p.name if p.required else f"[{p.name}]" for p in question.parameters)
+        rows.append(tuple(map(Literal, (question.name, " ".join(names), question.text))))
     return Answer(("name", "parameters", "question"), tuple(rows))
 
 

@@ -95,8 +95,8 @@ class Question:
             self.query,
             {each: value for each in set_filters if (value := values[each]) is not None},
         )
-        for each in self.parameters:
-            query = _set(query, each, values[each.name])
+        for parameter in self.parameters:
+            query = _set(query, parameter, values[parameter.name])
         return sparql.complete(query)
 
     def _value(self, parameter: Parameter, given: Mapping[str, object]) -> Literal | None:
@@ -161,11 +161,11 @@ def check_known(store: "Store", asked: Question, given: Mapping[str, object]) ->
         UnknownNameError: Nothing that was observed bears a name; the message lists those there are.
         CaparError: The capture has no such time.
     """
-    for each in asked.parameters:
-        value = str(given.get(each.name) or "")
-        if each.kind != "text" or not value:
+    for parameter in asked.parameters:
+        value = str(given.get(parameter.name) or "")
+        if parameter.kind != "text" or not value:
             continue
-        kind, pattern = BEARERS[each.name]
+        kind, pattern = BEARERS[parameter.name]
         known = _texts(store, pattern)
         if value not in known:
             raise UnknownNameError(kind, value, known, where=store.place)

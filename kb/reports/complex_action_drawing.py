@@ -125,9 +125,9 @@ def _bar(step: Step, y: int, height: int, colour: str) -> list[str]:
 def as_turtle(store: Store, name: str) -> str:
     """The complex action, and its steps as each observation saw them."""
     triples = []
-    for each in seen(store, name):
-        about = names.observation(each.name)
-        quads = part(store, each.name)
+    for use in seen(store, name):
+        about = names.observation(use.name)
+        quads = part(store, use.name)
         whole = {q.object for q in quads if q.subject == about and q.predicate == CAPAR.enacts}
         steps = {q.object for q in quads if q.predicate in {CAPAR.step, CAPAR.complexStep}}
         subjects = whole | steps

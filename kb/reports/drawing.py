@@ -43,15 +43,15 @@ def draw(report: LinguisticReport) -> str:
     parts: list[str] = []
     y = 56
     group = ""
-    for each in report.classes:
-        top = _top(each.number)
+    for levin in report.classes:
+        top = _top(levin.number)
         if top != group:
             group = top
             y += 14
             parts.append(text(0, y + 12, _heading(top), class_="group"))
             parts.append(f'<line x1="0" y1="{y + 20}" x2="{WIDTH}" y2="{y + 20}" class="rule"/>')
             y += 30
-        y = _row(parts, each, y)
+        y = _row(parts, levin, y)
     return _page(parts, y + 52)
 
 

@@ -19,8 +19,8 @@ def as_text(report: LinguisticReport) -> str:
     lines = [TITLE, "=" * len(TITLE), ""]
     lines += [f"{what}: {much}" for what, much in coverage(report)]
     lines += ["", *textwrap.wrap(EVIDENCE, WIDTH)]
-    for each in report.classes:
-        lines += ["", *_class_text(each)]
+    for levin in report.classes:
+        lines += ["", *_class_text(levin)]
     lines += ["", "Senses", "------"]
     for row in report.senses:
         old = f", sense {row.link.number_1_6} in 1.6" if row.link.number_1_6 else ""

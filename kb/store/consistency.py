@@ -37,14 +37,14 @@ def inconsistencies(statements: Iterable[Triple | Quad]) -> tuple[str, ...]:
     """
     said: dict[str, dict[NamedNode, list[object]]] = defaultdict(lambda: defaultdict(list))
     found = set()
-    for each in statements:
-        if isinstance(each.subject, NamedNode):
-            predicate, value = each.predicate, each.object
+    for statement in statements:
+        if isinstance(statement.subject, NamedNode):
+            predicate, value = statement.predicate, statement.object
             if predicate in _COMPARED:
-                said[each.subject.value][predicate].append(value)
+                said[statement.subject.value][predicate].append(value)
             stated = value if predicate == TYPE and isinstance(value, NamedNode) else None
             if words := _unknown_words(predicate, stated):
-                found |= {f"{_short(each.subject.value)}: {word}" for word in words}
+                found |= {f"{_short(statement.subject.value)}: {word}" for word in words}
     for thing, own in said.items():
         capture = said.get(f"{thing.partition('#')[0]}#capture", {})
         problems = (*_durations(own), *_clock(own), *_times(own, capture), *_sizes(own))

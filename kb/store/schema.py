@@ -44,10 +44,10 @@ def version(store: Store) -> int | None:
 def version_of(quads: Iterable[Quad]) -> int | None:
     """The version of exported statements; None if there is no observation among them."""
     written = False
-    for each in quads:
-        if each.predicate == CAPAR.schemaVersion and each.subject == GRAPHS["ontology"]:
-            return _number(each.object)
-        written = written or (each.predicate == TYPE and each.object == CAPAR.Observation)
+    for quad in quads:
+        if quad.predicate == CAPAR.schemaVersion and quad.subject == GRAPHS["ontology"]:
+            return _number(quad.object)
+        written = written or (quad.predicate == TYPE and quad.object == CAPAR.Observation)
     return FIRST if written else None
 
 

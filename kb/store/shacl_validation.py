@@ -62,10 +62,10 @@ def rules() -> tuple[Rule, ...]:
     found = []
     for file in shape_files():
         said: dict[object, dict[str, list[Node]]] = {}
-        for each in read(file):
-            assert not isinstance(each.object, Triple)
-            name = each.predicate.value.removeprefix(SH)
-            said.setdefault(each.subject, {}).setdefault(name, []).append(each.object)
+        for triple in read(file):
+            assert not isinstance(triple.object, Triple)
+            name = triple.predicate.value.removeprefix(SH)
+            said.setdefault(triple.subject, {}).setdefault(name, []).append(triple.object)
         for node, shape in said.items():
             for target in shape.get("targetClass", ()):
                 found += [_rule(str(node), target, said, each) for each in shape["property"]]
@@ -111,9 +111,9 @@ def _list(said: dict[object, dict[str, list[Node]]], node: Node) -> Iterable[str
 def _rules_of() -> Mapping[object, tuple[Rule, ...]]:
     """What is asked of the things of each class, and so of those of the classes below it."""
     found: dict[object, tuple[Rule, ...]] = {}
-    for each in rules():
-        for kind in (each.target, *classes_below(each.target)):
-            found[kind] = (*found.get(kind, ()), each)
+    for rule in rules():
+        for kind in (rule.target, *classes_below(rule.target)):
+            found[kind] = (*found.get(kind, ()), rule)
     return found
 
 
@@ -127,9 +127,9 @@ def violations(
         elsewhere: The classes of a thing that they refer to and do not state.
     """
     said: dict[object, dict[NamedNode, list[Node]]] = {}
-    for each in triples:
-        assert not isinstance(each.object, Triple)
-        said.setdefault(each.subject, {}).setdefault(each.predicate, []).append(each.object)
+    for triple in triples:
+        assert not isinstance(triple.object, Triple)
+        said.setdefault(triple.subject, {}).setdefault(triple.predicate, []).append(triple.object)
     return _judged(said, elsewhere)
 
 
@@ -197,11 +197,11 @@ def _number(value: Node) -> float:
 def nlt_problems(triples: Iterable[Triple | Quad]) -> tuple[str, ...]:
     """NLTs that are no finite place with a unit quaternion, a line each, sorted."""
     found = []
-    for each in triples:
-        if isinstance(each.object, Literal) and each.object.datatype == CAPAR.nlt:
-            problem = nlt_problem(each.object.value)
+    for triple in triples:
+        if isinstance(triple.object, Literal) and triple.object.datatype == CAPAR.nlt:
+            problem = nlt_problem(triple.object.value)
             if problem:
-                found.append(f"{_short(each.subject)}: {problem}")
+                found.append(f"{_short(triple.subject)}: {problem}")
     return tuple(sorted(found))
 
 

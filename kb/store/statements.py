@@ -79,7 +79,7 @@ def terms(value: Value | Iterable[NamedNode] | Iterable[Literal]) -> list[Term]:
 def insertion(quads: Iterable[Quad]) -> str:
     """Statements as a SPARQL update that adds them."""
     graphs: dict[str, list[str]] = {}
-    for each in quads:
-        graphs.setdefault(str(each.graph_name), []).append(f"{each.triple} .")
+    for quad in quads:
+        graphs.setdefault(str(quad.graph_name), []).append(f"{quad.triple} .")
     blocks = [f"GRAPH {name} {{\n{chr(10).join(lines)}\n}}" for name, lines in graphs.items()]
     return "INSERT DATA {\n" + "\n".join(blocks) + "\n}"

@@ -50,17 +50,17 @@ class FactLedger:
         continued = {place for place in own if firsts.get(place, place[1]) != place[1]}
         ended = {(_key(each), each.ends()[0]) for each in seen if self._has_ended(each)}
         out: list[Observed] = []
-        for each in seen:
-            span = each.declaration.span
-            if span is Span.INSTANT and each.ends()[0] > self.frontier:
-                out.append(each)
-            elif span is Span.INTERVAL and not self._has_ended(each):
-                out.append(_begun(each, firsts.get((_key(each), each.ends()[0]))))
+        for fact in seen:
+            span = fact.declaration.span
+            if span is Span.INSTANT and fact.ends()[0] > self.frontier:
+                out.append(fact)
+            elif span is Span.INTERVAL and not self._has_ended(fact):
+                out.append(_begun(fact, firsts.get((_key(fact), fact.ends()[0]))))
             elif not isinstance(span, Span):
-                place = (_key_of_named(each), each.ends()[0])
-                if place in ended or (place in continued and not isinstance(each, AT_THE_END)):
+                place = (_key_of_named(fact), fact.ends()[0])
+                if place in ended or (place in continued and not isinstance(fact, AT_THE_END)):
                     continue
-                out.append(_begun(each, firsts.get(place)))
+                out.append(_begun(fact, firsts.get(place)))
         for key, _ in continued:
             out += [each for each in self._open[key].named if not isinstance(each, AT_THE_END)]
         return list(dict.fromkeys(out))
@@ -76,17 +76,17 @@ class FactLedger:
         going: dict[Key, _Open] = {}
         ended: set[tuple[Key, int]] = set()
         named: dict[tuple[Key, int], list[Observed]] = {}
-        for each in stitched:
-            if not isinstance(each.declaration.span, Span):
-                named.setdefault((_key_of_named(each), each.ends()[0]), []).append(each)
-        for each in stitched:
-            span, ends = each.declaration.span, each.ends()
+        for fact in stitched:
+            if not isinstance(fact.declaration.span, Span):
+                named.setdefault((_key_of_named(fact), fact.ends()[0]), []).append(fact)
+        for fact in stitched:
+            span, ends = fact.declaration.span, fact.ends()
             if span is Span.INSTANT and ends[0] <= frontier:
-                done.append(each)
+                done.append(fact)
             elif span is Span.INTERVAL:
-                place = (_key(each), ends[0])
+                place = (_key(fact), ends[0])
                 if ends[-1] <= frontier:
-                    done.append(each)
+                    done.append(fact)
                     done += named.get(place, ())
                     ended.add(place)
                 elif ends[0] <= frontier:
@@ -97,11 +97,11 @@ class FactLedger:
     def _firsts(self, seen: Iterable[Observed]) -> dict[tuple[Key, int], int]:
         """The true first frames of intervals that were going on at the frontier."""
         out: dict[tuple[Key, int], int] = {}
-        for each in seen:
-            if _is_interval(each) and each.ends()[0] <= self.frontier <= each.ends()[-1]:
-                known = self._open.get(_key(each))
+        for fact in seen:
+            if _is_interval(fact) and fact.ends()[0] <= self.frontier <= fact.ends()[-1]:
+                known = self._open.get(_key(fact))
                 if known is not None:
-                    out[_key(each), each.ends()[0]] = known.first
+                    out[_key(fact), fact.ends()[0]] = known.first
         return out
 
     def _has_ended(self, fact: Observed) -> bool:

@@ -113,8 +113,8 @@ class FrameBuffer:
     def _forget(self) -> None:
         """Keep the last frames only."""
         kept = slice(self._filled - self.longest, self._filled)
-        for each in (self._times, self._positions, self._orientations):
-            each[: self.longest] = each[kept].copy()
+        for rows in (self._times, self._positions, self._orientations):
+            rows[: self.longest] = rows[kept].copy()
         self._filled = self.longest
 
 

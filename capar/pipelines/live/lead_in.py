@@ -32,6 +32,6 @@ def capture_of(rig: Capture, frames: Sequence[Poses]) -> Capture:
             f"a lead-in of {lasts_s:.2f} s: expected at least {SHORTEST_S:g} s, to tell noise"
         )
     buffer = FrameBuffer(rig, len(frames))
-    for each in frames:
-        buffer.push(each)
+    for frame in frames:
+        buffer.push(frame)
     return buffer.window(len(frames)).capture

@@ -104,9 +104,9 @@ class LiveResult:
         before = self._ledger.frontier
         found = self._ledger.stitched(measurements.facts, window.first)
         self._facts += self._ledger.settle(found, frontier)
-        for each in measurements.facts:
-            if isinstance(each, Observed) and not each.ends():
-                self._always.setdefault(each)
+        for fact in measurements.facts:
+            if isinstance(fact, Observed) and not fact.ends():
+                self._always.setdefault(fact)
         for thing in window.capture.objects:
             if thing.name not in self._objects and not thing.stream.lost.all():
                 self._objects[thing.name] = observed_object(thing)
@@ -123,11 +123,11 @@ class LiveResult:
 
     def segments(self, done: Sequence[SettledSegment], inference: Inference) -> None:
         """Take the segments that an answer of the rules settles, and what several do jointly."""
-        for each in done:
-            key = each.segment.ee, each.segment.index
+        for settled in done:
+            key = settled.segment.ee, settled.segment.index
             if key not in self._settled:
-                self._waiting.append(each)
-            self._settled[key] = each
+                self._waiting.append(settled)
+            self._settled[key] = settled
         by_place = {
             (key[0], each.segment.first, each.segment.last): each.segment
             for key, each in self._settled.items()
@@ -244,8 +244,8 @@ class LiveResult:
         always: list[Fact] = [Frames(0, last), RateMhz(self._rate_mhz)]
         always += (each for each in self._always if not isinstance(each, Frames | RateMhz))
         groups: dict[type[Fact], set[Fact]] = {}
-        for each in (*always, *self._facts):
-            groups.setdefault(type(each), set()).add(each)
+        for fact in (*always, *self._facts):
+            groups.setdefault(type(fact), set()).add(fact)
         return [each for kind in MEASURED for each in sorted(groups.get(kind, ()))]
 
     def _add_joint(self, joint: JointAction) -> None:

@@ -39,10 +39,10 @@ class RuleMemory:
         """
         kept: list[Observed] = []
         gone: list[Observed] = []
-        for each in self._facts:
-            ends = each.ends()
+        for fact in self._facts:
+            ends = fact.ends()
             near = any(abs(end - border) <= margin for end in ends for border in borders)
-            (kept if near or ends[-1] >= begin - margin else gone).append(each)
+            (kept if near or ends[-1] >= begin - margin else gone).append(fact)
         self._facts = kept
         if gone:
             self._remember(gone)
@@ -51,19 +51,19 @@ class RuleMemory:
         """Keep the places of an end-effector at rest, with what it touched meanwhile."""
         places = {(each.body, each.frame): each for each in gone if isinstance(each, Place)}
         touching: dict[str, list[Touching]] = defaultdict(list)
-        for each in gone:
-            if isinstance(each, Touching):
-                touching[each.body].append(each)
+        for fact in gone:
+            if isinstance(fact, Touching):
+                touching[fact.body].append(fact)
         for (body, frame), place in places.items():
             if frame == 0:
                 self._postures.setdefault((body, "first"), (place,))
-        for each in gone:
-            if isinstance(each, Resting) and (each.ee, each.last) in places:
-                place = places[each.ee, each.last]
+        for fact in gone:
+            if isinstance(fact, Resting) and (fact.ee, fact.last) in places:
+                place = places[fact.ee, fact.last]
                 met = (
                     touch
-                    for touch in touching[each.ee]
-                    if touch.first <= each.last and each.first <= touch.last
+                    for touch in touching[fact.ee]
+                    if touch.first <= fact.last and fact.first <= touch.last
                 )
                 cell = tuple(round(axis / SAME_PLACE_MM) for axis in (place.x, place.y, place.z))
-                self._postures.setdefault((each.ee, *cell), (each, place, *met))
+                self._postures.setdefault((fact.ee, *cell), (fact, place, *met))

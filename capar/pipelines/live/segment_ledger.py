@@ -111,9 +111,9 @@ class SegmentLedger:
     def _with_purpose(self, own: _Link, link: ObservedLink) -> SettledSegment | None:
         """The last settled segment with what it was for, where that was not known before."""
         known = own.recent[-1]
-        for each in link.segments:
-            if _same(each, known.segment) and each.purpose != known.segment.purpose:
-                amended = replace(known, segment=replace(known.segment, purpose=each.purpose))
+        for latest in link.segments:
+            if _same(latest, known.segment) and latest.purpose != known.segment.purpose:
+                amended = replace(known, segment=replace(known.segment, purpose=latest.purpose))
                 own.recent[-1] = amended
                 return amended
         return None
@@ -149,8 +149,8 @@ class SegmentLedger:
 
         Of what is farther back, rules are told too little to say anything.
         """
-        for each in list(own.recent)[-2:]:
-            known = each.segment
+        for settled in list(own.recent)[-2:]:
+            known = settled.segment
             if known.first <= (segment.first + segment.last) // 2 <= known.last:
                 self.contradictions.names += int(known.name != segment.name)
                 self.contradictions.borders += int(known.last != segment.last)

@@ -30,13 +30,13 @@ def grouped(capture: Capture) -> Capture:
 def _groups(capture: Capture) -> dict[tuple[str, str, str], Parts]:
     """The sensors of each agent's hands and feet."""
     out: dict[tuple[str, str, str], Parts] = {}
-    for each in capture.sensors:
-        found = part_of(each.end_effector)
-        if found and each.side != "none" and each.role is Role.ACTS and not each.part_of:
+    for sensor in capture.sensors:
+        found = part_of(sensor.end_effector)
+        if found and sensor.side != "none" and sensor.role is Role.ACTS and not sensor.part_of:
             limb, rank = found
-            _, named = part_of(each.name) or (limb, rank)
-            key = (capture.agent_of(each), each.side, limb)
-            out.setdefault(key, []).append((max(rank, named), each))
+            _, named = part_of(sensor.name) or (limb, rank)
+            key = (capture.agent_of(sensor), sensor.side, limb)
+            out.setdefault(key, []).append((max(rank, named), sensor))
     return out
 
 

@@ -128,11 +128,11 @@ def shared_clock(
         count = _count(begin, end, rate_hz, where)
         return np.arange(count) / rate_hz, begin
     clock = streams[0].times
-    for each in streams:
-        if len(each.times) != len(clock) or np.abs(each.times - clock).max() > SAME_S:
+    for stream in streams:
+        if len(stream.times) != len(clock) or np.abs(stream.times - clock).max() > SAME_S:
             raise CaptureError(
                 f"{where}: the streams are on different clocks ({len(clock)} and "
-                f"{len(each.times)} frames); state the rate to bring them to, like rate_hz = 100"
+                f"{len(stream.times)} frames); state the rate to bring them to, like rate_hz = 100"
             )
     kept = clock[(clock >= begin - SAME_S) & (clock <= end + SAME_S)]
     if len(kept) < 2:

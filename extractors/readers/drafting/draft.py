@@ -76,8 +76,8 @@ def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
         lines += account_lines(file.contents, file.sensors, file.others)
     used: set[str] = set()
     for file in files:
-        for each in file.sensors:
-            lines += limb_lines(each, file.key, file.contents.body, subjects, used)
+        for sensor in file.sensors:
+            lines += limb_lines(sensor, file.key, file.contents.body, subjects, used)
     if not sensors and found and not any(file.sensors for file in files):
         lines += ["", f"{EDIT} no name tells of a hand, head or foot; the first body is taken."]
         sensors = found[:1]
@@ -95,8 +95,8 @@ def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
 
 def _files(recordings: Sequence[Recording], folder: Path) -> dict[str, str]:
     out: dict[str, str] = {}
-    for each in recordings:
-        path = Path(each.source.path)
+    for recording in recordings:
+        path = Path(recording.source.path)
         key = constant_name(path.name.split(".")[0])
         while key in out:
             key += "_2"

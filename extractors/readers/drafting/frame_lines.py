@@ -89,12 +89,12 @@ def frame_lines(held: Sequence[Contents], frame: Frame) -> list[str]:
 def _doubts(held: Sequence[Contents]) -> list[str]:
     """Files whose own unit makes no person of the body in them."""
     out = []
-    for each in held:
-        unit_m, person = each.recording.unit_m, each.standing
+    for file in held:
+        unit_m, person = file.recording.unit_m, file.standing
         if unit_m is not None and person is not None and not person.is_persons(unit_m):
             likely = f"; {person.unit} would make it {person.height * UNITS[person.unit]:.2f} m"
             out.append(
-                f"{EDIT} by the unit that {each.recording.source.path.rsplit('/', 1)[-1]} states, "
+                f"{EDIT} by the unit that {file.recording.source.path.rsplit('/', 1)[-1]} states, "
                 f"{person.what} is {person.height * unit_m:.3g} m" + (likely if person.unit else "")
             )
     return out

@@ -37,8 +37,8 @@ def free_name(text: str, used: set[str]) -> str:
 def agent_lines(subjects: Sequence[str]) -> list[str]:
     """The people, where there are several."""
     out = []
-    for each in subjects:
-        out += ["", "[[agent]]", f"name = {quoted(constant_name(each or 'agent'))}"]
+    for subject in subjects:
+        out += ["", "[[agent]]", f"name = {quoted(constant_name(subject or 'agent'))}"]
     return out
 
 

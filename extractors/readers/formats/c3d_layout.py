@@ -151,8 +151,8 @@ class _Section:
         if kind not in {-1, 1, 2, 4} or ranks > 7:
             raise FileError(self.path, f"has parameter {name!r} of unknown kind {kind}.")
         count = 1
-        for each in sizes:
-            count *= each
+        for size in sizes:
+            count *= size
         data = self._part(at + 2 + ranks, count * abs(kind))
         if kind == -1:
             width = sizes[0] if sizes else 1

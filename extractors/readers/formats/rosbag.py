@@ -95,8 +95,8 @@ def _stamped_pose(topic: str, message: Any) -> Iterator[Sample]:
 
 
 def _transforms(topic: str, message: Any) -> Iterator[Sample]:
-    for each in message.transforms:
-        yield from _transform(topic, each)
+    for transform in message.transforms:
+        yield from _transform(topic, transform)
 
 
 def _transform(topic: str, message: Any) -> Iterator[Sample]:

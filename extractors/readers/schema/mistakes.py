@@ -98,9 +98,9 @@ def _field(kind: type[Entry], parts: Iterable[int | str]) -> FieldInfo | None:
     for part in parts:
         if str(part).removesuffix(" shape") in SHAPES and str(part).endswith(" shape"):
             kinds = [SHAPES[str(part).removesuffix(" shape")]]
-        for each in kinds:
-            if part in each.model_fields:
-                found = each.model_fields[str(part)]
+        for model in kinds:
+            if part in model.model_fields:
+                found = model.model_fields[str(part)]
                 kinds = list(_entries(found.annotation)) or kinds
                 break
     return found
@@ -110,8 +110,8 @@ def _entries(annotation: Any) -> Iterable[type[Entry]]:
     """The tables that a type refers to."""
     if isinstance(annotation, type) and issubclass(annotation, Entry):
         yield annotation
-    for each in get_args(annotation):
-        yield from _entries(each)
+    for argument in get_args(annotation):
+        yield from _entries(argument)
 
 
 def _error(mistake: _Mistake) -> CaparError:

@@ -130,10 +130,10 @@ def predicate(reader: Reader, about: Noun | None, before: Helpers | None = None)
     nobody = about is not None and about.none
     phrase.negated = more.negated or earlier.negated or nobody
     phrase.passive = is_be and Form.GERUND not in phrase.form
-    for each in (earlier.adjuncts, more.adjuncts):
-        phrase.adjuncts.manner[:0] = each.manner
-        phrase.adjuncts.count = phrase.adjuncts.count or each.count
-        phrase.adjuncts.window = phrase.adjuncts.window or each.window
+    for adjuncts in (earlier.adjuncts, more.adjuncts):
+        phrase.adjuncts.manner[:0] = adjuncts.manner
+        phrase.adjuncts.count = phrase.adjuncts.count or adjuncts.count
+        phrase.adjuncts.window = phrase.adjuncts.window or adjuncts.window
     return _of_subject(reader, phrase, about)
 
 

@@ -46,9 +46,9 @@ class VerbEntries:
         """Ways to say primitives by the first word of the verb."""
         found: dict[str, dict[tuple[object, ...], Way]] = {}
         for rank, (action, pattern) in enumerate(self._patterns()):
-            for each in _ways(action, pattern, rank):
-                shape = (each.particles, each.slots)
-                found.setdefault(each.head, {}).setdefault(shape, each)
+            for entry in _ways(action, pattern, rank):
+                shape = (entry.particles, entry.slots)
+                found.setdefault(entry.head, {}).setdefault(shape, entry)
         return {head: tuple(each.values()) for head, each in found.items()}
 
     def _patterns(self) -> Iterator[tuple[str, str]]:
