@@ -24,24 +24,27 @@ A support that bears the mug since before it was taken is no subordinate in ``ex
 """
 
 
-KEEPS_NO_HOLD = pytest.mark.xfail(
-    strict=True, reason="thesis misses the hold before a child raises the mug: no zero crossing"
+SLOW_CLOCK = pytest.mark.xfail(
+    strict=True,
+    reason="at 30 Hz a child's hold of the mug lies 0.13 s between crossings; steps take 0.15 s",
 )
 TRIALS = [
-    pytest.param("woman", 1, "extended"),
-    pytest.param("woman", 1, "thesis"),
-    pytest.param("child", 3, "extended"),
-    pytest.param("child", 3, "thesis", marks=KEEPS_NO_HOLD),
+    pytest.param("woman", 1, 30.0, "extended"),
+    pytest.param("woman", 1, 30.0, "thesis"),
+    pytest.param("child", 3, 30.0, "extended"),
+    pytest.param("child", 3, 30.0, "thesis", marks=SLOW_CLOCK),
+    pytest.param("child", 3, 60.0, "thesis"),
 ]
+"""All fifteen at 60 Hz, with and without noise: ``benchmarks/drinking.py``."""
 
 
 @cache
-def trial(who: str, number: int) -> Capture:
-    return drinking(who, number, rate_hz=30.0)
+def trial(who: str, number: int, rate_hz: float) -> Capture:
+    return drinking(who, number, rate_hz=rate_hz)
 
 
-@pytest.mark.parametrize(("who", "number", "profile"), TRIALS)
+@pytest.mark.parametrize(("who", "number", "rate_hz", "profile"), TRIALS)
 def test_a_drink_is_the_same_for_bodies_and_tables_of_any_size(
-    who: str, number: int, profile: str
+    who: str, number: int, rate_hz: float, profile: str
 ) -> None:
-    assert steps_of(observe(trial(who, number), rules=profile)) == STEPS[profile]
+    assert steps_of(observe(trial(who, number, rate_hz), rules=profile)) == STEPS[profile]
