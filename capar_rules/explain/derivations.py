@@ -4,7 +4,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, lru_cache
+from functools import cache, lru_cache
 
 import clingo
 
@@ -45,7 +45,7 @@ class Recorder:
         self.rules = towards(list(statements), targets)
         self.numbering = Numbering(self.rules)
         recorded = [each for each in self.rules if each.body]
-        self.places = [each.place for each in recorded]
+        self.recorded = recorded
         self._texts = {rule: [self.numbering.rule(rule)] for rule in self.rules}
         for number, rule in enumerate(recorded):
             self._texts[rule] += _records(number, rule, self.numbering)
@@ -77,10 +77,11 @@ class Recorder:
             control.ground([("base", [])])
         except RuntimeError as error:
             raise RuleError(f"the rules cannot be explained: {messages or error}") from None
-        found: list[list[clingo.Symbol]] = [[] for _ in windows]
+        found = [Derivations(self.recorded) for _ in windows]
         for symbol in _shown(control):
-            found[symbol.arguments[0].number].append(symbol)
-        return [Derivations(self.places, each) for each in found]
+            window, *arguments = symbol.arguments
+            found[window.number].note(symbol.name, arguments)
+        return found
 
 
 def _numbered(windows: Sequence[Sequence[Fact]]) -> Iterator[clingo.Symbol]:
@@ -96,26 +97,32 @@ def _numbered(windows: Sequence[Sequence[Fact]]) -> Iterator[clingo.Symbol]:
 class Derivations:
     """The recorded rule instances of one window's answer; trees are built on demand."""
 
-    def __init__(self, places: Sequence[Place], symbols: Sequence[clingo.Symbol]) -> None:
-        self.places = places
+    def __init__(self, recorded: Sequence[Statement]) -> None:
+        self.recorded = recorded
         self.instances: dict[clingo.Symbol, list[tuple[int, clingo.Symbol]]] = defaultdict(list)
         self.parts: dict[tuple[int, clingo.Symbol], list[clingo.Symbol]] = defaultdict(list)
         self.more: dict[clingo.Symbol, list[clingo.Symbol]] = defaultdict(list)
-        for symbol in symbols:
-            name = symbol.name
-            if name == "because":
-                _, number, head, body = symbol.arguments
-                self.instances[head].append((number.number, body))
-            elif name == "because_part":
-                _, number, head, body = symbol.arguments
-                self.parts[number.number, head].append(body)
-            else:
-                _, head, other = symbol.arguments
-                self.more[head].append(other)
+        self.named: dict[str, dict[clingo.Symbol, None]] = defaultdict(dict)
+        """Every derived atom by its predicate."""
+
+    def note(self, kind: str, arguments: Sequence[clingo.Symbol]) -> None:
+        """Keep a record: ``because``, ``because_part`` or ``also``, without its window."""
+        if kind == "also":
+            head, other = arguments
+            self.more[head].append(other)
+            return
+        number, head, body = arguments[0].number, arguments[1], arguments[2]
+        if kind == "because_part":
+            self.parts[number, head].append(body)
+            return
+        self.instances[head].append((number, body))
+        self.named[self.recorded[number].heads[0].signature[0]][head] = None
 
     def holding(self, predicate: str) -> list[tuple[str, ...]]:
         """Arguments of each derived atom of a predicate, sorted."""
-        return [tuple(map(_plain, each.arguments)) for each in sorted(self._derived(predicate))]
+        return [
+            tuple(map(_plain, each.arguments)) for each in sorted(self.named.get(predicate, ()))
+        ]
 
     def why(self, atom: str) -> Grounds:
         """The derivation tree of an atom.
@@ -123,21 +130,10 @@ class Derivations:
         Raises:
             RuleError: It was not derived.
         """
-        for symbol in self._derived(atom.partition("(")[0]):
+        for symbol in self.named.get(atom.partition("(")[0], ()):
             if str(symbol) == atom:
                 return self._grounds(symbol, frozenset(), {})
         raise RuleError(f"{atom} does not hold")
-
-    def _derived(self, predicate: str) -> list[clingo.Symbol]:
-        return self._named.get(predicate, [])
-
-    @cached_property
-    def _named(self) -> dict[str, list[clingo.Symbol]]:
-        """Every derived atom by its predicate."""
-        table: dict[str, list[clingo.Symbol]] = defaultdict(list)
-        for each in self.instances:
-            table[each.name].append(each)
-        return table
 
     def _grounds(
         self,
@@ -175,7 +171,7 @@ class Derivations:
                 children += part.arguments
             if not above & set(children):
                 children += sorted(self.more.get(symbol, ()))
-                return self.places[number], list(dict.fromkeys(children))
+                return self.recorded[number].place, list(dict.fromkeys(children))
         told_below = () if symbol in self.instances else self.more.get(symbol, ())
         return None, sorted(told_below)
 

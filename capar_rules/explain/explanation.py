@@ -27,7 +27,6 @@ TOGETHER = 16
 """Greatest number of segments whose windows are grounded together."""
 
 
-
 @dataclass(frozen=True)
 class Explanation:
     """A segment's name and why it has it."""
@@ -124,15 +123,7 @@ class Explainer:
         Raises:
             RuleError: The segment does not follow from these facts and rules.
         """
-        recorder = self.base.recorder(frozenset([segment.name]))
-        for facts in self.windows_of(segment.ee, self.ticks(segment)):
-            found = self._told(recorder.solve([facts])[0], segment)
-            if found is not None:
-                return found
-        raise RuleError(
-            f"segment {segment.index} of {segment.ee!r} is no {segment.name} by these rules; "
-            "observe the capture again"
-        )
+        return self.explain_all([segment])[0]
 
     def explain_all(self, segments: Sequence[Segment]) -> tuple[Explanation, ...]:
         """The same of each of several segments, in a fraction of the time.
@@ -140,15 +131,26 @@ class Explainer:
         Raises:
             RuleError: A segment does not follow from these facts and rules.
         """
-        named = [each for each in segments if each.known]
-        told: dict[tuple[str, int], Explanation | None] = {}
-        for start in range(0, len(named), TOGETHER):
-            group = named[start : start + TOGETHER]
-            recorder = self.base.recorder(frozenset(each.name for each in group))
-            windows = [next(self.windows_of(each.ee, self.ticks(each))) for each in group]
-            for each, derived in zip(group, recorder.solve(windows), strict=True):
-                told[each.ee, each.index] = self._told(derived, each)
-        return tuple(told.get((each.ee, each.index)) or self.explain(each) for each in segments)
+        told: dict[tuple[str, int], Explanation] = {}
+        windows = {each: self.windows_of(each.ee, self.ticks(each)) for each in segments}
+        while waiting := [each for each in windows if (each.ee, each.index) not in told]:
+            for group in _groups(waiting):
+                for each in self._explained(group, [next(windows[one], None) for one in group]):
+                    told[each.ee, each.index] = each
+        return tuple(told[each.ee, each.index] for each in segments)
+
+    def _explained(
+        self, group: Sequence[Segment], windows: Sequence[tuple[Fact, ...] | None]
+    ) -> Iterator[Explanation]:
+        """The explanations of the segments that follow from their windows."""
+        names = frozenset(each.name for each in group)
+        given = [each for each in windows if each is not None]
+        if len(given) < len(group):
+            raise _unfounded(group[windows.index(None)])
+        for segment, derived in zip(group, self.base.recorder(names).solve(given), strict=True):
+            found = self._told(derived, segment)
+            if found is not None:
+                yield found
 
     def _told(self, derived: Derivations, segment: Segment) -> Explanation | None:
         """The explanation of a segment; None if it does not follow from what was derived."""
@@ -210,6 +212,21 @@ class Explainer:
             return "not"
         doubted = any(each.predicate == "doubted" for each in grounds.because)
         return "mended" if doubted or grounds.atom in self.corrected else ""
+
+
+def _groups(segments: Sequence[Segment]) -> Iterator[Sequence[Segment]]:
+    """Segments to derive together, those without a name apart from the others."""
+    for known in (True, False):
+        alike = [each for each in segments if each.known == known]
+        for start in range(0, len(alike), TOGETHER):
+            yield alike[start : start + TOGETHER]
+
+
+def _unfounded(segment: Segment) -> RuleError:
+    return RuleError(
+        f"segment {segment.index} of {segment.ee!r} is no {segment.name} by these rules; "
+        "observe the capture again"
+    )
 
 
 def _roots(
