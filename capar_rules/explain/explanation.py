@@ -116,6 +116,8 @@ class Explainer:
         self.windows = Windows(facts, number_borders(facts, crossings_only=profile.crossings_only))
         self.distance_m = distance_m
         self.corrected = corrected(facts)
+        self.worlds: dict[Segment, str] = {}
+        """The program of counterfactual worlds of each segment that was asked about."""
 
     def explain(self, segment: Segment) -> Explanation:
         """Why a segment has its name, or why it has none.
