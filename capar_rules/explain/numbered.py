@@ -6,7 +6,9 @@ another window.
 
 import re
 from collections.abc import Iterable, Iterator
+from dataclasses import fields
 
+from capar.model.facts import ALL_FACT_KINDS
 from capar_rules.engine.syntax import Atom, Literal, Signature, Statement
 
 WINDOW = "NumberOfWindow"
@@ -14,6 +16,9 @@ WINDOW = "NumberOfWindow"
 
 NUMBERS = "window_number"
 """The predicate of the numbers themselves."""
+
+MEASURED = {(each.predicate, len(fields(each))) for each in ALL_FACT_KINDS}
+"""Predicates of measured facts, which a rule file may state too."""
 
 _ATOM = re.compile(r"((?:not )*)(\w+)(?:\((.*)\))?", re.DOTALL)
 
@@ -24,15 +29,17 @@ class Numbering:
     def __init__(self, statements: Iterable[Statement]) -> None:
         rules = [each for each in statements if each.kind == "rule"]
         derived = {head.signature for each in rules if each.body for head in each.heads}
-        self.same = {head.signature for each in rules for head in each.heads} - derived
+        self.same = {head.signature for each in rules for head in each.heads} - derived - MEASURED
         """Predicates that are stated in the rules alone, and are the same in every window."""
 
     def rule(self, statement: Statement) -> str:
         """A rule with the atoms of one window; other statements as they are."""
         if statement.kind != "rule" or self._is_same(statement):
             return statement.text
-        head = "; ".join(self.atom(each.text, each.signature) for each in statement.heads)
-        return f"{head} :- {self.body(statement.body)}."
+        if statement.head_kind == "constraint":
+            return f":- {self.body(statement.body)}."
+        head = statement.text.partition(" :- ")[0].removesuffix(".")
+        return f"{self._inside(head, statement.heads)} :- {self.body(statement.body)}."
 
     def body(self, literals: Iterable[Literal], *more: str) -> str:
         """Conditions within one window, and others as they are."""
@@ -42,11 +49,7 @@ class Numbering:
         """A condition with the atoms of one window."""
         if literal.kind == "atom":
             return self.atom(literal.text, literal.atoms[0].signature)
-        known = {each.text: each for each in literal.atoms}
-        if not known:
-            return literal.text
-        every = "|".join(re.escape(each) for each in sorted(known, key=len, reverse=True))
-        return re.sub(rf"(?<!\w)(?:{every})(?!\w)", lambda at: self._of(known[at[0]]), literal.text)
+        return self._inside(literal.text, literal.atoms)
 
     def atom(self, text: str, signature: Signature) -> str:
         """An atom, or its negation, of one window; of a pool, each."""
@@ -57,8 +60,14 @@ class Numbering:
         numbered = (f"{WINDOW},{each}" if each else WINDOW for each in _alternatives(inside or ""))
         return f"{negation}{name}({';'.join(numbered)})"
 
-    def _of(self, atom: Atom) -> str:
-        return self.atom(atom.text, atom.signature)
+    def _inside(self, text: str, atoms: Iterable[Atom]) -> str:
+        """A text with these of its atoms of one window."""
+        known = {each.text: each.signature for each in atoms}
+        if not known:
+            return text
+        every = "|".join(re.escape(each) for each in sorted(known, key=len, reverse=True))
+        pattern = rf"(?<!\w)(?:{every})(?!\w)"
+        return re.sub(pattern, lambda found: self.atom(found[0], known[found[0]]), text)
 
     def _is_same(self, statement: Statement) -> bool:
         return bool(statement.heads) and all(
