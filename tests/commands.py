@@ -2,14 +2,14 @@
 
 Each has its own folder, environment, outputs and exit code, and `capar.cli.main` runs in it as the
 script `capar` runs it; what it need not do is import the same libraries again. Tests of starting,
-of signals and of closed outputs start the script itself.
+of signals, of rights and of closed outputs start the script itself.
 """
 
 import io
 import multiprocessing
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from multiprocessing.context import ForkServerContext
@@ -51,7 +51,6 @@ def capar(
     *arguments: object,
     cwd: Path,
     environment: Mapping[str, str] | None = None,
-    prepare: Callable[[], None] | None = None,
     together: bool = False,
 ) -> Done:
     """Run a command of the command line.
@@ -60,14 +59,13 @@ def capar(
         arguments: What stands behind `capar`.
         cwd: The folder in which it runs.
         environment: The whole environment; if None, this one without settings of ours.
-        prepare: A function of a module, called in the process before the command.
         together: Whether errors go to the standard output too.
     """
     env = dict(clean_environment() if environment is None else environment)
     with TemporaryDirectory() as folder:
         out = Path(folder) / "out"
         errors = out if together else Path(folder) / "errors"
-        told = (list(map(str, arguments)), str(cwd), env, str(out), str(errors), prepare)
+        told = (list(map(str, arguments)), str(cwd), env, str(out), str(errors))
         process = _context().Process(target=_command, args=told)
         process.start()
         process.join()
@@ -89,7 +87,6 @@ def _command(
     environment: Mapping[str, str],
     out: str,
     errors: str,
-    prepare: Callable[[], None] | None,
 ) -> None:
     """Be the command: what `capar` does, with its own outputs, folder and environment."""
     from capar.cli import main
@@ -98,8 +95,6 @@ def _command(
     os.environ.clear()
     os.environ.update(environment)
     os.chdir(cwd)
-    if prepare is not None:
-        prepare()
     sys.argv = ["capar", *arguments]
     try:
         main()

@@ -15,7 +15,6 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-import commands
 import pytest
 
 from capar.cli._output import REMEDIES, error_message, written
@@ -39,8 +38,12 @@ def without_overrides() -> None:
             assert libc.prctl(24, each, 0, 0, 0) == 0, os.strerror(ctypes.get_errno())
 
 
-def capar(*arguments: object, cwd: Path) -> commands.Done:
-    return commands.capar(*arguments, cwd=cwd, prepare=without_overrides)
+def capar(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("CAPAR_")}
+    return subprocess.run(
+        [str(CAPAR), *map(str, arguments)], cwd=cwd, env=environment, capture_output=True,
+        text=True, check=False, preexec_fn=without_overrides,
+    )  # fmt: skip
 
 
 @pytest.fixture
