@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from combinations import EVERY
 from motion_files import recordings_folder
+from observed import observed
 from scipy.signal import find_peaks
 
 from capar.model.capture import Stream
 from capar.model.facts import Moving, Touching
 from capar.model.observation import Observation, Segment
-from capar.pipelines.observation import observe, observe_measured
 from extractors.measure import measure
 from extractors.readers.bundle.capture_toml import read_capture, takes
 
@@ -42,10 +42,12 @@ def lies_from_s(stream: Stream) -> float:
     return float(stream.times[np.flatnonzero(away)[-1] + 1])
 
 
-def test_a_box_is_reached_held_moved_to_a_shelf_and_left(recordings: Path) -> None:
+def test_a_box_is_reached_held_moved_to_a_shelf_and_left(
+    recordings: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     """It starts at about 1.6 s; table and shelf are assumed."""
     capture = read_capture(EXAMPLES / "pyomeca_box_lift")
-    observation = observe(capture)
+    observation = observed(EXAMPLES / "pyomeca_box_lift", tmp_path_factory)
     (link,) = observation.links
     moves = [each for each in link.segments if is_a(each, *MOVES)]
     before = [each for each in link.segments if each.last <= moves[0].first]
@@ -61,14 +63,19 @@ def test_a_box_is_reached_held_moved_to_a_shelf_and_left(recordings: Path) -> No
     assert sum(each.code == "assumed-support" for each in observation.notices) == 2
 
 
-def test_one_watched_hand_alone_is_not_both(recordings: Path) -> None:
+def test_one_watched_hand_alone_is_not_both(
+    recordings: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     """The crate is lifted with two hands, of which one carries markers: nothing is made up."""
-    assert observe(EXAMPLES / "pyomeca_box_lift").joint == ()
+    assert observed(EXAMPLES / "pyomeca_box_lift", tmp_path_factory).joint == ()
 
 
-def test_a_large_table_is_lifted_and_put_down_with_both_hands(recordings: Path) -> None:
+def test_a_large_table_is_lifted_and_put_down_with_both_hands(
+    recordings: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     """Both hands hold it from its first motion to its last, as it goes up and comes down."""
-    observation = observe(EXAMPLES / "omomo_intermimic" / "hands.toml:sub2_largetable_008")
+    place = EXAMPLES / "omomo_intermimic" / "hands.toml:sub2_largetable_008"
+    observation = observed(place, tmp_path_factory)
     (moving,) = [each for each in observation.facts if isinstance(each, Moving)]
     joint = [each for each in observation.joint if each.first < moving.last > moving.first]
     assert {observation.who(each) for each in joint} == {"both hands"}
@@ -79,13 +86,15 @@ def test_a_large_table_is_lifted_and_put_down_with_both_hands(recordings: Path) 
     assert names.index("Lift") < names.index("Lower")
 
 
-def test_a_soft_pillow_is_touched_at_each_descent_and_never_moves(recordings: Path) -> None:
+def test_a_soft_pillow_is_touched_at_each_descent_and_never_moves(
+    recordings: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     """Twenty minima of the hand's height deeper than 5 cm, and one more descent at the very end."""
     capture = read_capture(EXAMPLES / "hand_embodiment_pillow")
-    measurements = measure(capture)
-    height = measurements.tracks["right_hand"].positions[:, 2]
+    (hand,) = capture.sensors
+    height = hand.stream.positions[:, 2]
     minima, _ = find_peaks(-height, prominence=0.05)
-    observation = observe_measured(capture, measurements)
+    observation = observed(EXAMPLES / "hand_embodiment_pillow", tmp_path_factory)
     touches = [each for each in observation.segments if is_a(each, "Touch")]
     assert len(minima) == 20
     for minimum in capture.times[minima]:
@@ -122,8 +131,10 @@ def test_bodies_touch_when_the_labels_say_so(recordings: Path) -> None:
 
 
 @pytest.mark.parametrize("take", ["take0", "take5"])
-def test_both_hands_of_a_cook_are_observed(recordings: Path, take: str) -> None:
-    observation = observe(f"{EXAMPLES / 'bimacs_optitrack'}:{take}")
+def test_both_hands_of_a_cook_are_observed(
+    recordings: Path, take: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    observation = observed(f"{EXAMPLES / 'bimacs_optitrack'}:{take}", tmp_path_factory)
     names = _names(observation)
     assert set(names) == {"right_hand", "left_hand"}
     for segments in names.values():

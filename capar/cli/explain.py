@@ -75,7 +75,7 @@ def explain(
             _print_alternatives(why_not, found)
         _print_notices(asked, seen)
         return
-    told = [seen.explainer.explain(each) for each in chosen]
+    told = list(seen.explainer.explain_all(chosen))
     if svg:
         _draw(told, svg)
     _print(told, seen, json=json, tree=alone)

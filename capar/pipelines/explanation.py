@@ -58,7 +58,7 @@ def explain(
         CaparError: The capture or the rules have a fault.
     """
     seen = _explained(capture, rules)
-    return tuple(seen.explainer.explain(each) for each in chosen(seen.observation, segment))
+    return seen.explainer.explain_all(chosen(seen.observation, segment))
 
 
 def why_not(

@@ -2,9 +2,9 @@
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, lru_cache
+from functools import cache, lru_cache
 
 import clingo
 
@@ -13,6 +13,7 @@ from capar.model.facts import Fact
 from capar_rules.engine.search import ERRORS_ONLY
 from capar_rules.engine.slicing import firing, towards
 from capar_rules.engine.syntax import Literal, Place, Signature, Statement
+from capar_rules.explain.numbered import NUMBERS, WINDOW, Numbering
 
 ABSENT = "absent"
 """Functor of a negated literal among the children of a derivation."""
@@ -34,7 +35,7 @@ class Grounds:
     because: tuple["Grounds", ...]
 
 
-_SHOWN = ("#show because/3.", "#show because_part/3.", "#show also/2.")
+_SHOWN = ("#show because/4.", "#show because_part/4.", "#show also/3.")
 
 
 class Recorder:
@@ -42,19 +43,22 @@ class Recorder:
 
     def __init__(self, statements: Iterable[Statement], *, targets: Iterable[Signature]) -> None:
         self.rules = towards(list(statements), targets)
+        self.numbering = Numbering(self.rules)
         recorded = [each for each in self.rules if each.body]
-        self.places = [each.place for each in recorded]
-        self._records = {rule: _records(number, rule) for number, rule in enumerate(recorded)}
+        self.recorded = recorded
+        self._texts = {rule: [self.numbering.rule(rule)] for rule in self.rules}
+        for number, rule in enumerate(recorded):
+            self._texts[rule] += _records(number, rule, self.numbering)
 
     @cache  # noqa: B019 - recorders are few and kept
     def text(self, measured: frozenset[Signature]) -> str:
         """The rules that can fire if these predicates have facts, each with its recording rules."""
         rules = firing(self.rules, measured)
-        records = [line for rule in rules for line in self._records.get(rule, ())]
-        return "\n".join([*(each.text for each in rules), *records, *_SHOWN])
+        lines = (line for rule in dict.fromkeys(rules) for line in self._texts[rule])
+        return "\n".join([*lines, *_SHOWN])
 
-    def solve(self, facts: Sequence[Fact]) -> "Derivations":
-        """Derive what follows from facts, and record how.
+    def solve(self, windows: Sequence[Sequence[Fact]]) -> list["Derivations"]:
+        """For each window of facts, derive what follows from them alone, and record how.
 
         Raises:
             RuleError: The rules have an error over these facts, or no answer.
@@ -64,41 +68,61 @@ class Recorder:
             [ERRORS_ONLY, "--models=1"], logger=lambda _, text: messages.append(text)
         )
         try:
-            symbols = [_symbol(fact) for fact in facts]
-            measured = frozenset((each.name, len(each.arguments)) for each in symbols)
+            kinds = {_symbol(fact) for facts in windows for fact in facts}
+            measured = frozenset((each.name, len(each.arguments)) for each in kinds)
             control.add("base", [], self.text(measured))
             with control.backend() as backend:
-                for each in symbols:
+                for each in _numbered(windows):
                     backend.add_rule([backend.add_atom(each)])
             control.ground([("base", [])])
         except RuntimeError as error:
             raise RuleError(f"the rules cannot be explained: {messages or error}") from None
-        return Derivations(self.places, _shown(control))
+        found = [Derivations(self.recorded) for _ in windows]
+        for symbol in _shown(control):
+            window, *arguments = symbol.arguments
+            found[window.number].note(symbol.name, arguments)
+        return found
+
+
+def _numbered(windows: Sequence[Sequence[Fact]]) -> Iterator[clingo.Symbol]:
+    """The facts of each window, and the numbers of the windows."""
+    for window, facts in enumerate(windows):
+        number = clingo.Number(window)
+        yield clingo.Function(NUMBERS, [number])
+        for fact in facts:
+            symbol = _symbol(fact)
+            yield clingo.Function(symbol.name, [number, *symbol.arguments])
 
 
 class Derivations:
-    """The recorded rule instances of one answer; trees are built on demand."""
+    """The recorded rule instances of one window's answer; trees are built on demand."""
 
-    def __init__(self, places: Sequence[Place], symbols: Sequence[clingo.Symbol]) -> None:
-        self.places = places
+    def __init__(self, recorded: Sequence[Statement]) -> None:
+        self.recorded = recorded
         self.instances: dict[clingo.Symbol, list[tuple[int, clingo.Symbol]]] = defaultdict(list)
         self.parts: dict[tuple[int, clingo.Symbol], list[clingo.Symbol]] = defaultdict(list)
         self.more: dict[clingo.Symbol, list[clingo.Symbol]] = defaultdict(list)
-        for symbol in symbols:
-            name = symbol.name
-            if name == "because":
-                number, head, body = symbol.arguments
-                self.instances[head].append((number.number, body))
-            elif name == "because_part":
-                number, head, body = symbol.arguments
-                self.parts[number.number, head].append(body)
-            else:
-                head, other = symbol.arguments
-                self.more[head].append(other)
+        self.named: dict[str, dict[clingo.Symbol, None]] = defaultdict(dict)
+        """Every derived atom by its predicate."""
+
+    def note(self, kind: str, arguments: Sequence[clingo.Symbol]) -> None:
+        """Keep a record: ``because``, ``because_part`` or ``also``, without its window."""
+        if kind == "also":
+            head, other = arguments
+            self.more[head].append(other)
+            return
+        number, head, body = arguments[0].number, arguments[1], arguments[2]
+        if kind == "because_part":
+            self.parts[number, head].append(body)
+            return
+        self.instances[head].append((number, body))
+        self.named[self.recorded[number].heads[0].signature[0]][head] = None
 
     def holding(self, predicate: str) -> list[tuple[str, ...]]:
         """Arguments of each derived atom of a predicate, sorted."""
-        return [tuple(map(_plain, each.arguments)) for each in sorted(self._derived(predicate))]
+        return [
+            tuple(map(_plain, each.arguments)) for each in sorted(self.named.get(predicate, ()))
+        ]
 
     def why(self, atom: str) -> Grounds:
         """The derivation tree of an atom.
@@ -106,21 +130,10 @@ class Derivations:
         Raises:
             RuleError: It was not derived.
         """
-        for symbol in self._derived(atom.partition("(")[0]):
+        for symbol in self.named.get(atom.partition("(")[0], ()):
             if str(symbol) == atom:
                 return self._grounds(symbol, frozenset(), {})
         raise RuleError(f"{atom} does not hold")
-
-    def _derived(self, predicate: str) -> list[clingo.Symbol]:
-        return self._named.get(predicate, [])
-
-    @cached_property
-    def _named(self) -> dict[str, list[clingo.Symbol]]:
-        """Every derived atom by its predicate."""
-        table: dict[str, list[clingo.Symbol]] = defaultdict(list)
-        for each in self.instances:
-            table[each.name].append(each)
-        return table
 
     def _grounds(
         self,
@@ -158,7 +171,7 @@ class Derivations:
                 children += part.arguments
             if not above & set(children):
                 children += sorted(self.more.get(symbol, ()))
-                return self.places[number], list(dict.fromkeys(children))
+                return self.recorded[number].place, list(dict.fromkeys(children))
         told_below = () if symbol in self.instances else self.more.get(symbol, ())
         return None, sorted(told_below)
 
@@ -181,20 +194,20 @@ def _plain(symbol: clingo.Symbol) -> str:
     return symbol.string if symbol.type is clingo.SymbolType.String else str(symbol)
 
 
-def _records(number: int, rule: Statement) -> list[str]:
+def _records(number: int, rule: Statement, numbering: Numbering) -> list[str]:
     """Rules that record each instance of a rule, and each element of its aggregates."""
     if rule.head_kind != "atom" or (len(rule.heads) != 1 and ";" not in rule.heads[0].text):
         return []
     head = rule.heads[0].text
     literals, choices = _chosen(rule.body)
-    body = "; ".join((*(each.text for each in literals), *choices))
-    lines = [f"because({number},{head},{_tuple(literals)}) :- {body}."]
+    body = numbering.body(literals, *choices)
+    lines = [f"because({WINDOW},{number},{head},{_tuple(literals)}) :- {body}."]
     shared = _variables(head).union(*(_variables(each.text) for each in _plainly(rule.body)))
     for literal in rule.body:
         for element in filter(None, literal.elements):
-            inside = "; ".join(each.text for each in element)
-            part = f"because_part({number},{head},{_tuple(element)})"
-            own = _variables(inside) - shared
+            inside = numbering.body(element)
+            part = f"because_part({WINDOW},{number},{head},{_tuple(element)})"
+            own = _variables(inside) - shared - {WINDOW}
             lines.append(_renamed(part, own) + f" :- {body}; {_renamed(inside, own)}.")
     return lines
 

@@ -103,8 +103,15 @@ def _about(atoms: Iterable[Atom], term: str) -> dict[str, str]:
 def worlds_around(explainer: Explainer, segment: Segment) -> str:
     """The program of counterfactual worlds of a segment.
 
-    Empty if in the world without changes the segment does not have its own name.
+    Empty if in the world without changes the segment does not have its own name. It is the same
+    for every other name, so the explainer keeps it.
     """
+    if segment not in explainer.worlds:
+        explainer.worlds[segment] = _worlds_around(explainer, segment)
+    return explainer.worlds[segment]
+
+
+def _worlds_around(explainer: Explainer, segment: Segment) -> str:
     base, ticks = explainer.base.statements, explainer.ticks(segment)
     term = _term(segment, ticks)
     called = f'named({term},"{segment.name}")' if segment.known else f"unknown({term})"

@@ -15,7 +15,7 @@ beside(Thing) :- like(Thing, self).
 def why(*facts: Tag) -> Grounds:
     statements = parse_text(RULES)
     recorder = Recorder(statements, targets=(("handy", 1), ("also", 2)))
-    return recorder.solve(facts).why("handy(hand)")
+    return recorder.solve([facts])[0].why("handy(hand)")
 
 
 def walk(grounds: Grounds) -> list[str]:
@@ -33,3 +33,15 @@ def test_what_is_to_be_told_below_a_measurement_is_told_below_it() -> None:
     told = why(Tag("hand", "self")).because[0].because[0]
     assert told.atom == "tag(hand,self)"
     assert [each.atom for each in told.because] == ["beside(hand)"]
+
+
+def test_what_is_derived_in_a_window_is_what_is_derived_from_its_facts_alone() -> None:
+    recorder = Recorder(parse_text(RULES), targets=(("handy", 1), ("also", 2)))
+    windows = [(Tag("hand", "self"),), (Tag("mug", "mobile"),), (Tag("table", "fixed"),)]
+    together = recorder.solve(windows)
+    assert [each.holding("handy") for each in together] == [[("hand",)], [("mug",)], []]
+    for window, derived in zip(windows, together, strict=True):
+        (alone,) = recorder.solve([window])
+        assert derived.holding("like") == alone.holding("like")
+        for (thing,) in derived.holding("handy"):
+            assert derived.why(f"handy({thing})") == alone.why(f"handy({thing})")

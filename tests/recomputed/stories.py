@@ -66,7 +66,7 @@ def told(name: str) -> Told:
     return Told(
         seen,
         tuple(Known(seen, facts, each, trial.capture, steps) for each in observation.segments),
-        tuple(explainer.explain(each) for each in observation.segments),
+        explainer.explain_all(observation.segments),
     )
 
 

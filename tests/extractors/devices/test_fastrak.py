@@ -29,7 +29,7 @@ def test_every_format_and_mode_arrives_whole(
     with FastrakSimulator(SmoothMotion(stations), log=log) as simulator:
         options = f"format={form}&stations={stations}&encoding={encoding}&mode={mode}"
         with tracker(simulator, options) as fastrak:
-            frames = tracked.take(fastrak, 80 // stations)
+            frames = tracked.take(fastrak, 40 // stations)
     assert simulator.skipped == 0
     assert fastrak.counts.lost_records == 0
     assert fastrak.counts.dropped_bytes == 0

@@ -9,9 +9,9 @@ import re
 from pathlib import Path
 
 import pytest
+from observed import observed
 
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
-from capar.pipelines.observation import observe
 from kb.language.describe import describe
 
 DATA = Path(os.environ.get("CAPAR_DATA", Path(__file__).parents[4] / "shared/data"))
@@ -36,11 +36,14 @@ TAKES = (
 @pytest.mark.skipif(not DATA.is_dir(), reason=f"no recordings in {DATA}; see CAPAR_DATA")
 @pytest.mark.parametrize("take", TAKES)
 def test_a_recording_is_told_as_we_read_it(
-    take: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    take: str,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
     monkeypatch.setenv("CAPAR_DATA", str(DATA))
     capture = groceries(tmp_path) if take.startswith("boxed_vr") else str(EXAMPLES / take)
-    seen = observe(capture)
+    seen = observed(capture, tmp_path_factory)
     words = primitive_words(primitive_files())
     steps, summary = describe(seen, words=words), describe(seen, detail="summary", words=words)
     told = f"{steps}\n\n{summary}\n"
