@@ -61,9 +61,10 @@ class Selection:
             yield ["tests"]
 
     def _executing(self, mutant: Mutant) -> Iterator[list[str]]:
-        """Those that execute the changed lines; then what else is in their files.
+        """Those that execute the changed lines, quick files first.
 
-        A test may see a result that an earlier one of its file has left in a cache.
+        Then, if asked, what else is in their files: a test may see a result that an earlier one
+        of its file has left in a cache.
         """
         tests = tests_executing(mutant, self.executed, (self.tree / mutant.file).read_text())
         seconds = {
@@ -73,8 +74,8 @@ class Selection:
         }
         files = sorted(seconds, key=lambda file: seconds[file])
         yield [test for file in files for test in self.executed.files[file] if test in tests]
-        left_out = [part for test in sorted(tests) for part in ("--deselect", test)]
-        yield [*files, *left_out] if files else []
+        if self.thorough and files:
+            yield [*files, *(part for test in sorted(tests) for part in ("--deselect", test))]
 
     def _likely(self, mutant: Mutant) -> Iterator[list[str]]:
         package, stem = mutant.file.split("/")[0], Path(mutant.file).stem

@@ -22,6 +22,8 @@ def test_each_string_of_a_length_in_use_is_there_once_with_its_value_and_its_bit
         for length in lengths()
         for value in range(2**length)
     }
-    assert sorted(answer.of("bit_string")) == sorted((text, *told) for text, told in written.items())
+    assert sorted(answer.of("bit_string")) == sorted(
+        (text, *told) for text, told in written.items()
+    )
     bits = {(text, at, int(bit)) for text in written for at, bit in enumerate(text)}
     assert set(answer.of("bit")) == bits

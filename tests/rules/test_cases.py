@@ -74,9 +74,7 @@ def test_a_story_ends_as_expected(case: Case, chosen: frozenset[Case]) -> None:
 
 
 @pytest.mark.parametrize("case", all_cases()[::25], ids=str)
-def test_cases_that_are_solved_together_do_not_meet(
-    case: Case, chosen: frozenset[Case]
-) -> None:
+def test_cases_that_are_solved_together_do_not_meet(case: Case, chosen: frozenset[Case]) -> None:
     assert solved_together(chosen, case.profile.name)[case] == solved_alone(case)
 
 
