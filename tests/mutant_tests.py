@@ -84,11 +84,9 @@ class Selection:
             yield self._mentioning(stem)
         yield [*first, "-k", stem]
         yield first
-        if package == "capar_rules":
-            # Rule cases take milliseconds each, so they come before what mentions the file.
+        if package == "capar_rules" and self.thorough:
+            # Names of rule files are everyday words, so few of the tests that mention one mean it.
             yield self._mentioning(stem)
-        mirror = Path("tests", *Path(mutant.file).parts[:2])
-        yield [str(mirror)] if (self.tree / mirror).is_dir() else []
 
     def _mentioning(self, stem: str) -> list[str]:
         """Test files that use the name of a module or rule file as a word, if they are few."""
