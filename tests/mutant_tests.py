@@ -61,7 +61,7 @@ class Selection:
             yield ["tests"]
 
     def _executing(self, mutant: Mutant) -> Iterator[list[str]]:
-        """Those that execute the changed lines, quick files first.
+        """Those that execute the changed lines: first in files that import the module, then others.
 
         Then, if asked, what else is in their files: a test may see a result that an earlier one
         of its file has left in a cache.
@@ -72,7 +72,9 @@ class Selection:
             for file, found in self.executed.files.items()
             if tests & found.keys()
         }
-        files = sorted(seconds, key=lambda file: seconds[file])
+        imported = mutant.file.removesuffix(".py").replace("/", ".")
+        texts = {file: (self.tree / file).read_text(encoding="utf-8") for file in seconds}
+        files = sorted(seconds, key=lambda file: (imported not in texts[file], seconds[file]))
         yield [test for file in files for test in self.executed.files[file] if test in tests]
         if self.thorough and files:
             yield [*files, *(part for test in sorted(tests) for part in ("--deselect", test))]
