@@ -1,10 +1,12 @@
 """Which faults the tests would notice: put one after another into a copy, and run the tests.
 
-Run by hand, from the root: ``python tests/mutants.py --count 100 --jobs 2``. Faults are drawn by a
-seed from the rules and the extractors, as often from the ones as from the others. Each is put into
-a copy of the tree; tests that mention its file run first, then those of its package, then all. A
-fault is caught by the first test that fails. Results are kept, one JSON object a line, and a run
-goes on where one with the same file of results stopped.
+Run by hand, from the root, with maps of what tests execute (``executed.py``) where there are any:
+``python tests/mutants.py --count 100 --maps out/executed``. Faults are drawn by a seed from the
+rules and the extractors, as often from the ones as from the others. Each is put into a copy of the
+tree. Of an extractor those tests run that execute what is changed; of a rule file the rule cases,
+its own first. With ``--thorough`` all others run as well. A fault is caught by the first test that
+fails. Results are kept, one JSON object a line, and a run goes on where one with the same file of
+results stopped.
 """
 
 import argparse
