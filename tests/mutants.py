@@ -1,10 +1,12 @@
 """Which faults the tests would notice: put one after another into a copy, and run the tests.
 
-Run by hand, from the root: ``python tests/mutants.py --count 100 --jobs 2``. Faults are drawn by a
-seed from the rules and the extractors, as often from the ones as from the others. Each is put into
-a copy of the tree; tests that mention its file run first, then those of its package, then all. A
-fault is caught by the first test that fails. Results are kept, one JSON object a line, and a run
-goes on where one with the same file of results stopped.
+Run by hand, from the root, with maps of what tests execute (``executed.py``) where there are any:
+``python tests/mutants.py --count 100 --maps out/executed``. Faults are drawn by a seed from the
+rules and the extractors, as often from the ones as from the others. Each is put into a copy of the
+tree. Of an extractor those tests run that execute what is changed; of a rule file the rule cases,
+its own first. With ``--thorough`` all others run as well. A fault is caught by the first test that
+fails. Results are kept, one JSON object a line, and a run goes on where one with the same file of
+results stopped.
 """
 
 import argparse
@@ -25,48 +27,21 @@ from pathlib import Path
 from queue import Queue
 from tempfile import TemporaryDirectory
 
-from mutations import Mutation, difference, of_python, of_rules, python_differs, rules_differ
+from executed import read_maps
+from mutant_tests import NOT_RUN, Mutant, Selection
+from mutations import difference, of_python, of_rules, python_differs, rules_differ
 
 ROOT = Path(__file__).parents[1]
 RULE_PACKAGES = ("primitives", "vocabulary", "segmentation", "naming", "composition")
 PACKAGES = ("capar", "extractors", "capar_rules", "kb", "ontology")
-FIRST = {
-    "capar_rules": ("tests/rules",),
-    "extractors": ("tests/extractors", "tests/model"),
-}
-"""By package, the tests that say most of it."""
-
-SECOND = (
-    "tests/scenes/test_rates.py",
-    "tests/test_motions.py",
-    "tests/test_published.py",
-    "tests/capar_rules",
-)
-NOT_RUN = ("tests/test_architecture.py", "tests/test_readme.py")
-"""They judge how files are written and what is installed, not what a program does."""
-
 UNLIKELY = ("tests/extractors/devices", "tests/body", "tests/kb/test_kills.py")
 """They take minutes and run little of what is changed, so they run only for their own modules."""
 
 CAUGHT, SURVIVED, TIMEOUT = "caught", "survived", "timeout"
-FAILED, NO_TESTS = 1, 5
-"""Exit codes of pytest: a test failed, and none was selected."""
+NEVER = "no test executes it"
 
-MOST_MENTIONS = 6
-"""A word in more test files than this says nothing of where a module is tested."""
-
-
-@dataclass(frozen=True, slots=True)
-class Mutant:
-    """A fault of one file."""
-
-    file: str
-    mutation: Mutation
-
-    @property
-    def name(self) -> str:
-        """What it is called in the results."""
-        return self.mutation.name(self.file)
+FAILED, NOT_FOUND, NO_TESTS = 1, 4, 5
+"""Exit codes of pytest: a test failed, there is none of a name, and none was selected."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,58 +115,47 @@ def _differs(mutant: Mutant) -> bool:
     return differ(before, mutant.mutation.applied(before))
 
 
-def tried(mutant: Mutant, tree: Path, *, limit_s: float) -> Result:
+def tried(mutant: Mutant, selection: Selection, *, limit_s: float) -> Result:
     """Put a mutant into a copy of the tree, run the tests, and take it out again."""
-    path = tree / mutant.file
+    path = selection.tree / mutant.file
     before = path.read_text(encoding="utf-8")
     after = mutant.mutation.applied(before)
     start = time.monotonic()
     try:
+        stages = list(selection.stages(mutant))
         path.write_text(after, encoding="utf-8")
-        status, by = _outcome(mutant, tree, until=start + limit_s)
+        status, by = _outcome(stages, selection.tree, until=start + limit_s)
     finally:
         path.write_text(before, encoding="utf-8")
-    if status == CAUGHT and _run(tree, [by], until=time.monotonic() + limit_s)[0] == FAILED:
-        raise SystemExit(f"{by} fails without any mutant: mend that first")
+    if status == CAUGHT and by not in selection.executed.passed:
+        if _run(selection.tree, [by], until=time.monotonic() + limit_s)[0] == FAILED:
+            raise SystemExit(f"{by} fails without any mutant: mend that first")
+        selection.executed.passed.add(by)
     diff = difference(mutant.file, before, after)
     seconds = round(time.monotonic() - start, 1)
     return Result(mutant.name, mutant.file, mutant.mutation.kind, status, by, seconds, diff)
 
 
-def _outcome(mutant: Mutant, tree: Path, *, until: float) -> tuple[str, str]:
+def _outcome(stages: Sequence[Sequence[str]], tree: Path, *, until: float) -> tuple[str, str]:
     """Whether some test fails, and which one."""
-    package = mutant.file.split("/")[0]
-    stem = Path(mutant.file).stem
-    first = [each for each in FIRST[package] if (tree / each).exists()]
-    mirror = Path("tests", *Path(mutant.file).parts[:2])
-    second = [each for each in SECOND if (tree / each).exists()]
-    stages = [[*first, "-k", stem], first]
-    # Rule cases take milliseconds each, so they come before the tests that mention the file.
-    stages.insert(2 if package == "capar_rules" else 0, _mentioning(tree, stem))
-    if (tree / mirror).is_dir():
-        stages.insert(2, [str(mirror)])
-    for tests in (*stages, second, ["tests"]):
-        code, output = _run(tree, tests, until=until) if tests else (0, "")
+    if not any(stages):
+        return SURVIVED, NEVER
+    for tests in filter(None, stages):
+        code, output = _run(tree, tests, until=until)
+        if code == NOT_FOUND:
+            # A constant in a test's parameters has changed, and so has the test's name.
+            code, output = _run(tree, sorted({each.split("::")[0] for each in tests}), until=until)
         if code is None:
-            return TIMEOUT, " ".join(tests)
+            return TIMEOUT, " ".join(tests)[:200]
         if code not in (0, NO_TESTS):
             failed = re.search(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", output, re.MULTILINE)
             return CAUGHT, failed[1] if failed else tests[0]
     return SURVIVED, ""
 
 
-def _mentioning(tree: Path, stem: str) -> list[str]:
-    """The test files that use the name of a module or rule file as a word, if they are few."""
-    word = re.compile(rf"\b{stem}\b")
-    paths = sorted((tree / "tests").rglob("test_*.py"))
-    found = [each for each in paths if word.search(each.read_text(encoding="utf-8"))]
-    names = [str(each.relative_to(tree)) for each in found]
-    return [each for each in names if each not in NOT_RUN] if len(names) <= MOST_MENTIONS else []
-
-
 def _run(tree: Path, tests: Sequence[str], *, until: float) -> tuple[int | None, str]:
     """The exit code of tests, None where they ran out of time, and what they said."""
-    unlikely = [each for each in UNLIKELY if each not in tests]
+    unlikely = [each for each in UNLIKELY if not any(test.startswith(each) for test in tests)]
     left_out = [part for each in (*NOT_RUN, *unlikely) for part in ("--ignore", each)]
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-rfE", "-p", "no:cacheprovider"]
     try:
@@ -217,22 +181,23 @@ def results_in(path: Path) -> dict[str, Result]:
     return {row.name: row for row in rows}
 
 
-def run(mutants: Sequence[Mutant], results: Path, *, jobs: int, limit_s: float) -> None:
+def run(mutants: Sequence[Mutant], asked: argparse.Namespace) -> None:
     """Try each mutant that has no result yet, and add its result to the file."""
+    results, jobs = asked.results, asked.jobs
     waiting = [each for each in mutants if each.name not in results_in(results)]
     with TemporaryDirectory(prefix="mutants") as place, ThreadPoolExecutor(jobs) as pool:
-        trees: Queue[Path] = Queue()
+        trees: Queue[Selection] = Queue()
         for number in range(jobs):
             tree = Path(place) / str(number)
             shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(".*", "__pycache__"))
-            trees.put(tree)
+            trees.put(Selection(tree, read_maps(asked.maps), asked.thorough))
 
         def try_one(mutant: Mutant) -> Result:
-            tree = trees.get()
+            selection = trees.get()
             try:
-                return tried(mutant, tree, limit_s=limit_s)
+                return tried(mutant, selection, limit_s=asked.limit)
             finally:
-                trees.put(tree)
+                trees.put(selection)
 
         for done in as_completed([pool.submit(try_one, each) for each in waiting]):
             result = done.result()
@@ -265,9 +230,13 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--limit", type=float, default=1800.0, help="seconds for each mutant")
     parser.add_argument("--results", type=Path, default=Path("out/mutants.jsonl"))
+    parser.add_argument("--maps", type=Path, default=Path("out/executed"), help="by executed.py")
+    parser.add_argument("--only", default="", help="of those drawn, the files that begin so")
+    parser.add_argument("--thorough", action="store_true", help="in the end, all tests")
     parser.add_argument("--list", action="store_true", help="show the mutants and run nothing")
     asked = parser.parse_args()
-    mutants = list(islice(drawn(asked.seed), asked.count))
+    found = islice(drawn(asked.seed), asked.count)
+    mutants = [each for each in found if each.file.startswith(asked.only)]
     if asked.list:
         for each in mutants:
             before = (ROOT / each.file).read_text(encoding="utf-8")
@@ -275,7 +244,7 @@ def main() -> None:
             _say(difference(each.file, before, each.mutation.applied(before)))
         return
     asked.results.parent.mkdir(parents=True, exist_ok=True)
-    run(mutants, asked.results, jobs=asked.jobs, limit_s=asked.limit)
+    run(mutants, asked)
     names = {each.name for each in mutants}
     report([row for row in results_in(asked.results).values() if row.name in names])
 

@@ -1,7 +1,9 @@
 """The architecture holds: who imports whom, style, types, and what is shipped."""
 
+import ast
 import subprocess
 import sys
+from collections import Counter
 from importlib import resources
 from pathlib import Path
 
@@ -37,3 +39,13 @@ def test_what_is_installed_holds_every_file_of_the_source(package: str) -> None:
     for path in (ROOT / package).rglob("*"):
         if path.suffix in kept and "__pycache__" not in path.parts:
             assert (installed / path.relative_to(ROOT / package)).exists(), path
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_constant_of_a_module_is_given_its_value_once(package: str) -> None:
+    """Of two the first would say nothing, and whoever changes it would wonder."""
+    for path in (ROOT / package).rglob("*.py"):
+        body = ast.parse(path.read_text(encoding="utf-8")).body
+        targets = [each.targets for each in body if isinstance(each, ast.Assign)]
+        names = [each.id for (each, *_) in targets if isinstance(each, ast.Name)]
+        assert [name for name, times in Counter(names).items() if times > 1] == [], path

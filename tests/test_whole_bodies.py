@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import motions
+import numpy as np
 import pytest
 from combinations import meeting
 from motions.trials import Options
@@ -196,6 +197,11 @@ def test_surfaces_that_are_stated_to_be_far_off_do_not_show_hands_that_meet() ->
 def test_hands_that_never_meet_are_no_objects() -> None:
     capture = motions.drink_from_mug(motions.WOMAN).capture
     assert with_meeting_hands(capture) is capture
+    claps = WHOLE[2](motions.WOMAN).capture
+    left = claps.sensor("left_hand")
+    far = replace(left.stream, positions=left.stream.positions + np.array([0.0, 5.0, 0.0]))
+    apart = tuple(replace(left, stream=far) if each is left else each for each in claps.sensors)
+    assert with_meeting_hands(replace(claps, sensors=apart)).objects == claps.objects
 
 
 def test_a_hand_that_rests_while_the_other_one_comes_to_it_does_nothing() -> None:

@@ -31,33 +31,6 @@ SILENCE_S = 1.5
 IDLE_S = 0.006
 """A line without a byte for so long has sent its record [s]."""
 
-POLL_REPLY_S = 1.0
-"""How long the answer to a poll may take to begin [s]."""
-
-POLL_IDLE_S = 0.1
-"""A poll's answer that stops for so long has ended [s]."""
-
-AFTER_RESET_S = 2.0
-"""How long units take to restart [s]."""
-
-AHEAD = 50
-"""How many cycles birds with lines of their own may be apart."""
-
-IDLE_S = 0.006
-"""A line without a byte for so long has sent its record [s]."""
-
-POLL_REPLY_S = 1.0
-"""How long the answer to a poll may take to begin [s]."""
-
-POLL_IDLE_S = 0.1
-"""A poll's answer that stops for so long has ended [s]."""
-
-AFTER_RESET_S = 2.0
-"""How long units take to restart [s]."""
-
-AHEAD = 50
-"""How many cycles birds with lines of their own may be apart."""
-
 AHEAD = 50
 """How many cycles birds with lines of their own may be apart."""
 

@@ -15,12 +15,6 @@ REPLY_S = 0.3
 ATTEMPTS = 6
 """How often a question is put, on a line that may lose bytes."""
 
-SILENCE_S = 1.5
-"""A flock that sends nothing for so long is lost [s]."""
-
-IDLE_S = 0.006
-"""A line without a byte for so long has sent its record [s]."""
-
 POLL_REPLY_S = 1.0
 """How long the answer to a poll may take to begin [s]."""
 
@@ -29,57 +23,6 @@ POLL_IDLE_S = 0.1
 
 AFTER_RESET_S = 2.0
 """How long units take to restart [s]."""
-
-AHEAD = 3
-"""How many cycles birds with lines of their own may be apart."""
-
-ATTEMPTS = 6
-"""How often a question is put, on a line that may lose bytes."""
-
-SILENCE_S = 1.5
-"""A flock that sends nothing for so long is lost [s]."""
-
-IDLE_S = 0.006
-"""A line without a byte for so long has sent its record [s]."""
-
-POLL_REPLY_S = 1.0
-"""How long the answer to a poll may take to begin [s]."""
-
-POLL_IDLE_S = 0.1
-"""A poll's answer that stops for so long has ended [s]."""
-
-AFTER_RESET_S = 2.0
-"""How long units take to restart [s]."""
-
-AHEAD = 3
-"""How many cycles birds with lines of their own may be apart."""
-
-POLL_REPLY_S = 1.0
-"""How long the answer to a poll may take to begin [s]."""
-
-POLL_IDLE_S = 0.1
-"""A poll's answer that stops for so long has ended [s]."""
-
-AFTER_RESET_S = 2.0
-"""How long units take to restart [s]."""
-
-AHEAD = 3
-"""How many cycles birds with lines of their own may be apart."""
-
-POLL_IDLE_S = 0.1
-"""A poll's answer that stops for so long has ended [s]."""
-
-AFTER_RESET_S = 2.0
-"""How long units take to restart [s]."""
-
-AHEAD = 3
-"""How many cycles birds with lines of their own may be apart."""
-
-AFTER_RESET_S = 2.0
-"""How long units take to restart [s]."""
-
-AHEAD = 3
-"""How many cycles birds with lines of their own may be apart."""
 
 
 class FlockPort:

@@ -27,6 +27,7 @@ from extractors.bodies.body_geometry import BodyGeometry, geometry_of
 from extractors.measure import measure
 from extractors.motion.guide_fitting import fit_hinge, fit_rail
 from extractors.motion.object_motion import Floor
+from extractors.relations.guide_places import inside_share
 from extractors.relations.guides import guide_of
 from extractors.thresholds import Thresholds
 
@@ -181,6 +182,15 @@ def test_what_goes_straight_before_an_opening_is_no_door_if_it_can_lie_or_has_no
     assert guide_of(ajar, [CASE], FLOOR, LIMITS) is not None
     assert guide_of(ajar, [CASE, table], FLOOR, LIMITS) is None
     assert guide_of(ajar, [block], FLOOR, LIMITS) is None
+
+
+def test_a_leaf_of_which_half_lies_in_its_base_is_inside_it_and_no_door() -> None:
+    front = CASE.boxes[0][0, 0]
+    places = {share: front + (0.5 - share) * -LEAF.size[0] for share in (0.25, 0.5)}
+    for share, at in places.items():
+        leaf = body(np.array([at, *SHUT[1:]]) + along((0, -0.2, 0)), still(), LEAF)
+        assert inside_share(leaf, CASE, 0) == share
+        assert (guide_of(leaf, [CASE], FLOOR, LIMITS) is None) == (share >= LIMITS.inside_share)
 
 
 def test_what_slides_turns_or_tips_on_a_table_is_on_no_guide() -> None:

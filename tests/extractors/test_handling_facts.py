@@ -169,6 +169,12 @@ def test_the_closing_speed_is_that_of_the_approach() -> None:
     assert closing_speed(thing, wall, 0) == 0.0
 
 
+def test_two_that_go_along_together_close_no_faster_for_it() -> None:
+    drift = np.outer(TIMES, [0.0, 3.0, 0.0])
+    thing, other = body(along_x(0.0, 1.0) + drift), body(np.array([2.0, 0.0, 0.0]) + drift)
+    assert closing_speed(thing, other, 200) == pytest.approx(0.5, abs=0.01)
+
+
 @pytest.mark.parametrize(
     ("place", "normal"),
     [((0.0, 0.0, 0.0), (0, 0, 1)), ((0.549, 0.0, -0.08), (1, 0, 0)), ((0, 0, -0.14), (0, 0, -1))],

@@ -36,6 +36,14 @@ def touches(one: Shape, two: Shape, place: tuple[float, float, float], *, within
     return bool(both[0])
 
 
+@pytest.mark.parametrize("length_m", [0.2, 2.0, 8.0])
+def test_a_beam_touches_with_its_end_however_far_that_is_from_its_middle(length_m: float) -> None:
+    beam, post = box(length_m, 0.1, 0.1), box(0.1, 0.1, 0.1)
+    for gap_m in (0.001, 0.003):
+        end = 0.5 * length_m + 0.05 + gap_m
+        assert touches(beam, post, (end, 0.0, 0.0), within_m=0.002) == (gap_m <= 0.002)
+
+
 @given(st.floats(0.001, 0.02), st.sampled_from([30.0, 100.0, 240.0]), st.floats(0.05, 1.5))
 @settings(max_examples=25, deadline=None)
 def test_a_box_that_approaches_a_box_touches_exactly_while_the_gap_is_within_the_tolerance(

@@ -23,10 +23,12 @@ from capar.model.capture import (
 from capar.model.facts import (
     MEASURED,
     Fact,
+    Frames,
     Gap,
     Intended,
     LookingAt,
     Moving,
+    RateMhz,
     Touching,
     ZeroCrossing,
 )
@@ -92,6 +94,13 @@ def _renamed(text: str, names: dict[str, str]) -> str:
     for old, new in names.items():
         text = text.replace(f"{old},", f"{new},").replace(f"{old})", f"{new})")
     return text
+
+
+@pytest.mark.parametrize("rate_hz", [30.0, 59.94])
+def test_facts_tell_how_many_frames_there_are_and_how_many_come_in_a_second(rate_hz: float) -> None:
+    capture = pick_and_place(rate_hz=rate_hz)
+    assert of_kind(capture, Frames) == [Frames(0, len(capture.times) - 1)]
+    assert of_kind(capture, RateMhz) == [RateMhz(round(1000.0 * rate_hz))]
 
 
 def test_facts_are_in_the_order_of_their_kinds_then_by_value_and_the_same_each_time() -> None:

@@ -94,6 +94,7 @@ def test_a_hand_has_arrived_when_the_distance_no_longer_shrinks(
     assert abs(TIMES[first] - arrives) <= abs(TIMES[contact[0]] - arrives)
     assert abs(TIMES[last] - leaves) <= abs(TIMES[contact[1]] - leaves)
     assert contact[0] <= first < last <= contact[1]
+    assert (apart[[first, last]] <= near_m + LIMITS.edge_m + 1e-9).all()
 
 
 def test_two_that_never_settle_touch_as_long_as_they_are_near() -> None:

@@ -41,10 +41,18 @@ def solved_alone(case: Case) -> set[str]:
     return {text_of((name, *arguments)) for name, arguments in answer.atoms}
 
 
+@pytest.fixture(scope="session")
+def chosen(request: pytest.FixtureRequest) -> frozenset[Case]:
+    """The cases that run; others need not be solved along with them."""
+    found = (getattr(item, "callspec", None) for item in request.session.items)
+    cases = (each.params.get("case") for each in found if each)
+    return frozenset(each for each in cases if isinstance(each, Case))
+
+
 @cache
-def solved_together(profile: str) -> Mapping[Case, set[str]]:
-    """What the rules make of all cases of a profile; nothing if they have no answer together."""
-    cases = [case for case in all_cases() if case.profile.name == profile]
+def solved_together(chosen: frozenset[Case], profile: str) -> Mapping[Case, set[str]]:
+    """What the rules make of the cases of a profile; nothing if they have no answer together."""
+    cases = [case for case in all_cases() if case in chosen and case.profile.name == profile]
     try:
         found = solve_batch((*cases[0].profile.files, SHOWN), [facts_of(case) for case in cases])
     except RuleError:
@@ -53,8 +61,8 @@ def solved_together(profile: str) -> Mapping[Case, set[str]]:
 
 
 @CASES
-def test_a_story_ends_as_expected(case: Case) -> None:
-    answer = solved_together(case.profile.name).get(case) or solved_alone(case)
+def test_a_story_ends_as_expected(case: Case, chosen: frozenset[Case]) -> None:
+    answer = solved_together(chosen, case.profile.name).get(case) or solved_alone(case)
     assert case.expected, "a case expects something"
     told = set(_SEGMENT.findall(" ".join(case.expected)))
     assert told <= {each for atom in answer for each in _SEGMENT.findall(atom)}
@@ -66,8 +74,8 @@ def test_a_story_ends_as_expected(case: Case) -> None:
 
 
 @pytest.mark.parametrize("case", all_cases()[::25], ids=str)
-def test_cases_that_are_solved_together_do_not_meet(case: Case) -> None:
-    assert solved_together(case.profile.name)[case] == solved_alone(case)
+def test_cases_that_are_solved_together_do_not_meet(case: Case, chosen: frozenset[Case]) -> None:
+    assert solved_together(chosen, case.profile.name)[case] == solved_alone(case)
 
 
 @CASES

@@ -52,6 +52,11 @@ def test_each_has_cases_for_and_against(name: str) -> None:
     assert len(MUST_NOT[name]) >= LEAST, f"{name}: add cases in which it must not hold"
 
 
+def test_each_primitive_is_told_by_one_verb() -> None:
+    told = [str(name) for name, _ in solve(profile().files, "#show verb/2.").of("verb")]
+    assert sorted(told) == PRIMITIVES
+
+
 def test_no_case_names_what_there_is_not() -> None:
     assert {*MUST, *MUST_NOT} <= {*PRIMITIVES, *PREPOSITIONS}
 

@@ -71,7 +71,7 @@ def _load(
     mesh: Any = trimesh.load(
         io.BytesIO(path.read_bytes()), file_type=suffix, force="mesh", skip_materials=True
     )
-    faces = np.asarray(getattr(mesh, "faces", np.empty((0, 3))), dtype=np.int64)
+    faces = np.asarray(mesh.faces, dtype=np.int64)
     return np.asarray(mesh.vertices, dtype=float), faces.reshape(-1, 3)
 
 

@@ -12,7 +12,8 @@ from capar.model.errors import DeviceError
 from extractors.devices.addresses import parse_address
 from extractors.devices.bird_formats import FORMATS
 from extractors.devices.flock import FlockTracker
-from extractors.devices.flock_commands import MOST_HZ, line_limit_hz
+from extractors.devices.flock_commands import MOST_HZ, SIZES, examine, line_limit_hz
+from extractors.devices.flock_port import FlockPort
 from extractors.devices.flock_rig import FlockRig
 from extractors.devices.flock_settings import flock_settings
 from extractors.devices.flock_simulator import FlockSimulator
@@ -24,6 +25,7 @@ WHOLE_S = 0.4
 """Of a line without faults, on which each record is sent and received alike [s]."""
 
 QUIET_S = 0.05
+ANSWER_S = 0.2
 SETTLE = "settle=0.2"
 
 
@@ -59,6 +61,17 @@ def test_every_format_and_mode_arrives_whole_at_the_highest_rate_of_the_line(
     ):
         assert each.wrong == 0
         assert each.accepted == each.sent
+
+
+def test_each_parameter_is_answered_in_as_many_bytes_as_its_value_has() -> None:
+    with FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S)) as simulator:
+        address = parse_address(f"flock:{simulator.place}?{SETTLE}")
+        port = FlockPort(simulator.place, 0, flock_settings(address))
+        port.open(reset=False)
+        for parameter, size in SIZES.items():
+            port.tell(examine(parameter))
+            assert len(port.line.read_exactly(size + 1, ANSWER_S)) == size, parameter
+        port.line.close()
 
 
 @pytest.mark.parametrize("birds", [1, 12])

@@ -9,7 +9,7 @@ import tracked
 from hypothesis import given
 from hypothesis import strategies as st
 
-from capar.model.capture import TagType
+from capar.model.capture import Role, TagType
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from extractors.devices.addresses import parse_address
 from extractors.devices.flock import FlockTracker
@@ -132,7 +132,8 @@ def test_a_bundle_reads_as_the_capture_that_was_recorded(tmp_path: Path) -> None
     capture = read_capture(tmp_path / "trial")
     hand, head = capture.sensors
     assert (hand.name, hand.end_effector, hand.side) == ("right_hand", "hand", "right")
-    assert (head.name, head.end_effector, head.role.value) == ("head", "head", "attends")
+    assert (head.name, head.end_effector) == ("head", "head")
+    assert (hand.role, head.role) == (Role.ACTS, Role.ATTENDS)
     assert [(each.name, each.tag) for each in capture.objects] == [("mug", TagType.MOBILE)]
     assert capture.objects[0].stream.lost.nonzero()[0].tolist() == [50]
     wanted = [each.positions[0] for each in made]

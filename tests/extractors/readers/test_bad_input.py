@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from capar.model.errors import CaparError, CaptureError, FileError
+from extractors.readers.bundle import mesh
 from extractors.readers.bundle.mesh import MESH_LIMIT, read_mesh
 from extractors.readers.files import EXPANDED_LIMIT
 from extractors.readers.registry import read_recording
@@ -77,13 +78,35 @@ def test_a_zip_bomb_is_refused_before_it_is_expanded(
 ) -> None:
     assert EXPANDED_LIMIT <= 1 << 30
     motion = samples.zip_bomb(tmp_path / "m.npz", "p.npy", 1100)
-    mesh = samples.zip_bomb(tmp_path / "m.3mf", "3D/3dmodel.model", (MESH_LIMIT >> 20) + 1)
+    model = samples.zip_bomb(tmp_path / "m.3mf", "3D/3dmodel.model", (MESH_LIMIT >> 20) + 1)
     start = time.monotonic()
     with pytest.raises(FileError, match="would expand to"):
         read_recording(motion, options=samples.NPZ)
     with pytest.raises(FileError, match="would expand to"):
-        read_mesh(mesh)
+        read_mesh(model)
     assert time.monotonic() - start < 2.0
+
+
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+def test_a_mesh_is_refused_only_if_it_is_larger_than_the_limit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "m.obj"
+    path.write_text(TRIANGLE)
+    monkeypatch.setattr(mesh, "MESH_LIMIT", path.stat().st_size)
+    assert len(read_mesh(path)[1]) == 1
+    path.write_text(TRIANGLE + "\n")
+    with pytest.raises(FileError, match="is a mesh of more than"):
+        read_mesh(path)
+
+
+def test_a_mesh_of_corners_alone_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "m.obj"
+    path.write_text(TRIANGLE.removesuffix("f 1 2 3\n"))
+    with pytest.raises(FileError, match="has no triangles"):
+        read_mesh(path)
 
 
 ENTITIES = b"""<?xml version="1.0"?><!DOCTYPE lolz [<!ENTITY lol "lol"><!ENTITY l2 "&lol;&lol;">]>

@@ -7,9 +7,11 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Stream
-from extractors.readers.drafting.survey import survey
+from extractors.readers.drafting.survey import REST_S, survey
 
-TIMES = np.arange(600) / 100.0
+RATE_HZ = 100.0
+TIMES = np.arange(600) / RATE_HZ
+WINDOW = round(REST_S * RATE_HZ)
 
 
 def moving(*, noise_m: float, noise_deg: float, turn_deg_s: float, speed_m_s: float) -> Stream:
@@ -52,3 +54,13 @@ def test_a_body_at_rest_has_the_noise_of_its_positions() -> None:
     found = survey("cup", "object", stream)
     assert found.noise_mm == pytest.approx(np.sqrt(3.0), rel=0.2)
     assert found.noise_deg == pytest.approx(0.0, abs=1e-6)
+
+
+def test_one_lucky_window_in_twenty_does_not_decide_how_large_noise_is() -> None:
+    frames = (20 + 1) * (WINDOW // 2)
+    chance = np.random.default_rng(3)
+    places = chance.normal(0.0, 1e-3, (frames, 3))
+    places[5 * WINDOW : 6 * WINDOW] = 0.0
+    turns = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))
+    found = survey("cup", "object", Stream(np.arange(frames) / RATE_HZ, places, turns))
+    assert found.noise_mm is not None and found.noise_mm > 0.1
