@@ -48,6 +48,7 @@ def new_rule(
     general: str | Sequence[str] = (),
     besides: Sequence[str] = (),
     verb: str = "",
+    rule: str = "",
     examples: Sequence[Example] = (),
 ) -> str:
     """The text of a rule file for a primitive with these features.
@@ -59,6 +60,7 @@ def new_rule(
         general: The primitives that it specialises.
         besides: Others that fit some of the same segments, over which it takes precedence.
         verb: The verb for it; its name in small letters if empty.
+        rule: Which segments fit it, in place of the row of features.
         examples: Examples and counter-examples.
 
     Raises:
@@ -69,17 +71,19 @@ def new_rule(
         raise RuleError("a definition holds no *% and a verb no quotes; write plain words")
     _, *lines = taught(name, features, verb=verb).splitlines(keepends=True)
     over = [general] if isinstance(general, str) else general
-    text = f"%* {name}: {said.rstrip('.')}. *%\n{''.join(lines)}"
+    kept = [each for each in lines if not (rule and each.startswith("feature_row("))]
+    text = f"%* {name}: {said.rstrip('.')}. *%\n{''.join(kept)}"
     text += "".join(f'specialises("{name}", "{each}").\n' for each in over if each)
     if besides:
         text += "% These name segments with the same features: it takes precedence over them.\n"
         text += "".join(f'precedes("{name}", "{each}").\n' for each in besides)
-    text += (
+    text += rule or (
         "% The row fits every segment with these features. To fit fewer, put a rule in its place:\n"
         f'%   fits(Segment, "{name}") :- fits(Segment, "{next(iter(over), "") or "General"}"), '
         "further conditions.\n"
-        "% Before it can be added it needs an Example and a Counter-example.\n"
     )
+    if not examples:
+        text += "% Before it can be added it needs an Example and a Counter-example.\n"
     return "\n".join([text, *map(written, examples)])
 
 
