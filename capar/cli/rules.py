@@ -132,7 +132,7 @@ def add(
     over: Annotated[
         list[str] | None,
         typer.Option(
-            help="A primitive that it is a kind of and is more specific than; may be repeated. With "
+            help="A primitive that it is a kind of and more specific than; may be repeated. With "
             "all it precedes each that names a segment with it; these are written into the file."
         ),
     ] = None,

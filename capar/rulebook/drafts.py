@@ -70,7 +70,7 @@ def rule_from_segment(
     general: str = "",
     verb: str = "",
 ) -> str:
-    """The smallest rule file that tells an observed segment from the capture's others, with examples.
+    """The smallest rule file that tells an observed segment from its capture's others.
 
     Args:
         name: What the primitive is called.
@@ -137,7 +137,9 @@ def _examples(
             facts, names = short or (tuple(measured), tuple(one.name for one in link.segments))
             positive = each.name == name
             if positive or name not in names:
-                story = f"{called}, {each.ee}/{each.index}, {each.start_s:.2f} to {each.end_s:.2f} s."
+                story = (
+                    f"{called}, {each.ee}/{each.index}, {each.start_s:.2f} to {each.end_s:.2f} s."
+                )
                 out.append(written(Example(story, positive, facts, ((link.ee, names),), 0)))
         return out
 

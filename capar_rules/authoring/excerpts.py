@@ -56,9 +56,7 @@ def _cut(facts: Sequence[Fact], ee: str, first: int, last: int) -> Iterator[Fact
     held = {each.other for each in touches if each.body == ee and _meets(each, first, last)}
     about = {ee} | held | {each.other for each in touches if each.body in held}
     about |= {each.body for each in touches if each.other in held and each.body in about}
-    kept = {
-        (each.body, each.other, each.first) for each in touches if _meets(each, first, last)
-    }
+    kept = {(each.body, each.other, each.first) for each in touches if _meets(each, first, last)}
     for fact in facts:
         if isinstance(fact, Frames):
             yield Frames(0, last - first)
@@ -77,12 +75,10 @@ def _bodies(fact: Fact) -> set[str]:
     return {str(getattr(fact, each)) for each in named if hasattr(fact, each)} - {""}
 
 
-def _meets(
-    fact: Fact, first: int, last: int, kept: Iterable[tuple[str, str, int]] = ()
-) -> bool:
+def _meets(fact: Fact, first: int, last: int, kept: Iterable[tuple[str, str, int]] = ()) -> bool:
     """Whether it holds at some time between the frames; of a contact, whether that one does."""
     if hasattr(fact, "frame"):
-        return first <= fact.frame <= last
+        return bool(first <= fact.frame <= last)
     if hasattr(fact, "first") and hasattr(fact, "last"):
         return bool(fact.first < last and fact.last > first)
     if hasattr(fact, "first"):

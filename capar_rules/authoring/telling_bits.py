@@ -121,9 +121,7 @@ def distinction(
     }
     told = {at for places in telling.values() for at in places}
     lines = [f"bit({number}). " for number, bit in enumerate(usable) if bit in wider]
-    lines += [
-        f"tells({number},{at})." for number, bit in enumerate(usable) for at in telling[bit]
-    ]
+    lines += [f"tells({number},{at})." for number, bit in enumerate(usable) for at in telling[bit]]
     lines += [f"other({at})." for at in sorted(told)]
     (best,) = optima("\n".join([*lines, _PROGRAM]), [("chosen", 1)]) if wider else [frozenset()]
     chosen = sorted(int(str(number)) for _, (number,) in best)

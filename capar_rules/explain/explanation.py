@@ -64,7 +64,7 @@ def _overrules(statement: Statement) -> bool:
 
 
 def _naming(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
-    """The rules that name segments, for one name: what is more specific or precedes overrules it."""
+    """The rules that name segments, for one name: what specialises or precedes it overrules."""
     rule = f'named(Segment,"{name}") :- fits(Segment,"{name}"); not overruled(Segment,"{name}").'
     for each in statements:
         if _names(each):

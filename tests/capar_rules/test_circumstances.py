@@ -44,9 +44,7 @@ def told(capture: Capture, rules: Profile) -> Iterator[tuple[Known, str]]:
         observation.facts, profile=rules, distance_m=distances(capture, measurements)
     )
     for segment in observation.segments:
-        known = Known(
-            Explained(observation, explainer), measurements.facts, segment, capture, {}
-        )
+        known = Known(Explained(observation, explainer), measurements.facts, segment, capture, {})
         for reason in explainer.explain(segment).reason.with_sentences().walk():
             yield known, reason.sentence
 
@@ -152,7 +150,10 @@ FORMS = (
     (rf"the {NAME} met the {NAME} at (\d+) mm/s", met),
     (rf"the {NAME} went at (\d+) mm/s when it was let go", left),
     (rf"the {NAME} bore the {NAME} at the segment's (start|end)", borne),
-    (rf"the {NAME}, and not the {NAME}, touched the {NAME} at the segment's (start|end)", with_tool),
+    (
+        rf"the {NAME}, and not the {NAME}, touched the {NAME} at the segment's (start|end)",
+        with_tool,
+    ),
     (rf"the {NAME} came nearer to the performer", came_nearer),
     (rf"the {NAME} went further from the performer", went_further),
     (rf"the {NAME} went straight towards the {NAME}", headed),
@@ -173,7 +174,9 @@ def waving() -> Capture:
     positions[:, 2] += 0.3 * np.clip(np.minimum(clock, clock[-1] - clock) / begin, 0.0, 1.0)
     positions[:, 1] += 0.12 * ramp * np.sin(2.0 * np.pi * 1.5 * (clock - begin))
     stream = replace(
-        hand.stream, positions=positions, orientations=np.tile(hand.stream.orientations[0], (count, 1))
+        hand.stream,
+        positions=positions,
+        orientations=np.tile(hand.stream.orientations[0], (count, 1)),
     )
     sensors = tuple(
         replace(each, stream=stream) if each.name == hand.name else each for each in capture.sensors

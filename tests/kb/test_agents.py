@@ -89,7 +89,12 @@ def test_every_field_of_a_listing_is_shown_whether_filled_or_empty(actionary: Ac
 
 def test_a_kind_that_only_an_agent_has_fulfils_the_shape_of_kinds(actionary: Actionary) -> None:
     actionary.declare_agent("Ada", kind="vicar")
-    stated = [each for name in ("agents", "objects") for each in actionary.store.graph(GRAPHS[name])]
+    stated = [
+        each for name in ("agents", "objects") for each in actionary.store.graph(GRAPHS[name])
+    ]
     vicar = shared("kind", "vicar")
-    assert {each.object for each in stated if each.subject == vicar} >= {vicar, shared("kind", "thing")}
+    assert {each.object for each in stated if each.subject == vicar} >= {
+        vicar,
+        shared("kind", "thing"),
+    }
     assert by_shacl([each.triple for each in stated]) == []

@@ -242,7 +242,7 @@ def started_from_rest(known: Known) -> bool:
 
 
 def not_slid(known: Known) -> bool:
-    """Nothing that bears it stays at it from border to border, or something else is done with it."""
+    """Nothing touches it from border to border, or it hardly goes aside, or up or down."""
     what, way = known.segment.objects[0], known.way(known.segment.objects[0])
     kept = [
         each
