@@ -13,7 +13,7 @@ from capar.pipelines.observation import facts_program
 from capar_rules.authoring.examples import Example, written
 from capar_rules.authoring.excerpts import excerpt
 from capar_rules.authoring.telling_bits import bits_of, distinction, fitting, written_rule
-from capar_rules.authoring.user_primitives import new_rule, rules_of
+from capar_rules.authoring.user_primitives import LACKING, new_rule, rules_of
 from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.engine.profiles import Profile, profile
 from capar_rules.engine.syntax import parse, parse_text
@@ -98,7 +98,8 @@ def rule_from_segment(
         name, segment.features, rules, over=(more,) if more else (), definition=definition,
         verb=verb, rule=smallest,
     )  # fmt: skip
-    return "\n".join([text, *_examples(text, name, called, measured, segment, rules)])
+    examples = _examples(text, name, called, measured, segment, rules)
+    return "\n".join([text.replace(LACKING, "") if len(examples) > 1 else text, *examples])
 
 
 def _smallest(

@@ -83,8 +83,11 @@ def new_rule(
         "further conditions.\n"
     )
     if not examples:
-        text += "% Before it can be added it needs an Example and a Counter-example.\n"
+        text += LACKING
     return "\n".join([text, *map(written, examples)])
+
+
+LACKING = "% Before it can be added it needs an Example and a Counter-example.\n"
 
 
 def telling(facts: Sequence[Fact]) -> tuple[Fact, ...]:
