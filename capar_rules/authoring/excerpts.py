@@ -3,10 +3,14 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import fields, replace
 
-from capar.model.facts import Fact, Frames, Link, RateMhz, Tag, Touching
+from capar.model.facts import Fact, Frames, Link, RateMhz, Tag, Touching, program
 from capar.model.observation import ObservedLink, Segment
+from capar.model.par import UNKNOWN
+from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
-from capar_rules.pars.inference import infer
+from capar_rules.engine.search import worlds
+from capar_rules.engine.slicing import towards
+from capar_rules.engine.syntax import parse, split_arguments
 
 MOST_FACTS = 36
 """A longer example is shortened further; with its lines of story and names it has 40 lines."""
@@ -34,20 +38,41 @@ def excerpt(
         The facts, with frames counted from the excerpt's first one; None if no cut keeps the name.
     """
     at = link.segments.index(segment)
+    naming = _naming_rules(rules)
     for margin in (MARGIN, 2 * MARGIN, len(link.segments)):
         near = link.segments[max(at - margin, 0) : at + margin + 1]
         wanted = sum(each.name == name for each in near)
         cut = tuple(_cut(facts, link.ee, near[0].first, near[-1].last))
 
         def told(some: Sequence[Fact], wanted: int = wanted) -> Names | None:
-            found = infer(some, profile=rules).links
-            names = tuple(each.name for each in found[0].segments) if found else ()
+            names = _names(naming, some, rules)
             return names if names.count(name) == wanted else None
 
         if told(cut) == tuple(each.name for each in near):
             few = _shortened(cut, told)
             return few, told(few) or ()
     return None
+
+
+def _naming_rules(rules: Profile) -> str:
+    """The rules by which segments are cut and named, without those for all else."""
+    kept = towards(parse(rules.files), (("named", 2), ("segment", 3)))
+    return "\n".join([*(each.text for each in kept), "#show named/2.\n#show segment/3."])
+
+
+def _names(naming: str, facts: Sequence[Fact], rules: Profile) -> Names:
+    """What the one end-effector of an excerpt does, in order."""
+    numbered = number_borders(facts, crossings_only=rules.crossings_only)
+    (atoms,) = worlds(f"{naming}\n{program((*facts, *numbered))}")
+    begins: dict[str, int] = {}
+    names: dict[str, str] = {}
+    for atom in atoms:
+        arguments = split_arguments(atom)
+        if atom.startswith("segment("):
+            begins[arguments[0]] = int(arguments[1])
+        else:
+            names.setdefault(arguments[0], arguments[1].strip('"'))
+    return tuple(names.get(each, UNKNOWN) for each in sorted(begins, key=begins.__getitem__))
 
 
 def _cut(facts: Sequence[Fact], ee: str, first: int, last: int) -> Iterator[Fact]:
