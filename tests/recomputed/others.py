@@ -275,10 +275,13 @@ def not_resting(known: Known, ee: str) -> bool:
 
 
 def not_put_down(known: Known) -> bool:
-    """It does not come down to where it is let go: it stays in the hand, or goes up or aside."""
+    """It does not come down to where it is let go: it stays in the hand to the last frame or for long,
+    or does not go down.
+    """
     what = known.segment.objects[0]
     lets_go = any(
         abs(each.last - known.segment.last) <= 2 * known.reach + 0.6 * known.rate
+        and each.last < len(known.capture.times) - 1
         for each in known.touching(known.segment.ee, what)
     )
     return not lets_go or float(known.way(what)[2]) > -0.045
