@@ -275,9 +275,7 @@ def not_resting(known: Known, ee: str) -> bool:
 
 
 def not_put_down(known: Known) -> bool:
-    """It does not come down to where it is let go: it stays in the hand to the last frame or for long,
-    or does not go down.
-    """
+    """It stays in the hand to the last frame, or for long, or does not go down."""
     what = known.segment.objects[0]
     lets_go = any(
         abs(each.last - known.segment.last) <= 2 * known.reach + 0.6 * known.rate
