@@ -3,7 +3,7 @@
 ``new`` and ``list_words`` are commands; the rest prints what the others found.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -110,6 +110,16 @@ def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) 
         typer.echo(f"{address}  {change.start_s:.2f} to {change.end_s:.2f} s: {what}")
     typer.echo("1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change")
     print_others(others)
+
+
+def print_precedence(file: Path, over: Sequence[str]) -> None:
+    """What the primitives of a file precede, where that was asked for."""
+    from capar_rules.authoring.catalogue import preceded
+    from capar_rules.authoring.user_primitives import ALL
+
+    if ALL in over:
+        for name, others in preceded(file).items():
+            typer.echo(f"{name} precedes {', '.join(others) or 'nothing'}; {file} says so")
 
 
 def print_others(others: tuple[str, ...]) -> None:

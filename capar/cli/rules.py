@@ -16,6 +16,7 @@ from capar.cli._rule_writing import (
     print_bearing,
     print_changes,
     print_others,
+    print_precedence,
 )
 
 app = typer.Typer(no_args_is_help=True)
@@ -130,7 +131,10 @@ def add(
     file: File,
     over: Annotated[
         list[str] | None,
-        typer.Option(help="A primitive that it is to be more specific than; may be repeated."),
+        typer.Option(
+            help="A primitive that it is a kind of and more specific than; may be repeated. With "
+            "all it precedes each that names a segment with it; these are written into the file."
+        ),
     ] = None,
     reclassify: Reclassify = False,
     captures: Captures = None,
@@ -159,15 +163,16 @@ def add(
     make_folder(folder)
     beside = _others(file, rules, actionary)
     if not reclassify:
-        typer.echo(
-            f"added {add_rule(file, folder=folder, base=profile, over=over or (), beside=beside)}"
-        )
+        added = add_rule(file, folder=folder, base=profile, over=over or (), beside=beside)
+        typer.echo(f"added {added}")
+        print_precedence(added, over or ())
         return
     added, effect = add_reclassifying(
         file, folder=folder, actionary=actionary, base=profile, over=over or (), beside=beside,
         captures=captures or [Path()],
     )  # fmt: skip
     typer.echo(f"added {added}")
+    print_precedence(added, over or ())
     print_changes(effect.changes, effect.others)
 
 

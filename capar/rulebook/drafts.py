@@ -1,17 +1,20 @@
 """First drafts of rules: from a feature set, or from a segment of a capture."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from capar.model.errors import RuleError, UnknownNameError
 from capar.model.facts import Fact
-from capar.model.observation import ObservedLink
+from capar.model.observation import ObservedLink, Segment
 from capar.model.par import FeatureSet
 from capar.model.segment_address import find_segment, split_capture
 from capar.pipelines.observation import facts_program
-from capar_rules.authoring.examples import Example, try_examples, written
-from capar_rules.authoring.user_primitives import new_rule, rules_of, telling
+from capar_rules.authoring.examples import Example, written
+from capar_rules.authoring.excerpts import excerpt
+from capar_rules.authoring.telling_bits import bits_of, distinction, fitting, written_rule
+from capar_rules.authoring.user_primitives import LACKING, new_rule, rules_of
+from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.engine.profiles import Profile, profile
 from capar_rules.engine.syntax import parse, parse_text
 from capar_rules.lint.admission import admitted_profile
@@ -67,7 +70,7 @@ def rule_from_segment(
     general: str = "",
     verb: str = "",
 ) -> str:
-    """A rule file for the features of an observed segment, with its capture as an example.
+    """The smallest rule file that tells an observed segment from its capture's others.
 
     Args:
         name: What the primitive is called.
@@ -90,16 +93,73 @@ def rule_from_segment(
     links = infer(measured, profile=rules).links
     segment = find_segment(links, place, capture=called)
     more = general or (segment.name if segment.known else "")
-    over = (more,) if more else ()
-    text = _ordered(name, segment.features, rules, over=over, definition=definition, verb=verb)
+    smallest = _smallest(name, measured, segment, rules, general=more)
+    text = _ordered(
+        name, segment.features, rules, over=(more,) if more else (), definition=definition,
+        verb=verb, rule=smallest,
+    )  # fmt: skip
+    examples = _examples(text, name, called, measured, segment, rules)
+    return "\n".join([text.replace(LACKING, "") if len(examples) > 1 else text, *examples])
+
+
+def _smallest(
+    name: str, measured: Sequence[Fact], segment: Segment, rules: Profile, *, general: str
+) -> str:
+    """The rule of the fewest conditions that tell the segment from the capture's others.
+
+    Empty if the rules have no words for what tells it: its row of features has to do.
+    """
+    bits = bits_of(measured, rules)
+    numbers = number_borders(measured, crossings_only=rules.crossings_only)
+    (tick,) = {
+        each.tick
+        for each in numbers
+        if isinstance(each, Tick) and (each.ee, each.frame) == (segment.ee, segment.first)
+    }
+    own = bits[segment.ee, tick]
+    others = [each for place, each in sorted(bits.items()) if place != (segment.ee, tick)]
+    given = [each for each in (fitting(general),) if general and each in own]
+    found = distinction(own, others, given=given)
+    return written_rule(name, found, given) if found.chosen else ""
+
+
+def _examples(
+    text: str, name: str, called: str, measured: Sequence[Fact], segment: Segment, rules: Profile
+) -> list[str]:
+    """A short example of the segment, and a counter-example of one that the draft does not name."""
     with TemporaryDirectory() as folder:
         draft = Path(folder) / f"{name}.lp"
         draft.write_text(text, encoding="utf-8")
         joined = admitted_profile(rules.name, added=(*rules.added, draft), steady=rules.steady)
-        story = Example(f"{called}, segment {place}.", True, _told(measured, links, rules), (), 0)
-        (outcome,) = try_examples([story], profile=joined)
-    example = Example(story.story, True, story.facts, outcome.found, 0)
-    return f"{text}\n{written(example)}"
+        links = infer(measured, profile=joined).links
+        out = []
+        for link, each in _shown(links, segment, name):
+            short = excerpt(measured, link, each, rules=joined, name=name)
+            facts, names = short or (tuple(measured), tuple(one.name for one in link.segments))
+            positive = each.name == name
+            if positive or name not in names:
+                story = (
+                    f"{called}, {each.ee}/{each.index}, {each.start_s:.2f} to {each.end_s:.2f} s."
+                )
+                out.append(written(Example(story, positive, facts, ((link.ee, names),), 0)))
+        return out
+
+
+def _shown(
+    links: Sequence[ObservedLink], segment: Segment, name: str
+) -> Iterator[tuple[ObservedLink, Segment]]:
+    """The segment itself, and the likest other one far enough from each of that name."""
+    (own,) = [each for each in links if each.ee == segment.ee]
+    (same,) = [each for each in own.segments if each.first == segment.first]
+    yield own, same
+    far = [
+        each
+        for at, each in enumerate(own.segments)
+        if all(one.name != name for one in own.segments[max(at - 1, 0) : at + 2])
+    ]
+    if far:
+        likest = max(far, key=lambda each: (each.name == segment.name, each.known, -each.index))
+        yield own, likest
 
 
 def _free(name: str, general: str, rules: Profile) -> None:
@@ -129,18 +189,6 @@ def _measured(capture: str, rules: Profile, actionary: str | None) -> tuple[str,
     return trial.name, facts_program(trial, rules=rules)[0].facts
 
 
-def _told(
-    measured: tuple[Fact, ...], links: Sequence[ObservedLink], rules: Profile
-) -> tuple[Fact, ...]:
-    """Contacts and motions alone, if they make the same segments of the same names; else all."""
-    few = telling(measured)
-    return few if _outline(infer(few, profile=rules).links) == _outline(links) else measured
-
-
-def _outline(links: Sequence[ObservedLink]) -> list[tuple[str, int, int, str]]:
-    return [(each.ee, each.first, each.last, each.name) for one in links for each in one.segments]
-
-
 def _ordered(
     name: str,
     features: FeatureSet,
@@ -149,10 +197,13 @@ def _ordered(
     over: Sequence[str],
     definition: str,
     verb: str,
+    rule: str = "",
 ) -> str:
     """A rule that is more specific than everything that it shares a segment with."""
-    text = new_rule(name, features, definition=definition, general=over, verb=verb)
+    text = new_rule(name, features, definition=definition, general=over, verb=verb, rule=rule)
     base = known(parse(profile(rules.name).files))
     mine = parse(rules.added) if rules.added else ()
     others = rivals(name, parse_text(text), base, mine)
-    return new_rule(name, features, definition=definition, general=over, verb=verb, besides=others)
+    return new_rule(
+        name, features, definition=definition, general=over, verb=verb, besides=others, rule=rule
+    )

@@ -114,10 +114,14 @@ def introduced(path: Path) -> list[str]:
     )
 
 
+ORDERING = (("specialises", 2), ("precedes", 2))
+"""Predicates whose second argument is another primitive."""
+
+
 def dependants(path: Path, *, files: Sequence[Path]) -> dict[str, Path]:
     """Primitives of other rule files that depend on what a file introduces, each with its file.
 
-    They specialise it, or a rule of theirs asks whether a segment fits it.
+    They specialise or precede it, or a rule of theirs asks whether a segment fits it.
     """
     names = set(introduced(path))
     found: dict[str, Path] = {}
@@ -129,8 +133,16 @@ def dependants(path: Path, *, files: Sequence[Path]) -> dict[str, Path]:
     return found
 
 
+def preceded(path: Path) -> dict[str, list[str]]:
+    """For each primitive of a rule file, those that it precedes."""
+    found: dict[str, list[str]] = {name: [] for name in introduced(path)}
+    for name, other in _pairs(read_rules(path, folders=(path.parent,)).statements, "precedes"):
+        found.setdefault(name, []).append(other)
+    return found
+
+
 def _read(rule: Statement) -> set[str]:
     """The primitives that a rule depends on."""
-    atoms = [head for head in rule.heads if head.signature == ("specialises", 2)]
+    atoms = [head for head in rule.heads if head.signature in ORDERING]
     atoms += [atom for each in rule.body for atom in each.atoms if atom.signature == FITS]
     return {split_arguments(each.text)[1].strip('"') for each in atoms}

@@ -28,9 +28,13 @@ from capar_rules.authoring.catalogue import rules_of as rules_of
 from capar_rules.authoring.examples import Example, lacking, read_examples, try_examples, written
 from capar_rules.authoring.user_rules import make_folder, taught
 from capar_rules.authoring.user_rules import user_rules as user_rules
-from capar_rules.engine.profiles import DEFAULT
+from capar_rules.engine.profiles import DEFAULT, profile
+from capar_rules.engine.syntax import parse, parse_text
 from capar_rules.lint.admission import admitted_profile
 from capar_rules.lint.checking import check, require
+from capar_rules.lint.findings import errors
+from capar_rules.lint.name_checks import rivals
+from capar_rules.lint.text_checks import known
 
 TELLING = (Frames, RateMhz, Link, Tag, ZeroCrossing, Touching, Gap, Moving, ForceTransfer)
 """The facts that an example contains: contacts and motions, without places and courses."""
@@ -44,6 +48,7 @@ def new_rule(
     general: str | Sequence[str] = (),
     besides: Sequence[str] = (),
     verb: str = "",
+    rule: str = "",
     examples: Sequence[Example] = (),
 ) -> str:
     """The text of a rule file for a primitive with these features.
@@ -55,6 +60,7 @@ def new_rule(
         general: The primitives that it specialises.
         besides: Others that fit some of the same segments, over which it takes precedence.
         verb: The verb for it; its name in small letters if empty.
+        rule: Which segments fit it, in place of the row of features.
         examples: Examples and counter-examples.
 
     Raises:
@@ -65,18 +71,23 @@ def new_rule(
         raise RuleError("a definition holds no *% and a verb no quotes; write plain words")
     _, *lines = taught(name, features, verb=verb).splitlines(keepends=True)
     over = [general] if isinstance(general, str) else general
-    text = f"%* {name}: {said.rstrip('.')}. *%\n{''.join(lines)}"
+    kept = [each for each in lines if not (rule and each.startswith("feature_row("))]
+    text = f"%* {name}: {said.rstrip('.')}. *%\n{''.join(kept)}"
     text += "".join(f'specialises("{name}", "{each}").\n' for each in over if each)
     if besides:
-        text += "% These name segments with the same features. Keep those that it is a kind of.\n"
-        text += "".join(f'specialises("{name}", "{each}").\n' for each in besides)
-    text += (
+        text += "% These name segments with the same features: it takes precedence over them.\n"
+        text += "".join(f'precedes("{name}", "{each}").\n' for each in besides)
+    text += rule or (
         "% The row fits every segment with these features. To fit fewer, put a rule in its place:\n"
         f'%   fits(Segment, "{name}") :- fits(Segment, "{next(iter(over), "") or "General"}"), '
         "further conditions.\n"
-        "% Before it can be added it needs an Example and a Counter-example.\n"
     )
+    if not examples:
+        text += LACKING
     return "\n".join([text, *map(written, examples)])
+
+
+LACKING = "% Before it can be added it needs an Example and a Counter-example.\n"
 
 
 def telling(facts: Sequence[Fact]) -> tuple[Fact, ...]:
@@ -123,7 +134,8 @@ def add_rule(
         path: The file.
         folder: The folder of rules to which it is copied.
         base: The profile that it joins.
-        over: Primitives that it is to specialise, which resolves ambiguities.
+        over: Primitives that it is to specialise, which resolves ambiguities; ``all`` puts it
+            before each that names a segment with it.
         beside: Every rule file loaded already; None for those of the folder.
 
     Returns:
@@ -160,7 +172,10 @@ def checked_draft(
     others = tuple(each for each in others if each.resolve() != path.resolve())
     with TemporaryDirectory(dir=folder, prefix=".draft") as place:
         draft = Path(place) / path.name
-        draft.write_text(_text(path) + _ordering(path, over), encoding="utf-8")
+        draft.write_text(_text(path), encoding="utf-8")
+        if over:
+            ordering = _ordering(draft, over, base=base, beside=others)
+            draft.write_text(_text(path) + ordering, encoding="utf-8")
         findings = check(draft, profile=base, beside=others)
         require(
             path,
@@ -208,9 +223,39 @@ def removable(name: str, *, files: Sequence[Path], every: Sequence[Path] = ()) -
     return path
 
 
-def _ordering(path: Path, over: Sequence[str]) -> str:
-    names = introduced(path) if over else []
-    return "".join(f'specialises("{name}", "{other}").\n' for name in names for other in over)
+ALL = "all"
+"""Stands for every primitive that names a segment together with a new one."""
+
+
+def _ordering(path: Path, over: Sequence[str], *, base: str, beside: Sequence[Path]) -> str:
+    """The facts that put the primitives of a file before others."""
+    lines = []
+    for name in introduced(path):
+        lines += [f'specialises("{name}", "{other}").' for other in over if other != ALL]
+        if ALL in over:
+            found = beaten(path, name, base=base, beside=beside, over=over)
+            lines += [f'precedes("{name}", "{other}").' for other in found]
+    return "".join(f"{each}\n" for each in lines)
+
+
+def beaten(
+    path: Path, name: str, *, base: str, beside: Sequence[Path], over: Sequence[str] = ()
+) -> tuple[str, ...]:
+    """The primitives that name a segment together with one of a file; nothing if it has errors.
+
+    Args:
+        path: The rule file.
+        name: The primitive.
+        base: The profile that it joins.
+        beside: The user's other rule files.
+        over: Primitives that it specialises beside what the file states.
+    """
+    found = errors(check(path, profile=base, beside=beside))
+    if any(each.code != "ambiguous" for each in found):
+        return ()
+    stated = "".join(f'specialises("{name}", "{each}").' for each in over if each != ALL)
+    own = [*parse([path]), *parse_text(stated)]
+    return rivals(name, own, known(parse(profile(base).files)), parse(beside) if beside else ())
 
 
 def _text(path: Path) -> str:

@@ -16,7 +16,7 @@ from capar_rules.engine.solver import rule_file
 from capar_rules.engine.syntax import Place, Statement, parse, parse_text
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.instants import corrected, frames_of
-from capar_rules.explain.near_misses import more_specific, near_misses
+from capar_rules.explain.near_misses import more_specific, near_misses, preceding
 from capar_rules.explain.reason import Reason as Reason
 from capar_rules.explain.sentences import Clock, Sentences
 from capar_rules.explain.summary import summary
@@ -74,12 +74,12 @@ def _overrules(statement: Statement) -> bool:
 
 
 def _naming(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
-    """The rules that name segments, for one name: only what is more specific can overrule it."""
+    """The rules that name segments, for one name: what specialises or precedes it overrules."""
     rule = f'named(Segment,"{name}") :- fits(Segment,"{name}"); not overruled(Segment,"{name}").'
     for each in statements:
         if _names(each):
             yield replace(parse_text(rule)[0], place=each.place)
-    for other in sorted(more_specific(statements, name)):
+    for other in sorted(more_specific(statements, name) | preceding(statements, name)):
         fit = f'fits(Segment,"{other}"); fits(Segment,"{name}")'
         yield from parse_text(f'overruled(Segment,"{name}") :- {fit}.')
 

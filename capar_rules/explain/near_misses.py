@@ -4,10 +4,11 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import count
 
-from capar_rules.engine.syntax import Literal, Statement, parse_text, split_arguments
+from capar_rules.engine.syntax import Literal, Signature, Statement, parse_text, split_arguments
 
 FITS = ("fits", 2)
 SPECIALISES = ("specialises", 2)
+PRECEDES = ("precedes", 2)
 
 _UNNAMED = re.compile(r"(?<=[(,])_(?=[,)])")
 
@@ -34,17 +35,27 @@ def near_misses(statements: Sequence[Statement], name: str) -> Iterator[Statemen
 
 def more_specific(statements: Iterable[Statement], name: str) -> frozenset[str]:
     """The primitives that specialise one, directly or by others."""
-    pairs = [
-        tuple(each.strip('"') for each in split_arguments(head.text))
-        for rule in statements
-        if not rule.body
-        for head in rule.heads
-        if head.signature == SPECIALISES
-    ]
+    pairs = _pairs(statements, SPECIALISES)
     found = {name}
     while wider := {one for one, general in pairs if general in found} - found:
         found |= wider
     return frozenset(found - {name})
+
+
+def preceding(statements: Iterable[Statement], name: str) -> frozenset[str]:
+    """The primitives that precede one."""
+    return frozenset(one for one, other in _pairs(statements, PRECEDES) if other == name)
+
+
+def _pairs(statements: Iterable[Statement], predicate: Signature) -> list[tuple[str, str]]:
+    """The names in the facts of a predicate."""
+    found = []
+    for rule in statements:
+        for head in rule.heads if not rule.body else ():
+            if head.signature == predicate:
+                one, other = (each.strip('"') for each in split_arguments(head.text))
+                found.append((one, other))
+    return found
 
 
 def _of_rule(rule: Statement, segment: str, other: str, name: str) -> Iterator[Statement]:

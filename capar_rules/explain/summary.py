@@ -1,5 +1,6 @@
 """The summary of an explanation in one sentence: the name's own conditions first."""
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 
 from capar_rules.engine.syntax import split_arguments
@@ -7,6 +8,8 @@ from capar_rules.explain.reason import Reason
 
 BESIDE = ("joins_in(", "looks(", "kept_from(")
 """Prefixes of atoms that accompany a name and are no reason for it."""
+
+_TIME = re.compile(r"\d+\.\d\d s")
 
 FEATURES = "features("
 """Prefix of atoms that primitives share; a primitive's own conditions precede them."""
@@ -26,7 +29,7 @@ def _leading(reason: Reason) -> list[str]:
     for each in _deciding(reason):
         if each.leading:
             text, at, time = each.sentence.rpartition(" at ")
-            timed = at and time[:1].isdigit()
+            timed = bool(at and _TIME.fullmatch(time))
             times = places.setdefault(text if timed else each.sentence, [])
             if timed and time not in times:
                 times.append(time)

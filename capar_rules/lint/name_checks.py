@@ -1,6 +1,7 @@
 """Primitives of a user that name the segments of others, or leave a more general one none."""
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from capar_rules.engine.search import Atom
 from capar_rules.engine.syntax import Statement, parse_text
@@ -52,15 +53,17 @@ def clashes(trial: Trial, atoms: frozenset[Atom]) -> Iterator[Finding]:
                 place, "ambiguous",
                 f"{name} and {told}{f' and {rest} more' if rest > 0 else ''} name the same "
                 f"segments, such as those with features {where}, and neither is the more specific.",
-                apart(name, others[0]),
+                f"{apart(name, others[0])} To put it before all of them: "
+                f"capar rules add {Path(place.file).name} --over all.",
             )  # fmt: skip
 
 
 def apart(name: str, other: str) -> str:
     """How a primitive is told from another one."""
     return (
-        f'If {name} is a kind of {other}, say specialises("{name}", "{other}"); if not, add a '
-        f'condition that keeps them apart, such as not fits(Segment, "{other}").'
+        f'If {name} is a kind of {other}, say specialises("{name}", "{other}"); if not, say '
+        f'precedes("{name}", "{other}"), or add a condition that keeps them apart, such as '
+        f'not fits(Segment, "{other}").'
     )
 
 

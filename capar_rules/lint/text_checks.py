@@ -12,6 +12,7 @@ from capar_rules.lint.findings import NOTE, Finding
 AUTHORED: dict[Signature, str] = {
     ("primitive", 1): 'primitive("Lift")',
     ("specialises", 2): 'specialises("Lift", "MoveObj")',
+    ("precedes", 2): 'precedes("Lift", "Catch")',
     ("verb", 2): 'verb("Lift", "lift")',
     ("sense", 2): 'sense("Lift", 1)',
     ("levin", 2): 'levin("Lift", "9.4")',
@@ -189,10 +190,10 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
                     f"there is a primitive {arguments[0]} already, in {taken}.",
                     "Choose another name, or take one of the two files away.",
                 )  # fmt: skip
-            at = {"fits": 1, "feature_row": 0, "specialises": 0, "verb": 0}.get(name)
+            at = {"fits": 1, "feature_row": 0, "specialises": 0, "precedes": 0, "verb": 0}.get(name)
             if at is None or (name, len(arguments)) not in AUTHORED:
                 continue
-            subjects = arguments if name == "specialises" else [arguments[at]]
+            subjects = arguments if name in _ORDERING else [arguments[at]]
             quoted = all(each.startswith('"') for each in subjects)
             if name == "fits" and not quoted:
                 continue  # word_checks.py reports missing quotes
@@ -203,7 +204,7 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
                     f'It may name {", ".join(sorted(mine)) or "what it introduces"}; '
                     f'state primitive("Name") first.',
                 )  # fmt: skip
-            if name == "specialises":
+            if name in _ORDERING:
                 yield from _ordered(head, arguments, mine | set(base.primitives))
                 if _circular(arguments, [*base.rules, *own]):
                     yield Finding(
@@ -219,12 +220,16 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
         )  # fmt: skip
 
 
+_ORDERING = ("specialises", "precedes")
+"""Predicates that say which of two primitives a segment that fits both is called."""
+
+
 def _circular(arguments: Sequence[str], rules: Iterable[Statement]) -> bool:
-    """Whether the more general one specialises the other, directly or not."""
+    """Whether the second one specialises or precedes the first one too, directly or not."""
     general: dict[str, set[str]] = {}
     for rule in rules:
         for head in rule.heads:
-            if head.signature == ("specialises", 2):
+            if head.signature[0] in _ORDERING and head.signature[1] == 2:
                 name, other = split_arguments(head.text)
                 general.setdefault(name, set()).add(other)
     seen, waiting = set(), [arguments[1]]

@@ -75,7 +75,7 @@ def declare(store: Store, name: str, *, kind: str = "") -> None:
         Quad(node, CAPAR.declared, Literal(True), GRAPH),
     ]
     if kind:
-        quads += [*kinds.described(kind), Quad(node, CAPAR.kind, names.shared("kind", kind), GRAPH)]
+        quads += [*kinds.by_itself(kind), Quad(node, CAPAR.kind, names.shared("kind", kind), GRAPH)]
     store.insert(quads)
 
 

@@ -64,6 +64,16 @@ def described(name: str) -> list[Quad]:
     ]
 
 
+def by_itself(name: str) -> list[Quad]:
+    """That a kind was declared, of which no more is stated than that it is a thing."""
+    graph, node = names.GRAPHS["objects"], names.shared("kind", name)
+    quads = described(name)
+    if names.graph_of(node) == names.GRAPHS["ontology"]:
+        return quads
+    thing = names.shared("kind", GENERAL[-1])
+    return [*quads, *(Quad(node, CAPAR.isA, each, graph) for each in (node, thing))]
+
+
 def above(store: Store, name: str) -> tuple[str, ...]:
     """A kind and every more general one, nearest first; of equally near, by alphabet."""
     direct: dict[str, set[str]] = {}

@@ -11,7 +11,8 @@ from kb.actionary import Actionary
 from kb.errors import StoreError
 from kb.exchange import bring_in
 from kb.lookup import profiles
-from kb.store_checks import check
+from kb.store.names import GRAPHS, shared
+from kb.store_checks import by_shacl, check
 
 
 def by(agent: str, capture: str) -> Observation:
@@ -84,3 +85,16 @@ def test_every_field_of_a_listing_is_shown_whether_filled_or_empty(actionary: Ac
     assert actionary.agent_profile("Ada").keys() == profiles.AGENT.keys()
     with pytest.raises(UnknownNameError, match="mug"):
         actionary.object_profile("mgu")
+
+
+def test_a_kind_that_only_an_agent_has_fulfils_the_shape_of_kinds(actionary: Actionary) -> None:
+    actionary.declare_agent("Ada", kind="vicar")
+    stated = [
+        each for name in ("agents", "objects") for each in actionary.store.graph(GRAPHS[name])
+    ]
+    vicar = shared("kind", "vicar")
+    assert {each.object for each in stated if each.subject == vicar} >= {
+        vicar,
+        shared("kind", "thing"),
+    }
+    assert by_shacl([each.triple for each in stated]) == []

@@ -229,7 +229,71 @@ def clings(known: Known, what: str, one: str) -> bool:
     return any(each.last - each.first > 0.1 * known.rate for each in known.touching(one, what))
 
 
+def started_from_rest(known: Known) -> bool:
+    """It touches another thing at the start, or was where it is shortly before."""
+    what, start = known.segment.objects[0], known.segment.first
+    others = [*known.capture.objects, *known.capture.sensors]
+    for each in others:
+        for touch in known.touching(what, each.name):
+            if touch.first - known.reach <= start <= touch.last + known.reach:
+                return True
+    before = max(start - round(0.3 * known.rate), 0)
+    return bool(np.linalg.norm(known.middle(what, start) - known.middle(what, before)) < 0.03)
+
+
+def not_slid(known: Known) -> bool:
+    """Nothing touches it from border to border, or it hardly goes aside, or up or down."""
+    what, way = known.segment.objects[0], known.way(known.segment.objects[0])
+    kept = [
+        each
+        for each in known.of(Touching)
+        if each.body == what
+        and each.other != known.segment.ee
+        and each.first <= known.segment.first
+        and each.last >= known.segment.last
+    ]
+    return not kept or float(np.linalg.norm(way)) < 0.1 or abs(float(way[2])) > 0.03
+
+
+def touched_nothing(known: Known, ee: str) -> bool:
+    """No contact of it reaches into the segment by more than what merges with its borders."""
+    first, last = known.segment.first + known.reach, known.segment.last - known.reach
+    return not any(
+        each.body == name(ee) and each.first < last and each.last > first
+        for each in known.of(Touching)
+    )
+
+
+def not_resting(known: Known, ee: str) -> bool:
+    """Somewhere in the segment it is well away from where it began, in place or in turn."""
+    frames = range(known.segment.first, known.segment.last + 1)
+    place = known.stream(ee).positions[list(frames)]
+    if float(np.linalg.norm(place - place[0], axis=1).max()) > 0.005:
+        return True
+    turn = known.turns(ee, frames) * known.turn(ee, known.segment.first).inv()
+    return float(turn.magnitude().max()) > 0.03
+
+
+def not_put_down(known: Known) -> bool:
+    """It stays in the hand to the last frame, or for long, or does not go down."""
+    what = known.segment.objects[0]
+    lets_go = any(
+        abs(each.last - known.segment.last) <= 2 * known.reach + 0.6 * known.rate
+        and each.last < len(known.capture.times) - 1
+        for each in known.touching(known.segment.ee, what)
+    )
+    return not lets_go or float(known.way(what)[2]) > -0.045
+
+
 FORMS = (
+    (r"it started from rest, or from what it touched", started_from_rest),
+    (r"it was not slid", not_slid),
+    (r"it was not put down", not_put_down),
+    (
+        rf"the {NAME} touched nothing when the segment began, nor when it ended",
+        touched_nothing,
+    ),
+    (rf"the {NAME} moved", not_resting),
     (rf"the {NAME} was not borne by the {NAME}", not_borne),
     (
         rf"the {NAME} was borne by the {NAME} and went along with it, "

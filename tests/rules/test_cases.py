@@ -17,7 +17,7 @@ from capar_rules.engine.solver import rule_file, solve, text_of
 
 SHOWN = HERE / "everything.lp"
 CASES = pytest.mark.parametrize("case", all_cases(), ids=str)
-RULE_PACKAGES = ("segmentation", "naming", "composition")
+RULE_PACKAGES = ("segmentation", "naming", "composition", "circumstances")
 CONCEPTS = sorted(
     f"{package}/{path.stem}"
     for package in RULE_PACKAGES

@@ -1,0 +1,55 @@
+"""Drafts have the fewest conditions that tell a segment from others, and short examples."""
+
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from capar.rulebook.drafts import rule_from_segment
+from capar_rules.authoring.examples import read_examples
+from capar_rules.authoring.excerpts import MOST_FACTS
+from capar_rules.authoring.telling_bits import conditions, distinction
+from capar_rules.authoring.user_primitives import try_rule
+from capar_rules.engine.profiles import profile
+
+DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
+FEW = conditions()[:6]
+
+BITS = st.frozensets(st.sampled_from(FEW))
+
+
+@settings(max_examples=40, deadline=None)
+@given(BITS, st.lists(BITS, max_size=6))
+def test_no_smaller_set_of_conditions_tells_it_from_all_that_can_be_told(
+    own: frozenset[str], others: list[frozenset[str]]
+) -> None:
+    found = distinction(own, others)
+    apart = [each for each in others if not own <= each]
+    assert found.alike == len(others) - len(apart)
+    assert all(not {*found.chosen} <= each for each in apart)
+    for size in range(len(found.chosen)):
+        for some in combinations(sorted(own), size):
+            assert any({*some} <= each for each in apart)
+    assert sorted((*found.chosen, *found.common, *found.spare)) == sorted(own)
+    assert all(bit in each for bit in found.common for each in others)
+
+
+def test_of_conditions_that_tell_as_much_the_one_that_is_listed_first_is_chosen() -> None:
+    found = distinction(frozenset(FEW[:3]), [frozenset(), frozenset(FEW[3:])])
+    assert (found.chosen, found.spare) == ((FEW[0],), FEW[1:3])
+
+
+@pytest.mark.long
+def test_a_draft_holds_by_its_own_short_examples_and_says_what_it_left_out(tmp_path: Path) -> None:
+    text = rule_from_segment("BringUp", f"{DEMO}/right_hand/2", rules=profile())
+    path = tmp_path / "bring_up.lp"
+    path.write_text(text)
+    assert 'fits(Segment, "MoveObjTo"),\n    rises(Segment, _).' in text
+    assert "feature_row" not in text
+    assert "% Left out, as it tells apart none that these do not:" in text
+    examples = read_examples(text)
+    assert [each.positive for each in examples] == [True, False]
+    assert all(len(each.facts) <= MOST_FACTS for each in examples)
+    assert try_rule(path) == ()
