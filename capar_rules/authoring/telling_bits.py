@@ -64,8 +64,8 @@ def bits_of(facts: Sequence[Fact], rules: Profile) -> Bits:
     numbered = number_borders(facts, crossings_only=rules.crossings_only)
     answer = solve(rules.files, "\n".join([*lines, program((*facts, *numbered))]))
     found: dict[Place, set[str]] = {_place(term): set() for term, *_ in answer.of("segment")}
-    for number, term in answer.of("_fulfils"):
-        found[_place(term)].add(conditions()[int(str(number))])
+    for condition, term in answer.of("_fulfils"):
+        found[_place(term)].add(conditions()[int(str(condition))])
     for name, term in answer.of("_fits"):
         found[_place(term)].add(fitting(str(name)))
     return {place: frozenset(bits) for place, bits in found.items()}
