@@ -9,6 +9,7 @@ import motions
 import numpy as np
 import pytest
 from recomputed.known import Known
+from recomputed.others import touched_nothing
 
 from capar.model.capture import Capture
 from capar.pipelines.explanation import Explained, distances
@@ -199,6 +200,16 @@ def test_every_circumstance_that_is_told_is_true(sentences: list[tuple[Known, st
                 counts[pattern] += 1
                 assert check(known, *found.groups()), (known.segment, sentence)
     assert [pattern for pattern, count in counts.items() if not count] == [FORMS[-1][0]]
+
+
+def test_that_nothing_is_touched_is_found_false_of_whoever_touches(
+    sentences: list[tuple[Known, str]],
+) -> None:
+    named = {(known.segment.ee, known.segment.name): known for known, _ in sentences}
+    found = {name: touched_nothing(known, ee) for (ee, name), known in named.items()}
+    assert not found["MoveObjTo"]
+    assert not found["TouchWith"]
+    assert found["PostureChange"]
 
 
 def test_a_hand_that_waves_goes_to_and_fro_and_one_that_drinks_does_not(
