@@ -41,7 +41,7 @@ def behavior_tree(source: PlanSource) -> str:
     holder = tree
     if len(links) > 1:
         count = {"success_count": "-1", "failure_count": "1"}
-        holder = ET.SubElement(tree, "Parallel", name="links", **count)
+        holder = ET.SubElement(tree, "Parallel", {"name": "links", **count})
     for ee, steps in links.items():
         sequence = ET.SubElement(holder, "Sequence", name=ee)
         for each in steps:
@@ -106,7 +106,7 @@ def _condition(parent: ET.Element, each: PlanStep, condition: Condition) -> None
     ports = dict(zip(CONDITIONS[name], values, strict=True))
     if name == "Posture":
         ports["agent"] = each.ipar.ee if condition.arguments[0] != HOLDER else values[0]
-    ET.SubElement(parent, "SubTree", ID=name, **ports)
+    ET.SubElement(parent, "SubTree", {"ID": name, **ports})
 
 
 def _actions(source: PlanSource) -> list[str]:

@@ -4,44 +4,19 @@ An object's contacts with other objects are contacts at a place: ``(at EE OBJECT
 far an end-effector has moved an object, ``(meets PLACE OTHER)`` what the object touches there.
 """
 
-import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from capar.export.plan_sources import (
-    GENERAL_KIND,
-    HOLDER,
-    PlanExportError,
-    PlanSource,
-    PlanStep,
-    bound_condition,
+from capar.export.pddl_domain import (
+    action_constant,
+    effector_type,
+    kind_type,
+    pddl_domain,
+    thing_word,
+    word,
 )
-from capar.model.par import Condition, Upar
-
-PREDICATES = """\
-    (of ?ee - end_effector ?agent - agent)
-    (capable ?who - thing ?what - action_name)
-    (contact ?ee - end_effector ?object - thing)
-    (at ?ee - end_effector ?object - thing ?place - place)
-    (meets ?place - place ?object - thing)
-    (leads ?what - action_name ?ee - end_effector ?from - place ?to - place)
-    (in_posture ?ee - end_effector ?posture - posture)
-    (ends_in ?what - action_name ?ee - end_effector ?posture - posture)
-    (lasted ?what - action_name ?ee - end_effector ?place - place)
-    (rested ?what - action_name ?ee - end_effector ?posture - posture)"""
-"""What can be said of the world."""
-
-TYPES = {
-    "action_name": "object",
-    "place": "object",
-    "posture": "object",
-    "end_effector": "object",
-    "thing": "object",
-    "agent": "thing",
-}
-"""Types that every domain has, each with the one above it."""
-
-_NO_NAME = re.compile(r"[^A-Za-z0-9_-]")
+from capar.export.plan_sources import HOLDER, PlanSource, PlanStep, bound_condition
+from capar.model.par import Upar
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,24 +35,6 @@ class PddlPlan:
     problem: str
     observed: tuple[PddlStep, ...]
     """Link by link."""
-
-
-@dataclass
-class _Action:
-    """A UPAR as an action schema."""
-
-    name: str
-    parameters: dict[str, str] = field(default_factory=dict)
-    before: list[str] = field(default_factory=list)
-    after: list[str] = field(default_factory=list)
-
-    def text(self) -> str:
-        listed = " ".join(f"{name} - {kind}" for name, kind in self.parameters.items())
-        return (
-            f"  (:action {self.name}\n    :parameters ({listed})\n"
-            f"    :precondition (and {' '.join(dict.fromkeys(self.before))})\n"
-            f"    :effect (and {' '.join(self.after)}))"
-        )
 
 
 @dataclass
@@ -102,166 +59,17 @@ def pddl(source: PlanSource) -> PddlPlan:
     Raises:
         PlanExportError: A condition of a kind that has no place in the domain.
     """
-    schemas = {each.upar: _schema(source, each.upar) for each in source.steps}
-    names = _unique(schemas)
-    kinds = _types(source)
-    domain = "\n".join(
-        [
-            f"; {source.name}: preconditions from applicability and preparatory specifications,",
-            "; effects from termination and post-assertions of the observed PARs",
-            f"(define (domain {_word(source.name)})",
-            "  (:requirements :strips :typing :negative-preconditions)",
-            "  (:types",
-            *(f"    {name} - {above}" for name, above in kinds.items()),
-            "  )",
-            f"  (:constants {' '.join(sorted(map(_doing, names.values())))} - action_name)",
-            f"  (:predicates\n{PREDICATES}\n  )",
-            *(schemas[upar].text() for upar in sorted(schemas, key=lambda each: names[each])),
-            ")",
-        ]
-    )
+    domain, names = pddl_domain(source)
     world = _observed_world(source, names)
-    return PddlPlan(domain + "\n", _problem(source, world), tuple(world.observed))
-
-
-def _word(name: str) -> str:
-    """A name that PDDL takes."""
-    word = _NO_NAME.sub("_", name)
-    return word if word[:1].isalpha() else f"a_{word}"
-
-
-def _unique(schemas: dict[Upar, _Action]) -> dict[Upar, str]:
-    """A name for every action; where two have the same, with the features that tell them apart."""
-    bare = [each.name for each in schemas.values()]
-    for upar, schema in schemas.items():
-        if bare.count(schema.name) > 1:
-            features = upar.core.constraint.features
-            bits = (features.rel_start, features.rel_end, features.change_loc, features.force)
-            schema.name = "-".join((upar.name, *bits))
-    for schema in schemas.values():
-        own = _doing(schema.name)
-        schema.before = [each.replace("@action", own) for each in schema.before]
-        schema.after = [each.replace("@action", own) for each in schema.after]
-    return {upar: schema.name for upar, schema in schemas.items()}
-
-
-def _types(source: PlanSource) -> dict[str, str]:
-    """Every type with the one above it: the Actionary's kinds, and those of the domain."""
-    found = dict(TYPES)
-    for chain in source.kinds.values():
-        words = [_kind(each) for each in chain]
-        for lower, upper in zip(words, (*words[1:], "thing"), strict=True):
-            if lower not in found and lower != upper:
-                found[lower] = upper
-    hands = {each.upar.core.constraint.features.end_effector for each in source.steps}
-    return found | {_effector(each): "end_effector" for each in sorted(hands)}
-
-
-def _doing(action: str) -> str:
-    """The constant that stands for an action where it is spoken about."""
-    return f"{action}_action"
-
-
-def _thing(name: str) -> str:
-    """An object of the scene, told apart from the kind of that name."""
-    return f"the_{_word(name)}"
-
-
-def _kind(name: str) -> str:
-    """A kind as a type; the general one is ``thing``, as PDDL's ``object`` stands above all."""
-    return "thing" if name in {GENERAL_KIND, "thing"} else _word(name)
-
-
-def _effector(general: str) -> str:
-    """The type of an end-effector, told apart from a kind of object of that name."""
-    return f"acting_{_word(general)}"
-
-
-def _schema(source: PlanSource, upar: Upar) -> _Action:
-    action = _Action(_word(upar.name))
-    features = upar.core.constraint.features
-    action.parameters = {"?EE": _effector(features.end_effector), "?agent": "agent"}
-    action.before.append("(of ?EE ?agent)")
-    for name in upar.objects:
-        action.parameters[f"?{name}"] = _common_kind(source, upar, name)
-    for condition in upar.applicability:
-        action.before.append(f"(capable ?{condition.arguments[0]} @action)")
-    if upar.objects:
-        _with_objects(action, upar)
-    else:
-        action.parameters |= {"?posture": "posture", "?next": "posture"}
-        action.before += ["(in_posture ?EE ?posture)", "(ends_in @action ?EE ?next)"]
-        action.after += ["(not (in_posture ?EE ?posture))", "(in_posture ?EE ?next)"]
-        action.after.append("(rested @action ?EE ?next)")
-    return action
-
-
-def _with_objects(action: _Action, upar: Upar) -> None:
-    """Conditions on contacts, the place of the dominant object, and the posture."""
-    moves = bool(upar.core.moved)
-    action.parameters["?place"] = "place"
-    action.before.append(f"(at ?EE ?{upar.objects[0]} ?place)")
-    if moves:
-        action.parameters["?next"] = "place"
-        action.before.append("(leads @action ?EE ?place ?next)")
-        action.after += [
-            f"(not (at ?EE ?{upar.objects[0]} ?place))",
-            f"(at ?EE ?{upar.objects[0]} ?next)",
-        ]
-    for preparation in upar.preparation:
-        action.before.append(_needed(action, preparation.condition))
-    for condition in upar.post_assertions:
-        found = _asserted(condition, "?next" if moves else "?place")
-        (action.after if condition.arguments[0] == HOLDER else action.before).append(found)
-    _posture(action, upar)
-    if not moves and any(each.kind == "duration" for each in upar.core.termination):
-        action.after.append("(lasted @action ?EE ?place)")
-
-
-def _needed(action: _Action, condition: Condition) -> str:
-    """What must hold before (thesis 4.6.1.1)."""
-    if condition.kind == "posture":
-        action.parameters["?posture"] = "posture"
-        return "(in_posture ?EE ?posture)"
-    return _asserted(condition, "?place")
-
-
-def _posture(action: _Action, upar: Upar) -> None:
-    """What is touched at the end is no posture; where nothing is, a posture is the end."""
-    if "?posture" in action.parameters:
-        action.after.append("(not (in_posture ?EE ?posture))")
-    if not any(each.holds for each in upar.post_assertions):
-        action.parameters["?reached"] = "posture"
-        action.before.append("(ends_in @action ?EE ?reached)")
-        action.after.append("(in_posture ?EE ?reached)")
-
-
-def _asserted(condition: Condition, place: str) -> str:
-    if condition.kind != "contact":
-        raise PlanExportError(f"a condition of kind {condition.kind!r} has no place in PDDL")
-    first, second = condition.arguments
-    atom = f"(contact ?{first} ?{second})" if first == HOLDER else f"(meets {place} ?{second})"
-    return atom if condition.holds else f"(not {atom})"
-
-
-def _common_kind(source: PlanSource, upar: Upar, parameter: str) -> str:
-    """The nearest kind of all that was observed in a place of the action."""
-    at = upar.objects.index(parameter)
-    chains = [
-        [_kind(kind) for kind in source.kinds[each.ipar.objects[at]]]
-        for each in source.steps
-        if each.upar == upar
-    ]
-    shared = [kind for kind in chains[0] if all(kind in chain for chain in chains)]
-    return shared[0] if shared else "thing"
+    return PddlPlan(domain, _problem(source, world), tuple(world.observed))
 
 
 def _observed_world(source: PlanSource, names: dict[Upar, str]) -> _World:
     world = _World()
-    agent = _word(f"agent_{source.agent}")
+    agent = word(f"agent_{source.agent}")
     world.objects[agent] = "agent"
     for name, chain in source.kinds.items():
-        world.objects[_thing(name)] = _kind(chain[0])
+        world.objects[thing_word(name)] = kind_type(chain[0])
     for ee, steps in source.links.items():
         _observed_link(world, ee, steps, names, agent)
     return world
@@ -274,8 +82,8 @@ def _observed_link(
     steps = tuple(steps)
     if not steps:
         return
-    holder = _word(f"{ee}_ee")
-    world.objects[holder] = _effector(steps[0].upar.core.constraint.features.end_effector)
+    holder = word(f"{ee}_ee")
+    world.objects[holder] = effector_type(steps[0].upar.core.constraint.features.end_effector)
     world.initially.append(f"(of {holder} {agent})")
     first = steps[0]
     posture = _new(world, f"{ee}_start", "posture")
@@ -285,12 +93,12 @@ def _observed_link(
     touched: dict[str, bool] = {}
     for each in steps:
         name, what = names[each.upar], each.ipar.objects
-        arguments = [holder, agent, *map(_thing, what)]
+        arguments = [holder, agent, *map(thing_word, what)]
         _state_capable(world, each, name, agent)
         after = posture
         if each.rests:
             after = _new(world, f"{ee}_{each.ipar.posture or 'end'}", "posture")
-            _state(world.initially, f"(ends_in {_doing(name)} {holder} {after})")
+            _state(world.initially, f"(ends_in {action_constant(name)} {holder} {after})")
         if what:
             arguments += _at_places(world, (ee, holder, name), each, places, counts)
             _state_contacts(world, (holder, each), touched)
@@ -299,10 +107,10 @@ def _observed_link(
             if each.rests:
                 arguments.append(after)
             if each.lasts and not each.moves:
-                _state(world.goal, f"(lasted {_doing(name)} {holder} {places[what[0]]})")
+                _state(world.goal, f"(lasted {action_constant(name)} {holder} {places[what[0]]})")
         else:
             arguments += [posture, after]
-            _state(world.goal, f"(rested {_doing(name)} {holder} {after})")
+            _state(world.goal, f"(rested {action_constant(name)} {holder} {after})")
         posture = after
         world.observed.append(PddlStep(name, tuple(arguments)))
     _finally(world, holder, steps[-1], touched, places, posture)
@@ -312,8 +120,8 @@ def _state_capable(world: _World, each: PlanStep, name: str, agent: str) -> None
     """Who did it is capable of it, and so is what it was done with (thesis 4.6.1.4)."""
     for condition in each.upar.applicability:
         who = bound_condition(each.upar, each.ipar, condition)[0]
-        known = agent if who == each.ipar.agent else _thing(who)
-        _state(world.initially, f"(capable {known} {_doing(name)})")
+        known = agent if who == each.ipar.agent else thing_word(who)
+        _state(world.initially, f"(capable {known} {action_constant(name)})")
 
 
 def _at_places(
@@ -328,17 +136,17 @@ def _at_places(
     thing = each.ipar.objects[0]
     if thing not in places:
         places[thing] = _new(world, f"{ee}_{thing}_0", "place")
-        world.initially.append(f"(at {holder} {_thing(thing)} {places[thing]})")
+        world.initially.append(f"(at {holder} {thing_word(thing)} {places[thing]})")
     here = there = places[thing]
     if each.moves:
         counts[thing] = counts.get(thing, 0) + 1
         there = places[thing] = _new(world, f"{ee}_{thing}_{counts[thing]}", "place")
-        world.initially.append(f"(leads {_doing(name)} {holder} {here} {there})")
+        world.initially.append(f"(leads {action_constant(name)} {holder} {here} {there})")
     needed = [preparation.condition for preparation in each.upar.preparation]
     for place, conditions in ((here, needed), (there, each.upar.post_assertions)):
         for condition in conditions:
             if condition.kind == "contact" and condition.arguments[0] != HOLDER and condition.holds:
-                other = _thing(bound_condition(each.upar, each.ipar, condition)[1])
+                other = thing_word(bound_condition(each.upar, each.ipar, condition)[1])
                 _state(world.initially, f"(meets {place} {other})")
     return [here, there] if each.moves else [here]
 
@@ -351,7 +159,7 @@ def _state_contacts(world: _World, at: tuple[str, PlanStep], touched: dict[str, 
         if condition.kind == "contact" and condition.arguments[0] == HOLDER:
             other = bound_condition(each.upar, each.ipar, condition)[1]
             if other not in touched:
-                world.initially.append(f"(contact {holder} {_thing(other)})")
+                world.initially.append(f"(contact {holder} {thing_word(other)})")
                 touched[other] = True
     for condition in each.upar.post_assertions:
         if condition.arguments[0] == HOLDER:
@@ -367,17 +175,17 @@ def _finally(
     posture: str,
 ) -> None:
     for other, holds in touched.items():
-        atom = f"(contact {holder} {_thing(other)})"
+        atom = f"(contact {holder} {thing_word(other)})"
         world.goal.append(atom if holds else f"(not {atom})")
-    world.goal += [f"(at {holder} {_thing(thing)} {place})" for thing, place in places.items()]
+    world.goal += [f"(at {holder} {thing_word(thing)} {place})" for thing, place in places.items()]
     if last.rests:
         world.goal.append(f"(in_posture {holder} {posture})")
 
 
 def _new(world: _World, name: str, kind: str) -> str:
-    word = _word(name)
-    world.objects[word] = kind
-    return word
+    made = word(name)
+    world.objects[made] = kind
+    return made
 
 
 def _state(atoms: list[str], atom: str) -> None:
@@ -390,11 +198,11 @@ def _problem(source: PlanSource, world: _World) -> str:
 
 
 def _problem_lines(source: PlanSource, world: _World) -> Iterator[str]:
-    word = _word(source.name)
-    yield f"(define (problem {word}_observed)"
-    yield f"  (:domain {word})"
+    name = word(source.name)
+    yield f"(define (problem {name}_observed)"
+    yield f"  (:domain {name})"
     yield "  (:objects"
-    yield from (f"    {name} - {kind}" for name, kind in world.objects.items())
+    yield from (f"    {each} - {kind}" for each, kind in world.objects.items())
     yield "  )"
     yield "  (:init"
     yield from (f"    {atom}" for atom in world.initially)
