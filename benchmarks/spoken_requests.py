@@ -1,6 +1,6 @@
 """Twenty requests in words, performed or refused: which came out as they should.
 
-Run as ``PYTHONPATH=.:tests/regeneration python benchmarks/spoken_requests.py FOLDER [AGENT]``;
+Run as ``PYTHONPATH=.:tests python benchmarks/spoken_requests.py FOLDER [AGENT]``;
 the recordings are made and observed in FOLDER unless they are there.
 """
 
@@ -70,14 +70,15 @@ def run(known: tuple[Recording, ...], agent: str) -> None:
         print(f"{'yes' if good else 'NO ':3}  {each.say!r} in {each.world}: {told}", flush=True)
     print(f"{sum(good for good, _ in rows.values())} of {len(rows)} understood as they should be")
     right = 0
-    for each, (good, told) in rows.items():
+    for each, (understood_right, told) in rows.items():
+        good = understood_right
         if told.startswith("chosen"):
             began = time.process_time()
-            good_too, told = performing(each, known, agent)
-            good = good_too and (good or each.refused != "")
+            done_right, done = performing(each, known, agent)
+            good = done_right and (understood_right or bool(each.refused))
             seconds = time.process_time() - began
             print(
-                f"{'yes' if good else 'NO ':3} {seconds:5.1f} s  {each.say!r}: {told}", flush=True
+                f"{'yes' if good else 'NO ':3} {seconds:5.1f} s  {each.say!r}: {done}", flush=True
             )
         right += good
     print(f"{right} of {len(rows)} as they should be")

@@ -25,7 +25,7 @@ from capar.regeneration.requests import Request, read_requests
 from kb.language.vocabulary import Vocabulary
 
 HERE = Path(__file__).parent
-DEMO = HERE.parents[1] / "capar" / "demo" / "drink_from_mug"
+DEMO = HERE.parent / "capar" / "demo" / "drink_from_mug"
 RATE_HZ = 30.0
 
 
@@ -43,7 +43,7 @@ class Spoken:
 
 def spoken() -> list[Spoken]:
     """The requests that were written before they were tried."""
-    rows = tomllib.loads((HERE / "sentences.toml").read_text("utf-8"))["sentence"]
+    rows = tomllib.loads((HERE / "regeneration" / "sentences.toml").read_text("utf-8"))["sentence"]
     return [
         Spoken(
             row["say"], row["world"],
