@@ -31,7 +31,7 @@ def recordings(folder: Path) -> tuple[Recording, ...]:
                 made = truth_of(performed(action, rate_hz=RATE_HZ))
                 write_bundle(action_capture(action, rate_hz=RATE_HZ), made, folder / action)
                 words.add(observe(folder / action))
-        return stored_recordings(words)[0]
+        return stored_recordings(words, folder)[0]
 
 
 def understanding(each: Spoken, known: tuple[Recording, ...]) -> tuple[bool, str]:

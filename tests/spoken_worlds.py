@@ -17,7 +17,7 @@ from capar.model.capture import Capture, TagType
 from capar.pipelines.language import vocabulary
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.recordings import Recording
-from capar.pipelines.spoken_requests import Choice, choices
+from capar.pipelines.spoken_requests import Choice, choices, observed_actions
 from capar.pipelines.trials import trial_of
 from capar.regeneration import scenes
 from capar.regeneration.casting import captured_scene
@@ -90,5 +90,7 @@ def words() -> Vocabulary:
 
 def understood(each: Spoken, recordings: tuple[Recording, ...]) -> tuple[Choice, ...]:
     """The recordings that are chosen for what is said."""
-    asked: tuple[Request, ...] = read_requests(each.say, words(), world(each.world))
+    asked: tuple[Request, ...] = read_requests(
+        each.say, words(), world(each.world), observed_actions(recordings)
+    )
     return choices(asked, recordings)

@@ -9,14 +9,14 @@ if TYPE_CHECKING:
     from capar.body.human import Human
     from capar.pipelines.recordings import Recording
     from capar.pipelines.spoken_requests import Choice, Performance
-    from capar.regeneration.requests import Request
     from capar.regeneration.scenes import Scene
 
 
 class Where(NamedTuple):
-    """Where recordings and words are: one capture, or an Actionary; and the rules."""
+    """Where recordings and words are: one capture, or an Actionary and captures; and the rules."""
 
     capture: str | None
+    recordings: Path | None
     actionary: str | None
     rules: Path | None
 
@@ -39,9 +39,9 @@ def perform_request(
     from capar.cli._output import print_json
     from capar.pipelines.spoken_requests import after, perform
 
-    place, human, requests = _asked(text, agent, where, scene)
+    place, human, chosen = _asked(text, agent, where, scene)
     made: list[Performance] = []
-    for choice in _chosen(requests, where):
+    for choice in chosen:
         made.append(perform(choice, place, human, **how))
         place = after(made[-1], place)
     if output:
@@ -57,13 +57,14 @@ def perform_request(
 
 def _asked(
     text: str, agent: str, where: Where, scene: Path | None
-) -> "tuple[Scene, Human, tuple[Request, ...]]":
-    """The scene, who performs, and what is asked for."""
+) -> "tuple[Scene, Human, tuple[Choice, ...]]":
+    """The scene, who performs, and the recordings that do what is asked for."""
     from capar.body.anthropometry import measures_of, ready_made
     from capar.body.human import Human
     from capar.cli._options import rule_words
     from capar.model.errors import CaparError
     from capar.pipelines.language import vocabulary
+    from capar.pipelines.spoken_requests import choices, observed_actions
     from capar.pipelines.trials import trial_of
     from capar.regeneration.casting import captured_scene
     from capar.regeneration.requests import read_requests
@@ -75,16 +76,11 @@ def _asked(
     place = captured_scene(trial)
     human = Human.of(measures_of(trial.agent) if agent == "same" else ready_made(agent))
     words = vocabulary(rule_words(where.rules, where.actionary))
-    return place, human, read_requests(text, words, place)
-
-
-def _chosen(requests: "tuple[Request, ...]", where: Where) -> "tuple[Choice, ...]":
-    from capar.pipelines.spoken_requests import choices
-
     known, lost = _recordings(where)
     for name in lost:
-        typer.echo(f"capar: the capture of {name!r} is not where it was observed", err=True)
-    return choices(requests, known)
+        typer.echo(f"capar: the capture of {name!r} is not in the folder of recordings", err=True)
+    requests = read_requests(text, words, place, observed_actions(known))
+    return place, human, choices(requests, known)
 
 
 def _recordings(where: Where) -> "tuple[tuple[Recording, ...], tuple[str, ...]]":
@@ -97,7 +93,7 @@ def _recordings(where: Where) -> "tuple[tuple[Recording, ...], tuple[str, ...]]"
         return (observed_recording(observe(where.capture), Path(where.capture)),), ()
     require_actionary(where.actionary, observed=True)
     with Actionary.open(opened(where.actionary), read_only=True) as words:
-        return stored_recordings(words)
+        return stored_recordings(words, where.recordings or Path())
 
 
 def _write(made: "list[Performance]", agent: str, output: Path) -> None:

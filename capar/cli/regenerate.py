@@ -62,6 +62,14 @@ def regenerate(
         str | None,
         typer.Option(help="Which hand does it: right or left.", show_default=False),
     ] = None,
+    recordings: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="With --say: the folder that holds the Actionary's captures; else this one.",
+            show_default=False,
+        ),
+    ] = None,
     actionary: Place = None,
     rules: Rules = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
@@ -89,7 +97,7 @@ def regenerate(
         if style_of:
             raise CaparError("--style-of is of one capture; leave it out, or --say")
         perform_request(
-            say, agent, Where(capture, actionary, rules), scene=scene, output=output,
+            say, agent, Where(capture, recordings, actionary, rules), scene=scene, output=output,
             how={"kind": kind, "duration_s": duration, "hand": hand}, json=json,
         )  # fmt: skip
         return

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 
 from capar.model.observation import Observation
@@ -47,12 +48,23 @@ def observed_recording(observation: Observation, capture: Path) -> Recording:
     )
 
 
-def stored_recordings(actionary: Actionary) -> tuple[tuple[Recording, ...], tuple[str, ...]]:
-    """The recordings of an Actionary by name, and those whose captures are not there any more."""
+def stored_recordings(
+    actionary: Actionary, folder: Path
+) -> tuple[tuple[Recording, ...], tuple[str, ...]]:
+    """The observations of an Actionary whose captures are in a folder, and names of the others.
+
+    A capture is known by the SHA-256 of its ``capture.toml``, as an Actionary does not keep where
+    captures are.
+
+    Args:
+        actionary: What was observed.
+        folder: With captures in it, or in the folders in it.
+    """
     found, lost = [], []
+    captures = _captures(folder)
     general = _general(actionary.upars())
     for each in sorted(actionary.observations(), key=lambda one: one.name):
-        place = _place(actionary, each.name)
+        place = _place(actionary, each.name, captures)
         if place is None:
             lost.append(each.name)
             continue
@@ -69,12 +81,16 @@ def _general(upars: tuple[Upar, ...]) -> dict[str, frozenset[str]]:
     return {name: frozenset(above) for name, above in found.items()}
 
 
-def _place(actionary: Actionary, observation: str) -> Path | None:
-    """Where the capture of an observation was read from, if it is there still."""
+def _captures(folder: Path) -> dict[str, Path]:
+    """Captures in a folder and in the folders in it, by the SHA-256 of what describes them."""
+    files = sorted([*folder.glob(BUNDLE), *folder.glob(f"*/{BUNDLE}")], reverse=True)
+    return {sha256(each.read_bytes()).hexdigest(): each for each in files}
+
+
+def _place(actionary: Actionary, observation: str, captures: Mapping[str, Path]) -> Path | None:
+    """Where the capture of an observation is, if it is among those."""
     seen = names.observation(observation)
-    text = f"SELECT ?file WHERE {{ ?run {CAPAR.ofObservation} {seen} ; {CAPAR.readFrom} ?file }}"
-    files = sorted(str(row["file"]) for row in actionary.store.ask(text).plain())
-    for each in files:
-        if Path(each).name == BUNDLE and Path(each).is_file():
-            return Path(each)
-    return None
+    text = f"SELECT ?sum WHERE {{ GRAPH {seen} {{ ?file a {CAPAR.SourceFile} ; "
+    text += f"{CAPAR.sha256} ?sum }} }}"
+    sums = sorted(str(row["sum"]) for row in actionary.store.ask(text).plain())
+    return next((captures[each] for each in sums if each in captures), None)

@@ -51,8 +51,8 @@ class Performance:
 def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tuple[Choice, ...]:
     """A recording for every request, in order; one for several where it does them in that order.
 
-    Of several recordings the one is chosen that handles things of the same names, then the one
-    with the fewest steps, then the first by name.
+    Of several recordings the one with the fewest steps is chosen, then the one that handles things
+    of the same names, then the first by name.
 
     Raises:
         RequestError: No recording does what is asked for.
@@ -84,13 +84,20 @@ def _fitting(
             foreign = sum(
                 name not in {part, *recording.kinds.get(part, ())} for part, name in pairs
             )
-            yield (foreign, len(recording.steps), recording.name), recording, steps
+            longest = max(len(link.steps) for link in recording.par.links)
+            yield (longest, foreign, recording.name), recording, steps
 
 
 def _steps_for(requests: tuple[Request, ...], recording: Recording) -> tuple[Step, ...]:
     """The steps that do the requests one after the other; none if it does not."""
+    sides = _acting(recording)
+    if len(requests) == 1 and _is_called(recording, requests[0]):
+        handled = [
+            each for each in recording.steps if len(each.objects) >= len(requests[0].objects)
+        ]
+        if len(requests[0].sides) in {0, len(sides)}:
+            return tuple(handled[:1])
     for link in recording.par.links:
-        sides = _acting(recording)
         found: list[Step] = []
         after = -1
         for request in requests:
@@ -115,6 +122,11 @@ def _steps_for(requests: tuple[Request, ...], recording: Recording) -> tuple[Ste
     return ()
 
 
+def _is_called(recording: Recording, request: Request) -> bool:
+    """Whether the whole recording has the name of the action, as its user named it."""
+    return bool(request.objects) and recording.par.name.lower() == request.action.lower()
+
+
 def _acting(recording: Recording) -> set[str]:
     """The sides of the hands that handle something."""
     return {
@@ -133,6 +145,19 @@ def _one_thing_a_part(requests: Sequence[Request], steps: Sequence[Step]) -> boo
 def _parts(requests: Sequence[Request], steps: Sequence[Step]) -> dict[str, str]:
     """The scene's thing for each recorded one that is handled."""
     return {s.objects[0]: r.objects[0] for r, s in zip(requests, steps, strict=True)}
+
+
+def observed_actions(recordings: Sequence[Recording]) -> frozenset[str]:
+    """Every action that a recording holds, the more general ones and names of the whole included.
+
+    Args:
+        recordings: What can be performed.
+    """
+    own = {step.action for each in recordings for step in each.steps}
+    general = {
+        name for each in recordings for action in own for name in each.general.get(action, ())
+    }
+    return frozenset(own | general | {each.par.name.capitalize() for each in recordings})
 
 
 def _unobserved(request: Request, recordings: Sequence[Recording]) -> RequestError:
@@ -259,8 +284,8 @@ def _notes(choice: Choice, parts: Cast) -> tuple[str, ...]:
     told = [f"{asked}: performed as in recording {choice.recording.name!r}"]
     if choice.others:
         told.append(
-            f"{', '.join(choice.others)} would do as well; the one whose things bear the names "
-            "is taken, then the one with the fewest steps, then the first by name"
+            f"{', '.join(choice.others)} would do as well; the one with the fewest steps is "
+            "taken, then the one whose things bear the names, then the first by name"
         )
     told += [f"{name!r} has the part of {part!r}" for part, name in parts.items() if part != name]
     unheeded = dict.fromkeys(word for each in choice.requests for word in each.unheeded)

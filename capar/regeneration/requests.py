@@ -53,11 +53,20 @@ class Request:
     """What was said and has no effect."""
 
 
-def read_requests(text: str, vocabulary: Vocabulary, scene: Scene) -> tuple[Request, ...]:
+def read_requests(
+    text: str, vocabulary: Vocabulary, scene: Scene, observed: frozenset[str] = frozenset()
+) -> tuple[Request, ...]:
     """What a text asks for, in order.
 
+    Args:
+        text: In words.
+        vocabulary: The verbs that are known.
+        scene: The things that there are.
+        observed: The actions that can be performed; empty takes any.
+
     Raises:
-        RequestError: The words cannot be read, ask a question, or name a thing that is not there.
+        RequestError: The words cannot be read or ask a question, nobody was observed doing that,
+            or a thing is not there.
     """
     try:
         value = parse(text, vocabulary)
@@ -71,17 +80,19 @@ def read_requests(text: str, vocabulary: Vocabulary, scene: Scene) -> tuple[Requ
     steps = value.steps if isinstance(value, Plan) else (value,)
     if isinstance(value, Plan) and any(len(part) > 1 for part in value.parts):
         raise RequestError("words", "actions at the same time cannot be asked for; say 'then'")
-    return tuple(request for step in steps for request in _requests(step, scene))
+    return tuple(request for step in steps for request in _requests(step, scene, observed))
 
 
-def _requests(step: Instruction, scene: Scene) -> Iterable[Request]:
+def _requests(step: Instruction, scene: Scene, observed: frozenset[str]) -> Iterable[Request]:
     told = step.circumstances
     if told.negated or told.conditions:
         what = "what is not to be done" if told.negated else "a condition"
         raise RequestError("words", f"{what} cannot be performed; say only what to do")
     if step.said or not step.known or not step.call.action:
         verb = step.said or step.call.action
-        raise RequestError("verb", f"nobody was observed doing {verb!r}")
+        raise _unknown(verb, observed)
+    if observed and step.call.action not in observed:
+        raise _unknown(step.call.action, observed)
     named = [name for _, name in told.places if name not in step.call.objects]
     objects = tuple(find_thing(each, scene).name for each in (*step.call.objects, *named) if each)
     contained = any(word in CONTAINING for word, _ in told.places)
@@ -92,6 +103,11 @@ def _requests(step: Instruction, scene: Scene) -> Iterable[Request]:
         _sides(step.ee), contained, aside, unheeded,
     )  # fmt: skip
     return [made] * max(told.count, 1)
+
+
+def _unknown(verb: str, observed: frozenset[str]) -> RequestError:
+    known = f"; observed are {', '.join(sorted(observed))}" if observed else ""
+    return RequestError("verb", f"nobody was observed doing {verb!r}{known}")
 
 
 def _sides(ee: str) -> frozenset[str]:

@@ -1,4 +1,4 @@
-"""What is asked for in words is performed as a recording that holds it, or refused with a reason."""
+"""What is asked for in words chooses a recording that holds it, or is refused with a reason."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +10,7 @@ from spoken_worlds import spoken, words, world
 
 from capar.model.observation import Observation
 from capar.pipelines.recordings import Recording, observed_recording
-from capar.pipelines.spoken_requests import Choice, choices
+from capar.pipelines.spoken_requests import Choice, choices, observed_actions
 from capar.regeneration.requests import RequestError, read_requests
 
 DRINK = observations.drink_from_mug()
@@ -22,7 +22,8 @@ def _recording(seen: Observation, name: str = "") -> Recording:
 
 
 def _chosen(text: str, *known: Recording, scene: str = "kitchen") -> tuple[Choice, ...]:
-    return choices(read_requests(text, words(), world(scene)), known)
+    asked = read_requests(text, words(), world(scene), observed_actions(known))
+    return choices(asked, known)
 
 
 def _refused(text: str, *known: Recording, scene: str = "demo") -> RequestError:
@@ -33,7 +34,7 @@ def _refused(text: str, *known: Recording, scene: str = "demo") -> RequestError:
 
 
 def test_a_thing_that_is_not_there_is_refused_with_those_that_are() -> None:
-    error = _refused("pick up the apple", _recording(BOTH))
+    error = _refused("reach for the apple", _recording(BOTH))
     assert error.why == "object"
     assert str(error) == "there is no 'apple' in the scene; there are mug, table"
 
