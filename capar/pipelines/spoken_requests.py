@@ -10,7 +10,7 @@ from capar.model.capture import TagType
 from capar.model.par import Step
 from capar.pipelines.recordings import Recording
 from capar.pipelines.round_trips import by_hand, observed_source
-from capar.regeneration.casting import Cast, cast, own_names
+from capar.regeneration.casting import Cast, cast, check_movable, own_names
 from capar.regeneration.errors import PlanError
 from capar.regeneration.motions import Motion
 from capar.regeneration.quality import Quality
@@ -51,7 +51,7 @@ class Performance:
 def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tuple[Choice, ...]:
     """A recording for every request, in order; one for several where it does them in that order.
 
-    Of several recordings the one with the fewest steps is chosen, then the one that handles things
+    Of several recordings the one with the fewest steps of all hands is chosen, then the one that handles things
     of the same names, then the first by name.
 
     Raises:
@@ -84,8 +84,7 @@ def _fitting(
             foreign = sum(
                 name not in {part, *recording.kinds.get(part, ())} for part, name in pairs
             )
-            longest = max(len(link.steps) for link in recording.par.links)
-            yield (longest, foreign, recording.name), recording, steps
+            yield (len(recording.steps), foreign, recording.name), recording, steps
 
 
 def _steps_for(requests: tuple[Request, ...], recording: Recording) -> tuple[Step, ...]:
@@ -227,6 +226,7 @@ def after(performance: Performance, scene: Scene) -> Scene:
 def _cast(choice: Choice, source: Source, scene: Scene) -> tuple[Cast, dict[str, str]]:
     """Who takes which part: what is named, then what bears the name, then by tag and in order."""
     parts = _parts(choice.requests, choice.steps)
+    check_movable(source, scene, parts)
     goals: dict[str, str] = {}
     for request, step in zip(choice.requests, choice.steps, strict=True):
         if len(request.objects) > 1 and len(step.objects) > 1:

@@ -12,7 +12,7 @@ from capar.body.things import Thing
 from capar.model.capture import Capture, Shape, TagType
 from capar.regeneration.errors import PlanError
 from capar.regeneration.scenes import Scene
-from capar.regeneration.sources import Source, scene_of
+from capar.regeneration.sources import MOVES_M, Source, scene_of
 
 ASIDE = "_beside"
 """What is put after the name of a thing that has no part and the name of one that has."""
@@ -48,14 +48,13 @@ def cast(
     Raises:
         PlanError: A recorded thing has no part, or a fixed one is to be moved.
     """
+    check_movable(source, scene, parts)
     named: dict[str, str] = {}
     things: dict[str, Thing] = {}
     for name, thing in source.scene.things.items():
         if name not in parts:
             raise PlanError(f"nothing in the scene has the part of {name!r}")
         actor = scene.thing(parts[name])
-        if thing.tag is TagType.MOBILE and actor.tag is TagType.FIXED and _moved(source, name):
-            raise PlanError(f"{actor.name!r} is fixed and cannot be moved; {_movable(scene)}")
         things[name] = replace(_fitted(actor, thing), name=name)
         named[actor.name] = name
     extras = {}
@@ -74,6 +73,17 @@ def cast(
     return replace(source, scene=recorded, paths={**source.paths, **still}), where
 
 
+def check_movable(source: Source, scene: Scene, parts: Cast) -> None:
+    """Check that nothing fixed has the part of what is taken and moved.
+
+    Raises:
+        PlanError: Something has.
+    """
+    for name, actor in parts.items():
+        if scene.thing(actor).tag is TagType.FIXED and _moved(source, name):
+            raise PlanError(f"{actor!r} is fixed and cannot be moved; {_movable(scene)}")
+
+
 def own_names(source: Source, scene: Scene, parts: Cast) -> dict[str, str]:
     """The scene's names of the things that a performance calls by their recorded ones."""
     taken = set(parts.values())
@@ -85,7 +95,8 @@ def own_names(source: Source, scene: Scene, parts: Cast) -> dict[str, str]:
 
 
 def _moved(source: Source, name: str) -> bool:
-    return any(hold.thing == name for hold in source.holds)
+    path = source.paths[name].translation
+    return bool(np.linalg.norm(path - path[0], axis=1).max() > MOVES_M)
 
 
 def _movable(scene: Scene) -> str:
