@@ -89,7 +89,8 @@ def _observed_link(
     posture = _new(world, f"{ee}_start", "posture")
     if not any(each.condition.kind == "contact" for each in first.upar.preparation):
         world.initially.append(f"(in_posture {holder} {posture})")
-    places, counts = {}, {}
+    places: dict[str, str] = {}
+    counts: dict[str, int] = {}
     touched: dict[str, bool] = {}
     for each in steps:
         name, what = names[each.upar], each.ipar.objects

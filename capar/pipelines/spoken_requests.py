@@ -51,7 +51,8 @@ class Performance:
 def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tuple[Choice, ...]:
     """A recording for every request, in order; one for several where it does them in that order.
 
-    Of several recordings the one with the fewest steps of all hands is chosen, then the one that handles things
+    Of several recordings the one with the fewest steps of all hands is chosen, then the one that
+    handles things
     of the same names, then the first by name.
 
     Raises:
@@ -233,15 +234,15 @@ def _cast(choice: Choice, source: Source, scene: Scene) -> tuple[Cast, dict[str,
             thing, goal = step.objects[0], request.objects[1]
             if scene.support(parts[thing]) != goal:
                 goals[thing] = goal
-    for name, thing in source.scene.things.items():
+    for name, part in source.scene.things.items():
         if name in parts:
             continue
         beneath = scene.support(next(iter(parts.values()), ""))
         free = [each for each in scene.things.values() if each.name not in parts.values()]
-        same = [each.name for each in free if each.tag is thing.tag]
+        same = [each.name for each in free if each.tag is part.tag]
         order = [each for each in (beneath, name) if each in same] + sorted(same)
         if not order:
-            what = "fixed" if thing.tag is TagType.FIXED else "that can be moved"
+            what = "fixed" if part.tag is TagType.FIXED else "that can be moved"
             raise PlanError(
                 f"the recording {choice.recording.name!r} needs something {what} for {name!r}; "
                 f"the scene has {', '.join(sorted(scene.things))}"
