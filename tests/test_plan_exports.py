@@ -214,6 +214,7 @@ def test_a_plan_that_is_not_named_whole_is_refused_with_the_remedy(tmp_path: Pat
         ((str(DEMO), "--format", "pddl", "--output", str(DEMO)), "new folder"),
         ((str(DEMO), "--format", "bt", "--soma"), "leave it out"),
         (("--output", "x.ttl", "--actionary", str(tmp_path)), "RDF goes to FILE"),
+        (("nowhere", "--format", "bml", "--actionary", str(tmp_path)), "nowhere: is no capture"),
     ):
         code, said = _run(*arguments)
         assert code == 2

@@ -128,12 +128,18 @@ def _export_plan(name: str, format_: str, output: Path | None, actionary: str | 
 
 def _plan_source(name: str, actionary: str | None) -> "PlanSource":
     """The action of a capture at a path, else of an observation in the Actionary."""
-    from capar.cli._options import opened, require_actionary
+    from capar.cli._options import has_actionary, opened
+    from capar.model.errors import FileError
     from capar.pipelines.plan_export import capture_plan, stored_plan
     from kb import Actionary
 
     if Path(name).exists() or Path(name.rpartition(":")[0] or name).exists():
         return capture_plan(name)
-    require_actionary(actionary, observed=True)
-    with Actionary.open(opened(actionary), read_only=True) as words:
+    place = opened(actionary)
+    if not has_actionary(place, named=actionary):
+        raise FileError(
+            name, f"is no capture, and {place} is no Actionary that could hold an observation.",
+            "Name a capture's folder, or an Actionary by --actionary.",
+        )  # fmt: skip
+    with Actionary.open(place, read_only=True) as words:
         return stored_plan(words, name)
