@@ -1,12 +1,15 @@
-"""Write the Actionary to a file that others can read."""
+"""Write the Actionary, or the plan of an action, to a file that others can read."""
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from capar.cli._options import Place
+
+if TYPE_CHECKING:
+    from capar.export.plan_sources import PlanSource
 
 app = typer.Typer()
 
@@ -14,12 +17,26 @@ app = typer.Typer()
 @app.command()
 def export(
     file: Annotated[
-        Path | None, typer.Argument(help="Where to; standard output if left out.")
+        Path | None,
+        typer.Argument(
+            metavar="[FILE|CAPTURE|OBSERVATION]",
+            help="Where to; standard output if left out. Of a plan: the capture, or the stored "
+            "observation, whose action is written.",
+        ),
     ] = None,
     format_: Annotated[
         str | None,
         typer.Option(
-            "--format", help="turtle, trig, nquads, jsonld or rdfxml; else by the file's name."
+            "--format",
+            help="turtle, trig, nquads, jsonld or rdfxml; else by the file's name. Of a plan: "
+            "pddl (domain and problem), bt (BehaviorTree.CPP 4) or bml (BML 1.0).",
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            help="Of a plan: a file, or for pddl a new folder; else standard output.",
+            show_default=False,
         ),
     ] = None,
     observation: Annotated[
@@ -33,9 +50,24 @@ def export(
     ] = False,
     actionary: Place = None,
 ) -> None:
-    """Write everything, or one observation, as Turtle, TriG, N-Quads, JSON-LD or RDF/XML."""
+    """Write everything, or one observation, as Turtle, TriG, N-Quads, JSON-LD or RDF/XML.
+
+    With --format pddl, bt or bml: the action of CAPTURE or OBSERVATION as a plan for others.
+    """
     from capar.cli._output import check_writable, written
     from capar.model.errors import CaparError
+    from capar.pipelines.plan_export import PLAN_FORMATS
+
+    if format_ in PLAN_FORMATS:
+        if soma:
+            raise CaparError("--soma writes RDF; leave it out, or --format")
+        _export_plan(str(file or observation or ""), format_, output, actionary)
+        return
+    if output is not None:
+        raise CaparError(
+            "--output is of a plan (--format pddl, bt or bml); RDF goes to FILE: "
+            "`capar export FILE --format trig`"
+        )
     from kb import Actionary
     from kb.exchange import export as exported
     from kb.exchange import format_of, misplaced
@@ -67,3 +99,47 @@ def export(
         draft.write_bytes(data)
     what = f"observation {observation}" if observation else "everything"
     typer.echo(f"wrote {what} to {file}: {len(data):,} bytes of {chosen}", err=True)
+
+
+def _export_plan(name: str, format_: str, output: Path | None, actionary: str | None) -> None:
+    """Write a complex action as a plan; PDDL's two files go to a folder."""
+    from capar.cli._output import check_new_folder, check_writable, written
+    from capar.model.errors import CaparError
+    from capar.pipelines.plan_export import plan_files
+
+    if not name:
+        raise CaparError(f"--format {format_} writes one action; name a capture or an observation")
+    folder = format_ == "pddl"
+    if folder and output is None:
+        raise CaparError("PDDL is two files, a domain and a problem; name a folder by --output")
+    if output is not None:
+        (check_new_folder if folder else check_writable)(output)
+    files = plan_files(_plan_source(name, actionary), format_)
+    if output is None:
+        typer.echo("".join(files.values()), nl=False)
+        return
+    if folder:
+        output.mkdir(exist_ok=True)
+    for file, text in files.items():
+        with written(output / file if folder else output) as draft:
+            draft.write_text(text, "utf-8")
+    typer.echo(f"wrote {name} to {output} as {format_}", err=True)
+
+
+def _plan_source(name: str, actionary: str | None) -> "PlanSource":
+    """The action of a capture at a path, else of an observation in the Actionary."""
+    from capar.cli._options import has_actionary, opened
+    from capar.model.errors import FileError
+    from capar.pipelines.plan_export import capture_plan, stored_plan
+    from kb import Actionary
+
+    if Path(name).exists() or Path(name.rpartition(":")[0] or name).exists():
+        return capture_plan(name)
+    place = opened(actionary)
+    if not has_actionary(place, named=actionary):
+        raise FileError(
+            name, f"is no capture, and {place} is no Actionary that could hold an observation.",
+            "Name a capture's folder, or an Actionary by --actionary.",
+        )  # fmt: skip
+    with Actionary.open(place, read_only=True) as words:
+        return stored_plan(words, name)

@@ -1,13 +1,11 @@
-"""The command that performs a capture's action on another body."""
+"""The command that performs a capture's action, or what is asked for, on another body."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
-if TYPE_CHECKING:
-    from capar.regeneration.motions import Motion
-    from capar.regeneration.quality import Quality
+from capar.cli._options import Place, Rules
 
 app = typer.Typer()
 
@@ -15,9 +13,21 @@ app = typer.Typer()
 @app.command()
 def regenerate(
     capture: Annotated[
-        str,
-        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
-    ],
+        str | None,
+        typer.Argument(
+            help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take. With --say "
+            "it may be left out: the Actionary's recordings are then looked through.",
+            show_default=False,
+        ),
+    ] = None,
+    say: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TEXT",
+            help="What to do, such as 'pick up the mug and put it on the shelf'.",
+            show_default=False,
+        ),
+    ] = None,
     agent: Annotated[
         str, typer.Option(help="Who performs: man, woman, child, or same for the one recorded.")
     ] = "same",
@@ -25,7 +35,8 @@ def regenerate(
         Path | None,
         typer.Option(
             help="A TOML file that changes the scene: [stance] place, heading_deg, floor_m; "
-            "[object.NAME] size, position, turn_deg, raise_m.",
+            "[object.NAME] size, position, turn_deg, raise_m. With --say: the CAPTURE whose scene "
+            "it is done in.",
             show_default=False,
         ),
     ] = None,
@@ -51,10 +62,25 @@ def regenerate(
         str | None,
         typer.Option(help="Which hand does it: right or left.", show_default=False),
     ] = None,
+    recordings: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="With --say: the folder that holds the Actionary's captures; else this one.",
+            show_default=False,
+        ),
+    ] = None,
+    actionary: Place = None,
+    rules: Rules = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
-    """Perform the action of CAPTURE on another body, verify every frame, and write a capture."""
+    """Perform the action of CAPTURE on another body, verify every frame, and write a capture.
+
+    With --say, what the words ask for is looked up among the recordings and performed in the scene.
+    """
+    from capar.cli._gates import quality_answer, tell_quality
     from capar.cli._output import check_new_folder, print_json
+    from capar.model.errors import CaparError
     from capar.pipelines.round_trips import body, by_hand, observed_source
     from capar.regeneration.captures import capture_of, write_motion
     from capar.regeneration.regenerating import regenerate as perform
@@ -65,6 +91,18 @@ def regenerate(
     if output:
         check_new_folder(output)
     kind = style_kind(style)
+    if say is not None:
+        from capar.cli._requests import Where, perform_request
+
+        if style_of:
+            raise CaparError("--style-of is of one capture; leave it out, or --say")
+        perform_request(
+            say, agent, Where(capture, recordings, actionary, rules), scene=scene, output=output,
+            how={"kind": kind, "duration_s": duration, "hand": hand}, json=json,
+        )  # fmt: skip
+        return
+    if capture is None:
+        raise CaparError("name a CAPTURE, or what to do: --say 'touch the mug' --scene CAPTURE")
     recorded = observed_source(capture)
     human = body(agent, recorded)
     place = read_scene(scene, recorded.scene) if scene else recorded.scene
@@ -81,45 +119,8 @@ def regenerate(
         made = capture_of(motion, name=source.capture.name, agent=name)
         write_motion(motion, made, output)
     if json:
-        print_json(_answer(motion, quality))
+        print_json(quality_answer(motion, quality))
         return
-    _tell(motion, quality)
+    tell_quality(motion, quality)
     if output:
         typer.echo(f"wrote {output}", err=True)
-
-
-def _answer(motion: "Motion", quality: "Quality") -> dict[str, Any]:
-    gates = [
-        {
-            "name": gate.name,
-            "value": round(gate.value, 4),
-            "limit": gate.limit,
-            "unit": gate.unit,
-            "passed": gate.passed,
-            "frame": gate.frame,
-            "bodies": gate.bodies,
-        }
-        for gate in quality.gates
-    ]
-    return {
-        "passed": quality.passed,
-        "gates": gates,
-        "told": quality.told,
-        "notes": motion.plan.notes,
-    }
-
-
-def _tell(motion: "Motion", quality: "Quality") -> None:
-    typer.echo("gate               value     limit   unit        passed  worst at")
-    times = motion.plan.source.times
-    for gate in quality.gates:
-        sign = ">=" if gate.at_least else "<="
-        at = f"{times[gate.frame]:.2f} s" if gate.frame >= 0 else ""
-        typer.echo(
-            f"{gate.name:16} {gate.value:8.3f}  {sign} {gate.limit:6.2f}  {gate.unit:10}  "
-            f"{'yes' if gate.passed else 'NO':6}  {at} {gate.bodies}".rstrip()
-        )
-    for each in quality.told:
-        typer.echo(f"{each.name}: {each.value:.1f} {each.unit} ({each.bodies}), not demanded")
-    for note in motion.plan.notes:
-        typer.echo(f"note: {note}")

@@ -1,6 +1,7 @@
 """A motion as a capture, so that it can be observed again."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,6 +51,12 @@ def capture_of(
         sensors=(*(f"{side}_hand" for side in plan.hands), "head"),
         agent=Agent(agent, kind, {"age": measures.age, **stated}),
     )
+
+
+def renamed(capture: Capture, names: Mapping[str, str]) -> Capture:
+    """The capture with other names of its objects."""
+    objects = tuple(replace(each, name=names.get(each.name, each.name)) for each in capture.objects)
+    return replace(capture, objects=objects)
 
 
 def write_motion(motion: Motion, capture: Capture, folder: Path) -> None:

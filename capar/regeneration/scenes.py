@@ -1,6 +1,7 @@
 """The scene that a motion is made for: things where they stand, and where the performer stands."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -27,6 +28,9 @@ class Scene(Things):
 
     stays: bool = False
     """Whether the performer has to stand just there."""
+
+    goals: Mapping[str, str] = field(default_factory=dict)
+    """What a thing is put on in the end, where that is not what the recording says."""
 
     def support(self, name: str) -> str:
         """What a thing stands on; empty where nothing is beneath it."""

@@ -140,6 +140,18 @@ def source_of(capture: Capture, observation: Observation) -> Source:
     return made
 
 
+def scene_of(capture: Capture, human: Human) -> Scene:
+    """The things of a capture where they are at the beginning, and where the performer stands.
+
+    Raises:
+        PlanError: A thing has no shape, or there is no sensor of the head.
+    """
+    place, heading = _stance(human, _eyes(capture))
+    objects = [each for each in capture.objects if each.tag is not TagType.SELF]
+    things = {each.name: _thing(each, _path(each.stream))[0] for each in objects}
+    return Scene(things, place, heading)
+
+
 def eyes_in_body(human: Human) -> Float[np.ndarray, "3"]:
     """Between the eyes of the standing body, from the place where it stands [m]."""
     return np.asarray(eyes_between(human.measures))

@@ -128,9 +128,10 @@ def _put_down(
     spun = turn * after.rotation * before.rotation.inv() * turn.inv() * pose.rotation
     came, support = (_support_at(source.scene, name, each) for each in (before, after))
     spot, reason = pose.translation + by, "as far from where it came from as it was [m]"
-    if support and support != came:
-        spot = _on(source, scene, name, support, after)
-        reason = f"at the same place on {support!r}, in its own measures"
+    onto = scene.goals.get(name, support if support != came else "")
+    if support and onto:
+        spot = _on(source, scene, name, (support, onto), after)
+        reason = f"at the same place on {onto!r}, in its own measures"
     goal = RigidTransform.from_components(spot, spun)
     if support and not _support_at(scene, name, goal):
         x, y, z = spot
@@ -142,9 +143,9 @@ def _put_down(
 
 
 def _on(
-    source: Source, scene: Scene, name: str, support: str, after: RigidTransform
+    source: Source, scene: Scene, name: str, supports: tuple[str, str], after: RigidTransform
 ) -> Float[np.ndarray, "3"]:
-    old, new = source.scene.thing(support), scene.thing(support)
+    old, new = source.scene.thing(supports[0]), scene.thing(supports[1])
     local = old.pose.inv().apply(after.translation)
     low_old, low_new = (s.thing(name).shape.bounds[0, 2] for s in (source.scene, scene))
     share = (local - old.shape.bounds[0]) / np.maximum(old.size, 1e-9)

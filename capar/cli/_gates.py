@@ -1,0 +1,48 @@
+"""How commands tell the quality of a motion."""
+
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from capar.regeneration.motions import Motion
+    from capar.regeneration.quality import Quality
+
+
+def quality_answer(motion: "Motion", quality: "Quality") -> dict[str, Any]:
+    """Gates and notes of a motion, for machines."""
+    gates = [
+        {
+            "name": gate.name,
+            "value": round(gate.value, 4),
+            "limit": gate.limit,
+            "unit": gate.unit,
+            "passed": gate.passed,
+            "frame": gate.frame,
+            "bodies": gate.bodies,
+        }
+        for gate in quality.gates
+    ]
+    return {
+        "passed": quality.passed,
+        "gates": gates,
+        "told": quality.told,
+        "notes": motion.plan.notes,
+    }
+
+
+def tell_quality(motion: "Motion", quality: "Quality") -> None:
+    """Print every gate with its limit and where it was worst, and the notes."""
+    typer.echo("gate               value     limit   unit        passed  worst at")
+    times = motion.plan.source.times
+    for gate in quality.gates:
+        sign = ">=" if gate.at_least else "<="
+        at = f"{times[gate.frame]:.2f} s" if gate.frame >= 0 else ""
+        typer.echo(
+            f"{gate.name:16} {gate.value:8.3f}  {sign} {gate.limit:6.2f}  {gate.unit:10}  "
+            f"{'yes' if gate.passed else 'NO':6}  {at} {gate.bodies}".rstrip()
+        )
+    for each in quality.told:
+        typer.echo(f"{each.name}: {each.value:.1f} {each.unit} ({each.bodies}), not demanded")
+    for note in motion.plan.notes:
+        typer.echo(f"note: {note}")

@@ -1,0 +1,294 @@
+"""From words to performances: which recording is performed, with which things, in which order."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from capar.body.human import Human
+from capar.model.capture import TagType
+from capar.model.par import Step
+from capar.pipelines.recordings import Recording
+from capar.pipelines.round_trips import by_hand, observed_source
+from capar.regeneration.casting import Cast, cast, check_movable, own_names
+from capar.regeneration.errors import PlanError
+from capar.regeneration.motions import Motion
+from capar.regeneration.quality import Quality
+from capar.regeneration.regenerating import regenerate
+from capar.regeneration.requests import Request, RequestError
+from capar.regeneration.scenes import Scene
+from capar.regeneration.sources import Source
+from capar.regeneration.style_kinds import Kind
+from capar.regeneration.styles import own_style, paced
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """A recording that does what some consecutive requests ask for."""
+
+    requests: tuple[Request, ...]
+    recording: Recording
+    steps: tuple[Step, ...]
+    """The step that does each of them."""
+
+    others: tuple[str, ...]
+    """Other recordings that would do as well, by name."""
+
+
+@dataclass(frozen=True, eq=False)
+class Performance:
+    """What was performed for a choice."""
+
+    choice: Choice
+    motion: Motion
+    quality: Quality
+    names: dict[str, str]
+    """The scene's names of the things by those that the motion has."""
+
+    notes: tuple[str, ...]
+
+
+def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tuple[Choice, ...]:
+    """A recording for every request, in order; one for several where it does them in that order.
+
+    Of several recordings the one with the fewest steps of all hands is chosen, then the one that
+    handles things
+    of the same names, then the first by name.
+
+    Raises:
+        RequestError: No recording does what is asked for.
+    """
+    found: list[Choice] = []
+    at = 0
+    while at < len(requests):
+        for size in range(len(requests) - at, 0, -1):
+            part = tuple(requests[at : at + size])
+            fitting = sorted(_fitting(part, recordings), key=lambda each: each[0])
+            if fitting:
+                _, recording, steps = fitting[0]
+                others = tuple(each.name for _, each, _ in fitting[1:])
+                found.append(Choice(part, recording, steps, others))
+                at += size
+                break
+        else:
+            raise _unobserved(requests[at], recordings)
+    return tuple(found)
+
+
+def _fitting(
+    requests: tuple[Request, ...], recordings: Sequence[Recording]
+) -> Iterator[tuple[tuple[int, int, str], Recording, tuple[Step, ...]]]:
+    for recording in recordings:
+        steps = _steps_for(requests, recording)
+        if steps:
+            pairs = _parts(requests, steps).items()
+            foreign = sum(
+                name not in {part, *recording.kinds.get(part, ())} for part, name in pairs
+            )
+            yield (len(recording.steps), foreign, recording.name), recording, steps
+
+
+def _steps_for(requests: tuple[Request, ...], recording: Recording) -> tuple[Step, ...]:
+    """The steps that do the requests one after the other; none if it does not."""
+    sides = _acting(recording)
+    if len(requests) == 1 and _is_called(recording, requests[0]):
+        handled = [
+            each for each in recording.steps if len(each.objects) >= len(requests[0].objects)
+        ]
+        if len(requests[0].sides) in {0, len(sides)}:
+            return tuple(handled[:1])
+    for link in recording.par.links:
+        found: list[Step] = []
+        after = -1
+        for request in requests:
+            if request.sides and len(request.sides) != len(sides):
+                break
+            step = next(
+                (
+                    (number, each)
+                    for number, each in enumerate(link.steps)
+                    if number > after
+                    and recording.fits(each, request.action)
+                    and len(each.objects) >= len(request.objects) > 0
+                ),
+                None,
+            )
+            if step is None:
+                break
+            after = step[0]
+            found.append(step[1])
+        if len(found) == len(requests) and _one_thing_a_part(requests, found):
+            return tuple(found)
+    return ()
+
+
+def _is_called(recording: Recording, request: Request) -> bool:
+    """Whether the whole recording has the name of the action, as its user named it."""
+    return bool(request.objects) and recording.par.name.lower() == request.action.lower()
+
+
+def _acting(recording: Recording) -> set[str]:
+    """The sides of the hands that handle something."""
+    return {
+        link.ee.partition("_")[0]
+        for link in recording.par.links
+        if any(step.objects for step in link.steps)
+    }
+
+
+def _one_thing_a_part(requests: Sequence[Request], steps: Sequence[Step]) -> bool:
+    """Whether a recorded thing that is handled stands for one thing throughout."""
+    pairs = {(s.objects[0], r.objects[0]) for r, s in zip(requests, steps, strict=True)}
+    return len(dict(pairs)) == len(pairs)
+
+
+def _parts(requests: Sequence[Request], steps: Sequence[Step]) -> dict[str, str]:
+    """The scene's thing for each recorded one that is handled."""
+    return {s.objects[0]: r.objects[0] for r, s in zip(requests, steps, strict=True)}
+
+
+def observed_actions(recordings: Sequence[Recording]) -> frozenset[str]:
+    """Every action that a recording holds, the more general ones and names of the whole included.
+
+    Args:
+        recordings: What can be performed.
+    """
+    own = {step.action for each in recordings for step in each.steps}
+    general = {
+        name for each in recordings for action in own for name in each.general.get(action, ())
+    }
+    return frozenset(own | general | {each.par.name.capitalize() for each in recordings})
+
+
+def _unobserved(request: Request, recordings: Sequence[Recording]) -> RequestError:
+    known = sorted({step.action for each in recordings for step in each.steps})
+    hands = " with both hands" if len(request.sides) > 1 else ""
+    what = f"{request.said!r}{hands}" + (" with another thing" if len(request.objects) > 1 else "")
+    return RequestError(
+        "verb",
+        f"nobody was observed doing {what}; observed are {', '.join(known) or 'no actions'}",
+    )
+
+
+def perform(
+    choice: Choice,
+    scene: Scene,
+    human: Human,
+    *,
+    kind: Kind = Kind.PATH,
+    duration_s: float | None = None,
+    hand: str | None = None,
+) -> Performance:
+    """Perform a recording in a scene.
+
+    Args:
+        choice: What is performed.
+        scene: Where.
+        human: Who performs.
+        kind: What of the recorded way is kept.
+        duration_s: How long it takes [s]; as long as it did, unless stated.
+        hand: Which hand does it; the recorded one, unless stated or asked for.
+
+    Raises:
+        PlanError: It is impossible, or out of reach; the message says what would help.
+    """
+    recorded = observed_source(choice.recording.capture)
+    for request in choice.requests:
+        _check_place(request, recorded)
+    sides = {next(iter(each.sides)) for each in choice.requests if len(each.sides) == 1}
+    side = hand or (sides.pop() if len(sides) == 1 else None)
+    source = by_hand(recorded, side) if side else recorded
+    parts, goals = _cast(choice, source, scene)
+    source, where = cast(source, scene, parts, goals)
+    for request, step in zip(choice.requests, choice.steps, strict=True):
+        _check_side(request, step, source)
+    if duration_s:
+        source = paced(source, duration_s)
+    motion, quality = regenerate(source, human, where, own_style(source, kind))
+    return Performance(
+        choice, motion, quality, own_names(recorded, scene, parts), _notes(choice, parts)
+    )
+
+
+def after(performance: Performance, scene: Scene) -> Scene:
+    """The scene as a performance leaves it."""
+    plan = performance.motion.plan
+    things = dict(scene.things)
+    for name, thing in plan.scene.things.items():
+        own = performance.names[name]
+        spot = plan.things[name].translation[-1]
+        ahead = plan.things[name].rotation[-1].apply([1.0, 0.0, 0.0])
+        heading = float(np.arctan2(ahead[1], ahead[0]))
+        x, y, z = (float(each) for each in spot)
+        things[own] = replace(thing, name=own, place=(x, y, z), heading=heading)
+    return replace(scene, things=things, place=plan.scene.place, heading=plan.scene.heading)
+
+
+def _cast(choice: Choice, source: Source, scene: Scene) -> tuple[Cast, dict[str, str]]:
+    """Who takes which part: what is named, then what bears the name, then by tag and in order."""
+    parts = _parts(choice.requests, choice.steps)
+    check_movable(source, scene, parts)
+    goals: dict[str, str] = {}
+    for request, step in zip(choice.requests, choice.steps, strict=True):
+        if len(request.objects) > 1 and len(step.objects) > 1:
+            thing, goal = step.objects[0], request.objects[1]
+            if scene.support(parts[thing]) != goal:
+                goals[thing] = goal
+    for name, part in source.scene.things.items():
+        if name in parts:
+            continue
+        beneath = scene.support(next(iter(parts.values()), ""))
+        free = [each for each in scene.things.values() if each.name not in parts.values()]
+        same = [each.name for each in free if each.tag is part.tag]
+        order = [each for each in (beneath, name) if each in same] + sorted(same)
+        if not order:
+            what = "fixed" if part.tag is TagType.FIXED else "that can be moved"
+            raise PlanError(
+                f"the recording {choice.recording.name!r} needs something {what} for {name!r}; "
+                f"the scene has {', '.join(sorted(scene.things))}"
+            )
+        parts[name] = order[0]
+    return parts, goals
+
+
+def _check_place(request: Request, source: Source) -> None:
+    """In a thing is another place than on it."""
+    if not request.contained:
+        return
+    seen = (p for each in source.observation.segments for p in each.prepositions)
+    if not any(word == "in" and moved in source.paths for word, moved, _ in seen):
+        raise RequestError(
+            "verb",
+            f"nobody was observed putting something in another thing; say 'on' for what "
+            f"{source.capture.name!r} does",
+        )
+
+
+def _check_side(request: Request, step: Step, source: Source) -> None:
+    """Left and right as they were recorded: another direction was not observed."""
+    if not request.aside or step.objects[0] not in source.paths:
+        return
+    path = source.paths[step.objects[0]].translation
+    turn = source.scene.heading
+    aside = float((path[-1] - path[0]) @ [-np.sin(turn), np.cos(turn), 0.0])
+    if aside * request.aside <= 0.0:
+        way = "left" if aside > 0.0 else "right" if aside < 0.0 else "neither side"
+        raise RequestError(
+            "verb",
+            f"in {source.capture.name!r} {step.objects[0]!r} goes to the {way}; the other hand "
+            "does it the other way round (--hand left)",
+        )
+
+
+def _notes(choice: Choice, parts: Cast) -> tuple[str, ...]:
+    asked = ", then ".join(" ".join((each.said, *each.objects)) for each in choice.requests)
+    told = [f"{asked}: performed as in recording {choice.recording.name!r}"]
+    if choice.others:
+        told.append(
+            f"{', '.join(choice.others)} would do as well; the one with the fewest steps is "
+            "taken, then the one whose things bear the names, then the first by name"
+        )
+    told += [f"{name!r} has the part of {part!r}" for part, name in parts.items() if part != name]
+    unheeded = dict.fromkeys(word for each in choice.requests for word in each.unheeded)
+    told += [f"{word!r} has no effect" for word in unheeded]
+    return tuple(told)

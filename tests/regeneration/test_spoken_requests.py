@@ -1,0 +1,138 @@
+"""What is asked for in words chooses a recording that holds it, or is refused with a reason."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import observations
+import pytest
+from spoken_worlds import DEMO, RATE_HZ, spoken, words, world
+
+from capar.body.bundles import write_bundle
+from capar.body.recording import Truth
+from capar.body.scripted_actions import action_capture
+from capar.cli import main
+from capar.model.observation import Observation
+from capar.pipelines.observation import observe
+from capar.pipelines.recordings import Recording, observed_recording
+from capar.pipelines.spoken_requests import Choice, choices, observed_actions
+from capar.pipelines.trials import trial_of
+from capar.regeneration.requests import RequestError, read_requests
+
+DRINK = observations.drink_from_mug()
+BOTH = observations.pick_up_with_both_hands()
+
+
+def _recording(seen: Observation, name: str = "") -> Recording:
+    return replace(observed_recording(seen, Path("nowhere")), name=name or seen.capture)
+
+
+def _chosen(text: str, *known: Recording, scene: str = "kitchen") -> tuple[Choice, ...]:
+    asked = read_requests(text, words(), world(scene), observed_actions(known))
+    return choices(asked, known)
+
+
+def _refused(text: str, *known: Recording, scene: str = "demo") -> RequestError:
+    with pytest.raises(RequestError) as error:
+        _chosen(text, *known, scene=scene)
+    assert "\n" not in str(error.value)
+    return error.value
+
+
+def test_a_thing_that_is_not_there_is_refused_with_those_that_are() -> None:
+    error = _refused("reach for the apple", _recording(BOTH))
+    assert error.why == "object"
+    assert str(error) == "there is no 'apple' in the scene; there are mug, table"
+
+
+def test_an_action_that_nobody_did_is_refused_with_those_that_were_done() -> None:
+    error = _refused("open the mug", _recording(DRINK))
+    assert error.why == "verb"
+    assert "nobody was observed doing 'Open'" in str(error)
+    assert "Reach" in str(error)
+    assert _refused("please wash the mug", _recording(DRINK)).why == "verb"
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("the mug on put", "it could be"),
+        ("what is on the table", "ask for an action"),
+        ("don't touch the mug", "say only what to do"),
+        ("", "empty"),
+    ],
+)
+def test_words_that_are_no_request_are_refused_with_what_would_be_one(
+    text: str, remedy: str
+) -> None:
+    error = _refused(text, _recording(DRINK))
+    assert error.why == "words"
+    assert remedy in str(error)
+
+
+def test_of_several_recordings_the_same_is_chosen_in_whatever_order_they_are_stored() -> None:
+    first, second = _recording(DRINK, "a"), _recording(DRINK, "b")
+    for known in ((first, second), (second, first)):
+        (choice,) = _chosen("reach for the mug", *known, scene="demo")
+        assert choice.recording.name == "a"
+        assert choice.others == ("b",)
+
+
+def test_both_hands_are_taken_from_a_recording_of_both_hands() -> None:
+    known = (_recording(DRINK, "a"), _recording(BOTH, "b"))
+    (choice,) = _chosen("reach for the crate with both hands", *known, scene="crate")
+    assert choice.recording.name == "b"
+    (choice,) = _chosen("reach for the mug", *known, scene="demo")
+    assert choice.recording.name == "a"
+
+
+def test_actions_that_one_recording_does_in_that_order_are_performed_as_one() -> None:
+    known = _recording(DRINK)
+    (choice,) = _chosen("reach for the mug and put it on the table", known, scene="demo")
+    assert [each.action for each in choice.steps] == ["Reach", "MoveObjTo"]
+    first, second = _chosen("put the mug on the table and reach for it", known, scene="demo")
+    assert first.recording is second.recording
+
+
+def test_the_requests_were_written_for_three_worlds() -> None:
+    rows = spoken()
+    assert len(rows) == 20
+    assert {each.world for each in rows} == {"demo", "crate", "kitchen"}
+    assert all(bool(each.performs) != bool(each.refused) for each in rows)
+    for each in rows:
+        for thing in each.things:
+            assert np.isfinite(world(each.world).thing(thing).place).all()
+
+
+def _run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["capar", "regenerate", *arguments])
+    try:
+        main()
+    except SystemExit as end:
+        return int(end.code or 0)
+    return 0
+
+
+@pytest.mark.long
+def test_what_is_asked_for_is_performed_in_the_scene_or_refused_and_nothing_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own, out = str(tmp_path / "own"), tmp_path / "out"
+    touch = action_capture("touch", rate_hz=RATE_HZ)
+    write_bundle(touch, Truth((), (), (), ()), tmp_path / "own")
+    where = ("--scene", str(DEMO), "--agent", "child", "--output", str(out))
+    assert _run(monkeypatch, own, "--say", "touch the apple", *where) == 2
+    assert "there are mug, table" in capsys.readouterr().err
+    assert not out.exists()
+    assert _run(monkeypatch, own, "--say", "touch the mug", *where) == 0
+    told = capsys.readouterr().out
+    assert "'mug' has the part of 'crate'" in told
+    assert "penetration" in told
+    made = trial_of(out)
+    assert {each.name for each in made.objects} == {"head", "mug", "table"}
+    assert made.agent.kind == "child"
+    mug = made.tag_object("mug").stream.positions
+    assert np.ptp(mug, axis=0).max() < 0.001
+    (seen,) = (link for link in observe(made).links if link.ee == "right_hand")
+    names = [each.name for each in seen.segments if each.name != "Rest"]
+    assert names == ["Reach", "Touch", "ResumePosture"]
