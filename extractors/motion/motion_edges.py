@@ -7,6 +7,7 @@ from jaxtyping import Float, Int
 
 from capar.model import geometry
 from extractors.bodies.poses import Poses, median_pose
+from extractors.motion.onsets import beginning_s, weights
 from extractors.motion.object_motion import Floor, RestPose, rests_at
 from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
@@ -73,22 +74,21 @@ def _left(
     nudged = _nudged(poses, np.arange(moved[0], edge - 1, -1), stay, near, thresholds)
     if nudged is not None:
         stay, edge = nudged, _gone(poses, nudged, moved, near)
-    frames = np.arange(edge, max(moved[1], edge) + 1)
-    return max(edge - onset(growth(poses, frames, stay, near), poses, floor, thresholds), 0)
+    frames = np.arange(stay.interval[0], max(moved[1], edge) + 1)
+    return onset(poses, frames, edge - stay.interval[0], stay, floor, thresholds)
 
 
 def _arrived(
     poses: Poses, stay: RestPose, moved: Interval, floor: Floor, thresholds: Thresholds
 ) -> int:
     """When an object was at a place to stay."""
-    near, count = hair(poses, thresholds), len(poses.smooth.times)
+    near = hair(poses, thresholds)
     edge = _come(poses, stay, moved, near)
     nudged = _nudged(poses, np.arange(moved[1], edge + 1), stay, near, thresholds)
     if nudged is not None:
         stay, edge = nudged, _come(poses, nudged, moved, near)
-    frames = np.arange(edge, min(moved[0], edge) - 1, -1)
-    later = onset(growth(poses, frames, stay, near), poses, floor, thresholds)
-    return min(edge + later, count - 1)
+    frames = np.arange(stay.interval[1], min(moved[0], edge) - 1, -1)
+    return onset(poses, frames, stay.interval[1] - edge, stay, floor, thresholds)
 
 
 def _gone(poses: Poses, stay: RestPose, moved: Interval, near: Floor) -> int:
@@ -143,23 +143,61 @@ def growth(
 
 
 def onset(
-    grows: Float[np.ndarray, "some"], poses: Poses, floor: Floor, thresholds: Thresholds
+    poses: Poses,
+    frames: Int[np.ndarray, "some"],
+    seen: int,
+    stay: RestPose,
+    floor: Floor,
+    thresholds: Thresholds,
 ) -> int:
-    """How many frames a motion had lasted when it was first seen, by how it grew from then on.
-
-    People start and stop smoothly: displacement grows with the cube of time (minimum jerk; Flash
-    and Hogan 1985). What is struck, or was in motion when its recording began, sets off at once.
-    From the times at which it was a hair and well beyond the beginning follows.
+    """The frame at which a motion that was seen at a frame truly began.
 
     Args:
-        grows: Displacement in hairs [1], frame by frame, from where it is a hair on.
         poses: The object's poses.
+        frames: Frames in a row, from its place of rest to its motion; backward for an end.
+        seen: Which of them is the first at which it is a hair beyond that place.
+        stay: That place.
         floor: The floor of its motion, as far as which it is followed at least.
         thresholds: What a hair is, and how long it takes at most to go so far.
     """
     near = hair(poses, thresholds)
-    reach = min(floor.position_m / near.position_m, floor.rotation_rad / near.rotation_rad)
-    return before_seen(grows, max(reach, GROWN), longest(poses, near, thresholds))
+    reach = max(
+        min(floor.position_m / near.position_m, floor.rotation_rad / near.rotation_rad), GROWN
+    )
+    most = longest(poses, near, thresholds)
+    pad = round(thresholds.rest_minimum_s * frame_rate(poses.filled.times))
+    start = max(seen - most - pad, 0)
+    grows = growth(poses, frames[seen:], stay, near)
+    large = np.flatnonzero(~(grows < reach))
+    far = seen + (int(large[0]) if large.size else int(np.nanargmax(grows)) if len(grows) and not np.isnan(grows).all() else 0)
+    some = frames[start : far + 1]
+    lost = np.flatnonzero(poses.filled.lost[some])
+    if lost.size or len(some) < 4:
+        return int(frames[min(seen, len(frames)-1)])
+    raw, smooth, noise = _along(poses, some, stay, near)
+    times = np.abs(poses.filled.times[some] - poses.filled.times[some[0]])
+    at = beginning_s(raw, times, weights(smooth, noise), float(times[max(seen - most, 0) - start]), float(times[-1]))
+    return int(some[np.argmin(np.abs(times - at))])
+
+
+def _along(poses, some, stay, near):
+    """Displacement along the way to the last frame, raw and smooth, in hairs, and its noise."""
+    place = poses.smooth.positions[some] - stay.position
+    turn = _turned(poses.smooth.orientations[some], stay)
+    far, angle = np.linalg.norm(place[-1]), np.linalg.norm(turn[-1])
+    if far / near.position_m >= angle / near.rotation_rad:
+        raw, unit, noise = poses.filled.positions[some] - stay.position, near.position_m, poses.noise.position_m
+        smooth, to = place, place[-1] / far
+    else:
+        raw, unit, noise = _turned(poses.filled.orientations[some], stay), near.rotation_rad, poses.noise.orientation_rad
+        smooth, to = turn, turn[-1] / angle
+    return raw @ to / unit, smooth @ to / unit, noise / unit
+
+
+def _turned(orientations, stay):
+    from scipy.spatial.transform import Rotation
+    back = Rotation.from_quat(stay.orientation, scalar_first=True).inv()
+    return (Rotation.from_quat(orientations, scalar_first=True) * back).as_rotvec()
 
 
 def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> int:
