@@ -51,7 +51,7 @@ USUAL = (100.0, 0.5, 0)
 
 
 @dataclass(frozen=True)
-class Path_:
+class Track:
     """A thing's true path, finely."""
 
     name: str
@@ -76,7 +76,7 @@ class Edge:
     """Told less true [s]."""
 
 
-def paths(every: int) -> Iterator[Path_]:
+def paths(every: int) -> Iterator[Track]:
     """The mobile things of one scene in so many."""
     for name, scene in list(SCENES.items())[::every]:
         stage = scene.stage()
@@ -84,7 +84,7 @@ def paths(every: int) -> Iterator[Path_]:
             if thing.tag is TagType.MOBILE:
                 motions = true_motions(thing.body, stage.duration_s)
                 if motions:
-                    yield Path_(f"{name}: {thing.name}", thing.body, stage.duration_s, motions)
+                    yield Track(f"{name}: {thing.name}", thing.body, stage.duration_s, motions)
 
 
 def true_motions(body: Body, duration_s: float) -> tuple[tuple[float, float], ...]:
@@ -101,7 +101,7 @@ def true_motions(body: Body, duration_s: float) -> tuple[tuple[float, float], ..
     return tuple((float(times[a]), float(times[b + 1])) for a, b in geometry.runs(~stands))
 
 
-def recorded(path: Path_, rate_hz: float, noise_mm: float, draw: int) -> TagObject:
+def recorded(path: Track, rate_hz: float, noise_mm: float, draw: int) -> TagObject:
     """The thing as a tracker records it."""
     times = np.arange(round(path.duration_s * rate_hz) + 1) / rate_hz
     random = np.random.default_rng([draw, sum(map(ord, path.name))])
@@ -111,12 +111,10 @@ def recorded(path: Path_, rate_hz: float, noise_mm: float, draw: int) -> TagObje
     return TagObject(path.name, TagType.MOBILE, Stream(times, poses[:, :3, 3], turns))
 
 
-def edges(path: Path_, rate_hz: float, noise_mm: float, draw: int) -> Iterator[Edge]:
+def edges(path: Track, rate_hz: float, noise_mm: float, draw: int) -> Iterator[Edge]:
     """Each edge that is told of a thing in one recording, beside the true one."""
     poses = poses_of(recorded(path, rate_hz, noise_mm, draw), LIMITS)
-    floor = motion_floor(
-        poses.noise, frame_rate(poses.filled.times), own_m=None, thresholds=LIMITS
-    )
+    floor = motion_floor(poses.noise, frame_rate(poses.filled.times), own_m=None, thresholds=LIMITS)
     rests = rest_poses(poses, floor, LIMITS)
     times = poses.filled.times
     for core in moving(poses, rests, floor, LIMITS):
@@ -125,19 +123,17 @@ def edges(path: Path_, rate_hz: float, noise_mm: float, draw: int) -> Iterator[E
             true = _true(path, side, float(times[at]))
             if true is not None and 0.0 < true < times[-1]:
                 kind = _kind(path, side, true)
-                yield Edge(
-                    path.name, side, kind, rate_hz, noise_mm, draw, true, float(mine) - true
-                )
+                yield Edge(path.name, side, kind, rate_hz, noise_mm, draw, true, float(mine) - true)
 
 
-def _true(path: Path_, side: str, inside_s: float) -> float | None:
+def _true(path: Track, side: str, inside_s: float) -> float | None:
     """The edge of the true motion under way at an instant, or nearest to it."""
     away = [max(begin - inside_s, inside_s - end, 0.0) for begin, end in path.motions]
     nearest = int(np.argmin(away))
     return path.motions[nearest][0 if side == "begin" else 1] if away[nearest] < 0.1 else None
 
 
-def _kind(path: Path_, side: str, true_s: float) -> str:
+def _kind(path: Track, side: str, true_s: float) -> str:
     """How long it takes from its edge to the floor of motion."""
     way = 1.0 if side == "begin" else -1.0
     times = true_s + way * np.arange(0.0, 1.0, 0.005)
@@ -195,7 +191,11 @@ def _row(
 
 def share(errors_s: Float[np.ndarray, "edges"]) -> float:
     """Errors within 50 ms [%]."""
-    return round(100.0 * float(np.mean(np.abs(errors_s) <= NEAR_S + 1e-9)), 1) if len(errors_s) else 0.0
+    return (
+        round(100.0 * float(np.mean(np.abs(errors_s) <= NEAR_S + 1e-9)), 1)
+        if len(errors_s)
+        else 0.0
+    )
 
 
 def _place(edge: Edge) -> tuple[str, str, float]:
@@ -222,9 +222,7 @@ def main() -> None:
         for draw in (range(options.draws) if noise else (0,))
     ]
     ways += [USUAL] if USUAL not in ways else []
-    found = [
-        edge for path in paths(options.every) for way in ways for edge in edges(path, *way)
-    ]
+    found = [edge for path in paths(options.every) for way in ways for edge in edges(path, *way)]
     rows = table(found)
     worst = sorted(found, key=lambda each: -abs(each.error_s))[: options.worst]
     if options.json:
