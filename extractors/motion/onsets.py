@@ -10,10 +10,10 @@ STROKES_S = tuple(0.15 * 40.0 ** (step / 11.0) for step in range(12))
 least duration of a rest to 6 s; longer ones begin alike."""
 
 CANDIDATES = 24
-"""How many beginnings are tried at once, evenly [1]; then as many about the likely ones."""
+"""How many beginnings are tried at once [1], then about the likely ones."""
 
-ROUNDS = 2
-"""How often they are tried [1]."""
+_SPREAD = np.linspace(0.0, 1.0, CANDIDATES // 2) ** 2
+"""Where they lie between when a motion is first seen and the limits [1]: the farther, the wider."""
 
 ABOUT = 3.0
 """How many deviations about the likely beginning the next ones are tried [1]."""
@@ -22,7 +22,7 @@ STRAY = 0.1
 """Share of itself by which a displacement strays from any profile [1]: people move less smoothly
 than a formula. So small displacements tell of the beginning, as far as noise lets them."""
 
-QUIET = 0.1
+QUIET = 0.05
 """Noise is taken for at least this share of the unit [1]: what is recorded without any drifts."""
 
 FEWEST_FRAMES = 4
@@ -73,22 +73,31 @@ def beginning_s(way: Ways, times: Ways, told: Ways, earliest_s: float, latest_s:
 
     Args:
         way: The displacement along one direction, from the place before on [1].
-        times: When [s].
+        times: When [s]; it is first seen at 0.
         told: How much each frame tells (``weights``).
-        earliest_s: No earlier than this.
-        latest_s: No later than this.
+        earliest_s: No earlier than this, which is not after 0.
+        latest_s: No later than this, which is not before 0.
     """
-    mean_s, low_s, high_s = latest_s, earliest_s, latest_s
-    for _ in range(ROUNDS):
-        tries = np.linspace(low_s, high_s, CANDIDATES)
-        misfit = _misfit(way, times, told, tries)
-        likely = np.exp(-0.5 * (misfit - misfit.min())).sum(axis=0)
-        likely /= likely.sum()
-        mean_s = float(likely @ tries)
-        spread_s = float(np.sqrt(likely @ (tries - mean_s) ** 2))
-        half_s = max(ABOUT * spread_s, 2.0 * float(tries[1] - tries[0]))
-        low_s, high_s = max(low_s, mean_s - half_s), min(high_s, mean_s + half_s)
-    return mean_s
+    if earliest_s >= latest_s:
+        return latest_s
+    tries = np.unique(np.concatenate([earliest_s * _SPREAD, latest_s * _SPREAD]))
+    mean_s, spread_s = _mean(way, times, told, tries)
+    half_s = ABOUT * spread_s + float(np.interp(mean_s, tries, np.gradient(tries)))
+    tries = np.linspace(
+        max(mean_s - half_s, earliest_s), min(mean_s + half_s, latest_s), CANDIDATES
+    )
+    return _mean(way, times, told, tries)[0]
+
+
+def _mean(
+    way: Ways, times: Ways, told: Ways, tries: Float[np.ndarray, "tries"]
+) -> tuple[float, float]:
+    """The mean of some beginnings by how likely they are, and their deviation from it [s]."""
+    misfit = _misfit(way, times, told, tries)
+    likely = np.exp(-0.5 * (misfit - misfit.min())).sum(axis=0) * np.gradient(tries)
+    likely /= likely.sum()
+    mean_s = float(likely @ tries)
+    return mean_s, float(np.sqrt(likely @ (tries - mean_s) ** 2))
 
 
 def _misfit(
