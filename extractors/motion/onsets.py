@@ -48,7 +48,7 @@ def onset(
     before, after = np.flatnonzero(lost[:seen]), np.flatnonzero(lost[seen:])
     start = max(seen - most - rest, int(before[-1]) + 1 if before.size else 0)
     stop = seen + int(after[0]) if after.size else len(way)
-    if stop - start < FEWEST_FRAMES:
+    if stop <= seen or stop - start < FEWEST_FRAMES:
         return seen
     times = (np.arange(start, stop) - seen) / rate_hz
     told = weights(smooth[start:stop], noise)
