@@ -3,11 +3,13 @@
 from functools import partial
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
+from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from extractors.bodies.poses import Poses, median_pose
 from extractors.motion.object_motion import Floor, RestPose, rests_at
+from extractors.motion.onsets import onset
 from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, first_where, last_where
@@ -20,20 +22,6 @@ No threshold: as displacement grows with the cube of time, that is twice as long
 """
 
 
-POWERS = (1.0, 3.0)
-"""With which power of time a displacement grows [1]: at once, by a steady push, smoothly."""
-
-AGREEMENT = 0.1
-"""A beginning is sure if both estimates of how long ago it was differ by no larger share [1]."""
-
-UNSURE = 1.0 / 3.0
-"""Share of the longest time by which a motion may have begun earlier if that is not sure [1]: what
-drifts, or is recorded at few frames, grows with no power of time."""
-
-LEAST = 0.01
-"""A displacement is taken for at least this [1], since less is noise."""
-
-
 def motion_edges(
     poses: Poses, moved: Interval, rests: tuple[RestPose, ...], floor: Floor, thresholds: Thresholds
 ) -> Interval:
@@ -42,9 +30,9 @@ def motion_edges(
     A motion is recognised by a displacement that no handling without it makes; once recognised, it
     began when the object was last where it had rested, and ended when it first was where it
     rests afterwards: within what noise alone makes, and at least a hair's width. What passed
-    before it was that far is added (``onset``). What takes longer to the floor than motion at the
-    slowest does, drifts until then. What was nudged or wobbled, and for the least duration of a
-    rest went no farther away, sets off from there.
+    before it was that far follows from how it grew (``onset``). What takes longer to the floor than
+    motion at the slowest does, drifts until then. What was nudged or wobbled, and for the least
+    duration of a rest went no farther away, sets off from there.
 
     Args:
         poses: The object's poses.
@@ -61,7 +49,8 @@ def motion_edges(
     if after:
         last = _arrived(poses, after[0], moved, floor, thresholds)
     creeps = round(thresholds.creep_s * frame_rate(poses.filled.times))
-    return max(first, moved[0] - creeps), min(last, moved[1] + creeps)
+    first, last = max(first, moved[0] - creeps), min(last, moved[1] + creeps)
+    return min(first, moved[0]), max(last, moved[1])
 
 
 def _left(
@@ -73,22 +62,19 @@ def _left(
     nudged = _nudged(poses, np.arange(moved[0], edge - 1, -1), stay, near, thresholds)
     if nudged is not None:
         stay, edge = nudged, _gone(poses, nudged, moved, near)
-    frames = np.arange(edge, max(moved[1], edge) + 1)
-    return max(edge - onset(growth(poses, frames, stay, near), poses, floor, thresholds), 0)
+    return _onset(poses, stay, (edge, max(moved[1], edge)), 1, floor, thresholds)
 
 
 def _arrived(
     poses: Poses, stay: RestPose, moved: Interval, floor: Floor, thresholds: Thresholds
 ) -> int:
     """When an object was at a place to stay."""
-    near, count = hair(poses, thresholds), len(poses.smooth.times)
+    near = hair(poses, thresholds)
     edge = _come(poses, stay, moved, near)
     nudged = _nudged(poses, np.arange(moved[1], edge + 1), stay, near, thresholds)
     if nudged is not None:
         stay, edge = nudged, _come(poses, nudged, moved, near)
-    frames = np.arange(edge, min(moved[0], edge) - 1, -1)
-    later = onset(growth(poses, frames, stay, near), poses, floor, thresholds)
-    return min(edge + later, count - 1)
+    return _onset(poses, stay, (edge, min(moved[0], edge)), -1, floor, thresholds)
 
 
 def _gone(poses: Poses, stay: RestPose, moved: Interval, near: Floor) -> int:
@@ -133,7 +119,7 @@ def _nudged(
 
 
 def growth(
-    poses: Poses, frames: Int[np.ndarray, "some"], stay: RestPose, unit: Floor
+    poses: Poses, frames: Int[np.ndarray, "some"] | slice, stay: RestPose, unit: Floor
 ) -> Float[np.ndarray, "some"]:
     """How far an object is from a place, or turned, in units of a displacement [1]; NaN if lost."""
     stream = poses.smooth
@@ -142,59 +128,92 @@ def growth(
     return np.asarray(np.maximum(distance / unit.position_m, angle / unit.rotation_rad))
 
 
-def onset(
-    grows: Float[np.ndarray, "some"], poses: Poses, floor: Floor, thresholds: Thresholds
+def _onset(
+    poses: Poses,
+    stay: RestPose,
+    motion: tuple[int, int],
+    step: int,
+    floor: Floor,
+    thresholds: Thresholds,
 ) -> int:
-    """How many frames a motion had lasted when it was first seen, by how it grew from then on.
-
-    People start and stop smoothly: displacement grows with the cube of time (minimum jerk; Flash
-    and Hogan 1985). What is struck, or was in motion when its recording began, sets off at once.
-    From the times at which it was a hair and well beyond the beginning follows.
+    """The frame at which a motion out of a place truly began, or one into it truly ended.
 
     Args:
-        grows: Displacement in hairs [1], frame by frame, from where it is a hair on.
         poses: The object's poses.
+        stay: The place.
+        motion: The frame next to the place at which the object is a hair beyond it, and the one at
+            the other end of the motion.
+        step: 1 out of the place, -1 where the motion leads to it.
         floor: The floor of its motion, as far as which it is followed at least.
         thresholds: What a hair is, and how long it takes at most to go so far.
     """
-    near = hair(poses, thresholds)
-    reach = min(floor.position_m / near.position_m, floor.rotation_rad / near.rotation_rad)
-    return before_seen(grows, max(reach, GROWN), longest(poses, near, thresholds))
+    near, rate_hz = hair(poses, thresholds), frame_rate(poses.filled.times)
+    most, rest = longest(poses, near, thresholds), round(thresholds.rest_minimum_s * rate_hz)
+    edge, start = motion[0], stay.interval[0 if step > 0 else 1]
+    seen = max(min(step * (edge - start), most + rest), 0)
+    far = _well_beyond(poses, stay, motion, near, floor)
+    frames = np.arange(edge - step * seen, far + step, step)
+    if len(frames) <= seen + 1:
+        return edge
+    way, smooth, noise = _along(poses, frames, stay, near)
+    begin = onset(way, smooth, seen, noise=noise, most=most, rest=rest, rate_hz=rate_hz)
+    return int(frames[begin])
 
 
-def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> int:
-    """How many frames before it is 1 a displacement that grows with a power of time was none.
+def _well_beyond(
+    poses: Poses, stay: RestPose, motion: tuple[int, int], near: Floor, floor: Floor
+) -> int:
+    """The frame, from the first of a motion to the last, at which it is clear how it grew.
 
-    The power is the one of ``POWERS`` that agrees best with when it was half as large, in powers
-    of ten, as in the end.
-
-    Args:
-        grows: The displacement, from where it is about 1 on.
-        reach: How large it should have grown for this to be told [1]; less if it never is.
-        most: The answer at most.
+    It is the last one before the object is lost, and the farthest if it never goes well beyond.
     """
-    if not grows.size or np.isnan(grows[0]):
-        return 0
-    large = np.flatnonzero(grows >= reach)
-    far = int(large[0]) if large.size else int(np.nanargmax(grows))
-    begin, end = max(float(grows[0]), LEAST), float(grows[far])
-    if end <= begin:
-        return 0
-    middle = float(np.sqrt(begin * end))
-    half = int(np.flatnonzero(grows[: far + 1] >= middle)[0])
-    tries = [
-        (_lasted(begin, end, far, power), _lasted(begin, middle, half, power)) for power in POWERS
-    ]
-    whole, part = min(tries, key=lambda both: abs(1.0 - both[1] / both[0]))
-    if abs(1.0 - part / whole) > AGREEMENT:
-        most = round(most * UNSURE)
-    return min(round(whole), most)
+    edge, other = motion
+    reach = min(floor.position_m / near.position_m, floor.rotation_rad / near.rotation_rad)
+
+    def beyond(frames: slice) -> Bool[np.ndarray, "some"]:
+        return ~(growth(poses, frames, stay, near) < max(reach, GROWN))
+
+    forward = edge <= other
+    found = first_where(beyond, edge, other + 1) if forward else last_where(beyond, edge)
+    if found is None or (not forward and found < other):
+        first, last = min(edge, other), max(edge, other)
+        return first + int(np.argmax(growth(poses, slice(first, last + 1), stay, near)))
+    if poses.smooth.lost[found]:
+        return found - 1 if forward else found + 1
+    return found
 
 
-def _lasted(begin: float, end: float, frames: int, power: float) -> float:
-    """How many frames it took to ``begin`` if it then takes so many to ``end``."""
-    first, last = begin ** (1.0 / power), end ** (1.0 / power)
-    return frames * first / (last - first)
+def _along(
+    poses: Poses, frames: Int[np.ndarray, "some"], stay: RestPose, near: Floor
+) -> tuple[Float[np.ndarray, "some"], Float[np.ndarray, "some"], float]:
+    """How far an object goes toward its last pose, or turns, whichever is clearer.
+
+    Returns:
+        Displacement [hairs] as recorded and low-passed, and the noise of one that was recorded.
+    """
+    ends = poses.smooth.positions[frames[-1:]], poses.smooth.orientations[frames[-1:]]
+    way, turn = ends[0] - stay.position, _turned(ends[1], stay)
+    goes = np.linalg.norm(way) / near.position_m >= np.linalg.norm(turn) / near.rotation_rad
+    to, unit = (way[0], near.position_m) if goes else (turn[0], near.rotation_rad)
+    to = to / (np.linalg.norm(to) * unit)
+    streams = poses.filled, poses.smooth
+    if goes:
+        raw, smooth = ((each.positions[frames] - stay.position) @ to for each in streams)
+        return raw, smooth, poses.noise.position_m / unit
+    raw, smooth = (_turned(each.orientations[frames], stay) @ to for each in streams)
+    return raw, smooth, poses.noise.orientation_rad / unit
+
+
+def _turned(
+    orientations: Float[np.ndarray, "some 4"], stay: RestPose
+) -> Float[np.ndarray, "some 3"]:
+    """Rotation vectors from the orientation of a place [rad]; NaN where the object is lost."""
+    out = np.full((len(orientations), 3), np.nan)
+    known = ~np.isnan(orientations[:, 0])
+    back = Rotation.from_quat(stay.orientation, scalar_first=True).inv()
+    turns = Rotation.from_quat(orientations[known], scalar_first=True) * back
+    out[known] = turns.as_rotvec()
+    return out
 
 
 def longest(poses: Poses, near: Floor, thresholds: Thresholds) -> int:

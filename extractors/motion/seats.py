@@ -6,12 +6,25 @@ import numpy as np
 from jaxtyping import Float
 
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.motion.motion_edges import GROWN, before_seen, hair, longest
+from extractors.motion.motion_edges import GROWN, hair, longest
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
 
 REACHES = 3
 """How far beyond a contact a height is followed, in the longest times until it is seen [1]."""
+
+POWERS = (1.0, 3.0)
+"""With which power of time a displacement grows [1]: at once, by a steady push, smoothly."""
+
+AGREEMENT = 0.1
+"""A beginning is sure if both estimates of how long ago it was differ by no larger share [1]."""
+
+UNSURE = 1.0 / 3.0
+"""Share of the longest time by which a motion may have begun earlier if that is not sure [1]: what
+drifts, or is recorded at few frames, grows with no power of time."""
+
+LEAST = 0.01
+"""A displacement is taken for at least this [1], since less is noise."""
 
 
 def seat(
@@ -73,3 +86,38 @@ def _settled(
     way = np.concatenate([height[: passed + 1][::-1], outside[: REACHES * most]])
     later = before_seen((way - level) / least, GROWN, most)
     return min(passed + later, end - 1)
+
+
+def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> int:
+    """How many frames before it is 1 a displacement that grows with a power of time was none.
+
+    The power is the one of ``POWERS`` that agrees best with when it was half as large, in powers
+    of ten, as in the end.
+
+    Args:
+        grows: The displacement, from where it is about 1 on.
+        reach: How large it should have grown for this to be told [1]; less if it never is.
+        most: The answer at most.
+    """
+    if not grows.size or np.isnan(grows[0]):
+        return 0
+    large = np.flatnonzero(grows >= reach)
+    far = int(large[0]) if large.size else int(np.nanargmax(grows))
+    begin, end = max(float(grows[0]), LEAST), float(grows[far])
+    if end <= begin:
+        return 0
+    middle = float(np.sqrt(begin * end))
+    half = int(np.flatnonzero(grows[: far + 1] >= middle)[0])
+    tries = [
+        (_lasted(begin, end, far, power), _lasted(begin, middle, half, power)) for power in POWERS
+    ]
+    whole, part = min(tries, key=lambda both: abs(1.0 - both[1] / both[0]))
+    if abs(1.0 - part / whole) > AGREEMENT:
+        most = round(most * UNSURE)
+    return min(round(whole), most)
+
+
+def _lasted(begin: float, end: float, frames: int, power: float) -> float:
+    """How many frames it took to ``begin`` if it then takes so many to ``end``."""
+    first, last = begin ** (1.0 / power), end ** (1.0 / power)
+    return frames * first / (last - first)
