@@ -13,8 +13,13 @@ from scenes.hands.scene import Scene
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 
-STILL = frozenset({"Rest", "Touch", "TouchWith", "TouchOneself"})
-"""Steps in which a hand stays where it is."""
+STILL = frozenset(
+    {"Rest", "Touch", "TouchWith", "TouchOneself", "Stand", "StandOnOneLeg", "RestFoot", "Point"}
+)
+"""Steps in which a hand or a foot stays where it is."""
+
+FROM = frozenset({"Reach", "ResumePosture", "Step", "Kick", "Accept", "Receive"})
+"""Steps whose last object may be what was left."""
 
 IN_THE_AIR = frozenset({"Lift", "Carry", "Raise"})
 """Steps at whose end a thing is off everything, if it is their only object."""
@@ -97,7 +102,7 @@ def test_the_last_of_several_objects_is_touched(scene: Scene) -> None:
     """What a step names beside its first object touches that object, or the hand, at its end."""
     stage = performed(scene)
     for hand, step in steps(stage):
-        if len(step.objects) > 1 and step.name not in ("Reach", "ResumePosture"):
+        if len(step.objects) > 1 and step.name not in FROM:
             first, *_, last = things_of(stage, step)
             near = min(apart(body, last, step.end_s) for body in (first, hand))
             assert near < TOUCHING_M, (hand.name, step)

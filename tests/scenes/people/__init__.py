@@ -1,0 +1,6 @@
+"""Scenes of people: whole bodies that walk, sit, carry, greet, and what every limb did."""
+
+from scenes.people import (  # noqa: F401
+    scenes_walks,
+)
+from scenes.people.registry import SCENES as SCENES
