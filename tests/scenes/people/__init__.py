@@ -1,6 +1,7 @@
 """Scenes of people: whole bodies that walk, sit, carry, greet, and what every limb did."""
 
 from scenes.people import (  # noqa: F401
+    scenes_steps,
     scenes_walks,
 )
 from scenes.people.registry import SCENES as SCENES

@@ -22,7 +22,7 @@ SOLE_M = 0.08
 class Limb(Hand):
     """An acting hand or foot of one of several people."""
 
-    part: str = "hand"
+    member: str = "hand"
     agent: str = ""
     others: list[tuple["Limb", float, float]] = field(default_factory=list)
     """Hands that it touched, from when to when [s]."""

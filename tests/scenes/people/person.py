@@ -346,11 +346,11 @@ def person(
         shape = (form or shapes.flat_hand(side)).scaled(size)
         home = trunk.first @ made.local[side]
         body = Body(f"{prefix}{side}_hand", home)
-        made.hands[side] = Limb(body, side, shape, home, part="hand", agent=agent)
+        made.hands[side] = Limb(body, side, shape, home, member="hand", agent=agent)
     for side in feet:
         spot = trunk.first @ foot_place(side, size)
         body = Body(f"{prefix}{side}_foot", spot)
-        made.feet[side] = Limb(body, side, foot_form(size), spot, part="foot", agent=agent)
+        made.feet[side] = Limb(body, side, foot_form(size), spot, member="foot", agent=agent)
         made.feet[side].meet(ground)
     stage.hands.extend([*made.hands.values(), *made.feet.values()])
     return made

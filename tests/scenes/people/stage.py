@@ -54,7 +54,7 @@ class PeopleStage(Stage):
         """Draw out what stands to the end, as steps of their own."""
         end = self.duration_s
         for limb in self.hands:
-            if isinstance(limb, Limb) and limb.part == "foot" and limb.touched:
+            if isinstance(limb, Limb) and limb.member == "foot" and limb.touched:
                 limb.clock = end
                 if limb.clock - limb.border > 0.0:
                     limb.step("Stand", limb.touched)
@@ -109,9 +109,9 @@ def _declared(sensors: list[Sensor]) -> list[TagObject]:
 
 
 def _acting(limb: Limb, stream: Stream) -> Sensor:
-    chain = {"hand": "arm", "foot": "leg"}[limb.part]
+    chain = {"hand": "arm", "foot": "leg"}[limb.member]
     return Sensor(
-        limb.name, limb.part, limb.side, f"{limb.side}_{chain}", stream, surface(limb.form),
+        limb.name, limb.member, limb.side, f"{limb.side}_{chain}", stream, surface(limb.form),
         agent=limb.agent,
     )  # fmt: skip
 
