@@ -1,6 +1,8 @@
 """Scenes of people: whole bodies that walk, sit, carry, greet, and what every limb did."""
 
 from scenes.people import (  # noqa: F401
+    scenes_joints,
+    scenes_performers,
     scenes_steps,
     scenes_walks,
 )

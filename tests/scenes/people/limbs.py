@@ -24,6 +24,9 @@ class Limb(Hand):
 
     member: str = "hand"
     agent: str = ""
+    aliases: dict[str, str] = field(default_factory=dict)
+    """Names of steps that the alternative has in place of others."""
+
     others: list[tuple["Limb", float, float]] = field(default_factory=list)
     """Hands that it touched, from when to when [s]."""
 
@@ -69,10 +72,11 @@ class Chest(Body):
         return self.trunk.poses(times) @ about((0.0, 0.0, self.hip_m), (0.0, 1.0, 0.0), angle)
 
 
-def smooth(share: Times) -> Times:
-    """Way done from 0 to 1 with an even pace in the middle and a continuous acceleration."""
+def smooth(share: Times, ramp: float = RAMP) -> Times:
+    """Way done from 0 to 1 with an even pace between a share in which it rises and falls."""
     fine = np.linspace(0.0, 1.0, 2001)
-    pace = min_jerk(fine / RAMP) * min_jerk((1.0 - fine) / RAMP)
+    edge = np.clip(np.minimum(fine, 1.0 - fine) / ramp, 0.0, 1.0)
+    pace = edge**2 * (3.0 - 2.0 * edge)
     done = np.concatenate([[0.0], np.cumsum(0.5 * (pace[1:] + pace[:-1]))])
     return np.asarray(np.interp(np.clip(share, 0.0, 1.0), fine, done / done[-1]))
 

@@ -7,7 +7,6 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.capture import TagType
 from scenes.hands import shapes
-from scenes.hands.expectation import Step
 from scenes.hands.paths import Body, Poses, Times, Vector, about, facing, min_jerk, pose
 from scenes.hands.things import Thing
 from scenes.people.limbs import SOLE_M, Chest, Limb, Rider, foot_form, smooth
@@ -27,6 +26,9 @@ BOB_M = 0.012
 
 SHIFT_S = 0.3
 """How long before the first step the body shifts [s]."""
+
+START_S = 0.6
+"""How long the body needs until it walks evenly [s]."""
 
 SWING = (0.1, 0.9)
 """Shares of a step's time at which the foot leaves the floor and lands."""
@@ -183,7 +185,7 @@ class Person:
         def law(since: Times) -> Poses:
             times = since + start
             out = np.tile(base, (len(since), 1, 1))
-            ahead = way * smooth(since / (end - start))
+            ahead = way * smooth(since / (end - start), min(START_S / (end - start), 0.4))
             over = sway * SWAY_M * self.size * beat.swing(times)
             share = (times - beat.start) / beat.pace
             fade = min_jerk(share) * min_jerk(beat.count - share)
@@ -232,8 +234,11 @@ class Person:
 
         def law(since: Times) -> Poses:
             share = since / duration
-            done, bump = smooth(share), 16.0 * share**2 * (1.0 - share) ** 2
-            climb = min_jerk(share / 0.7) if way[2] > 0 else min_jerk((share - 0.3) / 0.7)
+            late = 0.2 if way[2] > 0 else 0.0
+            early = 0.2 if way[2] < 0 else 0.0
+            done = smooth((share - late) / (1.0 - late - early))
+            bump = 16.0 * share**2 * (1.0 - share) ** 2
+            climb = min_jerk(share / 0.6) if way[2] > 0 else min_jerk((share - 0.4) / 0.6)
             out = np.tile(np.eye(4), (len(since), 1, 1))
             out[:, :2, 3] = first[:2, 3] + np.outer(done, way[:2])
             out[:, 2, 3] = first[2, 3] + way[2] * climb + high * bump
@@ -363,10 +368,3 @@ def _at_home(side: str, size: float, *, hang: bool) -> np.ndarray:
         return pose((0.02, sign * 0.3 * size, 0.76 * size), facing(inward, (0.0, 0.0, -1.0)))
     return pose((0.18 * size, sign * 0.27 * size, 1.0 * size), facing(inward, (1.0, 0.0, 0.0)))
 
-
-def renamed(limb: Limb, **names: str) -> tuple[Step, ...]:
-    """A limb's steps with some names exchanged."""
-    return tuple(
-        Step(names.get(each.name, each.name), each.objects, each.start_s, each.end_s)
-        for each in limb.steps
-    )

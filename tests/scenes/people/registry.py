@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 from scenes.hands.scene import Scene
 from scenes.hands.stage import Stage
@@ -18,11 +19,16 @@ class PeopleScene(Scene):
     act: Callable[[PeopleStage], None] = lambda _: None
 
     def stage(self) -> Stage:
-        """The scene as it is performed, before any tracker sees it."""
-        stage = PeopleStage(self.name)
-        self.act(stage)
-        stage.close()
-        return stage
+        """The scene as it is performed, before any tracker sees it; bodies are solved once."""
+        return _performed(self)
+
+
+@cache
+def _performed(scene: PeopleScene) -> PeopleStage:
+    stage = PeopleStage(scene.name)
+    scene.act(stage)
+    stage.close()
+    return stage
 
 
 def scene(write: Callable[[PeopleStage], None]) -> Scene:

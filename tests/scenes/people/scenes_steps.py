@@ -6,7 +6,7 @@ from scenes.hands import shapes
 from scenes.hands.paths import Poses, Times, about, pose, quintic
 from scenes.hands.scene import performer
 from scenes.people.limbs import SOLE_M, Limb
-from scenes.people.person import Person, foot_place, person, renamed
+from scenes.people.person import Person, foot_place, person
 from scenes.people.registry import scene
 from scenes.people.stage import PeopleStage
 
@@ -30,10 +30,8 @@ def body_goes(p: Person, by: tuple[float, float, float], swing_s: float, first: 
               turn_deg: float = 0.0) -> None:  # fmt: skip
     """The body goes somewhere by two steps; hands go along."""
     start = p.clock
-    base = p.trunk.at(start)
     p.shift(by, 2.0 * swing_s + 0.55, turn_deg)
     two_steps(p, p.trunk.at(p.clock), first, start=start + 0.2, swing_s=swing_s)
-    assert base.shape == (4, 4)
     p.hands_along(start)
 
 
@@ -86,7 +84,7 @@ def turn_round_by_four_steps(s: PeopleStage) -> None:
     p = person(s, hang=True, size=0.94)
     p.stand(0.7)
     start = p.clock
-    for side in ("right", "left", "right", "left")[::2]:
+    for side in ("right", "right"):
         base = p.clock
         p.shift((0.0, 0.0, 0.0), 1.6, -50.0)
         two_steps(p, p.trunk.at(p.clock), side, start=base + 0.2, swing_s=0.5)
@@ -95,6 +93,8 @@ def turn_round_by_four_steps(s: PeopleStage) -> None:
         p.along(hand, start, p.clock)
         hand.step("PostureChange")
     quiet_end(p, 0.8)
+    for foot in p.feet.values():
+        foot.aliases["Step"] = "Walk"
 
 
 @scene
@@ -205,7 +205,6 @@ def stand_on_the_left_leg(s: PeopleStage) -> None:
     """The right foot is raised, held up for two seconds, and set down again."""
     performer(s, yaw_deg=-15)
     p = person(s, hang=True)
-    start = p.clock
     p.stand(0.6)
     lean = p.clock
     p.shift((0.0, 0.09, 0.0), 0.8)
@@ -213,9 +212,8 @@ def stand_on_the_left_leg(s: PeopleStage) -> None:
         hand.wait(lean)
         p.along(hand, lean, p.clock)
         hand.step("PostureChange")
-    assert start < lean
     one_legged(p, "right", lift=p.clock + 0.5, held=2.0, by=(-0.05, 0.0, 0.25), end=0.8)
-    p.right_foot.alternative = renamed(p.right_foot, Withdraw="ResumePosture")
+    p.right_foot.aliases["Withdraw"] = "ResumePosture"
 
 
 @scene
@@ -227,7 +225,7 @@ def stand_on_the_right_leg(s: PeopleStage) -> None:
     for hand in p.hands.values():
         hand.body.first[:3, 3] += (0.0, -0.07, 0.0)
     one_legged(p, "left", lift=1.0, held=1.2, by=(-0.2, 0.0, 0.3), end=0.9)
-    p.left_foot.alternative = renamed(p.left_foot, Withdraw="ResumePosture")
+    p.left_foot.aliases["Withdraw"] = "ResumePosture"
 
 
 @scene
@@ -241,7 +239,7 @@ def rest_a_foot_on_a_stool(s: PeopleStage) -> None:
         hand.body.first[:3, 3] += (0.0, -0.08, 0.0)
     foot = p.left_foot
     goal = pose((0.4, 0.13, 0.22 + SOLE_M))
-    p.put_foot(foot, goal, 0.9, 1.7, onto=stool, high=0.1)
+    p.put_foot(foot, goal, 0.9, 1.7, onto=stool, high=0.08)
     foot.clock += 2.0
     foot.step("RestFoot", stool)
     p.clock = foot.clock

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagObject, TagType
 from scenes.hands import shapes
 from scenes.hands.paths import Body, Vector, pose
-from scenes.hands.stage import Noise, Stage
+from scenes.hands.stage import Noise, Stage, other_names
 from scenes.hands.things import Thing
 from scenes.people.limbs import Limb
 
@@ -58,6 +58,8 @@ class PeopleStage(Stage):
                 limb.clock = end
                 if limb.clock - limb.border > 0.0:
                     limb.step("Stand", limb.touched)
+            if isinstance(limb, Limb) and limb.aliases:
+                limb.alternative = other_names(limb, **limb.aliases)
 
     def capture(self, rate_hz: float, noise: Noise, seed: int) -> Capture:
         """What a tracker records of the scene."""
