@@ -24,6 +24,9 @@ FROM = frozenset({"Reach", "ResumePosture", "Step", "Kick", "Accept", "Receive"}
 IN_THE_AIR = frozenset({"Lift", "Carry", "Raise"})
 """Steps at whose end a thing is off everything, if it is their only object."""
 
+STAYS_M = 0.0015
+"""A hand that goes no further about a place rests [m]."""
+
 REST_S = 0.4
 """A hand that rests for so long does so in a step of its own (spec 10) [s]."""
 
@@ -60,6 +63,12 @@ def resting(hand: Hand, start_s: float, end_s: float) -> float:
     return float((np.diff(moves) - 1).max() / RATE_HZ)
 
 
+def stays(hand: Hand, step: Step) -> bool:
+    """Whether a hand stays within a millimetre and a half throughout, as a body's hand does."""
+    places = hand.body.poses(np.arange(step.start_s, step.end_s, 1.0 / RATE_HZ))[:, :3, 3]
+    return float(np.ptp(places, axis=0).max()) < STAYS_M
+
+
 def things_of(stage: Stage, step: Step) -> list[Thing]:
     """The objects of a step as things."""
     by_name = {each.name: each for each in stage.things}
@@ -94,7 +103,8 @@ def test_a_hold_is_at_rest(scene: Scene) -> None:
     for hand, step in steps(performed(scene)):
         if step.name in STILL:
             still = resting(hand, step.start_s, step.end_s)
-            assert still > step.end_s - step.start_s - 0.05, (hand.name, step)
+            long = still > step.end_s - step.start_s - 0.05
+            assert long or stays(hand, step), (hand.name, step)
 
 
 @each_scene

@@ -24,6 +24,9 @@ class Limb(Hand):
 
     member: str = "hand"
     agent: str = ""
+    beside_s: float = 0.12
+    """So long before and after a contact it may be near what it touches [s]."""
+
     aliases: dict[str, str] = field(default_factory=dict)
     """Names of steps that the alternative has in place of others."""
 

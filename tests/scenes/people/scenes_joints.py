@@ -16,7 +16,7 @@ def says(f: Figure, side: str, *steps: tuple[float, str]) -> None:
 
 def raising(side: str, start: float, end: float, elbow: float = 95.0) -> list[Bend | Sway]:
     """An arm goes up beside the head, the forearm upright, or comes down again."""
-    angles = {"shoulder_abduction": 70.0, "shoulder_rotation": -85.0, "elbow_flexion": elbow}
+    angles = {"shoulder_abduction": 70.0, "shoulder_rotation": -76.0, "elbow_flexion": elbow}
     return [Bend(f"{side}_{joint}", start, end, angle) for joint, angle in angles.items()]
 
 
@@ -61,7 +61,7 @@ def child_waves_with_the_left_hand(s: PeopleStage) -> None:
 def woman_waves_slowly(s: PeopleStage) -> None:
     """A woman waves three times, with a wide swing and slowly."""
     performer(s, yaw_deg=-150)
-    waves(s, "woman", "right", rate_hz=1.1, cycles=3, angle=28.0)
+    waves(s, "woman", "right", rate_hz=1.1, cycles=3, angle=25.0)
 
 
 def points(s: PeopleStage, who: str, side: str, *, aside: float, held: float) -> None:
@@ -143,6 +143,7 @@ def man_bows(s: PeopleStage) -> None:
     down: list[Bend | Sway] = [
         Bend(f"{level}_flexion", 0.9, 2.0, angle) for level, angle in spine.items()
     ]
+    down += both("shoulder_flexion", 0.9, 2.0, 50.0)
     f = moved(s, "man", 5.0, [*down, *back(down, 3.0, 4.2)])
     for side in ("right", "left"):
         says(
@@ -185,51 +186,4 @@ def child_looks_about(s: PeopleStage) -> None:
         for start, share in ((0.8, 1.0), (2.2, -2.0), (3.6, 1.0))
     ]
     f = moved(s, "child", 5.2, acts)
-    f.rests("right", "left")
-
-
-def knee_up(side: str, start: float, end: float, hip: float, knee: float) -> list[Bend | Sway]:
-    """A leg is bent at hip and knee, or stretched again."""
-    return [
-        Bend(f"{side}_hip_flexion", start, end, hip),
-        Bend(f"{side}_knee_flexion", start, end, knee),
-    ]
-
-
-@scene
-def woman_stands_on_her_left_leg(s: PeopleStage) -> None:
-    """A woman lifts her right knee, stands so for a second and a half, and puts the foot down."""
-    performer(s, yaw_deg=-65)
-    up = knee_up("right", 1.0, 1.8, 60.0, 75.0)
-    f = moved(s, "woman", 5.2, [*up, *back(up, 3.3, 4.2)], stance="left")
-    right, left = f.feet["right"], f.feet["left"]
-    right.clock = 1.0
-    right.step("Stand", right.let_go())
-    for end, name, things in (
-        (1.8, "Withdraw", [s.floor]),
-        (3.3, "Rest", []),
-        (4.2, "Step", [s.floor]),
-    ):
-        right.clock = end
-        right.step(name, *things)
-    right.meet(s.floor)
-    for end, name in ((1.0, "Stand"), (4.2, "StandOnOneLeg")):
-        left.clock = end
-        left.step(name, s.floor)
-    right.aliases["Withdraw"] = "ResumePosture"
-    f.rests("right", "left")
-
-
-@scene
-def man_steps_in_place(s: PeopleStage) -> None:
-    """A man lifts his right foot and sets it down where it stood, without a halt."""
-    performer(s, yaw_deg=15)
-    up = knee_up("right", 1.0, 1.5, 35.0, 55.0)
-    f = moved(s, "man", 3.2, [*up, *back(up, 1.5, 2.1)], stance="left")
-    right = f.feet["right"]
-    right.clock = 1.0
-    right.step("Stand", right.let_go())
-    right.clock = 2.1
-    right.meet(s.floor)
-    right.step("Step", s.floor)
     f.rests("right", "left")

@@ -172,34 +172,27 @@ def child_lifts_a_crate(s: PeopleStage) -> None:
 
 
 @scene
-def woman_drinks_from_a_mug(s: PeopleStage) -> None:
-    """A woman takes a mug to her mouth, drinks and puts it back."""
-    performer(s, yaw_deg=50)
-    own = {"right": Hand("holds", "mug")}
-    mouth = Move(to_mouth=True, tilt=0.6)
-    script = (
-        STAND,
-        Phase("reach", 1.1, {"right": Hand("reaches", "mug")}, look="mug"),
-        Phase("grasp", 0.4, own, look="mug"),
-        Phase("raise", 1.2, own, {"mug": mouth}, look="ahead"),
-        Phase("drink", 1.2, own, {"mug": mouth}, look="ahead"),
-        Phase("lower", 1.3, own, {"mug": Move(home=True)}, look="mug"),
-        Phase("release", HOLD_S, own, look="mug"),
-        Phase("return", 1.1, look="ahead"),
-        STAND,
+def woman_lifts_a_crate(s: PeopleStage) -> None:
+    """A woman lifts a crate with both hands faster than the others, and puts it back."""
+    performer(s, yaw_deg=140)
+    lifted(s, "woman", height=0.22, pace=1.1, ahead=0.25)
+
+
+@scene
+def woman_pushes_a_mug_aside(s: PeopleStage) -> None:
+    """A woman pushes a mug over the table to the left with her right palm."""
+    performer(s, yaw_deg=-15)
+    script = moved_about("mug", "right", (("push", 1.1, Move((0.0, 0.14, 0.0))),))
+    f = at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.14, around=True)
+    told(f, "right", "mug", (("Push", ("mug", "table")),))
+
+
+@scene
+def man_lifts_a_jar_with_the_left_hand(s: PeopleStage) -> None:
+    """A man lifts a jar with his left hand, holds it up, and puts it back."""
+    performer(s, yaw_deg=60)
+    script = moved_about(
+        "jar", "left", (("up", 0.8, LIFT), ("stay", 0.8, Move()), ("down", 0.9, LOWER))
     )
-    f = at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.1, around=True)
-    f.does(
-        "right",
-        (0, "Rest", ()),
-        (1, "Reach", ("mug",)),
-        (2, "Touch", ("mug",)),
-        (3, "MoveObjTo", ("mug", "head")),
-        (4, "Drink", ("mug", "head")),
-        (5, "MoveObjTo", ("mug", "table")),
-        (6, "TouchWith", ("mug", "table")),
-        (7, "ResumePosture", ("mug",)),
-        (8, "Rest", ()),
-    )
-    f.holds("right", "mug", 2, 6)
-    f.rests("left")
+    f = at_table(s, "man", script, "jar", shapes.vessel(0.034, 0.11, "jar"), 0.24, 0.12, around=True)
+    told(f, "left", "jar", (("Lift", ("jar",)), ("Touch", ("jar",)), ("Lower", ("jar", "table"))))

@@ -17,16 +17,19 @@ from capar.body.human import Human
 from capar.body.performing import Performance, perform
 from capar.body.recording import HAND_SEGMENTS
 from capar.body.scripts import SIDES, Script
-from capar.body.skeleton import skeleton
+from capar.body.skeleton import HEEL, skeleton
 from capar.body.things import Scene as BodyScene
 from capar.body.things import Thing as BodyThing
 from capar.body.things import scene as body_scene
 from capar.model.capture import TagType
 from scenes.hands.paths import Body, Poses, Times, min_jerk, pose
-from scenes.hands.shapes import Form
+from scenes.hands.shapes import Form, block
 from scenes.hands.things import Thing
 from scenes.people.limbs import Limb
 from scenes.people.stage import PeopleStage, Watcher, surface
+
+BESIDE_S = 0.5
+"""So long before and after a contact a virtual hand is near what it touches [s]."""
 
 RATE_HZ = 50.0
 """How finely a body is solved; between frames its parts move along splines [Hz]."""
@@ -82,6 +85,19 @@ def body_form(measures: Measures, segments: Sequence[str], kind: str) -> Form:
     return Form(kind, tuple(parts))
 
 
+def shoe(ankle: Float[np.ndarray, "4 4"], length: float) -> Form:
+    """A shoe whose sole lies flat on the floor where the body first stands, in the foot's frame."""
+    x, y, _ = ankle[:3, 3]
+    low, high = (x - HEEL * length, y - 0.17 * length, 0.0), (x, y + 0.17 * length, 0.3 * length)
+    parts = [
+        block(low, (x + 0.4 * length, *high[1:])),
+        block((x, low[1], 0.0), (x + (1.0 - HEEL) * length, high[1], 0.15 * length)),
+    ]
+    for part in parts:
+        part.apply_transform(np.linalg.inv(ankle))
+    return Form("foot", tuple(parts))
+
+
 @dataclass
 class Figure:
     """A virtual body on a stage."""
@@ -133,10 +149,10 @@ def figure(
     for side in SIDES:
         shape = body_form(body.measures, [f"{side}_{each}" for each in HAND_SEGMENTS], "hand")
         own = moving(f"{side}_hand", f"{side}_hand")
-        hands[side] = Limb(own, side, shape, own.first, agent="agent")
+        hands[side] = Limb(own, side, shape, own.first, agent="agent", beside_s=BESIDE_S)
     for side in SIDES:
-        shape = body_form(body.measures, [f"{side}_foot", f"{side}_toes"], "foot")
         own = moving(f"{side}_foot", f"{side}_foot")
+        shape = shoe(own.first, float(body.measures["foot_length"]))
         feet[side] = Limb(own, side, shape, own.first, member="foot", agent="agent")
         feet[side].meet(s.floor)
     s.hands.extend([*hands.values(), *feet.values()])
