@@ -1,8 +1,12 @@
 """Scenes of people: whole bodies that walk, sit, carry, greet, and what every limb did."""
 
 from scenes.people import (  # noqa: F401
+    scenes_doors,
     scenes_joints,
+    scenes_low,
+    scenes_pairs,
     scenes_performers,
+    scenes_selves,
     scenes_steps,
     scenes_walks,
 )
