@@ -12,6 +12,7 @@ from scenes.hands.performer import Hand
 from scenes.hands.scene import Scene
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
+from scenes.people.limbs import planted_m
 
 STILL = frozenset(
     {"Rest", "Touch", "TouchWith", "TouchOneself", "Stand", "StandOnOneLeg", "RestFoot", "Point"}
@@ -64,7 +65,9 @@ def resting(hand: Hand, start_s: float, end_s: float) -> float:
 
 
 def stays(hand: Hand, step: Step) -> bool:
-    """Whether a hand stays within a millimetre and a half throughout, as a body's hand does."""
+    """Whether a hand stays within a millimetre and a half throughout, and a foot on its toes."""
+    if hand.form.kind == "foot":
+        return planted_m(hand, step.start_s, step.end_s) < STAYS_M
     places = hand.body.poses(np.arange(step.start_s, step.end_s, 1.0 / RATE_HZ))[:, :3, 3]
     return float(np.ptp(places, axis=0).max()) < STAYS_M
 

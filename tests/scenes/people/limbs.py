@@ -90,3 +90,14 @@ def foot_form(size: float) -> Form:
     toes = block((0.08, -0.045, -SOLE_M), (0.17, 0.045, -0.035))
     made = Form("foot", (heel, toes))
     return made.scaled(size)
+
+
+def planted_m(limb: Hand, start: float, end: float) -> float:
+    """How far the point of a limb that moves least goes about between two times [m].
+
+    A foot whose heel rises stays where its toes are.
+    """
+    poses = limb.body.poses(np.linspace(start, end, 20))
+    corners = limb.form.vertices
+    places = corners @ np.swapaxes(poses[:, :3, :3], 1, 2) + poses[:, None, :3, 3]
+    return float(np.ptp(places, axis=0).max(axis=1).min())

@@ -195,6 +195,34 @@ class Person:
 
         self.trunk.play(start, end, law)
 
+    def sidle(self, way: float, count: int, *, pace: float) -> None:
+        """Walk sideways, to the left or, below zero, to the right; hands are moved otherwise.
+
+        Args:
+            way: Distance [m].
+            count: How many steps each foot does; the other one follows at once.
+            pace: Time of a step [s].
+        """
+        start, base = self.clock, self.trunk.at(self.clock)
+        lead = "left" if way > 0 else "right"
+        span = SHIFT_S + 2 * count * pace
+        self.trunk.shift(start, start + span, lambda since: np.outer(
+            way * smooth(since / span, START_S / span), base[:3, 1]))  # fmt: skip
+        for number in range(2 * count):
+            goal = pose((0.0, way * (number // 2 + 1) / count, 0.0))
+            lift, land = (start + SHIFT_S + (number + share) * pace for share in SWING)
+            self.stride(lead if number % 2 == 0 else _other(lead), base @ goal, lift, land, "Walk")
+        self.clock = start + span
+
+    def roll_heel(self, side: str, angle_deg: float, start: float, end: float) -> None:
+        """Raise a heel, the toes keeping the ground."""
+        foot = self.feet[side]
+        toes = foot.body.at(start) @ pose((0.17 * self.size, 0.0, -SOLE_M * self.size))
+        angle = np.radians(angle_deg)
+        foot.body.turn(
+            start, end, toes[:3, 3], toes[:3, 1], lambda since: angle * min_jerk(since / (end - start))
+        )
+
     def stride(
         self,
         side: str,

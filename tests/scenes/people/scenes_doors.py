@@ -15,7 +15,7 @@ from scenes.people.stage import PeopleStage
 def push_a_gate_open_on_the_way(s: PeopleStage) -> None:
     """Somebody walks up to a gate, pushes it open with the right hand, and walks through."""
     performer(s, yaw_deg=30)
-    p = person(s, at=(-1.5, 0.5))
+    p = person(s, at=(-1.5, 0.58))
     door = gate(s, (0.0, 0.0, 0.0), width=0.95)
     p.stand(0.7)
     p.walk(1.1, speed=0.8)

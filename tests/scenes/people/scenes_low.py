@@ -3,6 +3,7 @@
 import numpy as np
 
 from scenes.hands import shapes
+from scenes.hands.expectation import Step
 from scenes.hands.performer import PRESS
 from scenes.hands.scene import performer
 from scenes.people.handling import mug
@@ -88,6 +89,7 @@ def kneel_on_one_knee(s: PeopleStage) -> None:
     p.stand(0.7)
     start = p.clock
     p.shift((-0.1, 0.0, -0.4), 1.2)
+    p.roll_heel("right", 55.0, start, p.clock)
     p.hands_along(start)
     p.stand(1.2)
     p.finish(p.clock)
@@ -113,18 +115,16 @@ def sit_down(s: PeopleStage) -> None:
     p.hands_along(start)
     p.stand(1.5)
     p.finish(p.clock)
-    seated(p, start + 1.5)
+    seated(p, start + 1.5, p.clock)
 
 
-def seated(p: Person, since: float) -> None:
+def seated(p: Person, since: float, until: float) -> None:
     """The feet of somebody who sits stand too (spec 10); that they rest is the alternative."""
-    p.right_foot.clock = p.clock
-    p.right_foot.step("Stand", p.stage.floor)
-    whole = p.right_foot.steps[0]
-    p.right_foot.alternative = (
-        whole.__class__("Stand", whole.objects, 0.0, since),
-        whole.__class__("RestFoot", whole.objects, since, whole.end_s),
-    )
+    borders = (("Stand", 0.0, since), ("RestFoot", since, until), ("Stand", until, p.clock))
+    for foot in p.feet.values():
+        foot.alternative = tuple(
+            Step(name, ("floor",), start, end) for name, start, end in borders if start < end
+        )
 
 
 @scene
@@ -140,6 +140,7 @@ def stand_up_from_a_chair(s: PeopleStage) -> None:
     p.hands_along(start)
     p.stand(0.9)
     p.finish(p.clock)
+    seated(p, 0.0, start)
 
 
 def sitting(p: Person, by: tuple[float, float, float]) -> None:
@@ -180,3 +181,5 @@ def drink_while_seated(s: PeopleStage) -> None:
     right.leave(0.9)
     right.rest(0.6)
     p.finish(right.clock)
+    p.until(right)
+    seated(p, 0.0, p.clock)

@@ -139,7 +139,7 @@ def one_walks_past_another(s: PeopleStage) -> None:
 
 @scene
 def carry_a_board_together(s: PeopleStage) -> None:
-    """Two people lift a board off two trestles, carry it four steps aside, and hold it."""
+    """Two people lift a board off two trestles, carry it six steps aside, and hold it."""
     performer(s, yaw_deg=35)
     board = s.put("board", shapes.box(1.2, 0.3, 0.06, "board"), (0.0, 0.0, 0.82))
     for name, x in (("first_trestle", -0.3), ("second_trestle", 0.3)):
@@ -163,13 +163,13 @@ def carry_a_board_together(s: PeopleStage) -> None:
     leader.move((0.0, 0.0, 0.12), 0.9)
     leader.step("Lift", board)
     leader.hold(0.6, board)
-    far, back = 1.0, leader.clock
-    for p, way, first in ((anna, -far, "right"), (ben, far, "left")):
-        p.clock = back
-        p.walk(way, speed=0.6, first=first, straight=True, busy=tuple(p.hands.values()))
-    span = anna.clock - back
-    leader.body.shift(back, anna.clock, lambda since: np.outer(
-        smooth(since / span, min(START_S / span, 0.4)), (-far, 0.0, 0.0)))  # fmt: skip
+    far, begin = 0.6, leader.clock
+    for p, way in ((anna, far), (ben, -far)):
+        p.clock = begin
+        p.sidle(way, 3, pace=0.55)
+    span = anna.clock - begin
+    leader.body.shift(begin, anna.clock, lambda since: np.outer(
+        smooth(since / span, START_S / span), (0.0, far, 0.0)))  # fmt: skip
     leader.clock = anna.clock
     leader.step("Carry", board)
     leader.hold(0.8, board)

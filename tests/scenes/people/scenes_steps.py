@@ -1,8 +1,11 @@
 """Scenes of feet that step, turn, stand alone, rest on something or kick."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from scenes.hands import shapes
+from scenes.hands.expectation import Step
 from scenes.hands.paths import Poses, Times, about, pose, quintic
 from scenes.hands.scene import performer
 from scenes.people.limbs import SOLE_M, Limb
@@ -340,8 +343,10 @@ def stand_while_kicking(p: Person, side: str, lift: float) -> None:
     other.step("Stand", p.stage.floor)
     other.clock = p.clock
     other.step("StandOnOneLeg", p.stage.floor)
-    merged = (other.steps[0].__class__("Stand", ("floor",), 0.0, p.clock + 0.9),)
-    other.alternative = merged
+    other.alternative = (Step("Stand", ("floor",), 0.0, p.clock + 0.9),)
+    foot = p.feet[side]
+    alone = [replace(each, objects=each.objects[:1]) for each in foot.steps]
+    foot.alternative = (*alone, Step("Stand", ("floor",), foot.clock, foot.clock + 0.9))
 
 
 @scene
@@ -382,5 +387,5 @@ def shift_the_weight(s: PeopleStage) -> None:
     left.step("Stand", s.floor)
     left.clock = back
     left.step("RestFoot", s.floor)
-    left.alternative = (left.steps[0].__class__("Stand", ("floor",), 0.0, p.clock + 0.8),)
+    left.alternative = (Step("Stand", ("floor",), 0.0, p.clock + 0.8),)
     quiet_end(p, 0.8)

@@ -1,17 +1,21 @@
 """A scene of people while it is written: who is there, and the capture of all their limbs."""
 
 import zlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagObject, TagType
 from scenes.hands import shapes
+from scenes.hands.expectation import Step
 from scenes.hands.paths import Body, Vector, pose
 from scenes.hands.stage import Noise, Stage, other_names
 from scenes.hands.things import Thing
 from scenes.people.limbs import Limb
+
+LASTING = frozenset({"Rest", "Touch", "TouchWith", "TouchOneself", "Stand", "StandOnOneLeg"})
+"""Steps in which nothing moves, so that two in a row are one."""
 
 FLOOR_M = 8.0
 """Length and width of the floor [m]."""
@@ -58,6 +62,7 @@ class PeopleStage(Stage):
                 limb.clock = end
                 if limb.clock - limb.border > 0.0:
                     limb.step("Stand", limb.touched)
+            limb.steps = joined(limb.steps)
             if isinstance(limb, Limb) and limb.aliases:
                 limb.alternative = other_names(limb, **limb.aliases)
 
@@ -108,6 +113,17 @@ def _declared(sensors: list[Sensor]) -> list[TagObject]:
         for each in sensors
         if each.end_effector == "hand"
     ]
+
+
+def joined(steps: list[Step]) -> list[Step]:
+    """Steps of which those that only go on with the one before are one with it."""
+    out: list[Step] = []
+    for each in steps:
+        if out and each.name in LASTING and each.action == out[-1].action:
+            out[-1] = replace(out[-1], end_s=each.end_s)
+        else:
+            out.append(each)
+    return out
 
 
 def _acting(limb: Limb, stream: Stream) -> Sensor:

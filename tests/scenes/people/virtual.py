@@ -1,7 +1,7 @@
 """People whose every joint moves: virtual bodies, as a stage has them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 import numpy as np
@@ -22,6 +22,7 @@ from capar.body.things import Scene as BodyScene
 from capar.body.things import Thing as BodyThing
 from capar.body.things import scene as body_scene
 from capar.model.capture import TagType
+from scenes.hands.clearance import Placed, gap
 from scenes.hands.paths import Body, Poses, Times, min_jerk, pose
 from scenes.hands.shapes import Form, block
 from scenes.hands.things import Thing
@@ -30,6 +31,12 @@ from scenes.people.stage import PeopleStage, Watcher, surface
 
 BESIDE_S = 0.5
 """So long before and after a contact a virtual hand is near what it touches [s]."""
+
+MET_M = 0.001
+"""Surfaces that are nearer touch: the performer leaves half a millimetre between them [m]."""
+
+FINE_S = 0.01
+"""How exactly the time of a contact is told [s]."""
 
 RATE_HZ = 50.0
 """How finely a body is solved; between frames its parts move along splines [Hz]."""
@@ -118,9 +125,25 @@ class Figure:
             hand.step(name, *(known[each] for each in objects))
 
     def holds(self, side: str, name: str, first: int, last: int) -> None:
-        """Write down that a hand touches a thing from the start of a phase to another's end."""
-        pair = (self.things[name], self.phases[first][0], self.phases[last][1])
-        self.hands[side].contacts.append(pair)
+        """Write down that a hand touches a thing from one phase to another.
+
+        The surfaces meet a little before the script says so, and part a little after: borders of
+        steps stand there.
+        """
+        hand, thing = self.hands[side], self.things[name]
+        told = self.phases[first][0], self.phases[last][1]
+        start = _met(hand, thing, told[0], -1.0)
+        end = _met(hand, thing, told[1], 1.0)
+        hand.contacts.append((thing, start, end))
+        moved = dict(zip(told, (start, end), strict=True))
+        hand.steps = [
+            replace(
+                each,
+                start_s=moved.get(each.start_s, each.start_s),
+                end_s=moved.get(each.end_s, each.end_s),
+            )
+            for each in hand.steps
+        ]
 
     def rests(self, *sides: str) -> None:
         """Hands that do nothing rest to the end."""
@@ -189,6 +212,13 @@ def performing(
         s.things.append(seen.things[name])
     seen.phases.extend((start, end) for _, start, end in made.phases)
     return seen
+
+
+def _met(hand: Limb, thing: Thing, time: float, way: float) -> float:
+    """The time next to another one, before or after it, up to which surfaces touch [s]."""
+    while gap(Placed.at(hand, time + way * FINE_S), Placed.at(thing, time + way * FINE_S)) < MET_M:
+        time += way * FINE_S
+    return time
 
 
 def _thing(made: Performance, name: str, form: Form, times: Times) -> Thing:
