@@ -130,9 +130,7 @@ def pairs(stage: Stage) -> Iterator[tuple[Hand | Thing, Hand | Thing]]:
 
 
 @pytest.mark.parametrize(("name", "battery"), BATTERIES.items(), ids=BATTERIES)
-def test_there_are_enough_scenes_and_few_alternatives(
-    name: str, battery: dict[str, Scene]
-) -> None:
+def test_there_are_enough_scenes_and_few_alternatives(name: str, battery: dict[str, Scene]) -> None:
     """At least sixty units in enough scenes, and an alternative for at most one unit in ten."""
     units = [
         unit for scene in battery.values() for unit in performed(scene).expectation(100.0).units
@@ -148,7 +146,7 @@ def test_steps_cover_the_capture(scene: Scene, rate_hz: float) -> None:
     """Steps follow each other from the first frame to the last, with known names and objects."""
     capture, expectation = scene(rate_hz, 0.0005, 0.002, 0)
     assert [unit.ee for unit in expectation.units] == [each.name for each in capture.acting]
-    known = {each.name for each in (*capture.objects, *capture.acting)}
+    known = {each.name for each in capture.objects} | {each.name for each in capture.acting}
     for unit in expectation.units:
         for steps in filter(None, (unit.steps, unit.alternative)):
             starts = [each.start_s for each in steps]

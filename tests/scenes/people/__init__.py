@@ -3,6 +3,7 @@
 from scenes.people import (  # noqa: F401
     scenes_doors,
     scenes_joints,
+    scenes_kicks,
     scenes_low,
     scenes_pairs,
     scenes_performers,

@@ -4,7 +4,7 @@ from scenes.hands import shapes
 from scenes.hands.paths import Vector
 from scenes.hands.performer import Hand
 from scenes.hands.things import Thing
-from scenes.people.person import Person
+from scenes.people.body import Person
 from scenes.people.stage import PeopleStage
 
 

@@ -4,9 +4,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from scenes.hands.expectation import Step
 from scenes.hands.paths import Body, Poses, Times, about, min_jerk
 from scenes.hands.performer import Hand
 from scenes.hands.shapes import Form, block
+from scenes.hands.things import Thing
 
 RAMP = 0.3
 """Share of a smooth way in which it speeds up, and in which it slows down."""
@@ -33,12 +35,18 @@ class Limb(Hand):
     others: list[tuple["Limb", float, float]] = field(default_factory=list)
     """Hands that it touched, from when to when [s]."""
 
-    def wait(self, until: float, *held: object) -> None:
+    def step(self, name: str, *objects: "Thing | Limb") -> None:
+        """Write down that the step under way, about things or hands, ends now."""
+        done = Step(name, tuple(each.name for each in objects), self.border, self.clock)
+        self.steps.append(done)
+        self.border = self.clock
+
+    def wait(self, until: float, *held: Thing) -> None:
         """Stay until a time [s]; that is a step of its own if it is long."""
         if until - self.clock >= LONG_S - 1e-9:
             self.clock = until
             names = ("Rest", "Touch", "TouchWith")
-            self.step(names[len(held)], *held)  # type: ignore[arg-type]
+            self.step(names[len(held)], *held)
         self.until(until)
 
     def meet_hand(self, other: "Limb", start: float, end: float) -> None:

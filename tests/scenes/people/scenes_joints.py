@@ -1,9 +1,10 @@
 """Scenes of virtual bodies that turn their hinges; the feet decide where the rest goes."""
 
 from scenes.hands.scene import performer
+from scenes.people.hinges import Bend, Sway, both, moved
 from scenes.people.registry import scene
 from scenes.people.stage import PeopleStage
-from scenes.people.virtual import Bend, Figure, Sway, both, moved
+from scenes.people.virtual import Figure
 
 
 def says(f: Figure, side: str, *steps: tuple[float, str]) -> None:
@@ -25,7 +26,9 @@ def back(acts: list[Bend | Sway], start: float, end: float) -> list[Bend | Sway]
     return [Bend(each.joint, start, end, -each.angle) for each in acts if isinstance(each, Bend)]
 
 
-def waves(s: PeopleStage, who: str, side: str, *, rate_hz: float, cycles: int, angle: float) -> None:
+def waves(
+    s: PeopleStage, who: str, side: str, *, rate_hz: float, cycles: int, angle: float
+) -> None:
     """An arm goes up, waves, and comes down."""
     up = raising(side, 0.8, 1.8)
     swing = Sway(f"{side}_shoulder_rotation", 1.8, rate_hz, cycles, angle)
@@ -187,3 +190,63 @@ def child_looks_about(s: PeopleStage) -> None:
     ]
     f = moved(s, "child", 5.2, acts)
     f.rests("right", "left")
+
+
+@scene
+def woman_waves_with_both_hands(s: PeopleStage) -> None:
+    """A woman raises both hands, waves four times with both at once, and lets them sink."""
+    performer(s, yaw_deg=-115)
+    up = [each for side in ("right", "left") for each in raising(side, 0.8, 1.9)]
+    swings = [Sway(f"{side}_shoulder_rotation", 1.9, 1.5, 4, 20.0) for side in ("right", "left")]
+    end = swings[0].end
+    f = moved(s, "woman", end + 2.0, [*up, *swings, *back(up, end, end + 1.1)])
+    for side in ("right", "left"):
+        says(
+            f,
+            side,
+            (0.8, "Rest"),
+            (1.9, "PostureChange"),
+            (end, "Wave"),
+            (end + 1.1, "PostureChange"),
+            (end + 2.0, "Rest"),
+        )
+
+
+@scene
+def man_turns_his_trunk(s: PeopleStage) -> None:
+    """A man turns his upper body to the left with raised forearms, waits, and turns back."""
+    performer(s, yaw_deg=10)
+    turns = {"thorax_lower": 14.0, "thorax_upper": 16.0, "lumbar_upper": 5.0}
+    aside: list[Bend | Sway] = [
+        Bend(f"{level}_turn", 0.9, 1.8, angle) for level, angle in turns.items()
+    ]
+    f = moved(s, "man", 5.2, [*both("elbow_flexion", -1.0, -0.5, 75.0), *aside,
+                              *back(aside, 3.0, 4.1)])  # fmt: skip
+    for side in ("right", "left"):
+        says(
+            f,
+            side,
+            (0.9, "Rest"),
+            (1.8, "PostureChange"),
+            (3.0, "Rest"),
+            (4.1, "PostureChange"),
+            (5.2, "Rest"),
+        )
+
+
+@scene
+def child_lifts_its_arms_ahead(s: PeopleStage) -> None:
+    """A child lifts both arms ahead and up, and keeps them there."""
+    performer(s, yaw_deg=-30)
+    f = moved(s, "child", 3.6, both("shoulder_flexion", 0.8, 1.9, 125.0))
+    for side in ("right", "left"):
+        says(f, side, (0.8, "Rest"), (1.9, "PostureChange"), (3.6, "Rest"))
+
+
+@scene
+def man_dips_and_rises_at_once(s: PeopleStage) -> None:
+    """A man bends his knees and stretches them again without a halt between."""
+    performer(s, yaw_deg=175)
+    f = moved(s, "man", 4.0, [*crouch(0.9, 1.8, 35.0), *crouch(1.8, 2.8, -35.0)])
+    for side in ("right", "left"):
+        says(f, side, (0.9, "Rest"), (2.8, "PostureChange"), (4.0, "Rest"))

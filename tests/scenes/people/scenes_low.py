@@ -6,8 +6,9 @@ from scenes.hands import shapes
 from scenes.hands.expectation import Step
 from scenes.hands.performer import PRESS
 from scenes.hands.scene import performer
+from scenes.people.body import Person
 from scenes.people.handling import mug
-from scenes.people.person import Person, person
+from scenes.people.person import person
 from scenes.people.registry import scene
 from scenes.people.stage import PeopleStage
 
@@ -170,7 +171,7 @@ def drink_while_seated(s: PeopleStage) -> None:
     right.hold(0.4, cup)
     right.take(cup)
     face = p.head.body.at(0.0)[:3, 3] + (0.1 * p.size, 0.0, 0.0)
-    goal = face + (0.042 - PRESS, 0.0, -0.1)
+    goal = np.add(face, (0.042 - PRESS, 0.0, -0.1))
     right.move(goal - start, 1.2, arrive=0.12)
     right.step("MoveObjTo", cup, p.head)
     right.dip(face, (0.0, 1.0, 0.0), -42.0, 1.3)

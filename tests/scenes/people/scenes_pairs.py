@@ -7,9 +7,10 @@ from scenes.hands.paths import facing, pose
 from scenes.hands.performer import PRESS
 from scenes.hands.scene import performer
 from scenes.hands.things import Thing
+from scenes.people.body import START_S, Person
 from scenes.people.handling import mug, set_down, take_up
 from scenes.people.limbs import smooth
-from scenes.people.person import START_S, Person, person
+from scenes.people.person import person
 from scenes.people.registry import scene
 from scenes.people.stage import PeopleStage
 

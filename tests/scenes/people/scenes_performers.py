@@ -2,7 +2,16 @@
 
 from dataclasses import replace
 
-from capar.body.scripts import STAND, Hand, Move, Phase, Script, at_pace, lift_with_both_hands, touch
+from capar.body.scripts import (
+    STAND,
+    Hand,
+    Move,
+    Phase,
+    Script,
+    at_pace,
+    lift_with_both_hands,
+    touch,
+)
 from scenes.hands import shapes
 from scenes.hands.scene import performer
 from scenes.people.registry import scene
@@ -110,10 +119,10 @@ def woman_carries_a_mug(s: PeopleStage) -> None:
     """A woman lifts a mug, carries it to the left, and puts it down, with a stop at each corner."""
     performer(s, yaw_deg=-40)
     way = Move((0.0, 0.2, 0.0))
-    script = moved_about("mug", "right", (("up", 0.9, LIFT), ("on", 1.0, way), ("down", 0.9, LOWER)))
-    f = at_table(
-        s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.12, around=True
+    script = moved_about(
+        "mug", "right", (("up", 0.9, LIFT), ("on", 1.0, way), ("down", 0.9, LOWER))
     )
+    f = at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.12, around=True)
     told(f, "right", "mug", STACKED)
 
 
@@ -194,5 +203,16 @@ def man_lifts_a_jar_with_the_left_hand(s: PeopleStage) -> None:
     script = moved_about(
         "jar", "left", (("up", 0.8, LIFT), ("stay", 0.8, Move()), ("down", 0.9, LOWER))
     )
-    f = at_table(s, "man", script, "jar", shapes.vessel(0.034, 0.11, "jar"), 0.24, 0.12, around=True)
+    f = at_table(
+        s, "man", script, "jar", shapes.vessel(0.034, 0.11, "jar"), 0.24, 0.12, around=True
+    )
     told(f, "left", "jar", (("Lift", ("jar",)), ("Touch", ("jar",)), ("Lower", ("jar", "table"))))
+
+
+@scene
+def child_pushes_a_mug_aside(s: PeopleStage) -> None:
+    """A child pushes a mug over the table to the right with the left palm."""
+    performer(s, yaw_deg=85)
+    script = moved_about("mug", "left", (("push", 1.2, Move((0.0, -0.1, 0.0))),))
+    f = at_table(s, "child", script, "mug", shapes.vessel(0.033, 0.09), 0.22, 0.12, around=True)
+    told(f, "left", "mug", (("Push", ("mug", "table")),))

@@ -4,7 +4,8 @@ from scenes.hands import shapes
 from scenes.hands.paths import facing, pose
 from scenes.hands.performer import PRESS
 from scenes.hands.scene import performer
-from scenes.people.person import Person, person
+from scenes.people.body import Person
+from scenes.people.person import person
 from scenes.people.registry import scene
 from scenes.people.stage import PeopleStage
 

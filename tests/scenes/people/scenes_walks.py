@@ -2,8 +2,9 @@
 
 from scenes.hands import shapes
 from scenes.hands.scene import performer
+from scenes.people.body import Person
 from scenes.people.handling import hold_between, mug, set_down, take_up, together
-from scenes.people.person import Person, person
+from scenes.people.person import person
 from scenes.people.registry import scene
 from scenes.people.stage import PeopleStage
 
@@ -138,7 +139,7 @@ def walk_backwards(s: PeopleStage) -> None:
 
 @scene
 def walk_there_and_back(s: PeopleStage) -> None:
-    """Somebody walks ahead, stands for more than a second, and walks backwards to where they were."""
+    """Somebody walks ahead, stands for a second, and walks backwards to the first place."""
     performer(s, yaw_deg=115)
     p = person(s, hang=True, at=(-0.7, 0.4))
     p.stand(0.7)
