@@ -5,7 +5,7 @@ from scenes.hands.paths import pose
 from scenes.hands.scene import performer
 from scenes.household.furnishing import gate
 from scenes.objects.furniture import cabinet, cupboard
-from scenes.objects.handling import Hinge, seize, travel
+from scenes.objects.handling import NEAR, UP, Grip, Hinge, seize, travel
 from scenes.people.person import person
 from scenes.people.registry import scene
 from scenes.people.stage import PeopleStage
@@ -13,7 +13,7 @@ from scenes.people.stage import PeopleStage
 
 @scene
 def push_a_gate_open_on_the_way(s: PeopleStage) -> None:
-    """Somebody walks up to a gate, pushes it open with the right hand, and walks through."""
+    """Somebody walks up to a gate, pushes it open while walking on, and walks through."""
     performer(s, yaw_deg=30)
     p = person(s, at=(-1.5, 0.58))
     door = gate(s, (0.0, 0.0, 0.0), width=0.95)
@@ -21,15 +21,18 @@ def push_a_gate_open_on_the_way(s: PeopleStage) -> None:
     p.walk(1.1, speed=0.8)
     right = p.right
     right.rest(0.6)
-    seize(right, door.leaf, door.face, 0.9, hold=0.4)
+    face = Grip((-0.008, 0.42, 0.95), NEAR, UP)
+    seize(right, door.leaf, face, 0.9, hold=0.4)
+    p.until(right)
+    p.walk(0.6, speed=0.5, busy=(right,))
     swing = Hinge(door.hinge.point, door.hinge.axis, -1.0)
-    swing.turn(right, 80.0, 1.8)
+    swing.turn(right, 80.0, p.clock - right.clock)
     right.step("Open", door.leaf, door.body)
     right.hold(0.5, door.leaf, door.body)
     right.leave(1.0)
     right.rest(0.6)
     p.until(right)
-    p.walk(1.6, speed=0.9, first="left", swing_rad=0.1)
+    p.walk(1.1, speed=0.9, first="left", swing_rad=0.1)
     p.stand(0.7)
     p.finish(p.clock)
 

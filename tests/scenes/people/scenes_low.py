@@ -25,11 +25,11 @@ def down_and_up(p: Person, hand: str) -> float:
     return start
 
 
-def rise(p: Person, hand: str) -> None:
-    """The body stands up again in 1.4 s; the hand that does nothing goes along."""
+def rise(p: Person, hand: str, seconds: float = 1.4) -> None:
+    """The body stands up again; the hand that does nothing goes along."""
     start = p.clock
-    p.bend(-35.0, 1.4)
-    p.shift((0.05, 0.0, 0.42 * p.size), 1.4)
+    p.bend(-35.0, seconds)
+    p.shift((0.05, 0.0, 0.42 * p.size), seconds)
     other = p.hands["left" if hand == "right" else "right"]
     other.wait(start)
     p.along(other, start, p.clock)
@@ -72,7 +72,7 @@ def put_a_bottle_on_the_floor(s: PeopleStage) -> None:
     left.step("Lower", bottle, s.floor)
     left.hold(0.6, bottle, s.floor)
     p.until(left)
-    rise(p, "left")
+    rise(p, "left", 2.2)
     left.leave(1.4)
     left.idle(0.2)
     p.finish(left.clock)
