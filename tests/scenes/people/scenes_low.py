@@ -72,6 +72,7 @@ def put_a_bottle_on_the_floor(s: PeopleStage) -> None:
     left.step("Lower", bottle, s.floor)
     left.hold(0.6, bottle, s.floor)
     p.until(left)
+    p.stand(0.35)
     rise(p, "left", 2.2)
     left.leave(1.4)
     left.idle(0.2)
