@@ -122,7 +122,7 @@ def woman_carries_a_mug(s: PeopleStage) -> None:
     script = moved_about(
         "mug", "right", (("up", 0.9, LIFT), ("on", 1.0, way), ("down", 0.9, LOWER))
     )
-    f = at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.12, around=True)
+    f = at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.12)
     told(f, "right", "mug", STACKED)
 
 
@@ -132,7 +132,7 @@ def child_carries_a_mug_with_the_left_hand(s: PeopleStage) -> None:
     performer(s, yaw_deg=110)
     way = Move((0.02, -0.15, 0.0))
     script = moved_about("mug", "left", (("up", 0.9, LIFT), ("on", 1.0, way), ("down", 1.0, LOWER)))
-    f = at_table(s, "child", script, "mug", shapes.vessel(0.032, 0.09), 0.22, 0.12, around=True)
+    f = at_table(s, "child", script, "mug", shapes.vessel(0.032, 0.09), 0.22, 0.12)
     told(f, "left", "mug", STACKED)
 
 
@@ -141,7 +141,7 @@ def man_lifts_a_mug_and_puts_it_back(s: PeopleStage) -> None:
     """A man lifts a mug straight up and lowers it at once."""
     performer(s, yaw_deg=-175)
     script = moved_about("mug", "right", (("up", 0.9, LIFT), ("down", 0.9, LOWER)))
-    f = at_table(s, "man", script, "mug", shapes.vessel(0.038, 0.1), 0.23, -0.12, around=True)
+    f = at_table(s, "man", script, "mug", shapes.vessel(0.038, 0.1), 0.23, -0.12)
     told(f, "right", "mug", (("Lift", ("mug",)), ("Lower", ("mug", "table"))))
 
 
@@ -192,7 +192,7 @@ def woman_pushes_a_mug_aside(s: PeopleStage) -> None:
     """A woman pushes a mug over the table to the left with her right palm."""
     performer(s, yaw_deg=-15)
     script = moved_about("mug", "right", (("push", 1.1, Move((0.0, 0.14, 0.0))),))
-    f = at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.14, around=True)
+    f = at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.14)
     told(f, "right", "mug", (("Push", ("mug", "table")),))
 
 
@@ -203,9 +203,7 @@ def man_lifts_a_jar_with_the_left_hand(s: PeopleStage) -> None:
     script = moved_about(
         "jar", "left", (("up", 0.8, LIFT), ("stay", 0.8, Move()), ("down", 0.9, LOWER))
     )
-    f = at_table(
-        s, "man", script, "jar", shapes.vessel(0.034, 0.11, "jar"), 0.24, 0.12, around=True
-    )
+    f = at_table(s, "man", script, "jar", shapes.vessel(0.034, 0.11, "jar"), 0.24, 0.12)
     told(f, "left", "jar", (("Lift", ("jar",)), ("Touch", ("jar",)), ("Lower", ("jar", "table"))))
 
 
@@ -214,5 +212,5 @@ def child_pushes_a_mug_aside(s: PeopleStage) -> None:
     """A child pushes a mug over the table to the right with the left palm."""
     performer(s, yaw_deg=85)
     script = moved_about("mug", "left", (("push", 1.2, Move((0.0, -0.1, 0.0))),))
-    f = at_table(s, "child", script, "mug", shapes.vessel(0.033, 0.09), 0.22, 0.12, around=True)
+    f = at_table(s, "child", script, "mug", shapes.vessel(0.033, 0.09), 0.22, 0.12)
     told(f, "left", "mug", (("Push", ("mug", "table")),))

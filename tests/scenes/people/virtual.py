@@ -37,7 +37,7 @@ MET_M = 0.001
 FINE_S = 0.01
 """How exactly the time of a contact is told [s]."""
 
-RATE_HZ = 50.0
+RATE_HZ = 40.0
 """How finely a body is solved; between frames its parts move along splines [Hz]."""
 
 
