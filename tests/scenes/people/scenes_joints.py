@@ -31,7 +31,7 @@ def waves(
 ) -> None:
     """An arm goes up, waves, and comes down."""
     up = raising(side, 0.8, 1.8)
-    swing = Sway(f"{side}_shoulder_rotation", 1.8, rate_hz, cycles, angle)
+    swing = Sway(f"{side}_elbow_flexion", 1.8, rate_hz, cycles, angle)
     end = swing.end
     f = moved(s, who, end + 1.8, [*up, swing, *back(up, end, end + 1.0)])
     says(
@@ -197,7 +197,7 @@ def woman_waves_with_both_hands(s: PeopleStage) -> None:
     """A woman raises both hands, waves four times with both at once, and lets them sink."""
     performer(s, yaw_deg=-115)
     up = [each for side in ("right", "left") for each in raising(side, 0.8, 1.9)]
-    swings = [Sway(f"{side}_shoulder_rotation", 1.9, 1.5, 4, 20.0) for side in ("right", "left")]
+    swings = [Sway(f"{side}_elbow_flexion", 1.9, 1.5, 4, 20.0) for side in ("right", "left")]
     end = swings[0].end
     f = moved(s, "woman", end + 2.0, [*up, *swings, *back(up, end, end + 1.1)])
     for side in ("right", "left"):

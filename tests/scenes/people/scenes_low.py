@@ -75,7 +75,7 @@ def put_a_bottle_on_the_floor(s: PeopleStage) -> None:
     p.stand(0.35)
     rise(p, "left", 2.2)
     left.leave(1.4)
-    left.idle(0.2)
+    left.wait(p.clock + 0.2)
     p.finish(left.clock)
 
 

@@ -1,6 +1,7 @@
 """Feet walk in turn, bodies stay over their feet, hands within reach. Nothing is observed."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -59,7 +60,7 @@ def test_feet_walk_in_turn_and_never_both_in_the_air(scene: Scene) -> None:
             for step in foot.steps
             if step.name in ("Walk", "Step")
         )
-        for (_, end, side, name), (start, _, other, then) in zip(swings, swings[1:], strict=False):
+        for (_, end, side, name), (start, _, other, then) in pairwise(swings):
             assert start >= end - 1e-9, agent
             if name == then == "Walk":
                 assert side != other or start > end + 0.4, agent
