@@ -9,11 +9,13 @@ from scenes.hands.scene import Scene
 from scenes.hands.stage import Stage
 from scenes.household import SCENES as HOUSEHOLD
 from scenes.objects import SCENES as OBJECTS
+from scenes.people import SCENES as PEOPLE
 
 BATTERIES: dict[str, dict[str, Scene]] = {
     "hands": HANDS,
     "objects": OBJECTS,
     "household": HOUSEHOLD,
+    "people": PEOPLE,
 }
 """Every battery by its name."""
 
