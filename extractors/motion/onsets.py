@@ -25,6 +25,10 @@ than a formula. So small displacements tell of the beginning, as far as noise le
 QUIET = 0.05
 """Noise is taken for at least this share of the unit [1]: what is recorded without any drifts."""
 
+UNEXPLAINED = 9.0
+"""What no profile explains is taken for at most so many times the variance of noise [1]: then it is
+followed back for a third of the longest time."""
+
 FEWEST_FRAMES = 4
 """Fewer frames tell nothing of how a displacement grew [1]."""
 
@@ -69,7 +73,9 @@ def beginning_s(way: Ways, times: Ways, told: Ways, earliest_s: float, latest_s:
     of some duration. The size of a profile is the one that fits best (weighted least squares). What
     it leaves tells how likely it is, if noise is normal; beforehand all are as likely (Bayesian
     model averaging; Hoeting, Madigan, Raftery and Volinsky 1999). The mean moves little when
-    noise, or a frame more or less, changes which one is the likeliest.
+    noise, or a frame more or less, changes which one is the likeliest. The farther the way
+    is from every profile, as that of what wobbles is, the less far back it is followed: by as many
+    times less as what is left is larger than noise (reduced chi-squared).
 
     Args:
         way: The displacement along one direction, from the place before on [1].
@@ -80,6 +86,9 @@ def beginning_s(way: Ways, times: Ways, told: Ways, earliest_s: float, latest_s:
     """
     if earliest_s >= latest_s:
         return latest_s
+    tries = np.unique(np.concatenate([earliest_s * _SPREAD, latest_s * _SPREAD]))
+    left = float(_misfit(way, times, told, tries).min()) / len(way)
+    earliest_s /= float(np.sqrt(np.clip(left, 1.0, UNEXPLAINED)))
     tries = np.unique(np.concatenate([earliest_s * _SPREAD, latest_s * _SPREAD]))
     mean_s, spread_s = _mean(way, times, told, tries)
     half_s = ABOUT * spread_s + float(np.interp(mean_s, tries, np.gradient(tries)))

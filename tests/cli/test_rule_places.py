@@ -37,6 +37,7 @@ COMMANDS = {
     "rules diff": ["sip.lp"],
     "rules list": [],
     "rules new": ["Sip", "--from", f"{DEMO}/right_hand/2"],
+    "regenerate": ["--say", "drink from the mug", "--scene", DEMO],
     "rules show": ["Reach"],
     "view": [DEMO, "--html", "seen.html"],
     "rules test": ["sip.lp"],
