@@ -65,7 +65,9 @@ def test_the_batteries_of_a_cell_are_pooled_only_when_all_are_there(tmp_path: Pa
     assert "**all**" not in table(tmp_path)
     for battery in others:
         kept(tmp_path, USUAL, battery, outcome(1.0))
-    assert f"**all**, worst {first} | 3 of 4 (75.0 %) | 3 of 4 (75.0 %)" in table(tmp_path)
+    right, all_of_them = len(BATTERIES), len(BATTERIES) + 1
+    pooled = f"{right} of {all_of_them} ({100.0 * right / all_of_them:.1f} %)"
+    assert f"**all**, worst {first} | {pooled} | {pooled}" in table(tmp_path)
 
 
 def test_remarks_below_a_table_outlast_a_new_table(tmp_path: Path) -> None:
