@@ -148,17 +148,17 @@ def _kind(path: Track, side: str, true_s: float) -> str:
 def table(found: Iterable[Edge]) -> list[dict[str, str | int | float]]:
     """A row for each rate, noise, side and kind."""
     found = list(found)
-    usual = {_place(each): each.error_s for each in found if _way(each) == USUAL}
+    usual = {_place(edge): edge.error_s for edge in found if _way(edge) == USUAL}
     sides, kinds = ("begin", "end", "both"), (*(name for name, _ in KINDS), "all")
-    ways = sorted({(each.rate_hz, each.noise_mm) for each in found})
+    ways = sorted({(edge.rate_hz, edge.noise_mm) for edge in found})
     rows = []
     for way, side, kind in product([*ways, None], sides, kinds):
         some = [
-            each
-            for each in found
-            if way in (None, (each.rate_hz, each.noise_mm))
-            and side in ("both", each.side)
-            and kind in ("all", each.kind)
+            edge
+            for edge in found
+            if way in (None, (edge.rate_hz, edge.noise_mm))
+            and side in ("both", edge.side)
+            and kind in ("all", edge.kind)
         ]
         if some:
             rows.append(_row(way, side, kind, some, usual))
@@ -172,9 +172,9 @@ def _row(
     some: list[Edge],
     usual: dict[tuple[str, str, float], float],
 ) -> dict[str, str | int | float]:
-    errors = np.array([each.error_s for each in some])
+    errors = np.array([edge.error_s for edge in some])
     kept = np.array(
-        [abs(each.error_s - usual[_place(each)]) for each in some if _place(each) in usual]
+        [abs(edge.error_s - usual[_place(edge)]) for edge in some if _place(edge) in usual]
     )
     return {
         "rate_hz": way[0] if way else "any",
@@ -224,15 +224,15 @@ def main() -> None:
     ways += [USUAL] if USUAL not in ways else []
     found = [edge for path in paths(options.every) for way in ways for edge in edges(path, *way)]
     rows = table(found)
-    worst = sorted(found, key=lambda each: -abs(each.error_s))[: options.worst]
+    worst = sorted(found, key=lambda edge: -abs(edge.error_s))[: options.worst]
     if options.json:
-        print(json.dumps({"rows": rows, "worst": [asdict(each) for each in worst]}, indent=1))
+        print(json.dumps({"rows": rows, "worst": [asdict(edge) for edge in worst]}, indent=1))
         return
     print("  ".join(f"{name:>13}" for name in rows[0]))
     for row in rows:
         print("  ".join(f"{value!s:>13}" for value in row.values()))
-    for each in worst:
-        print(each)
+    for edge in worst:
+        print(edge)
 
 
 if __name__ == "__main__":

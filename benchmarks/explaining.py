@@ -46,7 +46,7 @@ def timed(facts: tuple[Fact, ...], copies: int) -> dict[str, float]:
     segments = infer(told, profile=rules).links[0].segments
     last = segments[-len(segments) // copies :]
     explainer.explain_all(last)
-    alone = [_milliseconds(lambda each=each: explainer.explain(each)) for each in last]
+    alone = [_milliseconds(lambda one=segment: explainer.explain(one)) for segment in last]
     return {
         "trials": copies,
         "segments": len(segments),

@@ -25,7 +25,7 @@ from kb import Actionary
 def recordings(folder: Path) -> tuple[Recording, ...]:
     """Recordings of the virtual man, in an Actionary."""
     with Actionary.open(folder / "actionary") as words:
-        known = {each.name for each in words.observations()}
+        known = {stored.name for stored in words.observations()}
         for action in ACTIONS:
             if action not in known:
                 made = truth_of(performed(action, rate_hz=RATE_HZ))
@@ -65,7 +65,7 @@ def performing(each: Spoken, known: tuple[Recording, ...], agent: str) -> tuple[
 
 def run(known: tuple[Recording, ...], agent: str) -> None:
     """First what is understood of every request, then the performances."""
-    rows = {each: understanding(each, known) for each in spoken()}
+    rows = {request: understanding(request, known) for request in spoken()}
     for each, (good, told) in rows.items():
         print(f"{'yes' if good else 'NO ':3}  {each.say!r} in {each.world}: {told}", flush=True)
     print(f"{sum(good for good, _ in rows.values())} of {len(rows)} understood as they should be")

@@ -42,7 +42,8 @@ def tell_quality(motion: "Motion", quality: "Quality") -> None:
             f"{gate.name:16} {gate.value:8.3f}  {sign} {gate.limit:6.2f}  {gate.unit:10}  "
             f"{'yes' if gate.passed else 'NO':6}  {at} {gate.bodies}".rstrip()
         )
-    for each in quality.told:
-        typer.echo(f"{each.name}: {each.value:.1f} {each.unit} ({each.bodies}), not demanded")
+    for measured in quality.told:
+        value = f"{measured.value:.1f} {measured.unit}"
+        typer.echo(f"{measured.name}: {value} ({measured.bodies}), not demanded")
     for note in motion.plan.notes:
         typer.echo(f"note: {note}")

@@ -47,10 +47,10 @@ def perform_request(
     if output:
         _write(made, agent, output)
     if json:
-        print_json({"performed": [_answer(each) for each in made]})
+        print_json({"performed": [_answer(performance) for performance in made]})
         return
-    for each in made:
-        _tell(each)
+    for performance in made:
+        _tell(performance)
     if output:
         typer.echo(f"wrote {output}", err=True)
 

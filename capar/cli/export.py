@@ -55,9 +55,12 @@ def export(
     With --format pddl, bt or bml: the action of CAPTURE or OBSERVATION as a plan for others.
     """
     from capar.cli._output import check_writable, written
-    from capar.model.errors import CaparError
+    from capar.model.errors import CaparError, UnknownNameError
     from capar.pipelines.plan_export import PLAN_FORMATS
+    from kb.exchange import FORMATS
 
+    if format_ is not None and format_ not in {*FORMATS, *PLAN_FORMATS}:
+        raise UnknownNameError("format", format_, [*FORMATS, *PLAN_FORMATS])
     if format_ in PLAN_FORMATS:
         if soma:
             raise CaparError("--soma writes RDF; leave it out, or --format")

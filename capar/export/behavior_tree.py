@@ -44,8 +44,8 @@ def behavior_tree(source: PlanSource) -> str:
         holder = ET.SubElement(tree, "Parallel", {"name": "links", **count})
     for ee, steps in links.items():
         sequence = ET.SubElement(holder, "Sequence", name=ee)
-        for each in steps:
-            _step(sequence, each)
+        for planned in steps:
+            _step(sequence, planned)
     for action in _actions(source):
         leaf = ET.SubElement(root, "BehaviorTree", ID=action)
         ET.SubElement(leaf, "Action", ID=f"Do{action}")
@@ -57,62 +57,62 @@ def behavior_tree(source: PlanSource) -> str:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
 
 
-def _step(parent: ET.Element, each: PlanStep) -> None:
-    sequence = ET.SubElement(parent, "Sequence", name=f"{each.ipar.upar} step")
-    for condition in each.upar.applicability:
-        _condition(sequence, each, condition)
-    for preparation in each.upar.preparation:
+def _step(parent: ET.Element, planned: PlanStep) -> None:
+    sequence = ET.SubElement(parent, "Sequence", name=f"{planned.ipar.upar} step")
+    for condition in planned.upar.applicability:
+        _condition(sequence, planned, condition)
+    for preparation in planned.upar.preparation:
         fallback = ET.SubElement(sequence, "Fallback")
-        _condition(fallback, each, preparation.condition)
-        names = dict(zip(each.upar.objects, each.ipar.objects, strict=True))
+        _condition(fallback, planned, preparation.condition)
+        names = dict(zip(planned.upar.objects, planned.ipar.objects, strict=True))
         objects = (names.get(name, name) for name in preparation.action.objects)
         ET.SubElement(
             fallback,
             "SubTree",
             ID=preparation.action.action,
-            ee=each.ipar.ee,
+            ee=planned.ipar.ee,
             objects=";".join(objects),
             purpose=preparation.action.purpose,
             duration_s="",
             posture="",
         )
-    _action(sequence, each)
-    for condition in each.upar.post_assertions:
-        _condition(sequence, each, condition)
+    _action(sequence, planned)
+    for condition in planned.upar.post_assertions:
+        _condition(sequence, planned, condition)
 
 
-def _action(parent: ET.Element, each: PlanStep) -> None:
-    duration = each.ipar.core.duration_s
+def _action(parent: ET.Element, planned: PlanStep) -> None:
+    duration = planned.ipar.core.duration_s
     ET.SubElement(
         parent,
         "SubTree",
-        ID=each.ipar.upar,
-        ee=each.ipar.ee,
-        objects=";".join(each.ipar.objects),
-        purpose=each.ipar.core.purpose,
+        ID=planned.ipar.upar,
+        ee=planned.ipar.ee,
+        objects=";".join(planned.ipar.objects),
+        purpose=planned.ipar.core.purpose,
         duration_s="" if duration is None else f"{duration:.3f}",
-        posture=each.ipar.posture,
+        posture=planned.ipar.posture,
     )
 
 
-def _condition(parent: ET.Element, each: PlanStep, condition: Condition) -> None:
+def _condition(parent: ET.Element, planned: PlanStep, condition: Condition) -> None:
     """A condition as a leaf; one that must not hold is the leaf of its opposite."""
     if condition.kind == "duration":
         return
     name = {"contact": "Contact", "posture": "Posture", "capable": "Capable"}[condition.kind]
     if condition.kind == "contact" and not condition.holds:
         name = "NoContact"
-    values = bound_condition(each.upar, each.ipar, condition)
+    values = bound_condition(planned.upar, planned.ipar, condition)
     ports = dict(zip(CONDITIONS[name], values, strict=True))
     if name == "Posture":
-        ports["agent"] = each.ipar.ee if condition.arguments[0] != HOLDER else values[0]
+        ports["agent"] = planned.ipar.ee if condition.arguments[0] != HOLDER else values[0]
     ET.SubElement(parent, "SubTree", {"ID": name, **ports})
 
 
 def _actions(source: PlanSource) -> list[str]:
     """Every action that the tree calls, those of preparatory specifications included."""
-    used = {each.ipar.upar for each in source.steps}
-    prepared = {p.action.action for each in source.steps for p in each.upar.preparation}
+    used = {planned.ipar.upar for planned in source.steps}
+    prepared = {p.action.action for planned in source.steps for p in planned.upar.preparation}
     return sorted(used | prepared)
 
 

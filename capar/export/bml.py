@@ -48,8 +48,8 @@ def bml(source: PlanSource) -> str:
         _core("bml"), id=_identifier(source.name), characterId=source.agent, composition="MERGE"
     )
     for ee, steps in source.links.items():
-        for number, each in enumerate(steps):
-            _gesture(root, ee, number, each, source)
+        for number, planned in enumerate(steps):
+            _gesture(root, ee, number, planned, source)
     for number, (target, start, end) in enumerate(source.looks):
         ET.SubElement(
             root,
@@ -77,18 +77,18 @@ def _seconds(time: float) -> str:
     return f"{time:.3f}"
 
 
-def _span(each: PlanStep, source: PlanSource) -> tuple[float, float]:
+def _span(planned: PlanStep, source: PlanSource) -> tuple[float, float]:
     """When a step begins and ends, in whole milliseconds, so that durations add up [s]."""
-    begin = each.step.begin * source.duration_s
-    return round(begin, 3), round(begin + each.step.share * source.duration_s, 3)
+    begin = planned.step.begin * source.duration_s
+    return round(begin, 3), round(begin + planned.step.share * source.duration_s, 3)
 
 
-def _gesture(root: ET.Element, ee: str, number: int, each: PlanStep, source: PlanSource) -> None:
-    begin, end = _span(each, source)
+def _gesture(root: ET.Element, ee: str, number: int, planned: PlanStep, source: PlanSource) -> None:
+    begin, end = _span(planned, source)
     before = f"{ee}_{number - 1}:end" if number else _seconds(begin)
     attributes = {
         "id": f"{ee}_{number}",
-        "lexeme": each.ipar.upar,
+        "lexeme": planned.ipar.upar,
         "start": before,
         "end": f"{ee}_{number}:start + {_seconds(end - begin)}",
     }
@@ -101,11 +101,11 @@ def _gesture(root: ET.Element, ee: str, number: int, each: PlanStep, source: Pla
     ET.SubElement(
         description,
         f"{{{PAR_NAMESPACE}}}step",
-        action=each.ipar.upar,
-        ee=each.ipar.ee,
-        objects=" ".join(each.ipar.objects),
-        purpose=each.ipar.core.purpose,
-        posture=each.ipar.posture,
+        action=planned.ipar.upar,
+        ee=planned.ipar.ee,
+        objects=" ".join(planned.ipar.objects),
+        purpose=planned.ipar.core.purpose,
+        posture=planned.ipar.posture,
     )
 
 
@@ -128,5 +128,5 @@ def _synchronize(root: ET.Element, *points: str) -> None:
     number = len(root.findall(_core("constraint")))
     constraint = ET.SubElement(root, _core("constraint"), id=f"constraint_{number}")
     together = ET.SubElement(constraint, _core("synchronize"))
-    for each in points:
-        ET.SubElement(together, _core("sync"), ref=each)
+    for point in points:
+        ET.SubElement(together, _core("sync"), ref=point)

@@ -87,27 +87,27 @@ def _observed_link(
     world.initially.append(f"(of {holder} {agent})")
     first = steps[0]
     posture = _new(world, f"{ee}_start", "posture")
-    if not any(each.condition.kind == "contact" for each in first.upar.preparation):
+    if not any(needed.condition.kind == "contact" for needed in first.upar.preparation):
         world.initially.append(f"(in_posture {holder} {posture})")
     places: dict[str, str] = {}
     counts: dict[str, int] = {}
     touched: dict[str, bool] = {}
-    for each in steps:
-        name, what = names[each.upar], each.ipar.objects
+    for planned in steps:
+        name, what = names[planned.upar], planned.ipar.objects
         arguments = [holder, agent, *map(thing_word, what)]
-        _state_capable(world, each, name, agent)
+        _state_capable(world, planned, name, agent)
         after = posture
-        if each.rests:
-            after = _new(world, f"{ee}_{each.ipar.posture or 'end'}", "posture")
+        if planned.rests:
+            after = _new(world, f"{ee}_{planned.ipar.posture or 'end'}", "posture")
             _state(world.initially, f"(ends_in {action_constant(name)} {holder} {after})")
         if what:
-            arguments += _at_places(world, (ee, holder, name), each, places, counts)
-            _state_contacts(world, (holder, each), touched)
-            if any(p.condition.kind == "posture" for p in each.upar.preparation):
+            arguments += _at_places(world, (ee, holder, name), planned, places, counts)
+            _state_contacts(world, (holder, planned), touched)
+            if any(p.condition.kind == "posture" for p in planned.upar.preparation):
                 arguments.append(posture)
-            if each.rests:
+            if planned.rests:
                 arguments.append(after)
-            if each.lasts and not each.moves:
+            if planned.lasts and not planned.moves:
                 _state(world.goal, f"(lasted {action_constant(name)} {holder} {places[what[0]]})")
         else:
             arguments += [posture, after]
@@ -117,54 +117,54 @@ def _observed_link(
     _finally(world, holder, steps[-1], touched, places, posture)
 
 
-def _state_capable(world: _World, each: PlanStep, name: str, agent: str) -> None:
+def _state_capable(world: _World, planned: PlanStep, name: str, agent: str) -> None:
     """Who did it is capable of it, and so is what it was done with (thesis 4.6.1.4)."""
-    for condition in each.upar.applicability:
-        who = bound_condition(each.upar, each.ipar, condition)[0]
-        known = agent if who == each.ipar.agent else thing_word(who)
+    for condition in planned.upar.applicability:
+        who = bound_condition(planned.upar, planned.ipar, condition)[0]
+        known = agent if who == planned.ipar.agent else thing_word(who)
         _state(world.initially, f"(capable {known} {action_constant(name)})")
 
 
 def _at_places(
     world: _World,
     who: tuple[str, str, str],
-    each: PlanStep,
+    planned: PlanStep,
     places: dict[str, str],
     counts: dict[str, int],
 ) -> list[str]:
     """From where to where a step moves its dominant object, and what that touches there."""
     ee, holder, name = who
-    thing = each.ipar.objects[0]
+    thing = planned.ipar.objects[0]
     if thing not in places:
         places[thing] = _new(world, f"{ee}_{thing}_0", "place")
         world.initially.append(f"(at {holder} {thing_word(thing)} {places[thing]})")
     here = there = places[thing]
-    if each.moves:
+    if planned.moves:
         counts[thing] = counts.get(thing, 0) + 1
         there = places[thing] = _new(world, f"{ee}_{thing}_{counts[thing]}", "place")
         world.initially.append(f"(leads {action_constant(name)} {holder} {here} {there})")
-    needed = [preparation.condition for preparation in each.upar.preparation]
-    for place, conditions in ((here, needed), (there, each.upar.post_assertions)):
+    needed = [preparation.condition for preparation in planned.upar.preparation]
+    for place, conditions in ((here, needed), (there, planned.upar.post_assertions)):
         for condition in conditions:
             if condition.kind == "contact" and condition.arguments[0] != HOLDER and condition.holds:
-                other = thing_word(bound_condition(each.upar, each.ipar, condition)[1])
+                other = thing_word(bound_condition(planned.upar, planned.ipar, condition)[1])
                 _state(world.initially, f"(meets {place} {other})")
-    return [here, there] if each.moves else [here]
+    return [here, there] if planned.moves else [here]
 
 
 def _state_contacts(world: _World, at: tuple[str, PlanStep], touched: dict[str, bool]) -> None:
     """A contact that a first step needs is there from the start; the last word on each counts."""
-    holder, each = at
-    for preparation in each.upar.preparation:
+    holder, planned = at
+    for preparation in planned.upar.preparation:
         condition = preparation.condition
         if condition.kind == "contact" and condition.arguments[0] == HOLDER:
-            other = bound_condition(each.upar, each.ipar, condition)[1]
+            other = bound_condition(planned.upar, planned.ipar, condition)[1]
             if other not in touched:
                 world.initially.append(f"(contact {holder} {thing_word(other)})")
                 touched[other] = True
-    for condition in each.upar.post_assertions:
+    for condition in planned.upar.post_assertions:
         if condition.arguments[0] == HOLDER:
-            touched[bound_condition(each.upar, each.ipar, condition)[1]] = condition.holds
+            touched[bound_condition(planned.upar, planned.ipar, condition)[1]] = condition.holds
 
 
 def _finally(
@@ -203,7 +203,7 @@ def _problem_lines(source: PlanSource, world: _World) -> Iterator[str]:
     yield f"(define (problem {name}_observed)"
     yield f"  (:domain {name})"
     yield "  (:objects"
-    yield from (f"    {each} - {kind}" for each, kind in world.objects.items())
+    yield from (f"    {name} - {kind}" for name, kind in world.objects.items())
     yield "  )"
     yield "  (:init"
     yield from (f"    {atom}" for atom in world.initially)

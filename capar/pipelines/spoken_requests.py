@@ -52,8 +52,7 @@ def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tup
     """A recording for every request, in order; one for several where it does them in that order.
 
     Of several recordings the one with the fewest steps of all hands is chosen, then the one that
-    handles things
-    of the same names, then the first by name.
+    handles things of the same names, then the first by name.
 
     Raises:
         RequestError: No recording does what is asked for.

@@ -3,7 +3,7 @@
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from capar.model.errors import RuleError
@@ -26,6 +26,10 @@ ALWAYS = (("segment", 3), ("also", 2))
 TOGETHER = 16
 """Greatest number of segments whose windows are grounded together."""
 
+KEPT = 32
+"""Greatest number of recorders that are kept: each set of names that segments are explained
+together by has its own."""
+
 
 @dataclass(frozen=True)
 class Explanation:
@@ -47,22 +51,24 @@ class RuleBase:
     sentences: Sentences
     statements: tuple[Statement, ...]
 
-    @cache  # noqa: B019 - rule bases are few and kept
-    def recorder(self, names: frozenset[str]) -> Recorder:
-        """The recorder of why segments have names, or, for ``Unknown`` alone, why they have none.
 
-        What is recorded of a segment of one of the names is the same whatever the others are.
-        """
-        if names == {UNKNOWN}:
-            return Recorder(self.statements, targets=(("parted_at", 2), ("nearest", 2), *ALWAYS))
-        others = [each for each in self.statements if not _names(each) and not _overrules(each)]
-        naming = [rule for name in sorted(names) for rule in self.naming(name)]
-        return Recorder([*others, *naming], targets=(("named", 2), *ALWAYS))
+@lru_cache(maxsize=KEPT)
+def recorder(base: RuleBase, names: frozenset[str]) -> Recorder:
+    """The recorder of why segments have names, or, for ``Unknown`` alone, why they have none.
 
-    @cache  # noqa: B019 - rule bases are few and kept
-    def naming(self, name: str) -> tuple[Statement, ...]:
-        """The rules by which segments have one name, and what alone keeps them from others."""
-        return (*_naming(self.statements, name), *near_misses(self.statements, name))
+    What is recorded of a segment of one of the names is the same whatever the others are.
+    """
+    if names == {UNKNOWN}:
+        return Recorder(base.statements, targets=(("parted_at", 2), ("nearest", 2), *ALWAYS))
+    others = [each for each in base.statements if not _names(each) and not _overrules(each)]
+    naming = [rule for name in sorted(names) for rule in _rules_of_name(base, name)]
+    return Recorder([*others, *naming], targets=(("named", 2), *ALWAYS))
+
+
+@lru_cache(maxsize=4 * KEPT)
+def _rules_of_name(base: RuleBase, name: str) -> tuple[Statement, ...]:
+    """The rules by which segments have one name, and what alone keeps them from others."""
+    return (*_naming(base.statements, name), *near_misses(base.statements, name))
 
 
 def _names(statement: Statement) -> bool:
@@ -149,7 +155,7 @@ class Explainer:
         given = [each for each in windows if each is not None]
         if len(given) < len(group):
             raise _unfounded(group[windows.index(None)])
-        for segment, derived in zip(group, self.base.recorder(names).solve(given), strict=True):
+        for segment, derived in zip(group, recorder(self.base, names).solve(given), strict=True):
             found = self._told(derived, segment)
             if found is not None:
                 yield found
