@@ -226,6 +226,12 @@ KINDS: Mapping[str, NoticeKind] = {
         "{0}: {frames} frames in which its markers are not rigid are taken as lost",
         "bodies whose markers are not rigid",
     ),
+    "bone-stretches": NoticeKind(
+        "{0!r}: from {1!r} to {2!r} it is {shortest_m:.2f} to {longest_m:.2f} m, and bones keep "
+        "their length; check the parents that capture.toml states, and the names of the file",
+        "bones that change their length",
+        fault=True,
+    ),
     "stand-in-shape": NoticeKind("{0!r} is a stand-in: {shape}", "stand-in shapes"),
     "no-shape": NoticeKind(
         "{0!r} has no shape, so no contact of it is known", "bodies without a shape"

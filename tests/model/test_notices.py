@@ -87,6 +87,9 @@ ONE_OF_EACH = {
         "a contact before and after is taken to last",
     notice("markers-not-rigid", "mug", frames=3):
         "mug: 3 frames in which its markers are not rigid are taken as lost",
+    notice("bone-stretches", "hand", "wrist", "index", shortest_m=0.4, longest_m=0.7):
+        "'hand': from 'wrist' to 'index' it is 0.40 to 0.70 m, and bones keep their length; "
+        "check the parents that capture.toml states, and the names of the file",
     notice("objects-left-out", "a", "b", objects=9):
         "2 of 9 objects have no shape and are left out: a, b",
     notice("doubled-stamps", samples=4): "4 samples repeat a stamp; the last of each is kept",

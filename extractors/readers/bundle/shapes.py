@@ -1,6 +1,6 @@
 """Shapes that capture.toml states, as meshes: files, primitives, capsules over joints, parts."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 LARGEST_M = 20.0
 """No shape is longer [m]."""
 
+STRETCH_M = 0.01
+"""A bone changes its length by no more [m]: joints that are tracked by markers shift less."""
+
 Mesh = tuple[np.ndarray, np.ndarray]
 """Corners [m] and faces."""
 
@@ -52,6 +55,12 @@ class Frame:
 
     bones: Mapping[str, tuple[tuple[str, str], ...]] = field(default_factory=dict)
     """``children`` and ``descendants``: pairs of joints, the body itself being ``""``."""
+
+    joint: str = ""
+    """What the file calls the body, if it has a skeleton."""
+
+    lengths: Callable[[str, str], tuple[float, float]] | None = None
+    """The least and the greatest distance of two joints over time [m], but for outliers."""
 
     mirrored: bool = False
     """Whether the body's file is left-handed."""
@@ -196,7 +205,20 @@ def _pairs(entry: "CapsulesShape", frame: Frame) -> list[tuple[str, str]]:
             f"capsules = {entry.capsules!r} needs a body with a skeleton.",
             'Give pairs of names: [["WRIST", "INDEX"]].',
         )
-    return list(frame.bones[entry.capsules]) or [("", "")]
+    pairs = list(frame.bones[entry.capsules]) or [("", "")]
+    frame.notices += _stretching(pairs, frame)
+    return pairs
+
+
+def _stretching(pairs: list[tuple[str, str]], frame: Frame) -> Iterator[Notice]:
+    """Of each bone that becomes longer and shorter: its ends are not joined to each other."""
+    for first, second in pairs:
+        shortest, longest = frame.lengths(first, second) if frame.lengths else (0.0, 0.0)
+        if longest - shortest > STRETCH_M:
+            bone = first or frame.joint, second
+            yield notice(
+                "bone-stretches", frame.owner, *bone, shortest_m=shortest, longest_m=longest
+            )
 
 
 def _point(entry: "Pose", key: str, frame: Frame, name: str) -> Float[np.ndarray, "3"]:

@@ -135,3 +135,37 @@ def test_a_trc_with_fewer_rows_than_its_header_states_is_read_with_a_notice(
     assert len(recording.marker_times) == samples.FRAMES
     (notice,) = recording.notices
     assert notice.message == "the header states 900 frames, the file holds 12; was it cut short?"
+
+
+SKELETON = """unit = "m"
+up = "z"
+[files.motion]
+path = "m.npz"
+fps = "fps"
+arrays = [{ names = "names", positions = "pos", quaternions = "quat", order = "wxyz" }]
+[files.motion.parents]
+finger = "wrist"
+[[sensor]]
+name = "right_hand"
+end_effector = "hand"
+body = "wrist"
+shape = { capsules = "children", radius_m = 0.02 }
+"""
+
+
+@pytest.mark.parametrize("apart_m", [0.0, 0.2])
+def test_a_bone_that_changes_its_length_is_no_bone(tmp_path: Path, apart_m: float) -> None:
+    frames = 60
+    away = 0.1 + apart_m * np.linspace(0.0, 1.0, frames)
+    places = np.zeros((frames, 2, 3))
+    places[:, 1, 0] = away
+    turns = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 2, 1))
+    np.savez(
+        tmp_path / "m.npz", names=np.array(["wrist", "finger"]), pos=places, quat=turns, fps=30.0
+    )
+    (tmp_path / "capture.toml").write_text(SKELETON)
+    told = {each.code: each for each in read_capture(tmp_path).notices}
+    assert ("bone-stretches" in told) == bool(apart_m)
+    if apart_m:
+        assert told["bone-stretches"].bodies == ("right_hand", "wrist", "finger")
+        assert told["bone-stretches"]["longest_m"] == pytest.approx(0.29)
