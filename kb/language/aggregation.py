@@ -22,7 +22,9 @@ def summed(told: Sequence[Clause]) -> tuple[Clause, ...]:
     """
     out: list[Clause] = []
     for grip in grips(told):
-        out += _plain_runs([each for each in grip if each.changes or not each.known or each.helps], _summed_run)
+        out += _plain_runs(
+            [each for each in grip if each.changes or not each.known or each.helps], _summed_run
+        )
     return tuple(out)
 
 

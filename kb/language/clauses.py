@@ -190,7 +190,7 @@ def _stays(segment: Segment) -> bool:
     """Whether the end-effector only stays at what it touches."""
     features = segment.features
     touches = features.rel_start.startswith("1") and features.rel_start == features.rel_end
-    return touches and "1" not in features.change_loc + features.force
+    return touches and not features.change_loc.startswith("1") and "1" not in features.force
 
 
 def _stands_on(segment: Segment, thing: str, other: str) -> bool:
@@ -227,7 +227,7 @@ def _clause(
         ees=(segment.ee,),
         start_s=segment.start_s,
         end_s=segment.start_s if pattern in MOMENTARY else segment.end_s,
-        changes=_changes(segment, usual),
+        changes=_changes(segment, usual) and pattern not in HELPS,
         name=segment.name,
         general=segment.general,
         goes_on=segment.features.rel_start == segment.features.rel_end,

@@ -12,7 +12,6 @@ from capar.model.facts import Link, Moving, OfAgent, Touching
 from capar.model.observation import Observation, ObservedLink, Segment
 from kb.lexicon.english import the_agent
 
-
 STILL_M = 0.02
 """What goes less far than this [m] stays where it is."""
 
@@ -109,8 +108,12 @@ class Scene:
             for each in (*self._hands, *self._pairs)
             if thing[0] in {each.body, each.other} and before.ee not in {each.body, each.other}
         ]
-        return moves and not any(each.first <= first < each.last for each in touched) and not any(
-            each.first < last and first < each.last for each in touched if each in self._hands
+        return (
+            moves
+            and not any(each.first <= first < each.last for each in touched)
+            and not any(
+                each.first < last and first < each.last for each in touched if each in self._hands
+            )
         )
 
     def _places(self, body: str, start_s: float, end_s: float) -> np.ndarray | None:

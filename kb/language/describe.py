@@ -64,7 +64,7 @@ def _story(
     if not timed:
         steps = edited(steps)
     subject = the_agent(observation.agent.name, observation.agent.kind)
-    realiser = Realiser(links, timed=timed)
+    realiser = Realiser(links, observation.objects, timed=timed)
     if not steps:
         return f"{capital(subject)} {realiser.idle(_moved_freely(links, book))}."
     return " ".join(

@@ -72,7 +72,8 @@ def _at_once(first: Clause, second: Clause) -> bool:
     """Whether both begin and end together, but for a time that people do not notice."""
     begin = abs(first.start_s - second.start_s) < REST_S
     end = abs(first.end_s - second.end_s) < REST_S
-    return begin and end and first.overlap_s(second) >= 0.0
+    momentary = first.start_s == first.end_s and second.start_s == second.end_s
+    return begin and end and (momentary or first.overlap_s(second) > 0.0)
 
 
 def _both(first: Clause, second: Clause) -> Clause:

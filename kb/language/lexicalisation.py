@@ -7,7 +7,10 @@ from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.tables import table
 
 Cases = Collection[str]
-"""What holds of a segment: held, there, tool, on, back, self, alone, turns, tilts, steadies, running, rises."""
+"""What holds of a segment: held, there, tool, on, back, self, alone, turns, tilts, rises, steadies.
+
+``running``: the hand goes over a thing that stays.
+"""
 
 USUAL_PREPOSITION = "with"
 """Before the second object of a primitive whose rule file names none."""

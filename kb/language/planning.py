@@ -15,6 +15,9 @@ from kb.lexicon.english import times
 LONGEST = 6
 """The most clauses of one hand in a sentence."""
 
+FEW = 2
+"""So many clauses more may stand in a sentence that then ends with letting go."""
+
 LONGEST_BESIDE = 4
 """The most clauses of another hand that stand beside them."""
 
@@ -83,7 +86,8 @@ def _said(steps: Sequence[Clause]) -> list[tuple[object, ...]]:
 
 def _next_part(streams: Streams) -> Part:
     """What the next sentence tells; it is taken from what is still to be told."""
-    ees = min((ees for ees, rest in streams.items() if rest), key=lambda key: in_time(streams[key][0]))
+    waiting = [key for key, rest in streams.items() if rest]
+    ees = min(waiting, key=lambda key: in_time(streams[key][0]))
     own = streams[ees]
     size, count = _repeated(streams, ees, 0)
     if count > 1:
@@ -124,7 +128,9 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
     last, following = taken[-1], streams[ees][0]
     if (last.start_s, last.end_s) == (following.start_s, following.end_s):
         return False
-    if len(taken) >= LONGEST + following.frees or last.frees or _turns_away(taken, following):
+    if last.frees or _turns_away(taken, following):
+        return True
+    if len(taken) >= LONGEST and not _soon_over(streams[ees]):
         return True
     if _repeated(streams, ees, 0)[1] > 1 or _waits(following, streams):
         return True
@@ -140,6 +146,11 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
     return len(waiting) > LONGEST_BESIDE
 
 
+def _soon_over(rest: Sequence[Clause]) -> bool:
+    """Whether the hand lets go of what it has within few clauses."""
+    return any(each.frees and each.grip == rest[0].grip for each in rest[:FEW])
+
+
 def _waits(clause: Clause, streams: Streams) -> bool:
     """Whether something is to be told first that one of its hands did before."""
     return any(
@@ -153,7 +164,9 @@ def _waits(clause: Clause, streams: Streams) -> bool:
 def _changes_hands(last: Clause, following: Clause, streams: Streams) -> bool:
     """Whether another hand had the thing before this hand has it again."""
     return last.grip != following.grip and any(
-        each.objects[:1] == following.objects[:1] and each.start_s < following.start_s
+        each.possessed
+        and each.objects[:1] == following.objects[:1]
+        and each.start_s < following.start_s
         for ees, rest in streams.items()
         if not set(ees) & set(following.ees)
         for each in rest
@@ -171,7 +184,10 @@ def _beside(taken: Sequence[Clause], rest: list[Clause], streams: Streams) -> li
         if _waits(rest[size], streams):
             break
         size += 1
-    if size == LONGEST_BESIDE and size < len(rest):
+    over = size == LONGEST_BESIDE and size < len(rest)
+    if over and rest[size].frees and _during(rest[size], taken) and not _waits(rest[size], streams):
+        size += 1
+    elif over:
         size = _up_to_another_thing(rest, size)
     found, rest[:] = rest[:size], rest[size:]
     return found

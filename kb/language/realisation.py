@@ -1,10 +1,11 @@
 """One sentence out of clauses: pronouns for what was just named, hands, times, "while"."""
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from capar.model.observation import ObservedLink
+from capar.model.observation import ObservedLink, ObservedObject
 from kb.language.clauses import Clause
 from kb.language.lexicalisation import in_past
 from kb.language.vocabulary import SIDES
@@ -17,7 +18,10 @@ _ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
 class Realiser:
     """Says clauses; remembers the hand, and within a sentence what each hand has to do with."""
 
-    def __init__(self, links: Sequence[ObservedLink], *, timed: bool) -> None:
+    def __init__(
+        self, links: Sequence[ObservedLink], objects: Sequence[ObservedObject], *, timed: bool
+    ) -> None:
+        self._nouns = _nouns(objects)
         self._kinds = {link.ee: link.kind for link in links}
         self._names = {link.ee: _spoken(link) for link in links}
         self._timed = timed
@@ -100,9 +104,9 @@ class Realiser:
     def _end(self, step: Clause) -> str:
         often = f" {times(step.count)}" if step.count > 1 else ""
         often = f" {step.often}" if step.often else often
-        often += {0: "", 1: ", with a pause"}.get(
-            step.pauses, f", with {number(step.pauses)} pauses"
-        )
+        if step.pauses:
+            pauses = "a pause" if step.pauses == 1 else f"{number(step.pauses)} pauses"
+            often += f"{',' if ' with {' in step.pattern else ''} with {pauses}"
         purpose = f"{often} to {_with_it(step.purpose)}" if step.purpose else often
         if not self._spans:
             return purpose
@@ -127,7 +131,7 @@ class Realiser:
         return filled
 
     def _mention(self, name: str, place: int) -> str:
-        return "it" if place == 1 and name == self._topic else the(name)
+        return "it" if place == 1 and name == self._topic else the(self._nouns.get(name, name))
 
     def _moved_away(self, step: Clause) -> str:
         if step.ees == self._ees and len(step.ees) == 1:
@@ -139,6 +143,16 @@ class Realiser:
             kind = self._kinds[ees[0]]
             return f"both {'feet' if kind == 'foot' else kind + 's'}"
         return f"the {self._names[ees[0]]}"
+
+
+def _nouns(objects: Sequence[ObservedObject]) -> dict[str, str]:
+    """Objects by what they are called, where that is their kind.
+
+    So it is where a capture says of one object alone that it is a ``large_table``, whatever short
+    name it has there.
+    """
+    kinds = Counter(each.kind for each in objects)
+    return {each.name: each.kind for each in objects if "_" in each.kind and kinds[each.kind] == 1}
 
 
 def _shared_topic(steps: Sequence[Clause]) -> str:

@@ -35,9 +35,7 @@ def as_segmented(told: Sequence[Clause]) -> tuple[Clause, ...]:
 
 def _gripped(told: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses, each with how often the hand had come to a thing by then."""
-    comes = [
-        clause.comes or (at > 0 and told[at - 1].frees) for at, clause in enumerate(told)
-    ]
+    comes = [clause.comes or (at > 0 and told[at - 1].frees) for at, clause in enumerate(told)]
     return tuple(replace(each, grip=at) for each, at in zip(told, accumulate(comes), strict=True))
 
 
@@ -46,7 +44,8 @@ def _steadied(told: Sequence[Clause]) -> list[Clause]:
     out: list[Clause] = []
     for clause in told:
         last = out[-1] if out else None
-        if last is not None and clause.helps and last.holds and last.objects[:1] == clause.objects[:1]:
+        held = last is not None and last.pattern.startswith("hold {1}")
+        if last is not None and held and clause.helps and last.objects[:1] == clause.objects[:1]:
             out[-1] = replace(clause, start_s=last.start_s)
         else:
             out.append(clause)
@@ -171,7 +170,7 @@ def _short_hold(told: Sequence[Clause], at: int) -> bool:
 
 
 def _scrap(clause: Clause, following: Clause | None, scene: Scene) -> bool:
-    """Whether it is a short motion in the grip that goes hardly anywhere, or where the next goes."""
+    """Whether it is a short motion in the grip that goes hardly anywhere, or with the next."""
     if not (clause.changes and clause.possessed and clause.goes_on and clause.known):
         return False
     moved = clause.pattern.split()[1:2] == ["{1}"]
