@@ -1,4 +1,4 @@
-"""What each telling obeys, read from its text alone: order of time, and verbs that are read back."""
+"""What each telling obeys, read from its text: order of time, and verbs that are read back."""
 
 import re
 
