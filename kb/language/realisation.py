@@ -60,10 +60,11 @@ class Realiser:
         """
         kinds: dict[str, list[str]] = {}
         for ee in moved:
-            kinds.setdefault(ee if self._timed else self._kinds[ee], []).append(ee)
+            kinds.setdefault(self._kinds[ee], []).append(ee)
         parts = []
         for ees in kinds.values():
-            start_s, end_s = moved[ees[0]]
+            start_s = min(moved[ee][0] for ee in ees)
+            end_s = max(moved[ee][1] for ee in ees)
             span = f" ({start_s:.2f}–{end_s:.2f} s)" if self._timed else ""
             parts.append(f"{self._hands(tuple(ees))}{span}")
         return f"moved {joined(parts)} and touched nothing" if parts else "touched nothing"
