@@ -32,6 +32,9 @@ def describe(
 ) -> str:
     """Say what was done; where several agents performed, by one after the other.
 
+    Segments of one motion are told as one deed, and scraps with what they belong to; what the
+    profile ``thesis`` found is told segment by segment.
+
     Args:
         observation: What was understood of a capture.
         detail: ``steps`` describes every step, ``summary`` only those that changed something.

@@ -184,11 +184,12 @@ def _beside(taken: Sequence[Clause], rest: list[Clause], streams: Streams) -> li
         if _waits(rest[size], streams):
             break
         size += 1
-    over = size == LONGEST_BESIDE and size < len(rest)
-    if over and rest[size].frees and _during(rest[size], taken) and not _waits(rest[size], streams):
-        size += 1
-    elif over:
-        size = _up_to_another_thing(rest, size)
+    if size == LONGEST_BESIDE and size < len(rest):
+        last = rest[size]
+        if last.frees and _during(last, taken) and not _waits(last, streams):
+            size += 1
+        else:
+            size = _up_to_another_thing(rest, size)
     found, rest[:] = rest[:size], rest[size:]
     return found
 

@@ -139,10 +139,8 @@ def test_observe_tells_many_alike_in_one_line(bundle: Callable[[int, int], str])
     place.write_text(BUNDLE + "".join(posts), encoding="utf-8")
     result = CliRunner().invoke(app, ["observe", "touching"], catch_exceptions=False)
     (line,) = [each for each in result.stderr.splitlines() if "stand-in" in each]
-    assert (
-        line
-        == "note [stand-in-shape]: 7 stand-in shapes: box, post, post0 and others (--json tells all)"
-    )
+    names = "box, post, post0 and others (--json tells all)"
+    assert line == f"note [stand-in-shape]: 7 stand-in shapes: {names}"
 
 
 def test_what_is_known_without_reservation_has_none_said(tmp_path: Path) -> None:

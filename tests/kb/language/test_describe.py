@@ -1,7 +1,9 @@
 """Descriptions read as a person would write them: golden texts, each read by us."""
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import groupby
 from typing import Literal
 
 import pytest
@@ -26,6 +28,7 @@ from motions import (
 from observations import MUG, RATE_HZ, TABLE, Piece, observation, with_unknown
 from observations import drink_from_mug as observed_drinking
 from observations import pick_up_with_both_hands as observed_picking_up
+from tellings import steps_of
 
 from capar.model.facts import Moving, Touching
 from capar.model.par import FeatureSet
@@ -252,6 +255,15 @@ def test_no_verb_is_left_untold(names: list[str]) -> None:
     told = _handled(*names) + _handled(*names, detail="summary")
     for name in names:
         assert past(name.lower()) in told
+
+
+@given(st.lists(st.sampled_from(MANY), min_size=1, max_size=12))
+def test_what_is_counted_is_how_often_it_was_done_anew(names: list[str]) -> None:
+    anew = Counter(name for name, _ in groupby(names))
+    told = Counter[str]()
+    for step in steps_of(_handled(*names, detail="summary")):
+        told[step.call.action] += max(step.circumstances.count, 1)
+    assert told == anew
 
 
 def test_several_things_touched_at_once_are_them() -> None:
