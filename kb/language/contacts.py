@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from capar.model.facts import Link, Moving, OfAgent, Touching
+from capar.model.facts import Flies, Link, Moving, OfAgent, Swings, Touching
 from capar.model.observation import Observation, ObservedLink, Segment
 from kb.lexicon.english import the_agent
 
@@ -35,6 +35,9 @@ class Scene:
         self._hands = [each for each in touching if each.body in effectors]
         self._pairs = [each for each in touching if each.body not in effectors]
         self._moving = [fact for fact in observation.facts if isinstance(fact, Moving)]
+        flights = [(each.object, each) for each in observation.facts if isinstance(each, Flies)]
+        swings = [(each.body, each) for each in observation.facts if isinstance(each, Swings)]
+        self._by_itself: list[tuple[str, Flies | Swings]] = [*flights, *swings]
         self._tags = {thing.name: thing.tag for thing in observation.objects}
         owners = [fact for fact in observation.facts if isinstance(fact, OfAgent)]
         self._owners = {each.body: each.agent for each in owners}
@@ -81,7 +84,7 @@ class Scene:
         """Segments in which contact was lost with what the hand went on carrying.
 
         That is where it moves on, between two segments in which the hand possesses it, while
-        nothing else touches it.
+        nothing else touches it, and neither falls freely nor swings.
         """
         out: set[int] = set()
         lost: list[Segment] = []
@@ -99,22 +102,20 @@ class Scene:
         thing = before.objects[:1]
         if not lost or after.objects[:1] != thing:
             return False
+        first, last = lost[0].first, lost[-1].last
         moves = all(
             each.objects[:1] == thing and each.features.change_loc.startswith("1") for each in lost
         )
-        first, last = lost[0].first, lost[-1].last
-        touched = [
-            each
-            for each in (*self._hands, *self._pairs)
-            if thing[0] in {each.body, each.other} and before.ee not in {each.body, each.other}
-        ]
-        return (
-            moves
-            and not any(each.first <= first < each.last for each in touched)
-            and not any(
-                each.first < last and first < each.last for each in touched if each in self._hands
-            )
-        )
+        forced = any("1" in each.features.force for each in (before, *lost, after))
+        alone = [each for name, each in self._by_itself if name == thing[0]]
+        others = [each for each in self._hands if each.other == thing[0] and each.body != before.ee]
+        borne = any(each.first <= first < each.last for each in self._touched(thing[0]))
+        during = any(each.first < last and first < each.last for each in (*alone, *others))
+        return moves and not (forced or borne or during)
+
+    def _touched(self, thing: str) -> Iterable[Touching]:
+        """Contacts of a thing with what is no hand."""
+        return (each for each in self._pairs if thing in {each.body, each.other})
 
     def _places(self, body: str, start_s: float, end_s: float) -> np.ndarray | None:
         """Where a body was from one time to another [m]; None where that was not kept."""
