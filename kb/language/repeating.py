@@ -23,7 +23,7 @@ SCRAP_M = 0.1
 
 def deeds(told: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
     """The clauses of one hand, with segments of one deed as one clause."""
-    joined = _resumed(_specialised(_resumed(told)))
+    joined = _resumed(leading_up(_specialised(_resumed(told))))
     found = _resumed(leading_up(_reached(_without_scraps(joined, scene))))
     return _gripped(_steadied(found))
 
@@ -87,10 +87,14 @@ def _named(clause: Clause) -> tuple[str, ...]:
 
 
 def _continued(deed: Clause, pause: Sequence[Clause], following: Clause) -> Clause:
-    """A deed with what follows as one; what ends otherwise than it began was done once more."""
-    flows = deed.pattern in TIPPED and not deed.rights
-    noticed = sum(each.end_s - each.start_s >= REST_S for each in pause if not flows)
-    again = 0 if deed.goes_on or not deed.changes else following.count
+    """A deed with what follows as one; what ends otherwise than it began was done once more.
+
+    So was what is poured after the vessel was upright; while it is held tipped, it is poured from.
+    """
+    tipped = deed.pattern in TIPPED
+    noticed = 0 if tipped else sum(each.end_s - each.start_s >= REST_S for each in pause)
+    anew = deed.rights if tipped else deed.changes and not deed.goes_on
+    again = following.count if anew else 0
     return replace(
         deed,
         end_s=following.end_s,

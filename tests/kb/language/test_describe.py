@@ -1,5 +1,6 @@
 """Descriptions read as a person would write them: golden texts, each read by us."""
 
+import re
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
@@ -31,6 +32,7 @@ from observations import pick_up_with_both_hands as observed_picking_up
 from tellings import steps_of
 
 from capar.model.facts import Moving, Touching
+from capar.model.observation import Border
 from capar.model.par import FeatureSet
 from capar.pipelines.observation import observe
 from kb.language.describe import describe
@@ -111,6 +113,61 @@ def test_times_stand_behind_the_steps() -> None:
         "The agent moved the mug to the mouth with the right hand (1.72–2.38 s), drank "
         "(2.38–2.56 s), and put it back on the table (2.56–3.02 s)."
     )
+
+
+def test_letting_go_is_a_moment() -> None:
+    assert re.search(r"let go \(\d\.\d\d s\)\.$", describe(observed_drinking(), timed=True))
+
+
+BOWL, BOTTLE = replace(MUG, name="bowl", kind="bowl"), replace(MUG, name="bottle", kind="bottle")
+WORKS = FeatureSet("101", "101", "10", "hand", "00")
+
+
+@pytest.mark.parametrize(("righted", "often"), [(False, ""), (True, " twice")])
+def test_what_is_held_tipped_is_poured_from_all_the_time(righted: bool, often: str) -> None:
+    pair = ("bottle", "bowl")
+    pieces = (
+        Piece("Reach", 50, ("bottle",)),
+        Piece("MoveObjTo", 150, pair),
+        Piece("Pour", 250, pair, features=WORKS),
+        Piece("TouchWith", 400, pair),
+        Piece("Pour", 450, pair, features=WORKS),
+    )
+    made = observation("Pouring", {"right_hand": pieces}, (BOWL, BOTTLE), frames=451, rate_hz=100.0)
+    (link,) = made.links
+    upright = (Border("rights", "bottle", "bottle"),)
+    segments = tuple(
+        replace(each, possessed=each.index > 0, ends=upright if righted else each.ends)
+        for each in link.segments
+    )
+    told = describe(replace(made, links=(replace(link, segments=segments),)))
+    assert told == (
+        "The agent reached for the bottle with the right hand, moved it to the bowl, and poured "
+        f"from it into the bowl{often}."
+    )
+
+
+def test_a_hand_that_stays_at_what_the_other_works_in_steadies_it() -> None:
+    links = {
+        "right_hand": (
+            Piece("Reach", 50, ("mug",)),
+            Piece("MoveObjTo", 150, ("mug", "bowl")),
+            Piece("Stir", 400, ("mug", "bowl"), features=WORKS),
+        ),
+        "left_hand": (Piece("Reach", 60, ("bowl",)), Piece("Touch", 400, ("bowl",))),
+    }
+    made = observation("Stirring", links, (MUG, BOWL), frames=401, rate_hz=100.0)
+    right, left = made.links
+    segments = tuple(replace(each, possessed=each.index > 0) for each in right.segments)
+    told = describe(replace(made, links=(replace(right, segments=segments), left)))
+    assert told.endswith("while the left hand reached for the bowl and steadied it.")
+
+
+def test_a_thing_is_called_by_the_words_of_its_kind() -> None:
+    table = replace(MUG, name="largetable", kind="large_table")
+    pieces = {"right_hand": (Piece("Reach", 50, ("largetable",)),)}
+    seen = observation("Table", pieces, (table,), frames=51, rate_hz=100.0)
+    assert describe(seen) == "The agent reached for the large table with the right hand."
 
 
 def test_two_hands_that_do_the_same_are_told_once() -> None:
