@@ -151,7 +151,7 @@ def _long_gap(each: Notice) -> str:
     often = {1: "once", 2: "twice"}.get(int(times), f"{times} times")
     most = " at most" if times != 1 else ""
     follows = "it is held to stay" if values["fixed"] else (
-        "a contact before and after is taken to last"
+        "a contact before and after is assumed to have lasted"
     )  # fmt: skip
     span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
     return f"{body!r} was lost {often} for long,{most} from {span}; {follows}"

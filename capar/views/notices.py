@@ -24,25 +24,28 @@ def reservations(
     )
 
 
-def note_lines(notices: Iterable[Notice]) -> tuple[str, ...]:
-    """Notices one a line; those of a code that has more than five of them as one line."""
+def note_lines(notices: Iterable[Notice], *, most: int = MOST) -> tuple[str, ...]:
+    """Notices one a line; those of a code that has more of them than most as one line."""
     alike: dict[str, list[Notice]] = {}
     for notice in notices:
         alike.setdefault(notice.code, []).append(notice)
     return tuple(
-        f"note [{code}]: {text}" for code, group in alike.items() for text in _texts(code, group)
+        f"note [{code}]: {text}"
+        for code, group in alike.items()
+        for text in _texts(code, group, most)
     )
 
 
 def reservation_lines(notices: Sequence[Notice]) -> tuple[str, ...]:
     """What follows a text whose reservations those are: a gap, a heading, and the notes."""
-    return ("", HEADING, *note_lines(notices)) if notices else ()
+    return ("", HEADING, *note_lines(notices, most=1)) if notices else ()
 
 
-def _texts(code: str, group: Sequence[Notice]) -> Iterable[str]:
-    if len(group) <= MOST:
+def _texts(code: str, group: Sequence[Notice], most: int) -> Iterable[str]:
+    if len(group) <= most:
         return [each.message for each in group]
-    names = list(dict.fromkeys(" and ".join(each.bodies) for each in group))
-    named = ", ".join(filter(None, names[:NAMED])) + (" …" if len(names) > NAMED else "")
+    names = list(dict.fromkeys(" and ".join(each.bodies).replace("_", " ") for each in group))
+    named = ", ".join(filter(None, names[:NAMED]))
+    more = " and others (--json tells all)" if len(names) > NAMED else ""
     what = KINDS[code].several or "alike"
-    return [f"{len(group)} {what}{': ' if named else ''}{named}; --json lists them"]
+    return [f"{len(group)} {what}{': ' if named else ''}{named}{more}"]

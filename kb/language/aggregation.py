@@ -6,10 +6,7 @@ from itertools import groupby
 
 from kb.language.clauses import Clause, in_time
 from kb.language.lexicalisation import JOINT
-from kb.language.repeating import repetition, whole, with_pauses
-
-OVER_AND_OVER = "again and again"
-"""How often, where a summary does not count."""
+from kb.language.repeating import grips, leading_up, more_of, repetition, whole
 
 MOST_VERBS = 4
 """The most verbs that share their object."""
@@ -18,41 +15,37 @@ RECALLED = 2
 """After how many other clauses one that says the same is no longer said to be done again."""
 
 
-def edited(steps: Sequence[Clause], *, summary: bool) -> tuple[Clause, ...]:
+def summed(told: Sequence[Clause]) -> tuple[Clause, ...]:
+    """What one hand changed, in which each verb of much handling in a grip stands once.
+
+    Each has the number of times that it was done, and what was done as often is joined.
+    """
+    out: list[Clause] = []
+    for grip in grips(told):
+        out += _plain_runs(
+            [each for each in grip if each.changes or not each.known or each.helps], _summed_run
+        )
+    return tuple(out)
+
+
+def edited(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses without monotony; none of them is left untold.
 
     What a hand does to one thing alone is joined (``raised, tilted, and lowered it``), and what
-    recurs is counted. A summary of many such clauses names each verb once. What both hands do
-    together is joined only with what they do together next.
+    recurs is counted. What both hands do together is joined only with what they do together next.
     """
-    joint = _summed_run if summary else _joined_run
     out: list[Clause] = []
     for _, part in groupby(steps, key=lambda each: len(each.ees) > 1):
         streams: dict[tuple[str, ...], list[Clause]] = {}
-        for each in part:
-            streams.setdefault(each.ees, []).append(each)
-        found = [clause for told in streams.values() for clause in _stream(told, joint)]
+        for clause in part:
+            streams.setdefault(clause.ees, []).append(clause)
+        found = [
+            clause
+            for told in streams.values()
+            for clause in _plain_runs(leading_up(told), _joined_run)
+        ]
         out += sorted(found, key=in_time)
     return _again(out)
-
-
-def _stream(told: Sequence[Clause], joint: Callable[[list[Clause]], list[Clause]]) -> list[Clause]:
-    return _plain_runs(with_pauses(_leading_up(told)), joint)
-
-
-def _leading_up(told: Sequence[Clause]) -> list[Clause]:
-    """The clauses, without one that the next says more of: ``move it``, ``move it to the bowl``."""
-    out: list[Clause] = []
-    for clause in told:
-        same = bool(out) and _more_of(clause, out[-1]) and out[-1].count == 1
-        out.append(replace(clause, start_s=out.pop().start_s) if same else clause)
-    return out
-
-
-def _more_of(clause: Clause, other: Clause) -> bool:
-    """Whether it says what the other says, and where to."""
-    longer = clause.pattern.startswith(f"{other.pattern} ")
-    return longer and clause.objects[:1] == other.objects[:1] and not other.purpose
 
 
 def _plain_runs(
@@ -60,16 +53,22 @@ def _plain_runs(
 ) -> list[Clause]:
     """The clauses, with each run of bare verbs over one thing joined."""
     out: list[Clause] = []
-    for (plain, _), same in groupby(told, key=lambda each: (_plain(each), each.objects)):
+    for (plain, *_), same in groupby(told, key=_of_one_run):
         run = list(same)
         out += joint(run) if plain else run
     return out
 
 
+def _of_one_run(clause: Clause) -> tuple[object, ...]:
+    """What clauses have in common that may be joined."""
+    return _plain(clause), clause.objects, clause.grip
+
+
 def _plain(clause: Clause) -> bool:
     """Whether it says a single verb of a single thing: ``turn {1}``."""
     verb, _, rest = clause.pattern.partition(" ")
-    return bool(verb) and rest == "{1}" and not clause.purpose and not clause.often
+    said = clause.purpose or clause.often or clause.pauses
+    return bool(verb) and rest == "{1}" and not said and JOINT not in verb
 
 
 def _verb(clause: Clause) -> str:
@@ -122,12 +121,19 @@ def _sharing(group: Sequence[Clause]) -> list[Clause]:
 
 
 def _summed_run(run: list[Clause]) -> list[Clause]:
-    """Many clauses of one thing as one that names each verb once, in order."""
+    """Many clauses of one thing as few that say each verb once, with how often it was done."""
     if len(run) <= MOST_VERBS:
-        return _joined_run(run)
-    verbs = list(dict.fromkeys(map(_verb, run)))
-    often = "" if len(verbs) == sum(each.count for each in run) else OVER_AND_OVER
-    return [replace(whole(run, pattern=f"{JOINT.join(verbs)} {{1}}"), often=often)]
+        return list(run)
+    often: dict[str, int] = {}
+    for clause in run:
+        often[_verb(clause)] = often.get(_verb(clause), 0) + clause.count
+    alike: dict[int, list[str]] = {}
+    for verb, count in often.items():
+        alike.setdefault(count, []).append(verb)
+    return [
+        whole(run, count=count, pattern=f"{JOINT.join(verbs)} {{1}}")
+        for count, verbs in alike.items()
+    ]
 
 
 def _again(told: Sequence[Clause]) -> tuple[Clause, ...]:
@@ -144,4 +150,4 @@ def _again(told: Sequence[Clause]) -> tuple[Clause, ...]:
 def _same_deed(one: Clause, other: Clause) -> bool:
     if one.pattern == other.pattern:
         return one.objects == other.objects
-    return _more_of(one, other) or _more_of(other, one)
+    return more_of(one, other) or more_of(other, one)

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 
 from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import Ipar, Motion
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import QUIET, SOMEONE, Phrasebook
+from kb.language.lexicalisation import HELPS, MOMENTARY, QUIET, SOMEONE, Phrasebook
 from kb.lexicon.english import joined, words_of
 from kb.lexicon.links import motion_senses
 from kb.lexicon.wordnet import wordnet
@@ -38,10 +39,56 @@ class Clause:
     often: str = ""
     """How often in other words: ``again``."""
 
+    pauses: int = 0
+    """How often it was interrupted for so long that people notice it."""
+
+    name: str = ""
+    """The primitive that it says."""
+
+    general: tuple[str, ...] = ()
+    """What the primitive specialises, nearest first."""
+
+    goes_on: bool = False
+    """Whether the end-effector touches the same at its end as at its beginning."""
+
+    possessed: bool = False
+    """Whether the end-effector possesses the first object."""
+
+    grip: int = 0
+    """How often the end-effector had come to a thing, or left one, when it was done."""
+
+    rights: bool = False
+    """Whether it ends as the first object is turned upright again."""
+
+    @property
+    def quiet(self) -> bool:
+        """Whether it describes the hand alone."""
+        return self.pattern in QUIET
+
+    @property
+    def comes(self) -> bool:
+        """Whether the end-effector comes to the first object in it."""
+        return not self.goes_on and not self.possessed and not self.frees
+
+    @property
+    def frees(self) -> bool:
+        """Whether the end-effector leaves the first object in it."""
+        return self.pattern in MOMENTARY or self.pattern.startswith("take {ee}")
+
+    @property
+    def holds(self) -> bool:
+        """Whether the end-effector only stays at the first object in it."""
+        return self.goes_on and self.known and not (self.changes or self.purpose or self.quiet)
+
+    @property
+    def helps(self) -> bool:
+        """Whether it moves nothing and yet is a part of what was done."""
+        return self.pattern in HELPS
+
     @property
     def signature(self) -> tuple[object, ...]:
         """What makes two clauses say the same but for hands and times."""
-        return self.pattern, self.objects, self.purpose, self.count, self.often
+        return self.pattern, self.objects, self.purpose, self.count, self.often, self.pauses
 
     def overlap_s(self, other: "Clause") -> float:
         """For how long both go on [s]."""
@@ -54,26 +101,18 @@ def in_time(clause: Clause) -> tuple[float, float, tuple[str, ...]]:
 
 
 def clauses(
-    observation: Observation,
-    link: ObservedLink,
-    book: Phrasebook,
-    scene: Scene,
-    *,
-    only_changes: bool = False,
+    observation: Observation, link: ObservedLink, book: Phrasebook, scene: Scene
 ) -> tuple[Clause, ...]:
-    """What one link did, in order; free motion that touches nothing is left out.
-
-    With ``only_changes``, what changed nothing is left out too, unless nothing else happened.
-    """
+    """What one link did, in order; free motion that touches nothing is left out."""
     ipars = {(each.ee, each.start_s): each for each in observation.ipars}
-    told = _told_segments(link, book, only_changes=only_changes)
     names = {each.name for each in observation.segments}
+    carried = scene.carried_on(link)
     found: list[tuple[Segment, Clause]] = []
     held = False
     before: Segment | None = None
     for segment in link.segments:
         held = segment.possessed or (held and _same_dominant(before, segment))
-        if segment.index in told:
+        if segment.objects and segment.index not in carried:
             last = found[-1][0] if found else None
             ipar = ipars.get((segment.ee, segment.start_s))
             cases = _cases(segment, last, scene, ipar, held=held)
@@ -83,33 +122,35 @@ def clauses(
                 clause = replace(clause, pattern=named)
             found.append((segment, clause))
         before = segment
+    found = [
+        (segment, _to_the_mouth(clause, later))
+        for (segment, clause), later in zip_longest(found, (clause for _, clause in found[1:]))
+    ]
     return _with_purposes(found, names)
 
 
-def _told_segments(link: ObservedLink, book: Phrasebook, *, only_changes: bool) -> set[int]:
-    touching = [each for each in link.segments if each.objects]
-    if not only_changes:
-        return {each.index for each in touching}
-    changing = [each for each in touching if not each.known or _changes(each, book)]
-    manual = [each for each in touching if not _quiet(each, book)] or touching
-    chosen = changing or [each for each in manual if _alike(each, manual[0])]
-    return {each.index for each in chosen}
+def _to_the_mouth(clause: Clause, later: Clause | None) -> Clause:
+    """The clause, with the mouth for the head to which a thing is brought that is drunk from."""
+    drinks = later is not None and later.pattern.split()[0] == "drink"
+    if not drinks or clause.objects[1:2] != ("head",) or "{2}" not in clause.pattern:
+        return clause
+    return replace(clause, pattern=clause.pattern.replace("{2}", "the mouth"))
 
 
-def _quiet(segment: Segment, book: Phrasebook) -> bool:
-    """Whether it describes the hand alone."""
-    return book.pattern(segment.name, segment.general, (), 1) in QUIET
+def main_things(told: Sequence[Clause]) -> tuple[Clause, ...]:
+    """Of clauses that change nothing, those that say what the first did that is of a thing."""
+    manual = [each for each in told if not each.quiet] or list(told)
+    return tuple(each for each in manual if _alike(each, manual[0]))
 
 
-def _alike(one: Segment, other: Segment) -> bool:
+def _alike(one: Clause, other: Clause) -> bool:
     """Whether the same is done to the same things."""
     return (one.name, one.objects) == (other.name, other.objects)
 
 
-def _changes(segment: Segment, book: Phrasebook) -> bool:
+def _changes(segment: Segment, pattern: str) -> bool:
     """Whether it moves or strikes something; coming and going do not, whatever moves meanwhile."""
-    moves = "1" in segment.features.change_loc + segment.features.force
-    return moves and not _quiet(segment, book)
+    return "1" in segment.features.change_loc + segment.features.force and pattern not in QUIET
 
 
 def _same_dominant(before: Segment | None, segment: Segment) -> bool:
@@ -121,6 +162,10 @@ def _cases(
 ) -> set[str]:
     motion = ipar.core.motion if ipar else Motion.NONE
     cases = {"held"} if held else set()
+    if _stays(segment) and held and scene.runs_over(segment):
+        cases = {"running"}
+    elif _stays(segment) and scene.steadies(segment):
+        cases.add("steadies")
     if motion in {Motion.ROTATION, Motion.BOTH}:
         cases.add("tilts" if motion is Motion.BOTH else "turns")
     if len(segment.objects) < 2:
@@ -132,11 +177,20 @@ def _cases(
         cases.add("there")
     if scene.is_self(other):
         cases.add("self")
+    if scene.rises(segment):
+        cases.add("rises")
     if scene.rests_on(thing, other) and _stands_on(segment, thing, other):
         cases.add("on")
     if scene.was_there(segment, thing, other):
         cases.add("back")
     return cases
+
+
+def _stays(segment: Segment) -> bool:
+    """Whether the end-effector only stays at what it touches."""
+    features = segment.features
+    touches = features.rel_start.startswith("1") and features.rel_start == features.rel_end
+    return touches and not features.change_loc.startswith("1") and "1" not in features.force
 
 
 def _stands_on(segment: Segment, thing: str, other: str) -> bool:
@@ -166,13 +220,19 @@ def _clause(
         places = [f"{{{len(objects) + number}}}" for number in range(1, len(loads) + 1)]
         pattern = pattern.replace("{1}", f"{{1}} with {joined(places)}")
         objects = (*objects, *loads)
+    usual = book.pattern(segment.name, segment.general, (), 1)
     return Clause(
         pattern=pattern,
         objects=objects,
         ees=(segment.ee,),
         start_s=segment.start_s,
-        end_s=segment.end_s,
-        changes=_changes(segment, book),
+        end_s=segment.start_s if pattern in MOMENTARY else segment.end_s,
+        changes=_changes(segment, usual) and pattern not in HELPS,
+        name=segment.name,
+        general=segment.general,
+        goes_on=segment.features.rel_start == segment.features.rel_end,
+        possessed=segment.possessed,
+        rights=any(each.kind == "rights" for each in segment.ends),
     )
 
 

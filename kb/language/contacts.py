@@ -4,11 +4,25 @@ This is wording only. It chooses among ways to say an action that the rules have
 down", "put it back"), reads measured contacts alone, and names, splits or drops no segment.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
-from capar.model.facts import Link, Moving, OfAgent, Touching
-from capar.model.observation import Observation, Segment
+import numpy as np
+
+from capar.model.facts import Flies, Link, Moving, OfAgent, Swings, Touching
+from capar.model.observation import Observation, ObservedLink, Segment
 from kb.lexicon.english import the_agent
+
+STILL_M = 0.02
+"""What goes less far than this [m] stays where it is."""
+
+RUNNING_MPS = 0.15
+"""A hand that goes faster than this [m/s] over a thing that stays does not hold it."""
+
+RISEN_M = 0.1
+"""What is so far [m] above where it was has been lifted."""
+
+STEADY_S = 0.5
+"""A hand that stays at a thing for so long [s] while another works in it steadies it."""
 
 
 class Scene:
@@ -21,10 +35,97 @@ class Scene:
         self._hands = [each for each in touching if each.body in effectors]
         self._pairs = [each for each in touching if each.body not in effectors]
         self._moving = [fact for fact in observation.facts if isinstance(fact, Moving)]
+        flights = [(each.object, each) for each in observation.facts if isinstance(each, Flies)]
+        swings = [(each.body, each) for each in observation.facts if isinstance(each, Swings)]
+        self._by_itself: list[tuple[str, Flies | Swings]] = [*flights, *swings]
         self._tags = {thing.name: thing.tag for thing in observation.objects}
         owners = [fact for fact in observation.facts if isinstance(fact, OfAgent)]
         self._owners = {each.body: each.agent for each in owners}
         self._kinds = {each.name: each.kind for each in (observation.agent, *observation.others)}
+        self._tracks = {each.body: each for each in observation.tracks}
+        self._worked_in = [
+            each
+            for each in observation.segments
+            if each.possessed and len(each.objects) > 1 and _works_in(each)
+        ]
+
+    def way_m(self, body: str, start_s: float, end_s: float) -> float | None:
+        """How far a body is at the end from where it was [m]; None where that was not kept."""
+        places = self._places(body, start_s, end_s)
+        if places is None:
+            return None
+        return float(np.linalg.norm(places[-1] - places[0]))
+
+    def rises(self, segment: Segment) -> bool:
+        """Whether the object is clearly higher when a segment ends."""
+        places = self._places(segment.objects[0], segment.start_s, segment.end_s)
+        return places is not None and float(places[-1, 2] - places[0, 2]) > RISEN_M
+
+    def runs_over(self, segment: Segment) -> bool:
+        """Whether the hand goes over the object, which stays: a hand that holds does not."""
+        hand = self._places(segment.ee, segment.start_s, segment.end_s)
+        thing = self._places(segment.objects[0], segment.start_s, segment.end_s)
+        if hand is None or thing is None or len(hand) < 2 or segment.end_s <= segment.start_s:
+            return False
+        path = float(np.linalg.norm(np.diff(hand, axis=0), axis=1).sum())
+        spread = float(np.linalg.norm(thing - thing[0], axis=1).max())
+        return spread < STILL_M and path / (segment.end_s - segment.start_s) > RUNNING_MPS
+
+    def steadies(self, segment: Segment) -> bool:
+        """Whether the hand stays at a thing in which another hand works."""
+        return any(
+            each.ee != segment.ee
+            and each.objects[1] == segment.objects[0]
+            and min(each.end_s, segment.end_s) - max(each.start_s, segment.start_s) >= STEADY_S
+            for each in self._worked_in
+        )
+
+    def carried_on(self, link: ObservedLink) -> frozenset[int]:
+        """Segments in which contact was lost with what the hand went on carrying.
+
+        That is where it moves on, between two segments in which the hand possesses it, while
+        nothing else touches it, and neither falls freely nor swings.
+        """
+        out: set[int] = set()
+        lost: list[Segment] = []
+        before: Segment | None = None
+        for segment in link.segments:
+            if segment.possessed:
+                if before is not None and self._never_left(before, lost, segment):
+                    out |= {each.index for each in lost}
+                before, lost = segment, []
+            else:
+                lost.append(segment)
+        return frozenset(out)
+
+    def _never_left(self, before: Segment, lost: Sequence[Segment], after: Segment) -> bool:
+        thing = before.objects[:1]
+        if not lost or after.objects[:1] != thing:
+            return False
+        first, last = lost[0].first, lost[-1].last
+        moves = all(
+            each.objects[:1] == thing and each.features.change_loc.startswith("1") for each in lost
+        )
+        forced = any("1" in each.features.force for each in (before, *lost, after))
+        alone = [each for name, each in self._by_itself if name == thing[0]]
+        others = [each for each in self._hands if each.other == thing[0] and each.body != before.ee]
+        borne = any(each.first <= first < each.last for each in self._touched(thing[0]))
+        during = any(each.first < last and first < each.last for each in (*alone, *others))
+        return moves and not (forced or borne or during)
+
+    def _touched(self, thing: str) -> Iterable[Touching]:
+        """Contacts of a thing with what is no hand."""
+        return (each for each in self._pairs if thing in {each.body, each.other})
+
+    def _places(self, body: str, start_s: float, end_s: float) -> np.ndarray | None:
+        """Where a body was from one time to another [m]; None where that was not kept."""
+        track = self._tracks.get(body)
+        if track is None or track.step_s == 0.0:
+            return None
+        first, last = round(start_s / track.step_s), round(end_s / track.step_s)
+        places = track.positions[first : last + 1]
+        places = places[~np.isnan(places).any(axis=1)]
+        return places if len(places) else None
 
     def is_self(self, name: str) -> bool:
         """Whether an object is of the agent's own body."""
@@ -72,3 +173,10 @@ class Scene:
             if frame > contact.last:
                 return False
         return frame <= contact.last
+
+
+def _works_in(segment: Segment) -> bool:
+    """Whether what the hand has moves at the second object from beginning to end."""
+    features = segment.features
+    both = features.rel_start[:1] + features.rel_start[2:3]
+    return both == "11" and features.rel_start == features.rel_end and "1" in features.change_loc

@@ -1,34 +1,26 @@
 """What happened in an observation, in plain English, from its segments and PARs alone."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 from capar.model.capture import Agent
 from capar.model.observation import Observation, ObservedLink
-from kb.language.aggregation import edited
-from kb.language.clauses import Clause, clauses
+from kb.language.aggregation import edited, summed
+from kb.language.clauses import Clause, clauses, main_things
 from kb.language.contacts import Scene
 from kb.language.hands import spoken_links, told_in_order
 from kb.language.lexicalisation import FREE, Phrasebook
+from kb.language.planning import sentences
 from kb.language.realisation import Realiser
-from kb.language.repeating import counted, repetition
-from kb.lexicon.english import capital, the_agent, times
+from kb.language.repeating import as_segmented, deeds, whole
+from kb.lexicon.english import capital, the_agent
 from kb.lexicon.links import PrimitiveWords
 
 Detail = Literal["steps", "summary"]
 
-LONGEST = 6
-"""The most clauses of one sentence."""
-
-LONGEST_OF_TWO = 4
-"""The most clauses of each hand in a sentence about two."""
-
-ENOUGH_OF_ONE = 3
-"""After so many clauses, what is done with another thing begins another sentence."""
-
-OPENINGS = ("Then", "Next,", "After that,")
-"""How sentences after the first begin, in turn."""
+TO_THE_LETTER = "thesis"
+"""The profile of rules of which every segment is told as a step of its own."""
 
 
 def describe(
@@ -39,6 +31,9 @@ def describe(
     words: Sequence[PrimitiveWords] = (),
 ) -> str:
     """Say what was done; where several agents performed, by one after the other.
+
+    Segments of one motion are told as one deed, and scraps with what they belong to; what the
+    profile ``thesis`` found is told segment by segment.
 
     Args:
         observation: What was understood of a capture.
@@ -60,25 +55,25 @@ def _story(
 ) -> str:
     """What one agent did."""
     links = spoken_links(observation.links)
-    summary = detail == "summary"
-    told = [
-        counted(clauses(observation, link, book, scene, only_changes=summary)) for link in links
-    ]
-    if summary and any(each.changes for part in told for each in part):
-        told = [part if any(each.changes for each in part) else () for part in told]
+    told = [clauses(observation, link, book, scene) for link in links]
+    if observation.profile == TO_THE_LETTER:
+        told = [as_segmented(each) for each in told]
+    else:
+        told = [deeds(each, scene) for each in told]
+    if detail == "summary":
+        changes = any(each.changes for part in told for each in part)
+        told = [summed(part) if changes else _counted(main_things(part)) for part in told]
     steps = told_in_order(links, told)
     if not timed:
-        steps = edited(steps, summary=summary)
+        steps = edited(steps)
     subject = the_agent(observation.agent.name, observation.agent.kind)
-    realiser = Realiser(links, timed=timed)
+    realiser = Realiser(links, observation.objects, timed=timed)
     if not steps:
         return f"{capital(subject)} {realiser.idle(_moved_freely(links, book))}."
-    out: list[str] = []
-    for index, part in enumerate(parts := _sentences(steps)):
-        opening = _opening(index, parts[index - 1], part) if index else ""
-        sentence = f"{opening}{subject} {realiser.sentence(part.steps, part.often, part.end_s)}."
-        out.append(capital(sentence))
-    return " ".join(out)
+    return " ".join(
+        capital(f"{part.opening}{subject} {realiser.sentence(part.steps, part.often, part.end_s)}.")
+        for part in sentences(steps)
+    )
 
 
 def _of(observation: Observation, agent: Agent) -> Observation:
@@ -87,74 +82,19 @@ def _of(observation: Observation, agent: Agent) -> Observation:
     return replace(observation, agent=agent, links=own)
 
 
-def _moved_freely(links: Sequence[ObservedLink], book: Phrasebook) -> list[str]:
-    """The end-effectors that moved by themselves."""
-    return [
-        link.ee
+def _counted(alike: tuple[Clause, ...]) -> tuple[Clause, ...]:
+    """Clauses that say the same as one that says how often."""
+    return (whole(alike, count=len(alike)),) if alike else ()
+
+
+def _moved_freely(
+    links: Sequence[ObservedLink], book: Phrasebook
+) -> dict[str, tuple[float, float]]:
+    """The end-effectors that moved by themselves, each from when to when [s]."""
+    free = {
+        link.ee: [
+            each for each in link.segments if book.pattern(each.name, each.general, (), 0) == FREE
+        ]
         for link in links
-        if any(book.pattern(each.name, each.general, (), 0) == FREE for each in link.segments)
-    ]
-
-
-@dataclass(frozen=True)
-class _Part:
-    """The content of one sentence; what is repeated stands once, with how often and until when."""
-
-    steps: tuple[Clause, ...]
-    often: str = ""
-    end_s: float = 0.0
-
-
-def _opening(index: int, before: _Part, part: _Part) -> str:
-    recurs = before.often and _said(part) == _said(before)[: len(part.steps)]
-    return "Once more, " if recurs else f"{OPENINGS[(index - 1) % len(OPENINGS)]} "
-
-
-def _said(part: _Part) -> list[tuple[object, ...]]:
-    return [(each.signature, each.ees) for each in part.steps]
-
-
-def _sentences(steps: Sequence[Clause]) -> list[_Part]:
-    """Clauses by sentence."""
-    out: list[_Part] = []
-    current: list[Clause] = []
-    at = 0
-    while at < len(steps):
-        size, count = repetition(steps, at, longest=LONGEST)
-        if current and (count > 1 or _ends(current, steps[at])):
-            out.append(_Part(tuple(current)))
-            current = []
-        if count > 1:
-            end_s = steps[at + size * count - 1].end_s
-            out.append(_Part(tuple(steps[at : at + size]), times(count), end_s))
-            at += size * count
-        else:
-            current.append(steps[at])
-            at += 1
-    return [*out, _Part(tuple(current))] if current else out
-
-
-def _ends(current: Sequence[Clause], following: Clause) -> bool:
-    """Whether a sentence ends before a clause.
-
-    One hand's sentence ends when it is long, when the hand has let go, and when it turns to
-    another thing after enough was told of the first. What the other hand does at
-    the same time goes on in the same sentence; what it does later, or both do, in another.
-    """
-    own = [each for each in current if each.ees == following.ees]
-    other = [each for each in current if each.ees != following.ees]
-    if other and max(each.end_s for each in other) <= following.start_s:
-        return True
-    if any(set(each.ees) & set(following.ees) for each in other):
-        return True
-    if not other and own and (_frees(own[-1]) or _turns_away(own, following)):
-        return True
-    return len(own) >= (LONGEST_OF_TWO if other else LONGEST)
-
-
-def _turns_away(told: Sequence[Clause], following: Clause) -> bool:
-    return len(told) >= ENOUGH_OF_ONE and told[-1].objects[:1] != following.objects[:1]
-
-
-def _frees(clause: Clause) -> bool:
-    return clause.pattern.startswith(("let go", "take {ee}"))
+    }
+    return {ee: (own[0].start_s, own[-1].end_s) for ee, own in free.items() if own}

@@ -6,6 +6,7 @@ from difflib import SequenceMatcher
 
 from capar.model.observation import ObservedLink
 from kb.language.clauses import Clause, in_time
+from kb.language.repeating import REST_S
 from kb.lexicon.tables import table
 
 
@@ -58,13 +59,21 @@ def _together(
     for block in matcher.get_matching_blocks():
         for step in range(block.size):
             a, b = first[block.a + step], second[block.b + step]
-            if a.overlap_s(b) > 0.0:
+            if _at_once(a, b):
                 common.append(_both(a, b))
                 used_first.add(block.a + step)
                 used_second.add(block.b + step)
     left = [each for index, each in enumerate(first) if index not in used_first]
     right = [each for index, each in enumerate(second) if index not in used_second]
     return common, left, right
+
+
+def _at_once(first: Clause, second: Clause) -> bool:
+    """Whether both begin and end together, but for a time that people do not notice."""
+    begin = abs(first.start_s - second.start_s) < REST_S
+    end = abs(first.end_s - second.end_s) < REST_S
+    momentary = first.start_s == first.end_s and second.start_s == second.end_s
+    return begin and end and (momentary or first.overlap_s(second) > 0.0)
 
 
 def _both(first: Clause, second: Clause) -> Clause:

@@ -7,7 +7,10 @@ from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.tables import table
 
 Cases = Collection[str]
-"""What holds of a segment: held, there, tool, on, back, self, alone, turns, tilts."""
+"""What holds of a segment: held, there, tool, on, back, self, alone, turns, tilts, rises, steadies.
+
+``running``: the hand goes over a thing that stays.
+"""
 
 USUAL_PREPOSITION = "with"
 """Before the second object of a primitive whose rule file names none."""
@@ -17,6 +20,15 @@ JOINT = "|"
 
 QUIET = frozenset({"reach for {1}", "let go of {1}", "take {ee} away"})
 """Patterns that describe the hand alone: what moves meanwhile is not moved by what they say."""
+
+MOMENTARY = frozenset({"let go of {1}", "hand {1} over", "hand {1} to someone"})
+"""Patterns of what is done in a moment: the rest of the segment is the hand's way back."""
+
+TIPPED = frozenset({"pour from {1}", "pour from {1} into {2}"})
+"""Patterns of what goes on in a vessel that is held still, until the vessel is upright again."""
+
+HELPS = frozenset({"steady {1}"})
+"""Patterns of what moves nothing and yet is a part of what was done."""
 
 FREE = "move {ee}"
 """The pattern of what a hand does that is of no object."""

@@ -1,14 +1,15 @@
 """One sentence out of clauses: pronouns for what was just named, hands, times, "while"."""
 
 import re
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from capar.model.observation import ObservedLink
+from capar.model.observation import ObservedLink, ObservedObject
 from kb.language.clauses import Clause
 from kb.language.lexicalisation import in_past
 from kb.language.vocabulary import SIDES
-from kb.lexicon.english import joined, noun, the, times
+from kb.lexicon.english import joined, noun, number, the, times
 
 _ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
 """Places of several objects that a verb has as one."""
@@ -17,16 +18,21 @@ _ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
 class Realiser:
     """Says clauses; remembers the hand, and within a sentence what each hand has to do with."""
 
-    def __init__(self, links: Sequence[ObservedLink], *, timed: bool) -> None:
+    def __init__(
+        self, links: Sequence[ObservedLink], objects: Sequence[ObservedObject], *, timed: bool
+    ) -> None:
+        self._nouns = _nouns(objects)
         self._kinds = {link.ee: link.kind for link in links}
         self._names = {link.ee: _spoken(link) for link in links}
         self._timed = timed
+        self._spans = timed
         self._topic = ""
         self._several: tuple[str, ...] = ()
         self._ees: tuple[str, ...] = ()
 
     def sentence(self, steps: Sequence[Clause], often: str, until_s: float) -> str:
         """The clauses as the rest of a sentence whose subject is the agent."""
+        self._spans = self._timed and not often
         streams: dict[tuple[str, ...], list[Clause]] = {}
         for step in steps:
             streams.setdefault(step.ees, []).append(step)
@@ -36,19 +42,32 @@ class Realiser:
         text = self._of_agent(main)
         if others:
             comma = "," if len(steps) > 2 else ""
-            meanwhile = [self._of_hand(each, _shared_topic(main)) for each in others]
+            told, meanwhile = list(main), []
+            for stream in others:
+                meanwhile.append(self._of_hand(stream, _shared_topic(told)))
+                told += stream
             text = f"{text}{comma} while {joined(meanwhile)}"
-        if often and self._timed:
-            text = f"{text} (the last until {until_s:.2f} s)"
-        return f"{text}, {often} in all" if often else text
+        if not often:
+            return text
+        span = f" ({steps[0].start_s:.2f}–{until_s:.2f} s)" if self._timed else ""
+        return f"{text}, {often} in all{span}"
 
-    def idle(self, ees: Sequence[str]) -> str:
-        """That nothing was touched, and what was moved, as the rest of a sentence."""
+    def idle(self, moved: Mapping[str, tuple[float, float]]) -> str:
+        """That nothing was touched, and what was moved, as the rest of a sentence.
+
+        Args:
+            moved: From when to when each end-effector moved [s].
+        """
         kinds: dict[str, list[str]] = {}
-        for ee in ees:
+        for ee in moved:
             kinds.setdefault(self._kinds[ee], []).append(ee)
-        moved = joined([self._hands(tuple(each)) for each in kinds.values()])
-        return f"moved {moved} and touched nothing" if moved else "touched nothing"
+        parts = []
+        for ees in kinds.values():
+            start_s = min(moved[ee][0] for ee in ees)
+            end_s = max(moved[ee][1] for ee in ees)
+            span = f" ({start_s:.2f}–{end_s:.2f} s)" if self._timed else ""
+            parts.append(f"{self._hands(tuple(ees))}{span}")
+        return f"moved {joined(parts)} and touched nothing" if parts else "touched nothing"
 
     def _of_agent(self, steps: Sequence[Clause]) -> str:
         parts = []
@@ -86,8 +105,15 @@ class Realiser:
     def _end(self, step: Clause) -> str:
         often = f" {times(step.count)}" if step.count > 1 else ""
         often = f" {step.often}" if step.often else often
+        if step.pauses:
+            pauses = "a pause" if step.pauses == 1 else f"{number(step.pauses)} pauses"
+            often += f"{',' if ' with {' in step.pattern else ''} with {pauses}"
         purpose = f"{often} to {_with_it(step.purpose)}" if step.purpose else often
-        return f"{purpose} ({step.start_s:.2f}–{step.end_s:.2f} s)" if self._timed else purpose
+        if not self._spans:
+            return purpose
+        if step.start_s == step.end_s:
+            return f"{purpose} ({step.start_s:.2f} s)"
+        return f"{purpose} ({step.start_s:.2f}–{step.end_s:.2f} s)"
 
     def _verb_phrase(self, step: Clause) -> str:
         pattern = in_past(step.pattern)
@@ -99,14 +125,14 @@ class Realiser:
             pattern = _ALL_PLACES.sub("them", pattern)
         self._several = step.objects if _ALL_PLACES.search(pattern) else ()
         filled = pattern.replace("{ee}", self._moved_away(step))
-        for number, name in enumerate(step.objects, 1):
-            filled = filled.replace(f"{{{number}}}", self._mention(name, number))
+        for place, name in enumerate(step.objects, 1):
+            filled = filled.replace(f"{{{place}}}", self._mention(name, place))
         named = "{1}" in step.pattern or step.objects[:1] == (self._topic,)
         self._topic = step.objects[0] if named and not self._several else ""
         return filled
 
-    def _mention(self, name: str, number: int) -> str:
-        return "it" if number == 1 and name == self._topic else the(name)
+    def _mention(self, name: str, place: int) -> str:
+        return "it" if place == 1 and name == self._topic else the(self._nouns.get(name, name))
 
     def _moved_away(self, step: Clause) -> str:
         if step.ees == self._ees and len(step.ees) == 1:
@@ -118,6 +144,16 @@ class Realiser:
             kind = self._kinds[ees[0]]
             return f"both {'feet' if kind == 'foot' else kind + 's'}"
         return f"the {self._names[ees[0]]}"
+
+
+def _nouns(objects: Sequence[ObservedObject]) -> dict[str, str]:
+    """Objects by what they are called, where that is their kind.
+
+    So it is where a capture says of one object alone that it is a ``large_table``, whatever short
+    name it has there.
+    """
+    kinds = Counter(each.kind for each in objects)
+    return {each.name: each.kind for each in objects if "_" in each.kind and kinds[each.kind] == 1}
 
 
 def _shared_topic(steps: Sequence[Clause]) -> str:

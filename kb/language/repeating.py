@@ -1,25 +1,223 @@
-"""What recurs among clauses: how often it was done, with which pauses, in which blocks."""
+"""Clauses of segments as deeds: what adjoins is one deed, scraps go with it, and pauses count."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from itertools import groupby, pairwise
+from itertools import accumulate, groupby
 
 from kb.language.clauses import Clause
-from kb.lexicon.english import times
+from kb.language.contacts import Scene
+from kb.language.lexicalisation import TIPPED
+
+REST_S = 0.4
+"""A rest of so long [s] parts what is done; a shorter one is not noticed."""
+
+SCRAP_S = 0.5
+"""What takes less than this [s] within a grip, and goes not far, is no deed of its own."""
+
+UNSEEN_S = 0.2
+"""What takes less than this [s] is no deed wherever it goes."""
+
+SCRAP_M = 0.1
+"""So far [m] a scrap goes at most: about a hand's width."""
 
 
-def counted(told: Iterable[Clause]) -> tuple[Clause, ...]:
-    """The clauses, with those that say the same on end as one that says how often."""
-    runs = (list(same) for _, same in groupby(told, key=lambda each: each.signature))
-    return tuple(whole(run, count=_times(run)) for run in runs)
+def deeds(told: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
+    """The clauses of one hand, with segments of one deed as one clause."""
+    joined = _resumed(leading_up(_specialised(_resumed(told))))
+    found = _resumed(leading_up(_reached(_without_scraps(joined, scene))))
+    return _gripped(_steadied(found))
 
 
-def _times(run: Sequence[Clause]) -> int:
-    """How often it was done: what goes on and changes nothing was done once."""
-    goes_on = [
-        not later.changes and later.start_s <= earlier.end_s for earlier, later in pairwise(run)
-    ]
-    return len(run) - sum(goes_on)
+def as_segmented(told: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses, each segment by itself but those that say the same on end."""
+    return _gripped(_resumed(told, over_pauses=False))
+
+
+def _gripped(told: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses, each with how often the hand had come to a thing by then."""
+    comes = [clause.comes or (at > 0 and told[at - 1].frees) for at, clause in enumerate(told)]
+    return tuple(replace(each, grip=at) for each, at in zip(told, accumulate(comes), strict=True))
+
+
+def _steadied(told: Sequence[Clause]) -> list[Clause]:
+    """The clauses, with a hand that stays at a thing and then steadies it as steadying it."""
+    out: list[Clause] = []
+    for clause in told:
+        last = out[-1] if out else None
+        held = last is not None and last.pattern.startswith("hold {1}")
+        if last is not None and held and clause.helps and last.objects[:1] == clause.objects[:1]:
+            out[-1] = replace(clause, start_s=last.start_s)
+        else:
+            out.append(clause)
+    return out
+
+
+def _resumed(told: Sequence[Clause], *, over_pauses: bool = True) -> list[Clause]:
+    """The clauses, with each deed that goes on, at once or after pauses in the grip, as one."""
+    out: list[Clause] = []
+    at = 0
+    while at < len(told):
+        deed = told[at]
+        at += 1
+        while at < len(told):
+            pause: tuple[Clause, ...] = ()
+            if over_pauses and deed.changes and _pauses(deed, told[at]) and at + 1 < len(told):
+                pause = (told[at],)
+            following = told[at + len(pause)]
+            if not _same(deed, following):
+                break
+            deed = _continued(deed, pause, following)
+            at += len(pause) + 1
+        out.append(deed)
+    return out
+
+
+def _same(deed: Clause, following: Clause) -> bool:
+    """Whether a clause says what another said, or less of it."""
+    if following.pattern == deed.pattern and following.purpose == deed.purpose:
+        return _named(deed) == _named(following)
+    less = more_of(deed, following) and deed.pattern in TIPPED
+    return less and not following.purpose
+
+
+def _named(clause: Clause) -> tuple[str, ...]:
+    """The objects that the clause names."""
+    every = enumerate(clause.objects, 1)
+    return tuple(name for place, name in every if place == 1 or f"{{{place}}}" in clause.pattern)
+
+
+def _continued(deed: Clause, pause: Sequence[Clause], following: Clause) -> Clause:
+    """A deed with what follows as one; what ends otherwise than it began was done once more.
+
+    So was what is poured after the vessel was upright; while it is held tipped, it is poured from.
+    """
+    tipped = deed.pattern in TIPPED
+    noticed = 0 if tipped else sum(each.end_s - each.start_s >= REST_S for each in pause)
+    anew = deed.rights if tipped else deed.changes and not deed.goes_on
+    again = following.count if anew else 0
+    return replace(
+        deed,
+        end_s=following.end_s,
+        pauses=deed.pauses + noticed + following.pauses,
+        count=deed.count + again,
+        rights=following.rights,
+    )
+
+
+def _pauses(deed: Clause, clause: Clause) -> bool:
+    """Whether the hand only stays at the thing, which stays in the grip."""
+    return clause.possessed and clause.holds and clause.objects[:1] == deed.objects[:1]
+
+
+def more_of(clause: Clause, other: Clause) -> bool:
+    """Whether it says what the other says, and where to."""
+    longer = clause.pattern.startswith(f"{other.pattern} ")
+    return longer and clause.objects[:1] == other.objects[:1] and not other.purpose
+
+
+def leading_up(told: Sequence[Clause]) -> list[Clause]:
+    """The clauses, without one that the next says more of: ``move it``, ``move it to the bowl``."""
+    out: list[Clause] = []
+    for clause in told:
+        same = bool(out) and more_of(clause, out[-1]) and out[-1].count == 1
+        out.append(replace(clause, start_s=out.pop().start_s) if same else clause)
+    return out
+
+
+def _specialised(told: Sequence[Clause]) -> list[Clause]:
+    """The clauses, without one that says the end of the last in a more general word.
+
+    Who lifts a thing off a table raises it on: ``lifted it``. The most general words, which
+    specialise nothing, say something else.
+    """
+    out: list[Clause] = []
+    for clause in told:
+        last = out[-1] if out else None
+        if last is not None and _goes_on_with(last, clause):
+            out[-1] = replace(last, end_s=clause.end_s, rights=clause.rights)
+        else:
+            out.append(clause)
+    return out
+
+
+def _goes_on_with(last: Clause, clause: Clause) -> bool:
+    more = last.general[:1] == (clause.name,) and bool(clause.general)
+    same = last.objects == clause.objects and clause.changes and not clause.purpose
+    return more and same and last.count == clause.count == 1
+
+
+def _without_scraps(told: Sequence[Clause], scene: Scene) -> list[Clause]:
+    """The clauses, with each scrap of a motion in what it belongs to, and no short hold."""
+    waiting = [each for at, each in enumerate(told) if not _short_hold(told, at)]
+    out: list[Clause] = []
+    while waiting:
+        clause = waiting.pop(0)
+        following = waiting[0] if waiting else None
+        if not _scrap(clause, following, scene):
+            out.append(clause)
+        elif following is not None and _takes_up(clause, following):
+            waiting[0] = replace(following, start_s=clause.start_s)
+        elif out and out[-1].changes and _one_grip(out[-1], clause):
+            out[-1] = replace(out[-1], end_s=clause.end_s, rights=clause.rights)
+        else:
+            out.append(clause)
+    return out
+
+
+def _short_hold(told: Sequence[Clause], at: int) -> bool:
+    """Whether it holds for a moment what it moves before or afterwards."""
+    clause = told[at]
+    if clause.end_s - clause.start_s >= SCRAP_S or not _pauses(clause, clause):
+        return False
+    beside = [*told[max(at - 1, 0) : at], *told[at + 1 : at + 2]]
+    return any(each.changes and _one_grip(each, clause) for each in beside)
+
+
+def _scrap(clause: Clause, following: Clause | None, scene: Scene) -> bool:
+    """Whether it is a short motion in the grip that goes hardly anywhere, or with the next."""
+    if not (clause.changes and clause.possessed and clause.goes_on and clause.known):
+        return False
+    moved = clause.pattern.split()[1:2] == ["{1}"]
+    if clause.purpose or clause.end_s - clause.start_s >= SCRAP_S or not moved:
+        return False
+    if following is not None and _takes_up(clause, following):
+        unseen = clause.end_s - clause.start_s < UNSEEN_S
+        if unseen or not following.goes_on:
+            return True
+    way = scene.way_m(clause.objects[0], clause.start_s, clause.end_s)
+    return way is not None and way < SCRAP_M
+
+
+def _takes_up(scrap: Clause, following: Clause) -> bool:
+    """Whether a motion goes on with what a scrap began; working at a place does not."""
+    works = following.goes_on and len(following.objects) > 1
+    return following.changes and not works and _one_grip(scrap, following)
+
+
+def _one_grip(one: Clause, other: Clause) -> bool:
+    """Whether both are of one thing in the hand, with no noticed time between them."""
+    near = max(one.start_s, other.start_s) - min(one.end_s, other.end_s) < SCRAP_S
+    return near and one.possessed and other.possessed and one.objects[:1] == other.objects[:1]
+
+
+def _reached(told: Sequence[Clause]) -> list[Clause]:
+    """The clauses, with a hand that is taken from one thing straight to another as reaching."""
+    out: list[Clause] = []
+    for clause in told:
+        short = clause.end_s - clause.start_s < SCRAP_S
+        last = out[-1] if out else None
+        if (
+            last is not None
+            and short
+            and clause.pattern == "reach for {1}"
+            and last.pattern == "take {ee} away"
+            and last.objects != clause.objects
+            and last.end_s == clause.start_s
+        ):
+            out[-1] = replace(clause, start_s=last.start_s)
+        else:
+            out.append(clause)
+    return out
 
 
 def whole(run: Sequence[Clause], *, count: int = 1, pattern: str = "") -> Clause:
@@ -27,36 +225,17 @@ def whole(run: Sequence[Clause], *, count: int = 1, pattern: str = "") -> Clause
     return replace(
         run[0],
         pattern=pattern or run[0].pattern,
-        end_s=run[-1].end_s,
+        start_s=min(each.start_s for each in run),
+        end_s=max(each.end_s for each in run),
         changes=any(each.changes for each in run),
         count=count,
+        pauses=0,
     )
 
 
-def with_pauses(told: Sequence[Clause]) -> list[Clause]:
-    """The clauses, with a deed that was only paused as one that says how often it was done."""
-    out: list[Clause] = []
-    at = 0
-    while at < len(told):
-        end = at
-        while told[at].changes and _resumed(told[at], told[end + 1 : end + 3]):
-            end += 2
-        run = told[at : end + 1]
-        count = sum(each.count for each in run[::2])
-        pauses = "with a pause" if len(run) == 3 else "with pauses"
-        paused = replace(whole(run), often=f"{times(count)} {pauses}")
-        out.append(paused if len(run) > 1 else told[at])
-        at = end + 1
-    return out
-
-
-def _resumed(deed: Clause, following: Sequence[Clause]) -> bool:
-    """Whether what follows is a pause with the thing in the hand, and then the deed again."""
-    if len(following) < 2:
-        return False
-    pause, resumed = following
-    held = pause.pattern.startswith("hold ") and pause.objects[:1] == deed.objects[:1]
-    return held and replace(resumed, count=1).signature == replace(deed, count=1).signature
+def grips(told: Sequence[Clause]) -> list[list[Clause]]:
+    """The clauses of one hand, cut where it comes to a thing or leaves it."""
+    return [list(part) for _, part in groupby(told, key=lambda each: each.grip)]
 
 
 def repetition(steps: Sequence[Clause], at: int, *, longest: int) -> tuple[int, int]:

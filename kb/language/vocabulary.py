@@ -86,8 +86,14 @@ class Vocabulary:
 
     @cached_property
     def nouns(self) -> Mapping[tuple[str, ...], str] | None:
-        """Objects by the words that name them; None where any noun will do."""
-        return None if self.objects is None else _spoken(self.objects)
+        """Objects by the words that name them; None where any noun will do.
+
+        A part of the body that is no object stands for the whole: the mouth for the head.
+        """
+        if self.objects is None:
+            return None
+        rows = [row for row in table("body_parts") if row["whole"] in self.objects]
+        return {**{(row["part"],): row["whole"] for row in rows}, **_spoken(self.objects)}
 
     @cached_property
     def limbs(self) -> Mapping[tuple[str, ...], str]:

@@ -49,7 +49,12 @@ def _window(cursor: Cursor, found: Adjuncts) -> bool:
 
 def _window_at(cursor: Cursor) -> Window | None:
     if cursor.accept("("):
+        start = cursor.at
         span = _span(cursor, "–", "-")
+        if span is None:
+            cursor.at = start
+            moment = _seconds(cursor)
+            span = None if moment is None else (moment, moment)
         return span if span and cursor.accept(")") else None
     if cursor.accept("between"):
         return _span(cursor, "and")

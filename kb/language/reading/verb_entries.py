@@ -126,6 +126,7 @@ def _belonging(pending: list[str]) -> set[str]:
         "away",
         "freely",
         "about",
+        "around",
     }
     return {word for word in pending if word not in ignored and word not in {"to", "hands"}}
 

@@ -94,7 +94,7 @@ def _stands_alone(reader: Reader, phrase: VerbPhrase) -> bool:
 
 
 def _share(reader: Reader, phrase: VerbPhrase) -> None:
-    """Take over the object of the verbs that follow: ``lifted, turned, and lowered it``."""
+    """Take over the object and the hand of the verbs that follow: ``turned and lowered it``."""
     cursor = reader.cursor
     start, known = cursor.at, (reader.thing, reader.several)
     if any([cursor.accept(","), cursor.accept("and"), cursor.accept("then")]):
@@ -102,6 +102,7 @@ def _share(reader: Reader, phrase: VerbPhrase) -> None:
         if following is not None:
             complete(reader, following)
             phrase.objects += following.objects[:1]
+            phrase.places += [(word, noun) for word, noun in following.places if noun.limb]
             phrase.adjuncts.count = phrase.adjuncts.count or following.adjuncts.count
     cursor.at = start
     reader.thing, reader.several = known

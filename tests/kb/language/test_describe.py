@@ -1,7 +1,10 @@
 """Descriptions read as a person would write them: golden texts, each read by us."""
 
+import re
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import groupby
 from typing import Literal
 
 import pytest
@@ -26,8 +29,10 @@ from motions import (
 from observations import MUG, RATE_HZ, TABLE, Piece, observation, with_unknown
 from observations import drink_from_mug as observed_drinking
 from observations import pick_up_with_both_hands as observed_picking_up
+from tellings import steps_of
 
 from capar.model.facts import Moving, Touching
+from capar.model.observation import Border
 from capar.model.par import FeatureSet
 from capar.pipelines.observation import observe
 from kb.language.describe import describe
@@ -36,10 +41,10 @@ from kb.lexicon.links import PrimitiveWords
 
 ACTIONS = {
     drink_from_mug: (
-        "reached for the mug with the right hand, moved it to the head, drank, put it back on the "
-        "table, held it there, and let go.",
-        "reached for the mug with the right hand, moved it to the head, drank, put it back on the "
-        "table, held it there, and let go.",
+        "reached for the mug with the right hand, lifted it to the mouth, drank, put it back on "
+        "the table, held it there, and let go.",
+        "reached for the mug with the right hand, lifted it to the mouth, drank, put it back on "
+        "the table, and let go.",
     ),
     touch_from_rest: ("reached for the box with the right hand and touched it.",) * 2,
     touch_cycle: ("reached for the box with the right hand, touched it, and took the hand away.",)
@@ -51,8 +56,8 @@ ACTIONS = {
     pick_up_with_both_hands: (
         "reached for the box with both hands, held it on the table, moved it about, held it there, "
         "and let go.",
-        "reached for the box with both hands, held it, lifted it, lowered it back onto the table, "
-        "held it there, and let go.",
+        "reached for the box with both hands, lifted it, lowered it back onto the table, and let "
+        "go.",
     ),
     hit: ("hit the drum with the right hand and took the hand away.",) * 2,
     move_obj: (
@@ -61,7 +66,7 @@ ACTIONS = {
     ),
     move_obj_to: (
         "moved the stamp to the table with the right hand and held it there.",
-        "lowered the stamp with the right hand and held it there.",
+        "lowered the stamp with the right hand.",
     ),
     resume_posture: (
         "took the right hand away.",
@@ -108,6 +113,61 @@ def test_times_stand_behind_the_steps() -> None:
         "The agent moved the mug to the mouth with the right hand (1.72–2.38 s), drank "
         "(2.38–2.56 s), and put it back on the table (2.56–3.02 s)."
     )
+
+
+def test_letting_go_is_a_moment() -> None:
+    assert re.search(r"let go \(\d\.\d\d s\)\.$", describe(observed_drinking(), timed=True))
+
+
+BOWL, BOTTLE = replace(MUG, name="bowl", kind="bowl"), replace(MUG, name="bottle", kind="bottle")
+WORKS = FeatureSet("101", "101", "10", "hand", "00")
+
+
+@pytest.mark.parametrize(("righted", "often"), [(False, ""), (True, " twice")])
+def test_what_is_held_tipped_is_poured_from_all_the_time(righted: bool, often: str) -> None:
+    pair = ("bottle", "bowl")
+    pieces = (
+        Piece("Reach", 50, ("bottle",)),
+        Piece("MoveObjTo", 150, pair),
+        Piece("Pour", 250, pair, features=WORKS),
+        Piece("TouchWith", 400, pair),
+        Piece("Pour", 450, pair, features=WORKS),
+    )
+    made = observation("Pouring", {"right_hand": pieces}, (BOWL, BOTTLE), frames=451, rate_hz=100.0)
+    (link,) = made.links
+    upright = (Border("rights", "bottle", "bottle"),)
+    segments = tuple(
+        replace(each, possessed=each.index > 0, ends=upright if righted else each.ends)
+        for each in link.segments
+    )
+    told = describe(replace(made, links=(replace(link, segments=segments),)))
+    assert told == (
+        "The agent reached for the bottle with the right hand, moved it to the bowl, and poured "
+        f"from it into the bowl{often}."
+    )
+
+
+def test_a_hand_that_stays_at_what_the_other_works_in_steadies_it() -> None:
+    links = {
+        "right_hand": (
+            Piece("Reach", 50, ("mug",)),
+            Piece("MoveObjTo", 150, ("mug", "bowl")),
+            Piece("Stir", 400, ("mug", "bowl"), features=WORKS),
+        ),
+        "left_hand": (Piece("Reach", 60, ("bowl",)), Piece("Touch", 400, ("bowl",))),
+    }
+    made = observation("Stirring", links, (MUG, BOWL), frames=401, rate_hz=100.0)
+    right, left = made.links
+    segments = tuple(replace(each, possessed=each.index > 0) for each in right.segments)
+    told = describe(replace(made, links=(replace(right, segments=segments), left)))
+    assert told.endswith("while the left hand reached for the bowl and steadied it.")
+
+
+def test_a_thing_is_called_by_the_words_of_its_kind() -> None:
+    table = replace(MUG, name="largetable", kind="large_table")
+    pieces = {"right_hand": (Piece("Reach", 50, ("largetable",)),)}
+    seen = observation("Table", pieces, (table,), frames=51, rate_hz=100.0)
+    assert describe(seen) == "The agent reached for the large table with the right hand."
 
 
 def test_two_hands_that_do_the_same_are_told_once() -> None:
@@ -221,22 +281,29 @@ def test_what_is_done_again_is_said_to_be() -> None:
     assert _handled("Raise", "Lower", "Raise") == ", raised it, lowered it, and raised it again."
 
 
-def test_a_deed_that_was_only_paused_is_counted() -> None:
-    assert _handled("Shake", "Touch", "Shake") == " and shook it twice with a pause."
+def test_a_deed_that_was_only_paused_is_one_with_its_pauses() -> None:
+    assert _handled("Shake", "Touch", "Shake") == " and shook it with a pause."
     paused = _handled("Shake", "Touch", "Shake", "Touch", "Shake")
-    assert paused == " and shook it three times with pauses."
+    assert paused == " and shook it with two pauses."
 
 
-def test_a_block_that_recurs_is_counted_only_where_its_verbs_are_not() -> None:
+def test_a_motion_that_goes_on_is_one_deed_however_many_segments_it_has() -> None:
+    assert _handled("Shake", "Shake", "Shake") == " and shook it."
+    assert _handled("Shake", "Shake", detail="summary") == (
+        "The agent shook the mug with the right hand."
+    )
+
+
+def test_a_block_that_recurs_is_counted() -> None:
     assert _handled("Tilt", "Lower", "Tilt", "Lower") == " and tilted and lowered it twice."
     told = _handled("Tilt", "Tilt", "Lower", "Tilt", "Tilt", "Lower")
-    assert told == ", tilted it twice, lowered it, tilted it twice, and lowered it again."
+    assert told == " and tilted and lowered it twice."
 
 
-def test_a_summary_of_much_handling_names_each_verb_once() -> None:
+def test_a_summary_of_much_handling_counts_each_verb_by_itself() -> None:
     told = _handled("Raise", "Lower", "Raise", "Tilt", "Raise", "Lower", detail="summary")
     assert told == (
-        "The agent raised, lowered, and tilted the mug with the right hand again and again."
+        "The agent raised the mug with the right hand three times, lowered it twice, and tilted it."
     )
 
 
@@ -245,6 +312,15 @@ def test_no_verb_is_left_untold(names: list[str]) -> None:
     told = _handled(*names) + _handled(*names, detail="summary")
     for name in names:
         assert past(name.lower()) in told
+
+
+@given(st.lists(st.sampled_from(MANY), min_size=1, max_size=12))
+def test_what_is_counted_is_how_often_it_was_done_anew(names: list[str]) -> None:
+    anew = Counter(name for name, _ in groupby(names))
+    told = Counter[str]()
+    for step in steps_of(_handled(*names, detail="summary")):
+        told[step.call.action] += max(step.circumstances.count, 1)
+    assert told == anew
 
 
 def test_several_things_touched_at_once_are_them() -> None:

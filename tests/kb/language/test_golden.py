@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from observed import observed
+from tellings import against_time, steps_of, verbs_of
 
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.language.describe import describe
@@ -25,6 +26,8 @@ TAKES = (
     f"boxed_vr:{'+'.join(GROCERIES)}",
     "hand_embodiment_pillow",
     "manipnet:cube_med2",
+    "manipnet:cup1",
+    "manipnet:mug1",
     "omomo_intermimic:sub2_woodchair_003",
     "omomo_intermimic/hands.toml:sub2_largetable_008",
     "omomo_intermimic/hands.toml:sub2_woodchair_005",
@@ -53,6 +56,22 @@ def test_a_recording_is_told_as_we_read_it(
     assert told == path.read_text(encoding="utf-8"), (
         f"{take} is told otherwise than {path.name}; CAPAR_GOLDEN=write rewrites it, to be read"
     )
+
+
+@pytest.mark.skipif(not DATA.is_dir(), reason=f"no recordings in {DATA}; see CAPAR_DATA")
+@pytest.mark.parametrize("take", TAKES)
+def test_what_is_told_of_a_recording_agrees_with_its_times(
+    take: str,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    monkeypatch.setenv("CAPAR_DATA", str(DATA))
+    capture = groceries(tmp_path) if take.startswith("boxed_vr") else str(EXAMPLES / take)
+    words = primitive_words(primitive_files())
+    told = describe(observed(capture, tmp_path_factory), timed=True, words=words)
+    assert against_time(told) == []
+    assert len(steps_of(told)) == len(verbs_of(told))
 
 
 def test_every_golden_text_is_of_a_take_that_is_told() -> None:

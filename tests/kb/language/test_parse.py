@@ -86,6 +86,7 @@ def test_a_sentence_says_the_hand_the_source_and_the_end() -> None:
         ("touch the table with the right hand", "Touch", ("table",)),
         ("release the mug", "ResumePosture", ("mug",)),
         ("the agent moved the mug to the head", "MoveObjTo", ("mug", "head")),
+        ("the agent lifted the mug to the mouth", "MoveObjTo", ("mug", "head")),
         ("lift a mug", "Lift", ("mug",)),
         ("stir with the mug in the blue cup", "Stir", ("mug", "blue_cup")),
     ],

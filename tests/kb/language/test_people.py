@@ -5,26 +5,22 @@ the grammar. ``*_run.md`` hold what was made of them at first, and are never cha
 hold what is read now, each judged by us as ``right`` or ``wrong``.
 """
 
-import re
 from itertools import groupby
 from pathlib import Path
 
 import pytest
 from motions import TALL_MAN, drink_from_mug
+from tellings import WORDS, steps_of, verbs_of
 
 from capar.model.errors import CaparError
-from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.observation import observe
 from capar.views.readings import question_lines, reading_lines
 from kb.actionary import Actionary
-from kb.language import Instruction, Plan, Question, parse
+from kb.language import Question, parse
 from kb.language.lexicalisation import in_past
-from kb.language.vocabulary import Vocabulary
-from kb.lexicon.english import past
 from kb.lexicon.tables import table
 
 HERE = Path(__file__).parent
-WORDS = Vocabulary(primitive_words(primitive_files()))
 GOLDEN = sorted((HERE / "golden").iterdir())
 SETS = {"first": (50, 40), "second": (25, 18)}
 """How many lines each set has, and how many of them must be right at least."""
@@ -61,12 +57,6 @@ def test_each_line_is_read_as_it_was_when_we_judged_it(name: str) -> None:
         assert _read(line) == reading, line
 
 
-def _steps(text: str) -> tuple[Instruction, ...]:
-    value = parse(text, WORDS)
-    assert not isinstance(value, Question)
-    return value.steps if isinstance(value, Plan) else (value,)
-
-
 ROWS = [row for name in ("phrases", "canonical") for row in table(name) if "{1}" in row["pattern"]]
 PATTERNS = {
     pattern: {row["primitive"] for row in rows}
@@ -84,7 +74,7 @@ def test_every_phrase_of_a_description_is_read_as_one_of_the_primitives_that_hav
     pattern: str,
 ) -> None:
     spoken = in_past(pattern).replace("{1}", "the mug").replace("{2}", "the table")
-    (step,) = _steps(f"The agent {spoken.replace('{ee}', 'the right foot')}.")
+    (step,) = steps_of(f"The agent {spoken.replace('{ee}', 'the right foot')}.")
     plain = pattern.replace(" back", "").replace(" there", "")
     also = {name for other, names in PATTERNS.items() if other == plain for name in names}
     assert step.call.action in PATTERNS[pattern] | also
@@ -92,15 +82,11 @@ def test_every_phrase_of_a_description_is_read_as_one_of_the_primitives_that_hav
     assert "{2}" not in pattern or step.call.objects[1] == "table"
 
 
-VERBS = {past(row["pattern"].split()[0]) for row in table("phrases")}
-
-
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
 def test_a_description_is_read_with_every_verb_that_it_has(path: Path) -> None:
     for text in path.read_text(encoding="utf-8").strip().split("\n\n"):
-        told = [word for word in re.findall(r"[a-z]+", text) if word in VERBS]
-        steps = _steps(text)
-        assert len(steps) == len(told)
+        steps = steps_of(text)
+        assert len(steps) == len(verbs_of(text))
         assert all(step.known and step.call.action for step in steps)
         hands = [step.ee for step in steps if "hand" in text]
         assert all(hands), "each step has the hand that was named last"

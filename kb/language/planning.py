@@ -1,0 +1,209 @@
+"""Clauses by sentence, in an order and with openings that agree with when everything was.
+
+``Then`` opens a sentence only where all that was told before had ended; ``meanwhile`` where most
+of what the sentence tells was done during that. What stands beside the first hand's deeds, after
+``while``, was done during them, too.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from kb.language.clauses import Clause, in_time
+from kb.language.repeating import repetition
+from kb.lexicon.english import times
+
+LONGEST = 6
+"""The most clauses of one hand in a sentence."""
+
+FEW = 2
+"""So many clauses more may stand in a sentence that then ends with letting go."""
+
+LONGEST_BESIDE = 4
+"""The most clauses of another hand that stand beside them."""
+
+ENOUGH_OF_ONE = 3
+"""After so many clauses, what is done with another thing begins another sentence."""
+
+OPENINGS = ("Then ", "Next, ", "After that, ")
+"""How sentences begin that tell what was done afterwards, in turn."""
+
+MEANWHILE = "Meanwhile, "
+"""How a sentence begins that tells what was done during what was told before."""
+
+ONCE_MORE = "Once more, "
+"""How a sentence begins that tells what was counted before."""
+
+Streams = dict[tuple[str, ...], list[Clause]]
+"""What is still to be told, by end-effectors."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """The content of one sentence; what is repeated stands once, with how often and until when."""
+
+    steps: tuple[Clause, ...]
+    """The first hand's clauses, then those of each that stands beside it."""
+
+    often: str = ""
+    end_s: float = 0.0
+    """When the last of its clauses, or of their repetitions, ends."""
+
+    opening: str = ""
+
+
+def sentences(steps: Sequence[Clause]) -> list[Part]:
+    """The clauses by sentence, each sentence with how it begins."""
+    streams: Streams = {}
+    for clause in sorted(steps, key=in_time):
+        streams.setdefault(clause.ees, []).append(clause)
+    out: list[Part] = []
+    afterwards = 0
+    end_s = float("-inf")
+    while any(streams.values()):
+        part = _next_part(streams)
+        opening = _opening(part, out, end_s, OPENINGS[afterwards % len(OPENINGS)])
+        afterwards = afterwards + 1 if opening in OPENINGS else 0
+        out.append(Part(part.steps, part.often, part.end_s, opening))
+        end_s = max(end_s, part.end_s)
+    return out
+
+
+def _opening(part: Part, told: Sequence[Part], end_s: float, afterwards: str) -> str:
+    if not told:
+        return ""
+    start_s = min(each.start_s for each in part.steps)
+    if start_s >= end_s:
+        before = told[-1]
+        recurs = before.often and _said(part.steps) == _said(before.steps)[: len(part.steps)]
+        return ONCE_MORE if recurs else afterwards
+    during = min(part.end_s, end_s) - start_s
+    return MEANWHILE if during >= 0.5 * (part.end_s - start_s) else ""
+
+
+def _said(steps: Sequence[Clause]) -> list[tuple[object, ...]]:
+    return [(each.signature, each.ees) for each in steps]
+
+
+def _next_part(streams: Streams) -> Part:
+    """What the next sentence tells; it is taken from what is still to be told."""
+    waiting = [key for key, rest in streams.items() if rest]
+    ees = min(waiting, key=lambda key: in_time(streams[key][0]))
+    own = streams[ees]
+    size, count = _repeated(streams, ees, 0)
+    if count > 1:
+        block, end_s = own[:size], own[size * count - 1].end_s
+        del own[: size * count]
+        return Part(tuple(block), times(count), end_s)
+    taken = [own.pop(0)]
+    while own and not _ends(taken, streams, ees):
+        taken.append(own.pop(0))
+    beside = [
+        clause
+        for other, rest in streams.items()
+        if rest and not set(other) & set(ees)
+        for clause in _beside(taken, rest, streams)
+    ]
+    steps = (*taken, *beside)
+    return Part(steps, end_s=max(each.end_s for each in steps))
+
+
+def _repeated(streams: Streams, ees: tuple[str, ...], at: int) -> tuple[int, int]:
+    """What recurs in a stream from a place on, where no other hand does anything meanwhile."""
+    own = streams[ees]
+    size, count = repetition(own, at, longest=LONGEST)
+    if count == 1:
+        return 1, 1
+    end_s = own[at + size * count - 1].end_s
+    others = (rest for other, rest in streams.items() if other != ees)
+    alone = not any(each.start_s < end_s for rest in others for each in rest)
+    return (size, count) if alone else (1, 1)
+
+
+def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bool:
+    """Whether a sentence ends before the next clause of its first hand.
+
+    It does when it is long, when the hand has let go, when it turns to another thing after enough
+    was told of the first, and when as much was done meanwhile as can stand beside it.
+    """
+    last, following = taken[-1], streams[ees][0]
+    if (last.start_s, last.end_s) == (following.start_s, following.end_s):
+        return False
+    if last.frees or _turns_away(taken, following):
+        return True
+    if len(taken) >= LONGEST and not _soon_over(streams[ees]):
+        return True
+    if _repeated(streams, ees, 0)[1] > 1 or _waits(following, streams):
+        return True
+    if _changes_hands(last, following, streams):
+        return True
+    waiting = [
+        each
+        for other, rest in streams.items()
+        if not set(other) & set(ees)
+        for each in rest
+        if each.end_s <= following.start_s
+    ]
+    return len(waiting) > LONGEST_BESIDE
+
+
+def _soon_over(rest: Sequence[Clause]) -> bool:
+    """Whether the hand lets go of what it has within few clauses."""
+    return any(each.frees and each.grip == rest[0].grip for each in rest[:FEW])
+
+
+def _waits(clause: Clause, streams: Streams) -> bool:
+    """Whether something is to be told first that one of its hands did before."""
+    return any(
+        each.start_s < clause.start_s
+        for other, rest in streams.items()
+        if other != clause.ees and set(other) & set(clause.ees)
+        for each in rest
+    )
+
+
+def _changes_hands(last: Clause, following: Clause, streams: Streams) -> bool:
+    """Whether another hand had the thing before this hand has it again."""
+    return last.grip != following.grip and any(
+        each.possessed
+        and each.objects[:1] == following.objects[:1]
+        and each.start_s < following.start_s
+        for ees, rest in streams.items()
+        if not set(ees) & set(following.ees)
+        for each in rest
+    )
+
+
+def _turns_away(told: Sequence[Clause], following: Clause) -> bool:
+    return len(told) >= ENOUGH_OF_ONE and told[-1].objects[:1] != following.objects[:1]
+
+
+def _beside(taken: Sequence[Clause], rest: list[Clause], streams: Streams) -> list[Clause]:
+    """What another hand did during those clauses; it is taken from what is still to be told."""
+    size = 0
+    while size < min(len(rest), LONGEST_BESIDE) and _during(rest[size], taken):
+        if _waits(rest[size], streams):
+            break
+        size += 1
+    if size == LONGEST_BESIDE and size < len(rest):
+        last = rest[size]
+        if last.frees and _during(last, taken) and not _waits(last, streams):
+            size += 1
+        else:
+            size = _up_to_another_thing(rest, size)
+    found, rest[:] = rest[:size], rest[size:]
+    return found
+
+
+def _during(clause: Clause, taken: Sequence[Clause]) -> bool:
+    """Whether most of a clause falls into the time of others."""
+    start_s, end_s = taken[0].start_s, max(each.end_s for each in taken)
+    shared = min(clause.end_s, end_s) - max(clause.start_s, start_s)
+    return start_s <= clause.start_s < end_s and shared >= 0.5 * (clause.end_s - clause.start_s)
+
+
+def _up_to_another_thing(rest: Sequence[Clause], size: int) -> int:
+    """Fewer clauses, where those end as the hand turns to another thing."""
+    for fewer in range(size, 1, -1):
+        if rest[fewer].objects[:1] != rest[fewer - 1].objects[:1]:
+            return fewer
+    return size

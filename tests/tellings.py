@@ -1,0 +1,61 @@
+"""What each telling obeys, read from its text: order of time, and verbs that are read back."""
+
+import re
+
+from capar.pipelines.linguistic_report import primitive_files, primitive_words
+from kb.language import Instruction, Plan, Question, parse
+from kb.language.vocabulary import Vocabulary
+from kb.lexicon.english import past
+from kb.lexicon.tables import table
+
+WORDS = Vocabulary(primitive_words(primitive_files()))
+VERBS = {past(row["pattern"].split()[0]) for row in table("phrases")}
+"""Every verb that a telling may have, in the past."""
+
+SPAN = re.compile(r"\((\d+\.\d\d)(?:–(\d+\.\d\d))? s\)")
+AFTERWARDS = ("Then ", "Next, ", "After that, ", "Once more, ")
+
+
+def spans(text: str) -> list[tuple[float, float]]:
+    """Start and end of each step, as they stand in the text [s]."""
+    return [(float(first), float(last or first)) for first, last in SPAN.findall(text)]
+
+
+def steps_of(text: str) -> tuple[Instruction, ...]:
+    """The steps that are read in a telling or in instructions."""
+    value = parse(text, WORDS)
+    assert not isinstance(value, Question)
+    return value.steps if isinstance(value, Plan) else (value,)
+
+
+def verbs_of(text: str) -> list[str]:
+    """The verbs of a telling, each as often as it stands there."""
+    return [word for word in re.findall(r"[a-z]+", text) if word in VERBS]
+
+
+def sentences(text: str) -> list[str]:
+    """The sentences of a telling."""
+    return re.split(r"(?<=\.) (?=[A-Z])", text)
+
+
+def against_time(text: str) -> list[str]:
+    """Sentences whose connectives say another order than their times.
+
+    A sentence that begins with ``Then`` tells what began when all that was told had ended; one
+    with ``Meanwhile`` what was done in the time of it; what stands after ``while`` began in the
+    time of what stands before.
+    """
+    wrong, end_s = [], 0.0
+    for sentence in sentences(text):
+        own = spans(sentence)
+        start_s, last_s = min(own)[0], max(last for _, last in own)
+        if sentence.startswith(AFTERWARDS) and start_s < end_s:
+            wrong.append(sentence)
+        if sentence.startswith("Meanwhile") and start_s >= end_s:
+            wrong.append(sentence)
+        main, _, beside = sentence.partition(" while ")
+        until_s = max(last for _, last in spans(main))
+        if any(not start_s <= first <= until_s for first, _ in spans(beside)):
+            wrong.append(sentence)
+        end_s = max(end_s, last_s)
+    return wrong
