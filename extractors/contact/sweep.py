@@ -177,6 +177,10 @@ class _Sweep:
 
     def _distance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
         """What ``_touch`` or ``_clearance`` would say with offset surfaces at every distance."""
+        # Surfaces that cut each other share points, which tell more poses than a distance of zero.
+        meeting = self._meet(0.0, EXACTNESS_M)
+        if meeting is not None:
+            return self._point(meeting), self.distance_m - 2.0 * EXACTNESS_M
         result = fcl.DistanceResult()
         request = fcl.DistanceRequest(enable_nearest_points=True)
         apart = fcl.distance(self.bare, self.moved, request, result)
