@@ -114,7 +114,7 @@ class _Sweep:
             told, index = self._propagate(index, point, slack)
             idle = 0 if told else idle + 1
             if idle >= patience and not few:
-                told, index = self._propagate(index - 1, *self._distance())
+                told, index = self._propagate(self.index, *self._distance())
                 idle, patience = 0, FRUITLESS_QUERIES if told else 2 * patience
         return self.known == _TOUCHES
 

@@ -8,16 +8,23 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from live_runs import DEMO
 from measured_bodies import ball, box, cup, handle, shape, still, stream
 from scipy.spatial.transform import Rotation
+from windows import repeated
 
 from capar.model.capture import Shape, Stream
+from capar.pipelines.trials import trial_of
+from extractors.bodies.bodies import bodies_of
+from extractors.calibration import calibrate
 from extractors.contact.contacts import bridged
 from extractors.contact.offset_surfaces import EXACTNESS_M, offset_surface
-from extractors.contact.proximity import Body, body, near, nearest
+from extractors.contact.proximity import Body, body, distance, near, nearest
 from extractors.contact.surfaces import surface
 from extractors.contact.sweep import FEW, sweep
+from extractors.contact.touch_distances import touchable
 from extractors.signals.intervals import intervals
+from extractors.thresholds import Thresholds
 
 EXACT_M = 0.00005
 
@@ -86,6 +93,19 @@ def test_contact_of_tumbling_bodies_agrees_with_their_exact_distance(
                 assert found[frame]
             elif far > tolerance_m + EXACT_M and found[frame]:
                 assert inside(moved, stands, frame)
+
+
+def test_a_mug_that_is_grasped_ten_times_is_touched_at_every_frame_at_which_it_is_near() -> None:
+    capture = repeated(trial_of(DEMO), 5)
+    assert len(capture.times) > FEW
+    limits = Thresholds()
+    bodies = bodies_of(capture, limits, calibrate(capture, limits))
+    hand, mug = touchable(bodies.sensors["right_hand"]), touchable(bodies.objects["mug"])
+    found = near(hand, mug, distance_m=0.005)
+    some = np.arange(0, len(found), 3)
+    apart = np.array([distance(hand, mug, int(frame)) for frame in some])
+    sure = np.abs(apart - 0.005) > EXACT_M
+    assert (found[some] == (apart <= 0.005))[sure].all()
 
 
 def inside(one: Body, two: Body, frame: int) -> bool:
