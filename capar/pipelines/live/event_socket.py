@@ -92,8 +92,8 @@ class EventSocket:
             self._listeners[connection] = waiting
             self._threads.add(threading.current_thread())
         try:
-            while (line := waiting.get()) is not None:
-                connection.send(line)
+            while (event := waiting.get()) is not None:
+                connection.send(event)
         except ConnectionClosed:
             pass
         finally:
