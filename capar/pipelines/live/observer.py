@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, TagType
-from capar.model.facts import Fact, Frames, Observed, RateMhz, Touching
+from capar.model.facts import Fact, Frames, Moving, Observed, RateMhz, Touching
 from capar.model.observation import Observation
 from capar.pipelines.live.carried_poses import CarriedPoses
 from capar.pipelines.live.carried_sums import CarriedSums
@@ -17,6 +17,7 @@ from capar.pipelines.live.result import LiveResult
 from capar.pipelines.live.rule_memory import RuleMemory
 from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
 from capar.pipelines.live.sentences import Teller
+from capar.pipelines.live.undecided import Handling, undecided
 from capar_rules.borders.deflicker import steady
 from capar_rules.borders.times import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
@@ -232,33 +233,21 @@ class LiveObserver:
         return infer(chosen, profile=self.rules), len(chosen)
 
     def _undecided(self, recent: list[Observed], last: int) -> dict[str, int]:
-        """Of each end-effector that has come to share a thing, before when segments may settle.
-
-        Who takes it over is known once one of the two lets go of it, or is taken not to.
-        """
-        longest = self._frames(self.horizons.handing_s)
-        margin = round(in_frames(times().merge_ms, self._rate_mhz / 1000.0))
+        """Before when segments of end-effectors may settle, where later frames may decide."""
+        facts = (*self._memory, *recent)
         acting = {each.name for each in self._buffer.rig.acting}
-        mobile = {e.name for e in self._buffer.rig.objects if e.tag is TagType.MOBILE}
-        going = [
-            each
-            for each in (*self._memory, *recent)
-            if isinstance(each, Touching)
-            and each.body in acting
-            and each.other in mobile
-            and each.last >= last - margin
-        ]
-        out: dict[str, int] = {}
-        for own in going:
-            joined = any(
-                each.other == own.other
-                and each.body != own.body
-                and each.first < own.first - margin
-                for each in going
+        margin = round(in_frames(times().merge_ms, self._rate_mhz / 1000.0))
+        open_since = undecided(
+            Handling(
+                [each for each in facts if isinstance(each, Touching) and each.body in acting],
+                [each for each in facts if isinstance(each, Moving)],
+                {each.name for each in self._buffer.rig.objects if each.tag is TagType.MOBILE},
+                last=last,
+                margin=margin,
+                longest=self._frames(self.horizons.handing_s),
             )
-            if joined and last - own.first <= longest:
-                out[own.body] = min(out.get(own.body, own.first), own.first)
-        return {ee: frame - margin for ee, frame in out.items()}
+        )
+        return {ee: frame - margin for ee, frame in open_since.items()}
 
     def _rules_begin(self, window: Window) -> int:
         oldest = window.last - self._frames(self.horizons.rules_s)
