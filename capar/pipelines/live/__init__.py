@@ -8,7 +8,7 @@ holds.
 
 Windows overlap, and little is measured twice. Contact is asked about only at frames whose poses
 differ from the window before (``extractors.contact.earlier_answers``); normals of patches are kept
-by pose. Short windows begin at whole seconds, so that what is measured at their first frame repeats.
+by pose. Short windows begin at whole seconds, so that what is measured at their first frame recurs.
 They are measured twice a second, and when a segment that was found is to be settled.
 
 Measured with the same calibration, all facts of the result are those of the offline run, as long
