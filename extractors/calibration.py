@@ -5,8 +5,9 @@ that lie farther from its ends than ``Horizons.margin_s`` are those of the whole
 zero crossings and pauses, contacts and their gaps, normals and closing speeds, looks, leaning,
 falls, rolling, and how bodies are arranged. It does not hold for these:
 
-* ``Moving``, ``Displaced``, ``Resting`` and ``Bears``: a place of rest is the median pose of a
-  whole standstill, and holds for as long as the body is within the floor of it. A window that is
+* ``Moving``, ``Displaced``, ``Resting`` and ``Bears``: a place of rest that is left is the median
+  pose of a whole standstill, and holds for as long as the body is within the floor of it; the place
+  that a body comes to is that of its first half second there. A window that is
   given the poses from longer ago (``Poses.longer``) tells it by them, as live observation does;
   a rest that goes on after a window has no end yet.
 * ``Reverses``, ``DrawsBack``, ``Swings`` and ``Lengthwise``: all are sought within a motion from

@@ -42,6 +42,7 @@ from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.arrivals import arrivals
 from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
+from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.faults.faults import faults
 from extractors.handling_facts import handling
 from extractors.measurement_notices import LOSS, notices_of
@@ -125,8 +126,20 @@ def measured(
     calibration: Calibration,
     bodies: Bodies,
     since: Sums = FROM_THE_BEGINNING,
+    *,
+    answers: EarlierAnswers | None = None,
+    notices: bool = True,
 ) -> Measurements:
-    """The same with bodies that were made by the calibration."""
+    """The same with bodies that were made by the calibration.
+
+    Args:
+        capture: The trial, or a part of it.
+        calibration: What was decided for the whole recording.
+        bodies: The bodies of the capture.
+        since: Ways and turns before, where the capture is a later part of a recording.
+        answers: Contacts that were asked about in an earlier part that overlaps.
+        notices: Whether losses and faults are sought, too.
+    """
     limits = thresholds_of(calibration)
     tracks = {
         name: _track(body.poses, calibration.sensor(name).highest_speed_mps, limits)
@@ -134,7 +147,7 @@ def measured(
     }
     looks = {sensor.name: attention(capture, sensor, bodies, limits) for sensor in seeing(capture)}
     moves = tuple(_moving(capture, bodies, calibration, limits))
-    near = contacts(capture, bodies, calibration, limits)
+    near = contacts(capture, bodies, calibration, limits, answers)
     touches = tuple(arrivals(capture, bodies, calibration, near, moves, limits))
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
     reach = horizon_frames(capture.times, limits)
@@ -162,13 +175,11 @@ def measured(
     guides = dict(_guides(capture, bodies, calibration, limits))
     facts += handling(capture, bodies, facts, calibration, limits, guides, since)
     own = [notice for notice in capture.notices if notice.code != LOSS]
-    notices = (
-        *own,
-        *notices_of(capture, calibration, limits),
-        *faults(capture, bodies, touches, _motions(moves), limits),
-    )
+    if notices:
+        own += notices_of(capture, calibration, limits)
+        own += faults(capture, bodies, touches, _motions(moves), limits)
     return Measurements(
-        _ordered(facts), notices, calibration, tracks, looks, bodies.without_caches(), guides
+        _ordered(facts), tuple(own), calibration, tracks, looks, bodies.without_caches(), guides
     )
 
 

@@ -28,6 +28,7 @@ CAPTURES: dict[str, Callable[[], Capture]] = {
     "both hands": lambda: motions.pick_up_with_both_hands(motions.WOMAN).capture,
     "one leg": lambda: motions.stand_on_one_leg(motions.WOMAN).capture,
     "sliding on and on": lambda: repeated(motions.slide_object(motions.WOMAN).capture, 5),
+    "drinking on and on": lambda: repeated(trial_of(DEMO), 5),
 }
 
 
@@ -46,7 +47,7 @@ class LiveRun:
 
 
 @cache
-def live_run(name: str, *, stride_s: float = 0.2) -> LiveRun:
+def live_run(name: str, *, stride_s: float = 0.5) -> LiveRun:
     """A capture played to the end; a frame is destroyed as soon as the next one follows."""
     capture = CAPTURES[name]()
     known = calibrate(capture)

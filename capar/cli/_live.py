@@ -2,7 +2,8 @@
 
 import json
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -40,6 +41,11 @@ class LiveOptions:
 
     json: bool
     name: str = ""
+    websocket: int | None = None
+    """The port at which programs are sent events; 0 any that is free, None no port."""
+
+    markers: str = ""
+    """The name of a Lab Streaming Layer stream of events; empty for none."""
 
     def __post_init__(self) -> None:
         """Check that there is one source.
@@ -169,17 +175,19 @@ def _run(
     """Tell events until the source ends or Ctrl-C; then settle what is left."""
     from capar.model.json_form import to_json
 
-    if not options.json:
-        typer.echo(COLUMNS)
-    try:
-        for batch in batches:
-            _tell(observer.push(batch), options)
-    except KeyboardInterrupt:
-        typer.echo("ended", err=True)
-    if observer.frames < 2:
-        raise CaparError("no frames came: nothing was observed")
-    events, seen = observer.finish()
-    _tell(events, options)
+    with ExitStack() as opened:
+        sends = list(_programs(options, opened))
+        if not options.json:
+            typer.echo(COLUMNS)
+        try:
+            for batch in batches:
+                _tell(observer.push(batch), options, sends)
+        except KeyboardInterrupt:
+            typer.echo("ended", err=True)
+        if observer.frames < 2:
+            raise CaparError("no frames came: nothing was observed")
+        events, seen = observer.finish()
+        _tell(events, options, sends)
     assert seen is not None
     if options.json:
         whole = {"event": "observation", "observation": json.loads(to_json(seen))}
@@ -187,14 +195,34 @@ def _run(
     return seen
 
 
-def _tell(events: "list[SegmentEvent]", options: LiveOptions) -> None:
+def _programs(options: LiveOptions, opened: ExitStack) -> Iterator[Callable[[str], None]]:
+    """What sends an event to other programs, each closed with the stack."""
+    if options.websocket is not None:
+        from capar.pipelines.live.event_socket import EventSocket
+
+        socket = EventSocket(options.websocket)
+        opened.callback(socket.close)
+        typer.echo(f"events at {socket.address}", err=True)
+        yield socket.send
+    if options.markers:
+        from extractors.devices.lsl import LslMarkers
+
+        markers = LslMarkers(options.markers)
+        opened.callback(markers.close)
+        typer.echo(f"events in the Lab Streaming Layer stream {options.markers!r}", err=True)
+        yield markers.send
+
+
+def _tell(
+    events: "list[SegmentEvent]", options: LiveOptions, sends: list[Callable[[str], None]]
+) -> None:
     from capar.pipelines.live.events import event_row
 
     for event in events:
-        if options.json:
-            typer.echo(json.dumps(event_row(event), ensure_ascii=False))
-        else:
-            typer.echo(_line(event))
+        line = json.dumps(event_row(event), ensure_ascii=False)
+        typer.echo(line if options.json else _line(event))
+        for send in sends:
+            send(line)
 
 
 def _line(event: "SegmentEvent") -> str:

@@ -48,3 +48,24 @@ Speed = Annotated[
         help="With --live CAPTURE: how many times as fast to replay it; 0 as fast as it goes.",
     ),
 ]
+Websocket = Annotated[
+    int | None,
+    typer.Option(
+        metavar="PORT",
+        min=0,
+        max=65535,
+        help="With --live: also send events as JSON to programs that connect to "
+        "ws://127.0.0.1:PORT; 0 takes a free port and says which. Needs capar[live].",
+        show_default=False,
+    ),
+]
+Markers = Annotated[
+    str,
+    typer.Option(
+        "--lsl-markers",
+        metavar="NAME",
+        help="With --live: also send events as JSON in a Lab Streaming Layer stream of that name "
+        "and of type Markers. Needs capar[live].",
+        show_default=False,
+    ),
+]

@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._live_options import Device, LeadIn, Live, Rig, Speed, StoredCalibration
+from capar.cli._live_options import (
+    Device,
+    LeadIn,
+    Live,
+    Markers,
+    Rig,
+    Speed,
+    StoredCalibration,
+    Websocket,
+)
 from capar.cli._options import New, Rules, Set, Steady, Wait, confirm_new, rule_base
 from capar.model.errors import CaparError, FileError
 
@@ -78,11 +87,13 @@ def observe(
     calibration: StoredCalibration = None,
     lead_in: LeadIn = 0.0,
     speed: Speed = 1.0,
+    websocket: Websocket = None,
+    lsl_markers: Markers = "",
 ) -> None:
     """Say what was done in CAPTURE: segments of each link, and the complex PAR they make.
 
     With --live it is told while it happens, provisional when a segment ends and then settled;
-    Ctrl-C ends it.
+    Ctrl-C ends it. Other programs get the same events with --json, --websocket or --lsl-markers.
     """
     import sys
 
@@ -97,7 +108,16 @@ def observe(
         if plot or set_ or on_unknown:
             raise CaparError("--plot, --set and --on-unknown are not for --live; use its recording")
         options = LiveOptions(
-            capture, device, rig, calibration, lead_in, speed, json=json, name=name
+            capture,
+            device,
+            rig,
+            calibration,
+            lead_in,
+            speed,
+            json=json,
+            name=name,
+            websocket=websocket,
+            markers=lsl_markers,
         )
         seen = observe_live(options, rule_base(profile, rules, actionary, steady=steady))
         stored = _store(seen, actionary, name=name, wait_s=wait) if actionary else ""
@@ -107,8 +127,7 @@ def observe(
         if stored:
             typer.echo(stored, err=True)
         return
-    if not capture:
-        raise CaparError("expected a CAPTURE, or --live with --device ADDRESS")
+    _check_offline(capture, sends=websocket is not None or bool(lsl_markers))
     from extractors.readers.bundle.capture_toml import read_capture
 
     base = rule_base(profile, rules, actionary, steady=steady)
@@ -154,6 +173,14 @@ def _check_output(*, json: bool, script: bool, pars: bool, plot: Path | None) ->
         from capar.views.picture import SUFFIXES
 
         check_writable(plot, suffixes=SUFFIXES)
+
+
+def _check_offline(capture: str, *, sends: bool) -> None:
+    """Check that there is a capture, and nothing is asked for that only live observation does."""
+    if sends:
+        raise CaparError("--websocket and --lsl-markers send events of --live; give --live as well")
+    if not capture:
+        raise CaparError("expected a CAPTURE, or --live with --device ADDRESS")
 
 
 def _store(observation: "Observation", place: str, *, name: str, wait_s: float) -> str:

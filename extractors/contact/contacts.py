@@ -12,6 +12,7 @@ from capar.model.capture import Capture, PivotContact, TagType
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.bodies.poses import Poses
+from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.contact.footing import gliding, soles
 from extractors.contact.own_hands import counted_meetings
 from extractors.contact.passing import in_passing
@@ -90,7 +91,11 @@ def _pair_distances(
 
 
 def contacts(
-    capture: Capture, bodies: Bodies, calibration: Calibration, limits: Thresholds
+    capture: Capture,
+    bodies: Bodies,
+    calibration: Calibration,
+    limits: Thresholds,
+    answers: EarlierAnswers | None = None,
 ) -> tuple[Contact, ...]:
     """Every contact that is watched for: acting sensors and mobile objects with tag objects.
 
@@ -105,6 +110,7 @@ def contacts(
         bodies: Its bodies.
         calibration: Distances of contact, and least durations of contacts and interruptions.
         limits: What brushes past.
+        answers: What was answered in the window before, where the capture is one of several.
     """
     surfaces = {each: touchable(each) for pair in watched(capture, bodies) for each in pair}
     found: list[Contact] = []
@@ -118,9 +124,10 @@ def contacts(
             apart = points_apart(pair, first, second)
             touching = np.nan_to_num(apart, nan=np.inf) <= pair.touch_m
         else:
-            touching = near(one, two, distance_m=pair.touch_m)
+            names = first.name, second.name
+            touching = _near(names, one, two, pair.touch_m, answers)
             if pair.release_m > pair.touch_m and touching.any():
-                near_by = near(one, two, distance_m=pair.release_m)
+                near_by = _near(names, one, two, pair.release_m, answers)
                 edge = round(calibration.contact_dropout_s * frame_rate(capture.times))
                 touching = bridged(touching, near_by, edge=edge)
         # Where a body was lost nothing begins or ends: what touched before and after has touched.
@@ -146,6 +153,18 @@ def contacts(
     met = [(each.first, each.second, each.interval) for each in whole]
     counted = counted_meetings(capture, bodies, met, limits)
     return tuple(each for each, counts in zip(whole, counted, strict=True) if counts)
+
+
+def _near(
+    names: tuple[str, str],
+    one: Body,
+    two: Body,
+    distance_m: float,
+    answers: EarlierAnswers | None,
+) -> Bool[np.ndarray, "frames"]:
+    if answers is None:
+        return near(one, two, distance_m=distance_m)
+    return answers.near(names, one, two, distance_m=distance_m)
 
 
 def of_end_effectors(

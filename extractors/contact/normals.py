@@ -1,5 +1,6 @@
 """The direction in which two bodies press on each other where they touch."""
 
+from collections import OrderedDict
 from itertools import product
 from typing import TypeAlias
 from weakref import WeakKeyDictionary
@@ -19,6 +20,14 @@ _Normals: TypeAlias = dict[tuple[int, float], Float[np.ndarray, "3"] | None]
 _KEPT: WeakKeyDictionary[BodyGeometry, WeakKeyDictionary[BodyGeometry, _Normals]] = (
     WeakKeyDictionary()
 )
+
+
+_Poses: TypeAlias = tuple[bytes, bytes, bytes, bytes, float]
+_LATEST: OrderedDict[_Poses, Float[np.ndarray, "3"] | None] = OrderedDict()
+"""Normals of the patches that were sought last, by shapes and poses: windows of a recording begin
+at the same frames again and again."""
+
+_MOST_LATEST = 512
 
 
 def contact_normal(
@@ -63,6 +72,23 @@ def _patch_normal(
     """The mean normal of the patch where two surfaces meet; None where either has no shape."""
     if body.shape is None or other.shape is None:
         return None
+    key = body.shape.digest, _pose(body, frame), other.shape.digest, _pose(other, frame), depth_m
+    found = _LATEST.pop(key) if key in _LATEST else _sought_normal(body, other, frame, depth_m)
+    _LATEST[key] = found
+    while len(_LATEST) > _MOST_LATEST:
+        _LATEST.popitem(last=False)
+    return found
+
+
+def _pose(body: BodyGeometry, frame: int) -> bytes:
+    return body.middles[frame].tobytes() + body.orientations[frame].tobytes()
+
+
+def _sought_normal(
+    body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
+) -> Float[np.ndarray, "3"] | None:
+    assert body.shape is not None
+    assert other.shape is not None
     one, two = surface(body.shape), surface(other.shape)
     corners = _placed(one.corners, body, frame), _placed(two.corners, other, frame)
     box = meeting_box(*corners, depth_m=depth_m)

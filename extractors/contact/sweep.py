@@ -114,7 +114,7 @@ class _Sweep:
             told, index = self._propagate(index, point, slack)
             idle = 0 if told else idle + 1
             if idle >= patience and not few:
-                told, index = self._propagate(index - 1, *self._distance())
+                told, index = self._propagate(self.index, *self._distance())
                 idle, patience = 0, FRUITLESS_QUERIES if told else 2 * patience
         return self.known == _TOUCHES
 
@@ -177,6 +177,10 @@ class _Sweep:
 
     def _distance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
         """What ``_touch`` or ``_clearance`` would say with offset surfaces at every distance."""
+        # Surfaces that cut each other share points, which tell more poses than a distance of zero.
+        meeting = self._meet(0.0, EXACTNESS_M)
+        if meeting is not None:
+            return self._point(meeting), self.distance_m - 2.0 * EXACTNESS_M
         result = fcl.DistanceResult()
         request = fcl.DistanceRequest(enable_nearest_points=True)
         apart = fcl.distance(self.bare, self.moved, request, result)

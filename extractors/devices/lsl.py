@@ -1,4 +1,4 @@
-"""Lab Streaming Layer, in and out: poses as a stream of type MoCap (extra ``live``: pylsl).
+"""Lab Streaming Layer: poses as type MoCap, events as type Markers (extra ``live``: pylsl).
 
 Channels follow the metadata of XDF's MoCap type: an ``object`` each sensor, of channel types
 ``PositionX`` to ``PositionZ`` in metres and ``OrientationA`` (the scalar) to ``OrientationD``.
@@ -20,8 +20,12 @@ PARTS = (
     "OrientationA", "OrientationB", "OrientationC", "OrientationD",
 )  # fmt: skip
 STREAM_TYPE = "MoCap"
+MARKER_TYPE = "Markers"
 BUFFER_S = 60
 """Seconds of samples that are kept while nobody polls."""
+
+LAST_S = 0.5
+"""So long a stream of markers stays after its last one [s]: the library drops what is unsent."""
 
 CLOCK_S = 5.0
 """How often the difference of the clocks is measured [s]."""
@@ -35,6 +39,13 @@ def _pylsl() -> Any:
             f"Lab Streaming Layer is not installed ({error}); install capar[live]"
         ) from None
     return pylsl
+
+
+def _losses() -> tuple[type[Exception], ...]:
+    """The errors of the library by which a stream is lost."""
+    from pylsl import util
+
+    return util.LostError, util.TimeoutError
 
 
 class LslTracker(LiveTracker):
@@ -80,7 +91,7 @@ class LslTracker(LiveTracker):
             self._names, self._columns = self._layout(info)
             self._inlet.open_stream(timeout=self._timeout_s)
             self._measure_offset()
-        except (self._lsl.LostError, self._lsl.TimeoutError) as error:
+        except _losses() as error:
             raise DeviceLostError(f"{self._address.text}: {error}") from None
 
     def _layout(self, info: Any) -> tuple[tuple[str, ...], np.ndarray]:
@@ -124,7 +135,7 @@ class LslTracker(LiveTracker):
             samples, stamps = self._inlet.pull_chunk(timeout=0.0)
             if time.monotonic() - self._offset_at_s > CLOCK_S:
                 self._measure_offset()
-        except (self._lsl.LostError, self._lsl.TimeoutError) as error:
+        except _losses() as error:
             raise DeviceLostError(f"the stream has ended ({error})") from None
         if sample is None:
             return []
@@ -184,4 +195,38 @@ class LslOutlet:
 
     def close(self) -> None:
         """End the stream."""
+        self._outlet = None
+
+
+class LslMarkers:
+    """Sends events into the network as text, with the time at which each was announced.
+
+    The stream is of type Markers with one channel and no regular rate, as recorders expect.
+
+    Args:
+        name: The stream's name.
+
+    Raises:
+        DeviceError: The library is missing.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._lsl = _pylsl()
+        info = self._lsl.StreamInfo(
+            name, MARKER_TYPE, 1, 0.0, self._lsl.cf_string, f"capar-markers-{name}"
+        )
+        self._outlet: Any = self._lsl.StreamOutlet(info)
+
+    def send(self, line: str) -> None:
+        """Send one event."""
+        self._outlet.push_sample([line], self._lsl.local_clock())
+
+    def wait(self, timeout_s: float) -> bool:
+        """Whether somebody receives them within a time [s]."""
+        return bool(self._outlet.wait_for_consumers(timeout_s))
+
+    def close(self) -> None:
+        """End the stream; what is on its way gets a moment to arrive."""
+        if self._outlet.have_consumers():
+            time.sleep(LAST_S)
         self._outlet = None

@@ -47,7 +47,7 @@ def motion_edges(
     if before:
         first = _left(poses, before[-1], moved, floor, thresholds)
     if after:
-        last = _arrived(poses, after[0], moved, floor, thresholds)
+        last = _arrived(poses, after[0].at_first, moved, floor, thresholds)
     creeps = round(thresholds.creep_s * frame_rate(poses.filled.times))
     first, last = max(first, moved[0] - creeps), min(last, moved[1] + creeps)
     return min(first, moved[0]), max(last, moved[1])

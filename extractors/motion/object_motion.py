@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from weakref import WeakKeyDictionary
 
@@ -29,6 +30,14 @@ class RestPose:
 
     orientation: Float[np.ndarray, "4"]
     """Unit quaternion w x y z."""
+
+    came: "RestPose | None" = None
+    """The same rest at the place where it began; None where the object creeps."""
+
+    @property
+    def at_first(self) -> "RestPose":
+        """The rest at the place to which the object came, which is known soon after it did."""
+        return self.came or self
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +73,9 @@ def rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Rest
 
     A rest pose is extended from a stretch in which the object is slow for the least duration of
     rest; its place is the middle of the poses there; it holds all contiguous frames within the
-    floor of that place, so the last millimetres of a landing belong to it.
+    floor of that place, so the last millimetres of a landing belong to it. When it began is told by
+    the place to which the object came, the middle of its first poses: however long an object lies
+    there, that is settled soon.
     """
     known = _CACHE.setdefault(poses, {})
     if (floor, thresholds) not in known:
@@ -81,46 +92,63 @@ _CACHE: WeakKeyDictionary[Poses, dict[tuple[Floor, Thresholds], tuple[RestPose, 
 def _window_rests(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[RestPose, ...]:
     """The places of rest in a window, told by the poses from longer ago where they are known."""
     if poses.longer is None:
-        return _rest_poses(poses.smooth, poses.noise, floor, thresholds)
+        return _rest_poses(poses.smooth, poses.filled, poses.noise, floor, thresholds)
     before = len(poses.longer.times) - len(poses.smooth.times)
+    recorded = replace(
+        poses.longer,
+        positions=np.concatenate((poses.longer.positions[:before], poses.filled.positions)),
+        orientations=np.concatenate(
+            (poses.longer.orientations[:before], poses.filled.orientations)
+        ),
+    )
     return tuple(
-        replace(each, interval=(max(each.interval[0] - before, 0), each.interval[1] - before))
-        for each in _rest_poses(poses.longer, poses.noise, floor, thresholds)
+        _earlier(each, before)
+        for each in _rest_poses(poses.longer, recorded, poses.noise, floor, thresholds)
         if each.interval[1] >= before
     )
 
 
+def _earlier(rest: RestPose, frames: int) -> RestPose:
+    """A rest in the frames of a part of the recording that begins so many later."""
+    span = max(rest.interval[0] - frames, 0), rest.interval[1] - frames
+    return replace(rest, interval=span, came=rest.came and replace(rest.came, interval=span))
+
+
 def _rest_poses(
-    stream: Stream, noise: Noise, floor: Floor, thresholds: Thresholds
+    stream: Stream, recorded: Stream, noise: Noise, floor: Floor, thresholds: Thresholds
 ) -> tuple[RestPose, ...]:
     times = stream.times
     rate_hz = frame_rate(times)
+    begins = max(1, round(thresholds.rest_begins_s * rate_hz))
     calm = slow_frames(stream, noise, rate_hz, thresholds)
     found: list[RestPose] = []
     for first, last in intervals(calm, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
         if found and last <= found[-1].interval[1]:
             continue
         least = max(1, round(thresholds.rest_minimum_s * rate_hz))
-        found += _stays(stream, (first, last), floor, least)
+        found += _stays((stream, recorded), (first, last), floor, least, begins)
     return tuple(found)
 
 
-def _stays(stream: Stream, seed: Interval, floor: Floor, least: int) -> Iterator[RestPose]:
+def _stays(
+    streams: tuple[Stream, Stream], seed: Interval, floor: Floor, least: int, begins: int
+) -> Iterator[RestPose]:
     """The place of a slow stretch; of one that creeps beyond the floor of it, one place each.
 
     Args:
-        stream: The object's poses.
+        streams: The object's poses, low-passed and as recorded.
         seed: The slow stretch.
         floor: Displacement from a place below which it is still there.
         least: Fewest frames of a rest [1].
+        begins: How many frames tell the place to which it came [1].
     """
-    stay = _stay(stream, seed, floor)
+    stay = _stay(streams, seed, floor, begins)
     begin, end = stay.interval
     if begin - seed[0] >= least:
-        yield from _stays(stream, (seed[0], begin - 1), floor, least)
+        yield from _stays(streams, (seed[0], begin - 1), floor, least, begins)
     yield stay
     if seed[1] - end >= least:
-        yield from _stays(stream, (end + 1, seed[1]), floor, least)
+        yield from _stays(streams, (end + 1, seed[1]), floor, least, begins)
 
 
 def moving(
@@ -152,8 +180,9 @@ def _changes(rests: tuple[RestPose, ...], floor: Floor) -> list[Interval]:
     """The frames between two places of rest that are farther apart than the floor."""
     out: list[Interval] = []
     for one, two in pairwise(rests):
-        apart = float(np.linalg.norm(two.position - one.position))
-        angle = float(geometry.angle_between(two.orientation[None], one.orientation[None])[0])
+        there = two.at_first
+        apart = float(np.linalg.norm(there.position - one.position))
+        angle = float(geometry.angle_between(there.orientation[None], one.orientation[None])[0])
         if apart > floor.position_m or angle > floor.rotation_rad:
             left, come = one.interval[1], two.interval[0]
             if come > left + 1:
@@ -207,19 +236,25 @@ def slopes(
     return slope
 
 
-def _stay(stream: Stream, seed: Interval, floor: Floor) -> RestPose:
+def _stay(streams: tuple[Stream, Stream], seed: Interval, floor: Floor, begins: int) -> RestPose:
+    stream, recorded = streams
     first, last = seed
-    place, turn = median_pose(stream, slice(first, last + 1))
-    stay = RestPose(seed, place, turn)
-
-    def gone(frames: slice) -> Bool[np.ndarray, "some"]:
-        return ~rests_at(stream, frames, stay, floor)
-
+    stay = RestPose(seed, *median_pose(stream, slice(first, last + 1)))
+    gone = partial(_gone, stream, stay, floor)
     middle = _middle(~gone(slice(first, last + 1)), seed)
     before, after = last_where(gone, middle - 1), first_where(gone, middle + 1, len(stream.times))
-    begin = 0 if before is None else before + 1
     end = len(stream.times) - 1 if after is None else after - 1
-    return replace(stay, interval=(begin, end))
+    if before is not None and before >= first:
+        return replace(stay, interval=(before + 1, end))
+    soon = min(first + begins, last + 1)
+    came = RestPose(seed, *median_pose(recorded, slice(first, soon)))
+    before = last_where(partial(_gone, stream, came, floor), (first + soon) // 2 - 1)
+    span = 0 if before is None else before + 1, end
+    return replace(stay, interval=span, came=replace(came, interval=span))
+
+
+def _gone(stream: Stream, stay: RestPose, floor: Floor, frames: slice) -> Bool[np.ndarray, "some"]:
+    return ~rests_at(stream, frames, stay, floor)
 
 
 def rests_at(

@@ -8,16 +8,24 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from live_runs import DEMO
 from measured_bodies import ball, box, cup, handle, shape, still, stream
 from scipy.spatial.transform import Rotation
+from windows import repeated
 
 from capar.model.capture import Shape, Stream
+from capar.pipelines.trials import trial_of
+from extractors.bodies.bodies import bodies_of
+from extractors.calibration import calibrate
 from extractors.contact.contacts import bridged
+from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.contact.offset_surfaces import EXACTNESS_M, offset_surface
-from extractors.contact.proximity import Body, body, near, nearest
+from extractors.contact.proximity import Body, body, distance, near, nearest
 from extractors.contact.surfaces import surface
 from extractors.contact.sweep import FEW, sweep
+from extractors.contact.touch_distances import touchable
 from extractors.signals.intervals import intervals
+from extractors.thresholds import Thresholds
 
 EXACT_M = 0.00005
 
@@ -86,6 +94,47 @@ def test_contact_of_tumbling_bodies_agrees_with_their_exact_distance(
                 assert found[frame]
             elif far > tolerance_m + EXACT_M and found[frame]:
                 assert inside(moved, stands, frame)
+
+
+def test_a_mug_that_is_grasped_ten_times_is_touched_at_every_frame_at_which_it_is_near() -> None:
+    capture = repeated(trial_of(DEMO), 5)
+    assert len(capture.times) > FEW
+    limits = Thresholds()
+    bodies = bodies_of(capture, limits, calibrate(capture, limits))
+    hand, mug = touchable(bodies.sensors["right_hand"]), touchable(bodies.objects["mug"])
+    found = near(hand, mug, distance_m=0.005)
+    some = np.arange(0, len(found), 3)
+    apart = np.array([distance(hand, mug, int(frame)) for frame in some])
+    sure = np.abs(apart - 0.005) > EXACT_M
+    assert (found[some] == (apart <= 0.005))[sure].all()
+
+
+@given(st.integers(0, 10_000), st.integers(10, 60), st.booleans())
+@settings(max_examples=15, deadline=None)
+def test_windows_that_overlap_are_answered_as_the_whole_is(
+    seed: int, step: int, noisy_ends: bool
+) -> None:
+    random = np.random.default_rng(seed)
+    frames, length = 300, 100
+    clock = np.arange(frames)[:, None] / 100.0
+    places = 0.05 * np.sin(2.0 * np.pi * clock * random.uniform(0.3, 1.0, 3))
+    places[random.integers(0, frames, 5)] = np.nan
+    whole = near(at(box(0.03, 0.03, 0.03), stream(places)), _handle(frames), distance_m=0.005)
+    answers = EarlierAnswers()
+    for begin in range(0, frames - length + 1, step):
+        part = places[begin : begin + length].copy()
+        if noisy_ends:
+            part[-20:] += 0.5
+        answers.begin(begin)
+        pair = at(box(0.03, 0.03, 0.03), stream(part)), _handle(length)
+        found = answers.near(("box", "handle"), *pair, distance_m=0.005)
+        sure = length - 20 * noisy_ends
+        assert (found[:sure] == whole[begin : begin + sure]).all()
+        assert not (noisy_ends and found[sure:].any())
+
+
+def _handle(frames: int) -> Body:
+    return at(handle(), still((0.0, 0.0, 0.0), frames), rests=True)
 
 
 def inside(one: Body, two: Body, frame: int) -> bool:

@@ -14,6 +14,7 @@ pytestmark = pytest.mark.long
 SHORT = ("demo", "slide", "both hands", "one leg")
 ONE_LEG = "one leg"
 LONG = "sliding on and on"
+NOISY = "drinking on and on"
 
 
 def settled(events: tuple[SegmentEvent, ...]) -> list[SegmentEvent]:
@@ -112,3 +113,16 @@ def test_only_the_last_frames_are_held_and_those_before_cannot_be_read() -> None
     assert held < len(run.capture.times) - 100
     assert run.result.frames == len(run.capture.times)
     assert run.result.segments[0].end_s < run.capture.times[-1] - run.observer.horizons.whole_s
+
+
+def test_in_a_long_noisy_recording_no_settled_segment_differs_and_99_in_100_are_in_time() -> None:
+    run = live_run(NOISY)
+    final = [(each.name, each.objects, each.first, each.last) for each in run.offline.segments]
+    told = settled(run.events + run.at_the_end)
+    assert len(final) > 60
+    assert [
+        (each.segment.name, each.segment.objects, each.segment.first, each.segment.last)
+        for each in told
+    ] == final
+    assert np.percentile([each.late_s for each in settled(run.events)], 99) <= 1.0
+    assert to_json(run.result) == to_json(run.offline)

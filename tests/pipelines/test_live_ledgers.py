@@ -10,13 +10,14 @@ from live_runs import rig_of
 from measured_bodies import pick_and_place
 
 from capar.model.errors import CaparError, CaptureError, DeviceError
-from capar.model.facts import Gap, Pause, Place, Resting, Touching
+from capar.model.facts import Gap, Moving, Pause, Place, Resting, Touching
 from capar.pipelines.live.device_frames import DeviceFrames
 from capar.pipelines.live.fact_ledger import FactLedger
 from capar.pipelines.live.frames import FrameBuffer, Poses, body_names, replayed
 from capar.pipelines.live.horizons import LiveHorizons
 from capar.pipelines.live.lead_in import lead_in
 from capar.pipelines.live.rule_memory import RuleMemory
+from capar.pipelines.live.undecided import Handling, undecided
 from extractors.devices.tracker import Description, Frame
 from extractors.relations.running_sums import summed
 
@@ -153,3 +154,31 @@ def test_a_tracker_without_a_moving_body_of_the_rig_is_refused() -> None:
     rig = pick_and_place()
     with pytest.raises(DeviceError, match="thing"):
         DeviceFrames(rig, body_names(rig), described("right_hand"), 0.01)
+
+
+def test_who_holds_a_thing_that_has_not_moved_and_touches_another_is_undecided_for_a_while() -> (
+    None
+):
+    cup, table = Touching("hand", "cup", 100, 150), Touching("hand", "table", 95, 150)
+
+    def told(
+        *moving: Moving, last: int = 150, touching: tuple[Touching, ...] = (cup, table)
+    ) -> dict[str, int]:
+        return undecided(Handling(touching, moving, {"cup"}, last=last, margin=15, longest=200))
+
+    assert told() == {"hand": 95}
+    assert told(touching=(cup,)) == {}
+    assert told(Moving("cup", 120, 140)) == {}
+    assert told(Moving("cup", 20, 60)) == {"hand": 95}
+    later = (replace(cup, last=400), replace(table, last=400))
+    assert told(last=400, touching=later) == {}
+
+
+def test_who_joins_in_holding_a_thing_is_undecided_until_the_other_lets_go() -> None:
+    own, other = Touching("left", "cup", 100, 150), Touching("right", "cup", 20, 150)
+
+    def told(*touching: Touching) -> dict[str, int]:
+        return undecided(Handling(touching, (), {"cup"}, last=150, margin=15, longest=200))
+
+    assert told(own, other) == {"left": 100}
+    assert told(own, replace(other, last=120)) == {}

@@ -96,7 +96,10 @@ class CarriedPoses:
             np.concatenate((past.orientations[:older], stream.orientations)),
         )
         known = _smooth_before(longer, past, older)
-        return replace(poses, longer=known)
+        inside = slice(older, None)
+        smooth = Stream(stream.times, known.positions[inside], known.orientations[inside])
+        settled = smooth if poses.settled is stream else poses.settled
+        return replace(poses, smooth=smooth, settled=settled, longer=known)
 
 
 def _smooth_before(longer: Stream, past: _Past, older: int) -> Stream:

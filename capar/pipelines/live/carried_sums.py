@@ -14,15 +14,16 @@ class CarriedSums:
 
     def __init__(self) -> None:
         self._known = FROM_THE_BEGINNING
-        self._frame = 0
+        self.frame = 0
+        """The frame of the recording at which they are known."""
 
     def since(self, window: Window) -> Sums:
         """The sums for a window that holds the frame at which they are known."""
-        return replace(self._known, anchor=self._frame - window.first)
+        return replace(self._known, anchor=self.frame - window.first)
 
     def advance(self, window: Window, measurements: Measurements, frame: int) -> None:
         """Take from a measured window the sums at a later frame of the recording."""
-        if frame <= self._frame:
+        if frame <= self.frame:
             return
         capture: Capture = window.capture
         bodies = measurements.bodies
@@ -38,4 +39,4 @@ class CarriedSums:
             frame - window.first,
             self.since(window),
         )
-        self._frame = frame
+        self.frame = frame

@@ -44,7 +44,14 @@ class FactLedger:
             facts: Facts of the window, in its own frames.
             begin: The frame of the recording with which the window begins.
         """
-        seen = [_moved(each, begin) for each in facts if isinstance(each, Observed)]
+        seen = [
+            _moved(each, begin)
+            for each in facts
+            if isinstance(each, Observed)
+            and not (
+                each.declaration.span is Span.INSTANT and begin + each.ends()[0] <= self.frontier
+            )
+        ]
         firsts = self._firsts(seen)
         own = {(_key(each), each.ends()[0]) for each in seen if _is_interval(each)}
         continued = {place for place in own if firsts.get(place, place[1]) != place[1]}

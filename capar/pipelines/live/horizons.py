@@ -15,15 +15,23 @@ class LiveHorizons:
     ``extractors.calibration`` proves.
     """
 
-    stride_s: float = 0.2
-    """Between two measurements of the short window [s]: by so much more a segment may be late."""
+    stride_s: float = 0.5
+    """Between two measurements of the short window at most [s], in which segments are found; it is
+    measured once more as soon as one that was found is to be settled."""
+
+    gathering_s: float = 0.15
+    """So much later a segment is settled than it could be [s], with those that end soon after."""
+
+    grain_s: float = 1.0
+    """Short windows begin at multiples of this [s]: what is measured at their first frame is then
+    the same several times in a row, and is known."""
 
     settle_s: float = 0.75
     """After its end a segment is settled [s]: more than half the filter (0.63 s), so that no later
     frame changes a smoothed pose in it, and longer than dropped and closed intervals (0.1 s)."""
 
     window_s: float = 4.0
-    """Length of the short window [s]: a motion that began earlier is known from before."""
+    """Least length of the short window [s]: a motion that began earlier is known from before."""
 
     rest_s: float = 30.0
     """By how much of its rest the place of a resting body is told [s]: the median of a longer one
@@ -53,8 +61,10 @@ class LiveHorizons:
         Raises:
             CaparError: A window is shorter than what it must hold.
         """
-        if min(self.stride_s, self.settle_s, self.block_s) <= 0.0:
-            raise CaparError("live horizons: expected stride, settle and block longer than 0 s")
+        if min(self.stride_s, self.grain_s, self.settle_s, self.block_s) <= 0.0:
+            raise CaparError(
+                "live horizons: expected stride, grain, settle and block longer than 0 s"
+            )
         if self.window_s < 2.0 * (self.settle_s + self.stride_s):
             raise CaparError(
                 f"live horizons: a window of {self.window_s:g} s cannot settle what ended "
@@ -68,7 +78,7 @@ class LiveHorizons:
         return 2.0 * self.margin_s + self.block_s
 
 
-def horizons_of(calibration: Calibration, *, stride_s: float = 0.2) -> LiveHorizons:
+def horizons_of(calibration: Calibration, *, stride_s: float = 0.5) -> LiveHorizons:
     """The horizons that a calibration calls for: its margin, and a settling beyond its filter."""
     known = calibration.horizons
     return LiveHorizons(

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, TagType
-from capar.model.facts import Fact, Frames, Observed, RateMhz, Touching
+from capar.model.facts import Fact, Frames, Moving, Observed, RateMhz, Touching
 from capar.model.observation import Observation
 from capar.pipelines.live.carried_poses import CarriedPoses
 from capar.pipelines.live.carried_sums import CarriedSums
@@ -17,10 +17,12 @@ from capar.pipelines.live.result import LiveResult
 from capar.pipelines.live.rule_memory import RuleMemory
 from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
 from capar.pipelines.live.sentences import Teller
+from capar.pipelines.live.undecided import Handling, undecided
 from capar_rules.borders.deflicker import steady
 from capar_rules.borders.times import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.pars.inference import Inference, infer
+from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.measure import Measurements, measured
 
 
@@ -85,8 +87,10 @@ class LiveObserver:
             else None
         )
         self._teller = Teller(rig, self.rules) if sentences else None
+        self._answers = EarlierAnswers()
         self._measured = 0
-        self._finished = False
+        self._frontier = -1
+        self._forgotten = 0
         self.work: Work = Work(0, 0, 0)
 
     @property
@@ -120,9 +124,18 @@ class LiveObserver:
             self._settle_block()
             if self.frames - self._measured >= self._frames(self.horizons.window_s) // 2:
                 events += self._evaluate(last=False)
-        if self.frames - self._measured >= self._frames(self.horizons.stride_s):
+        if self._is_due():
             events += self._evaluate(last=False)
         return events
+
+    def _is_due(self) -> bool:
+        """Whether segments are to be sought again, or one that was found is to be settled."""
+        since = self.frames - self._measured
+        if since >= self._frames(self.horizons.stride_s):
+            return True
+        late_s = self.horizons.settle_s + self.horizons.gathering_s
+        waits = self._segments.next_end(self._frontier)
+        return waits is not None and waits + self._frames(late_s) < self.frames
 
     def finish(self) -> tuple[list[SegmentEvent], Observation | None]:
         """Settle everything; no frame follows.
@@ -130,7 +143,6 @@ class LiveObserver:
         Raises:
             CaptureError: Fewer than two frames were pushed.
         """
-        self._finished = True
         events = self._evaluate(last=True)
         if self._result is None:
             return events, None
@@ -150,13 +162,22 @@ class LiveObserver:
     def _evaluate(self, *, last: bool) -> list[SegmentEvent]:
         """Measure the short window, and ask the rules over the last few segments."""
         self._measured = self.frames
-        window = self._buffer.window(self._frames(self.horizons.window_s) + 1)
+        window = self._window()
         if len(window.capture.times) < 4:
             return []
         frontier = window.last - (0 if last else self._frames(self.horizons.settle_s))
         bodies = self._poses.bodies(window)
-        measurements = measured(window.capture, self.calibration, bodies, self._sums.since(window))
-        self._sums.advance(window, measurements, frontier)
+        self._answers.begin(window.first)
+        measurements = measured(
+            window.capture,
+            self.calibration,
+            bodies,
+            self._sums.since(window),
+            answers=self._answers,
+            notices=False,
+        )
+        if frontier - self._sums.frame >= self._frames(self.horizons.grain_s):
+            self._sums.advance(window, measurements, frontier)
         self._poses.advance(window, bodies, frontier)
         recent = self._facts.stitched(measurements.facts, window.first)
         inference, count = self._inferred(measurements, recent, window.last)
@@ -170,11 +191,20 @@ class LiveObserver:
             rate_hz=self._rate_mhz / 1000.0,
             time_s=time_s,
         )
-        self._memory.forget(self._rules_begin(window), self._segments.ends(), self._frames(1.0))
+        self._frontier = frontier
+        if self.frames - self._forgotten >= self._frames(self.horizons.grain_s):
+            self._forgotten = self.frames
+            self._memory.forget(self._rules_begin(window), self._segments.ends(), self._frames(1.0))
         self.work = Work(len(window.capture.times), count, len(done))
         if self._result is not None:
             self._result.segments(done, inference)
         return self._told(events, recent)
+
+    def _window(self) -> Window:
+        """The short window: it begins at a multiple of the grain."""
+        grain = self._frames(self.horizons.grain_s)
+        begin = max(0, self.frames - 1 - self._frames(self.horizons.window_s)) // grain * grain
+        return self._buffer.window(self.frames - begin)
 
     def _told(self, events: list[SegmentEvent], recent: list[Observed]) -> list[SegmentEvent]:
         """The announcements with their sentences, where they are asked for."""
@@ -203,33 +233,21 @@ class LiveObserver:
         return infer(chosen, profile=self.rules), len(chosen)
 
     def _undecided(self, recent: list[Observed], last: int) -> dict[str, int]:
-        """Of each end-effector that has come to share a thing, before when segments may settle.
-
-        Who takes it over is known once one of the two lets go of it, or is taken not to.
-        """
-        longest = self._frames(self.horizons.handing_s)
-        margin = round(in_frames(times().merge_ms, self._rate_mhz / 1000.0))
+        """Before when segments of end-effectors may settle, where later frames may decide."""
+        facts = (*self._memory, *recent)
         acting = {each.name for each in self._buffer.rig.acting}
-        mobile = {e.name for e in self._buffer.rig.objects if e.tag is TagType.MOBILE}
-        going = [
-            each
-            for each in (*self._memory, *recent)
-            if isinstance(each, Touching)
-            and each.body in acting
-            and each.other in mobile
-            and each.last >= last - margin
-        ]
-        out: dict[str, int] = {}
-        for own in going:
-            joined = any(
-                each.other == own.other
-                and each.body != own.body
-                and each.first < own.first - margin
-                for each in going
+        margin = round(in_frames(times().merge_ms, self._rate_mhz / 1000.0))
+        open_since = undecided(
+            Handling(
+                [each for each in facts if isinstance(each, Touching) and each.body in acting],
+                [each for each in facts if isinstance(each, Moving)],
+                {each.name for each in self._buffer.rig.objects if each.tag is TagType.MOBILE},
+                last=last,
+                margin=margin,
+                longest=self._frames(self.horizons.handing_s),
             )
-            if joined and last - own.first <= longest:
-                out[own.body] = min(out.get(own.body, own.first), own.first)
-        return {ee: frame - margin for ee, frame in out.items()}
+        )
+        return {ee: frame - margin for ee, frame in open_since.items()}
 
     def _rules_begin(self, window: Window) -> int:
         oldest = window.last - self._frames(self.horizons.rules_s)

@@ -29,6 +29,7 @@ from capar_rules.pars.inference import Inference, Key
 from capar_rules.pars.naming_rules import naming_rules
 from capar_rules.pars.primitive_pars import ipars, upars
 from extractors.bodies.observed_objects import observed_object
+from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.measure import Measurements, measured
 from extractors.relations.guide_locations import guide_location
 from extractors.segments.sampled_tracks import track_of
@@ -81,6 +82,7 @@ class LiveResult:
         self._times: list[np.ndarray] = []
         self._sums = CarriedSums()
         self._poses = CarriedPoses(calibration, rest_frames)
+        self._answers = EarlierAnswers()
         self._last: Measurements | None = None
         self.inexact = Inexact()
 
@@ -98,7 +100,10 @@ class LiveResult:
         """
         bodies = self._poses.bodies(window)
         since = self._sums.since(window)
-        measurements = measured(window.capture, self._calibration, bodies, since)
+        self._answers.begin(window.first)
+        measurements = measured(
+            window.capture, self._calibration, bodies, since, answers=self._answers
+        )
         self._poses.advance(window, bodies, frontier)
         self._sums.advance(window, measurements, frontier)
         before = self._ledger.frontier

@@ -64,6 +64,13 @@ class SegmentLedger:
         ]
         return min(starts, default=now if self._links else 0)
 
+    def next_end(self, after: int) -> int | None:
+        """The first frame later than one at which an announced segment ends; None without any."""
+        ends = (
+            segment.last for link in self._links.values() for segment in link.announced.values()
+        )
+        return min((end for end in ends if end > after), default=None)
+
     def take(
         self,
         inference: Inference,

@@ -1,10 +1,12 @@
 """Lab Streaming Layer: what is sent is received, on loopback alone."""
 
+import time
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
 import tracked
+from lsl_loopback import LOOPBACK
 
 from capar.model.errors import DeviceError
 from extractors.devices.addresses import parse_address
@@ -12,16 +14,6 @@ from extractors.devices.lsl import LslOutlet, LslTracker
 from extractors.devices.motion_source import SmoothMotion
 from extractors.devices.tracker import Description, Frame
 
-LOOPBACK = """
-[ports]
-IPv6=disable
-[multicast]
-ResolveScope=machine
-ListenAddress=127.0.0.1
-AddressesOverride={127.0.0.1}
-[lab]
-KnownPeers={127.0.0.1}
-"""
 SENSORS = ("right_hand", "head", "mug")
 
 
@@ -84,3 +76,15 @@ def test_a_lost_sensor_stays_lost_and_is_counted() -> None:
 def test_a_stream_that_nobody_sends_is_an_error_with_its_remedy() -> None:
     with pytest.raises(DeviceError, match=r"no stream of that name within 0.5 s"):
         LslTracker(parse_address("lsl:capar_test_nobody?timeout=0.5")).open()
+
+
+def test_a_stream_that_ends_is_said_and_is_no_fault_of_the_program() -> None:
+    outlet = LslOutlet("capar_test_ends", Description("flock", "", SENSORS, 100.0))
+    with LslTracker(parse_address("lsl:capar_test_ends?timeout=10")) as tracker:
+        outlet.push(frames(1, 50.0)[0])
+        tracked.take(tracker, 1)
+        outlet.close()
+        end_s = time.monotonic() + 10.0
+        while not tracker.events and time.monotonic() < end_s:
+            tracker.poll(0.1)
+        assert "ended" in tracker.events[0].message
