@@ -12,12 +12,12 @@ from capar.model.observation import Segment
 from capar_rules.engine.search import worlds
 from capar_rules.engine.slicing import FITS, named_node, nodes, nodes_read, towards
 from capar_rules.engine.syntax import Literal, Statement, parse_text, split_arguments
-from capar_rules.explain.counterfactuals import measured
+from capar_rules.explain.counterfactuals import SCENE, measured
 from capar_rules.explain.explanation import Explainer
 from capar_rules.explain.sentences import Clock, Sentences
 
 MOST_FAILING = 4
-"""Greatest number of conditions that may fail; a rule with more is not near."""
+"""Greatest weight of conditions that may fail; a rule with more is not near."""
 
 MOST_FORMS = 24
 """Greatest number of forms that one rule is unfolded into."""
@@ -70,6 +70,8 @@ class _Form:
 def nearest_rules(explainer: Explainer, segment: Segment, name: str) -> tuple[NearRule, ...]:
     """The rules that could give a segment a name, the one with fewest failing conditions first.
 
+    What things are (a foot, a fixed body) counts as two conditions.
+
     Each rule is matched with the objects, contacts and borders of which fewest conditions fail.
 
     Args:
@@ -78,7 +80,7 @@ def nearest_rules(explainer: Explainer, segment: Segment, name: str) -> tuple[Ne
         name: A name that it does not have.
 
     Returns:
-        One for each rule of which at most ``MOST_FAILING`` conditions fail.
+        One for each rule of which conditions of at most the weight ``MOST_FAILING`` fail.
 
     Raises:
         RuleError: The segment does not follow from these facts and rules.
@@ -216,22 +218,22 @@ def _failing(
     """The fewest conditions to leave out of one of the forms so that it holds of the segment."""
     read = {atom.signature[0] for form in forms for each in form.body for atom in each.atoms}
     facts = [f"{each}." for each in atoms if each.partition("(")[0] in read]
-    for failing in range(MOST_FAILING + 1):
+    for weight in range(MOST_FAILING + 1):
         for form in forms:
             segment = split_arguments(form.rule.heads[0].text)[0]
-            found = _relaxed(form, (f"{segment}={term}", *form.joins), failing, facts)
+            found = _relaxed(form, (f"{segment}={term}", *form.joins), weight, facts)
             if found is not None:
                 return found
     return None
 
 
 def _relaxed(
-    form: _Form, joins: Sequence[str], failing: int, facts: Sequence[str]
+    form: _Form, joins: Sequence[str], weight: int, facts: Sequence[str]
 ) -> tuple[tuple[Literal, ...], dict[str, str]] | None:
-    """The conditions to leave out, so many, for the form to hold, and what its variables are."""
+    """Conditions of one weight to leave out for the form to hold, and what its variables are."""
     tried: list[tuple[tuple[Literal, ...], tuple[str, ...]]] = []
     lines: list[str] = []
-    for left_out in combinations(reversed(form.body), failing):
+    for left_out in _left_out(form.body, weight):
         kept = [each for each in form.body if each not in left_out]
         bound = _bound(kept, joins)
         if any(not _free(each) <= bound for each in kept if not _binds(each)):
@@ -256,6 +258,18 @@ def _relaxed(
     left_out, names = tried[int(number)]
     told = dict(zip(names, split_arguments(f"v{values}"), strict=False))
     return tuple(reversed(left_out)), told
+
+
+def _left_out(body: Sequence[Literal], weight: int) -> Iterator[tuple[Literal, ...]]:
+    """Every choice of conditions of one weight, those about the scene last.
+
+    A condition weighs one, and two if it says what a thing is: that could not be otherwise.
+    """
+    scene = {each for each in body if {atom.signature for atom in each.atoms} & {*SCENE}}
+    for among in range(weight // 2 + 1):
+        for left_out in combinations(reversed(body), weight - among):
+            if len(scene & {*left_out}) == among:
+                yield left_out
 
 
 def _binds(literal: Literal) -> bool:
