@@ -326,6 +326,7 @@ class CAPAR(metaclass=Closed):
     schemaVersion: NamedNode
     frames: NamedNode
     rate: NamedNode
+    recordedAt: NamedNode
     filePath: NamedNode
     fileFormat: NamedNode
     sha256: NamedNode
