@@ -218,22 +218,46 @@ def _failing(
     """The fewest conditions to leave out of one of the forms so that it holds of the segment."""
     read = {atom.signature[0] for form in forms for each in form.body for atom in each.atoms}
     facts = [f"{each}." for each in atoms if each.partition("(")[0] in read]
+    tried = []
+    for form in forms:
+        segment = split_arguments(form.rule.heads[0].text)[0]
+        joins = (f"{segment}={term}", *form.joins)
+        tried.append((form, joins, _unmet(form, joins, facts)))
     for weight in range(MOST_FAILING + 1):
-        for form in forms:
-            segment = split_arguments(form.rule.heads[0].text)[0]
-            found = _relaxed(form, (f"{segment}={term}", *form.joins), weight, facts)
+        for form, joins, unmet in tried:
+            found = _relaxed(form, joins, unmet, weight, facts)
             if found is not None:
                 return found
     return None
 
 
+def _unmet(form: _Form, joins: Sequence[str], facts: Sequence[str]) -> frozenset[Literal]:
+    """The conditions that hold of nothing in the segment, each by itself: they always fail."""
+    positive = [each for each in form.body if _binds(each)]
+    lines = []
+    for number, literal in enumerate(positive):
+        bound = _bound([literal], joins)
+        equal = [each for each in joins if _variables(each) <= bound]
+        lines.append(f"met({number}) :- {'; '.join([*equal, literal.text])}.")
+    try:
+        found = worlds("\n".join([*facts, *lines, "#show met/1."]))
+    except RuleError:
+        return frozenset()
+    met = {int(split_arguments(each)[0]) for each in (found[0] if found else ())}
+    return frozenset(each for number, each in enumerate(positive) if number not in met)
+
+
 def _relaxed(
-    form: _Form, joins: Sequence[str], weight: int, facts: Sequence[str]
+    form: _Form,
+    joins: Sequence[str],
+    unmet: frozenset[Literal],
+    weight: int,
+    facts: Sequence[str],
 ) -> tuple[tuple[Literal, ...], dict[str, str]] | None:
     """Conditions of one weight to leave out for the form to hold, and what its variables are."""
     tried: list[tuple[tuple[Literal, ...], tuple[str, ...]]] = []
     lines: list[str] = []
-    for left_out in _left_out(form.body, weight):
+    for left_out in _left_out(form.body, unmet, weight):
         kept = [each for each in form.body if each not in left_out]
         bound = _bound(kept, joins)
         if any(not _free(each) <= bound for each in kept if not _binds(each)):
@@ -260,14 +284,19 @@ def _relaxed(
     return tuple(reversed(left_out)), told
 
 
-def _left_out(body: Sequence[Literal], weight: int) -> Iterator[tuple[Literal, ...]]:
-    """Every choice of conditions of one weight, those about the scene last.
+def _left_out(
+    body: Sequence[Literal], unmet: frozenset[Literal], weight: int
+) -> Iterator[tuple[Literal, ...]]:
+    """Every choice of conditions of one weight, the unmet ones in each; the scene's last.
 
     A condition weighs one, and two if it says what a thing is: that could not be otherwise.
     """
     scene = {each for each in body if {atom.signature for atom in each.atoms} & {*SCENE}}
+    open_ = [each for each in reversed(body) if each not in unmet]
     for among in range(weight // 2 + 1):
-        for left_out in combinations(reversed(body), weight - among):
+        further = weight - among - len(unmet)
+        for more in combinations(open_, further) if further >= 0 else ():
+            left_out = tuple(each for each in reversed(body) if each in unmet or each in more)
             if len(scene & {*left_out}) == among:
                 yield left_out
 
