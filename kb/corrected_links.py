@@ -14,7 +14,8 @@ def corrected_links(
     """The links with every claim in the place of what the machine says of its time.
 
     A segment that a claim gives or shortens keeps the objects and features of the machine's
-    segment that it overlaps most. Claims about links that there are not change nothing.
+    segment that it overlaps most, and its purpose unless that says what was done in it. Claims
+    about links that there are not change nothing.
     """
     return tuple(
         _corrected(link, own) if (own := [e for e in claims if e.ee == link.ee]) else link
@@ -44,6 +45,7 @@ def _segment(machine: Sequence[Segment], index: int, span: Span) -> Segment:
         basis,
         index=index,
         name=span.name,
+        purpose=basis.purpose if own_name or not _is_the_deed(basis) else "",
         general=basis.general if own_name else _general(machine, span.name),
         candidates=basis.candidates if own_name and span.name == UNKNOWN else (),
         level=basis.level if own_name else "",
@@ -59,6 +61,11 @@ def _segment(machine: Sequence[Segment], index: int, span: Span) -> Segment:
 def _general(machine: Sequence[Segment], name: str) -> tuple[str, ...]:
     """What an action specialises, where another segment of that name tells."""
     return next((segment.general for segment in machine if segment.name == name), ())
+
+
+def _is_the_deed(segment: Segment) -> bool:
+    """Whether a purpose says what was done in a segment: relations are the same at its end."""
+    return segment.features.rel_start == segment.features.rel_end
 
 
 def _overlap(segment: Segment, span: Span) -> float:

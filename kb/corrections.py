@@ -13,6 +13,7 @@ from capar.model.errors import UnknownNameError
 from capar.model.par import ACTION_NAME, UNKNOWN
 from capar.model.segment_address import SegmentAddress
 from kb.errors import CorrectionError
+from kb.lookup.stored import observations
 from kb.store import names
 from kb.store.sparql import fill
 from kb.store.statements import LABEL, TYPE
@@ -46,6 +47,12 @@ ORDER BY ?index"""
 _CORRECTED = (
     f"SELECT DISTINCT ?capture WHERE {{ GRAPH {GRAPH} {{ ?claim {CAPAR.ofCapture} ?capture }} }}"
 )
+
+_STATED = f"""CONSTRUCT {{ ?thing ?property ?value }}
+WHERE {{ GRAPH {GRAPH} {{
+  ?claim {CAPAR.ofCapture} @capture@ .
+  {{ ?claim ?property ?value . BIND(?claim AS ?thing) }}
+  UNION {{ ?claim {BY} ?thing . ?thing ?property ?value }} }} }}"""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -101,7 +108,8 @@ def account(store: Store, capture: str) -> tuple[Span, ...]:
     """
     spans = _spans(store.ask(fill(_SEGMENTS, graph=str(names.observation(capture)))).rows)
     if not spans:
-        raise UnknownNameError("observation", capture, [], where=store.place)
+        known = [each.name for each in observations(store)]
+        raise UnknownNameError("observation", capture, known, where=store.place)
     for claim in claims(store, capture):
         spans = overlay(spans, claim)
     return spans
@@ -116,6 +124,12 @@ def corrected_captures(store: Store) -> tuple[str, ...]:
     """The captures of which persons say something."""
     rows = store.ask(_CORRECTED).rows
     return tuple(sorted(each.value for (each,) in rows if isinstance(each, Literal)))
+
+
+def claim_statements(store: Store, capture: str) -> list[Quad]:
+    """What is stored of the claims about a capture, and of the persons who make them."""
+    found = store.ask(fill(_STATED, capture=str(Literal(capture)))).triples or ()
+    return [Quad(each.subject, each.predicate, each.object, GRAPH) for each in found]
 
 
 def overlay(spans: Iterable[Span], claim: Span) -> tuple[Span, ...]:

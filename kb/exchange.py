@@ -18,6 +18,7 @@ from pyoxigraph import (
 )
 
 from capar.model.errors import FileError, UnknownNameError
+from kb.corrections import claim_statements
 from kb.errors import SchemaError, ShapeError
 from kb.json_ld import with_context
 from kb.lookup.agents import aliases, joined
@@ -121,7 +122,7 @@ def misplaced(store: Store) -> int:
 
 
 def part(store: Store, observation: str) -> list[Quad]:
-    """An observation's statements and those of everything that it mentions.
+    """An observation's statements, those of everything that it mentions, and claims about it.
 
     Raises:
         UnknownNameError: There is no such observation.
@@ -139,7 +140,7 @@ def part(store: Store, observation: str) -> list[Quad]:
             f"GRAPH {where} {{ ?s ?p ?o }} }}"
         )
         shared += [Quad(t.subject, t.predicate, t.object, where) for t in found.triples or ()]
-    return [*own, *shared]
+    return [*own, *shared, *claim_statements(store, observation)]
 
 
 def read(data: bytes, format_name: str, *, path: Path | str = "-") -> list[Quad]:

@@ -64,6 +64,8 @@ def check(store: Store, *, full: bool = False) -> tuple[Problem, ...]:
     seen = {row[0] for row in store.ask(_MENTIONED).rows}
     common = [each for each in shared if each.subject in seen]
     found = [Problem("", *_split(line)) for line in _faults(common, kinds, sizes)]
+    claimed = list(store.graph(names.GRAPHS["corrections"]))
+    found += [Problem("", *_split(line)) for line in _faults(claimed, kinds, sizes)]
     named = {quad.subject for quad in shared} | ontology_kinds().keys()
     for stored in observations(store):
         own = store.graph(names.observation(stored.name))

@@ -327,6 +327,7 @@ class CAPAR(metaclass=Closed):
     schemaVersion: NamedNode
     frames: NamedNode
     rate: NamedNode
+    recordedAt: NamedNode
     filePath: NamedNode
     fileFormat: NamedNode
     sha256: NamedNode

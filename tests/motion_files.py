@@ -131,8 +131,8 @@ def write_c3d(path: Path) -> Path:
     return path
 
 
-def write_bag(path: Path) -> Path:
-    """A ROS 1 bag of stamped poses on the topic /hand."""
+def write_bag(path: Path, *, since_s: int = 1000) -> Path:
+    """A ROS 1 bag of stamped poses on the topic /hand, from that many seconds after 1970 on."""
     from rosbags.rosbag1 import Writer
     from rosbags.typesys import Stores, get_typestore
 
@@ -141,7 +141,7 @@ def write_bag(path: Path) -> Path:
     with Writer(path) as writer:
         line = writer.add_connection("/hand", "geometry_msgs/msg/PoseStamped", typestore=store)
         for n, (t, p, q) in enumerate(zip(TIMES, PLACES, TURNS.as_quat(), strict=True)):
-            stamp = kinds["builtin_interfaces/msg/Time"](sec=1000, nanosec=round(t * 1e9))
+            stamp = kinds["builtin_interfaces/msg/Time"](sec=since_s, nanosec=round(t * 1e9))
             header = kinds["std_msgs/msg/Header"](seq=n, stamp=stamp, frame_id="world")
             pose = kinds["geometry_msgs/msg/Pose"](
                 kinds["geometry_msgs/msg/Point"](*map(float, p)),

@@ -67,10 +67,25 @@ def correct(
             from dataclasses import replace
 
             claim(opened.store, replace(address, capture=capture), change, by=by)
+            _note_new_name(name, actionary)
         spans = account(opened.store, capture)
     if labels is not None:
         _write_labels(labels, spans)
     _print(capture, spans, json=json)
+
+
+def _note_new_name(name: str, actionary: str | None) -> None:
+    """Say that no rule gives the name, which may be meant so, with the nearest that one gives."""
+    from difflib import get_close_matches
+
+    from capar.cli._options import rule_words
+    from capar.model.par import UNKNOWN
+
+    known = [words.name for words in rule_words(None, actionary)]
+    if name and name not in {*known, UNKNOWN}:
+        near = get_close_matches(name, known, n=1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        typer.echo(f"note: no rule gives the name {name!r}{hint}", err=True)
 
 
 def _print(capture: str, spans: "Sequence[Span]", *, json: bool) -> None:

@@ -73,6 +73,8 @@ def evaluate(
     Praat a tier is a link or body, a text its label, the other body or the object. Labels of one
     hand are enough: what bears no labels is not counted.
 
+    Without --mapping, labels of actions are our own names, as `capar correct --labels` writes them.
+
     Actions: frame-wise accuracy and macro F1, segmental F1 at 10, 25 and 50 % overlap, edit
     score, and errors of onset and offset of the segments matched at 10 %. Contacts: frame-wise
     precision, recall and F1. Carries: printed starts and ends near the labels. Events: what was

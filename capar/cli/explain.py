@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from capar.model.observation import Segment
     from capar.pipelines.explanation import Explained
     from capar_rules.explain.explanation import Explanation, Reason
+    from capar_rules.explain.nearest_rules import NearRule
     from capar_rules.explain.why_not import Alternative
 
 app = typer.Typer()
@@ -35,7 +36,10 @@ def explain(
     ] = None,
     why_not: Annotated[
         str | None,
-        typer.Option(help="A name that it has not: say what would have had to be otherwise."),
+        typer.Option(
+            help="A name that it has not: the rule for it that comes nearest, with the conditions "
+            "that it lacks; then the smallest change of what was measured; then other rules."
+        ),
     ] = None,
     every: Annotated[
         bool, typer.Option("--all", help="With --why-not: every answer that is as small.")
@@ -50,6 +54,7 @@ def explain(
     """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
     from capar.cli._output import check_writable
     from capar.pipelines.explanation import explained, segment_named
+    from capar_rules.explain.nearest_rules import nearest_rules
     from capar_rules.explain.why_not import why_not as alternatives
     from extractors.readers.bundle.capture_toml import read_capture
 
@@ -65,14 +70,21 @@ def explain(
     if why_not:
         asked = [each for each in chosen if alone or each.name != why_not]
         limit = 100 if every else 1
-        rows = [(each, alternatives(seen.explainer, each, why_not, limit=limit)) for each in asked]
+        rows = [
+            (
+                each,
+                alternatives(seen.explainer, each, why_not, limit=limit),
+                () if why_not in each.general else nearest_rules(seen.explainer, each, why_not),
+            )
+            for each in asked
+        ]
         if json:
             print_json(_rows(rows, seen))
             return
-        for each, found in rows:
+        for each, found, rules_near in rows:
             if not alone:
                 typer.echo(f"{_header(each)}  {each.name}")
-            _print_alternatives(why_not, found)
+            _print_why_not(why_not, found, rules_near, others=alone or every)
         _print_notices(asked, seen)
         return
     told = list(seen.explainer.explain_all(chosen))
@@ -128,23 +140,37 @@ def _header(each: "Segment | Explanation") -> str:
     return f"{SegmentAddress(each.ee, each.index)}  {span}"
 
 
-def _print_alternatives(name: str, found: "tuple[Alternative, ...]") -> None:
+def _print_why_not(
+    name: str,
+    found: "tuple[Alternative, ...]",
+    near: "tuple[NearRule, ...]",
+    *,
+    others: bool,
+) -> None:
+    """The nearest rule, the smallest changes of what was measured, and then the other rules."""
+    lacking = [each for each in near if each.failing]
+    if lacking:
+        typer.echo(f"Nearest rule: {lacking[0].sentence}")
     for each in found:
         typer.echo(each.sentence)
     if not found:
         typer.echo(f"Nothing between these borders could have been {name}.")
+    for rule in lacking[1:] if others else ():
+        typer.echo(f"Further off: {rule.sentence}")
 
 
 def _rows(
-    rows: "Sequence[tuple[Segment, tuple[Alternative, ...]]]", seen: "Explained"
+    rows: "Sequence[tuple[Segment, tuple[Alternative, ...], tuple[NearRule, ...]]]",
+    seen: "Explained",
 ) -> list[dict[str, Any]]:
     from dataclasses import asdict
 
     return [
         {"ee": each.ee, "index": each.index, "is": each.name, "sentence": told.sentence}
         | _placed(asdict(told), seen)
+        | {"rules": [{**asdict(rule), "sentence": rule.sentence} for rule in near]}
         | {"notices": [notice.document() for notice in _notices([each], seen)]}
-        for each, found in rows
+        for each, found, near in rows
         for told in found
     ]
 

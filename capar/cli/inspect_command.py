@@ -69,6 +69,7 @@ def _report(place: str) -> dict[str, Any]:
 
 
 def _of_capture(place: str) -> dict[str, Any]:
+    from capar.model.capture import recorded_at
     from extractors.readers.bundle.capture_toml import read_capture
     from extractors.readers.drafting.survey import as_json, near_pairs, survey
 
@@ -81,6 +82,7 @@ def _of_capture(place: str) -> dict[str, Any]:
         "name": capture.name,
         "frames": len(capture.times),
         "rate_hz": capture.rate_hz,
+        "recorded_at": recorded_at(capture.sources),
         "shapes": {
             name: body.shape.description for name, body in capture.bodies.items() if body.shape
         },
@@ -129,6 +131,7 @@ def _of_file(path: Path) -> dict[str, Any]:
         "name": path.name,
         "format": recording.format,
         "frames": len(recording.times),
+        "recorded_at": recording.source.recorded_at,
         "notices": notices,
         "sources": [{"path": recording.source.path, "format": recording.format}],
     }
@@ -139,7 +142,8 @@ def _show(report: dict[str, Any]) -> None:
     from capar.views.tables import terminal_table
 
     out = console()
-    out.print(f"[bold]{report['name']}[/]: {report['frames']} frames")
+    when = f"recorded {report['recorded_at']}" if report["recorded_at"] else "no date of recording"
+    out.print(f"[bold]{report['name']}[/]: {report['frames']} frames, {when}")
     rows = [
         (
             stream["name"], stream["kind"], f"{stream['seconds']:.2f}", f"{stream['rate_hz']:.1f}",

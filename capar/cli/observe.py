@@ -185,13 +185,22 @@ def _check_offline(capture: str, *, sends: bool) -> None:
 
 def _store(observation: "Observation", place: str, *, name: str, wait_s: float) -> str:
     from kb import Actionary
+    from kb.corrections import claims
 
     with Actionary.open(place, wait_s=wait_s) as store:
         known = store.recognise(observation.complex_par)
         added = store.add(observation, name=name or known or None)
+        said = claims(store.store, observation.capture)
     what = "seen before" if known else "seen for the first time"
     again = ", in place of the earlier observation of this capture" if added.replaced else ""
-    return f"kept {added.name} in {place}: {added.action}, {what}{again}"
+    kept = f"kept {added.name} in {place}: {added.action}, {what}{again}"
+    if not said:
+        return kept
+    who = ", ".join(dict.fromkeys(claim.by for claim in said))
+    return (
+        f"{kept}\n{who} corrected some of these segments (`capar correct {observation.capture}`); "
+        "--corrected has questions and reports say so"
+    )
 
 
 def _print(observation: "Observation", *, json: bool, script: bool, pars: bool) -> None:

@@ -43,6 +43,9 @@ class LabelMapping:
     others: tuple[str, ...] = ()
     """Labels that no rule gives and that may nevertheless occur."""
 
+    own_names: bool = False
+    """Whether the labels are our own names, so that a segment's label is its name."""
+
     @property
     def labels(self) -> set[str]:
         """Every label that may occur."""
@@ -62,6 +65,15 @@ def read_mapping(path: Path) -> LabelMapping:
         raise FileError(path, "has no rule.", 'Write [[rule]], name = "Reach", label = "approach".')
     rules = tuple(Rule(**dict(each), where=each.where("name")) for each in table.rule)
     return LabelMapping(path, rules, table.links, tuple(table.others))
+
+
+def own_names(names: Iterable[str]) -> LabelMapping:
+    """The mapping of labels that are our own names, as those of ``capar correct --labels``.
+
+    Args:
+        names: What segments can be called, and what else the labels may say.
+    """
+    return LabelMapping(Path(), (), {}, tuple(names), own_names=True)
 
 
 def check_names(
@@ -115,6 +127,8 @@ def labelled(link: ObservedLink, mapping: LabelMapping) -> tuple[Interval, ...]:
 
 
 def _label(segments: Sequence[Segment], index: int, mapping: LabelMapping) -> str:
+    if mapping.own_names:
+        return segments[index].name
     for rule in mapping.rules:
         if _fits(rule, segments, index):
             return rule.label

@@ -50,6 +50,8 @@ class Plan:
     kind: Kind
     pairs: tuple[Pair, ...]
     mapping: LabelMapping | None = None
+    """Of actions; None if the labels are our own names."""
+
     frames_of: str = ""
     contradictions: Contradictions = Contradictions.REFUSE
     events: tuple[str, ...] = ()
@@ -62,15 +64,10 @@ class Plan:
     containers: ContainerOptions | None = None
 
     def __post_init__(self) -> None:
-        """Prove that actions have a mapping, and that containers are named."""
+        """Prove that containers are named."""
         if self.kind is Kind.CONTAINERS and self.containers is None:
             raise CaparError(
                 'containers are named in an evaluation file: [containers] names = ["box"]'
-            )
-        if self.kind is Kind.ACTIONS and self.mapping is None:
-            raise CaparError(
-                "labels of actions need --mapping FILE: a TOML file from our names to the labels, "
-                'as in: [[rule]] name = "Reach" label = "approach"'
             )
 
 

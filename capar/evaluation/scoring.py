@@ -10,10 +10,11 @@ from capar.evaluation.comparisons import Channel
 from capar.evaluation.evaluations import Evaluation, Scored, summed
 from capar.evaluation.label_files import read_labels
 from capar.evaluation.labels import Kind, Labels, check_known, check_span, in_seconds
-from capar.evaluation.mapping import LabelMapping, check_names, labelled
+from capar.evaluation.mapping import LabelMapping, check_names, labelled, own_names
 from capar.evaluation.metrics import Interval, tally
 from capar.evaluation.plan import Pair, Plan, Progress
 from capar.model.capture import Capture
+from capar.model.errors import CaparError
 from capar.model.observation import Observation
 from capar.model.par import UNKNOWN
 from capar.pipelines.observation import observe
@@ -41,19 +42,37 @@ def score_actions(plan: Plan, base: Profile, progress: Progress) -> Evaluation:
     Raises:
         CaparError: A capture, a label file or the mapping has a fault.
     """
-    assert plan.mapping is not None, "a plan of actions has a mapping"
-    read = [(pair, _prepared(pair, plan, plan.mapping)) for pair in plan.pairs]
+    mapping, strangers = (plan.mapping, []) if plan.mapping else _own_names(plan, base)
+    read = [(pair, _prepared(pair, plan, mapping)) for pair in plan.pairs]
     cases = [
         Case(observe(capture, rules=base), labels, capture.times, pair.name)
         for pair, (labels, capture) in progress(read)
     ]
     notices = check_names(
-        plan.mapping,
+        mapping,
         names=known_names([each.observation for each in cases], base),
         objects={thing.name for each in cases for thing in each.observation.objects},
         labels={name for each in cases for name in each.labels.names},
     )
-    return compare(cases, plan.mapping, groups=plan.groups, notices=notices)
+    return compare(cases, mapping, groups=plan.groups, notices=[*strangers, *notices])
+
+
+def _own_names(plan: Plan, base: Profile) -> tuple[LabelMapping, list[str]]:
+    """The mapping of labels that are our own names, and a notice for each that is none.
+
+    Raises:
+        CaparError: None of the labels is one.
+    """
+    labels = {name for pair in plan.pairs for name in read_case_labels(pair, plan).names}
+    names = known_names((), base)
+    if not labels & names:
+        raise CaparError(
+            f"none of the labels is a name that our rules give ({', '.join(sorted(labels))}); "
+            "other labels of actions need --mapping FILE: a TOML file from our names to the "
+            'labels, as in: [[rule]] name = "Reach" label = "approach"'
+        )
+    strangers = [f"no rule gives the label {name!r}" for name in sorted(labels - names)]
+    return own_names({*names, *labels}), strangers
 
 
 def compare(

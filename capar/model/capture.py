@@ -1,6 +1,6 @@
 """A capture: one trial as streams, scene, sensors and performers, frozen and validated once."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
@@ -62,6 +62,20 @@ class Source:
     path: str
     format: str
     sha256: str
+    recorded_at: str = ""
+    """When it says that it was recorded: ISO 8601, a date or a date and time, with or without a
+    time zone. Empty if it does not say."""
+
+
+def recorded_at(sources: Sequence[Source]) -> str:
+    """When a capture was recorded (ISO 8601): by its capture.toml, else by the earliest file.
+
+    Empty if none of them says.
+    """
+    stated = [each.recorded_at for each in sources if each.format == "capture.toml"]
+    return next(filter(None, stated), "") or min(
+        (each.recorded_at for each in sources if each.recorded_at), default=""
+    )
 
 
 _Named = TypeVar("_Named", Sensor, TagObject)

@@ -206,10 +206,12 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
                 )  # fmt: skip
             if name in _ORDERING:
                 yield from _ordered(head, arguments, mine | set(base.primitives))
-                if _circular(arguments, [*base.rules, *own]):
+                circle = _circle(head, [*base.rules, *own])
+                if circle:
                     yield Finding(
-                        head.place, "circular", f"{head.text} makes a cycle: neither would ever "
-                        "be named.", "State only which is the more specific.",
+                        head.place, "circular", f"{head.text} closes a circle ({circle}): a "
+                        "segment that fits them all would get no name.",
+                        "State one order: take this line out, or another one of the circle.",
                     )  # fmt: skip
             if name == "feature_row":
                 yield from _row(head, arguments)
@@ -224,21 +226,24 @@ _ORDERING = ("specialises", "precedes")
 """Predicates that say which of two primitives a segment that fits both is called."""
 
 
-def _circular(arguments: Sequence[str], rules: Iterable[Statement]) -> bool:
-    """Whether the second one specialises or precedes the first one too, directly or not."""
-    general: dict[str, set[str]] = {}
+def _circle(stated: Atom, rules: Iterable[Statement]) -> str:
+    """Who comes before whom in the circle that an ordering closes; empty if it closes none."""
+    first, second = split_arguments(stated.text)
+    after: dict[str, list[tuple[str, str]]] = {}
     for rule in rules:
         for head in rule.heads:
             if head.signature[0] in _ORDERING and head.signature[1] == 2:
                 name, other = split_arguments(head.text)
-                general.setdefault(name, set()).add(other)
-    seen, waiting = set(), [arguments[1]]
-    while waiting:
-        name = waiting.pop()
-        if name not in seen:
-            seen.add(name)
-            waiting += sorted(general.get(name, ()))
-    return arguments[0] in seen
+                after.setdefault(name, []).append((other, f"{name} {head.signature[0]} {other}"))
+    ways = {second: [f"{first} {stated.signature[0]} {second}"]}
+    waiting = [second]
+    while waiting and first not in ways:
+        name = waiting.pop(0)
+        for other, told in sorted(after.get(name, ())):
+            if other not in ways:
+                ways[other] = [*ways[name], told]
+                waiting.append(other)
+    return ", ".join(ways.get(first, ())).replace('"', "")
 
 
 def _ordered(head: Atom, arguments: Sequence[str], names: set[str]) -> Iterator[Finding]:

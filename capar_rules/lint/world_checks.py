@@ -7,7 +7,7 @@ from capar_rules.engine.slicing import FITS
 from capar_rules.engine.syntax import Statement, split_arguments
 from capar_rules.lint.audit import chosen_in_audit
 from capar_rules.lint.candidates import primitive_in, worlds_of
-from capar_rules.lint.extents import every_world
+from capar_rules.lint.extents import Worlds, every_world
 from capar_rules.lint.findings import NOTE, Finding
 from capar_rules.lint.name_checks import clashes, shadows
 from capar_rules.lint.probes import (
@@ -49,13 +49,26 @@ def world_findings(
         if words:
             yield _not_judged(rules[at], ", ".join(f"{name}/{arity}" for name, arity in words))
     watched = {*trial.names, *(over for each in trial.generals.values() for over in each)}
-    probes = [*firing_probes(judged), *naming_probes(sorted(watched), sorted(watched))]
-    atoms = trial.ask(probes, ASKED, trial.worlds)
-    unfired = _unfired(trial, judged, atoms)
+    naming = naming_probes(sorted(watched), sorted(watched))
+    always = _always(trial, judged)
+    others = {at: rule for at, rule in judged.items() if at not in always}
+    if always:
+        # Such a rule clashes with nearly every other: with which ones in a few worlds is enough.
+        atoms = trial.ask(firing_probes(others), ASKED, trial.worlds)
+        atoms |= trial.ask(naming, ASKED, _few(every_world()))
+    else:
+        atoms = trial.ask([*firing_probes(others), *naming], ASKED, trial.worlds)
+    unfired = _unfired(trial, others, atoms)
     missing = _missing(trial, unfired) if unfired else {}
-    yield from _firing(trial, judged, atoms, {at: missing.get(at, "") for at in unfired})
+    yield from _firing(others, atoms, {at: missing.get(at, "") for at in unfired})
+    for rule in always.values():
+        yield Finding(
+            rule.place, "always-fires", "this rule always fires: every segment fits it.",
+            "Add a condition, such as features(Segment, Start, End, Change, Force).",
+        )  # fmt: skip
     yield from clashes(trial, atoms)
-    yield from shadows(trial, atoms)
+    if not always:
+        yield from shadows(trial, atoms)
     yield from overlaps(trial, set(missing.values()))
 
 
@@ -67,10 +80,26 @@ def _not_judged(rule: Statement, what: str) -> Finding:
     )  # fmt: skip
 
 
-def _firing(
-    trial: Trial, rules: Rules, atoms: frozenset[Atom], unfired: Mapping[int, str]
-) -> Iterator[Finding]:
-    idle = _numbers(atoms, "_idle")
+def _always(trial: Trial, rules: Rules) -> Rules:
+    """The rules by which every segment fits; asked of a few worlds before all of them."""
+    found = {
+        at: rule
+        for at, rule in rules.items()
+        if rule.body and _is_fits(rule) and _everywhere(trial, rule)
+    }
+    few = _few(every_world())
+    for worlds in (few, every_world() - few):
+        idle = _numbers(trial.ask(firing_probes(found), ASKED, worlds), "_idle")
+        found = {at: rule for at, rule in found.items() if at not in idle}
+    return found
+
+
+def _few(worlds: Worlds) -> Worlds:
+    """One world in so many."""
+    return frozenset(sorted(worlds)[::FEW_OF])
+
+
+def _firing(rules: Rules, atoms: frozenset[Atom], unfired: Mapping[int, str]) -> Iterator[Finding]:
     for at, rule in rules.items():
         if unfired.get(at):
             yield _not_judged(rule, unfired[at])
@@ -82,20 +111,15 @@ def _firing(
                 f"this rule can never fire: no segment has {what}.",
                 "`capar rules audit` lists the feature sets that segments can have.",
             )  # fmt: skip
-        elif rule.body and _is_fits(rule) and at not in idle and _everywhere(trial, rule):
-            yield Finding(
-                rule.place, "always-fires", "this rule always fires: every segment fits it.",
-                "Add a condition, such as features(Segment, Start, End, Change, Force).",
-            )  # fmt: skip
 
 
 def _unfired(trial: Trial, rules: Rules, atoms: frozenset[Atom]) -> dict[int, Statement]:
     """The rules that fire in no world; one that no primitive needs may fire in any."""
     fired = _numbers(atoms, "_fired")
     unfired = {at: rule for at, rule in rules.items() if rule.body and at not in fired}
-    rest = sorted(every_world() - trial.worlds)
-    few = frozenset(rest[::FEW_OF])
-    for worlds in (few, frozenset(rest) - few):
+    rest = every_world() - trial.worlds
+    few = _few(rest)
+    for worlds in (few, rest - few):
         helpers = {
             at: rule for at, rule in unfired.items() if at not in fired and not _is_fits(rule)
         }

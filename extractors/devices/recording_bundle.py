@@ -148,7 +148,14 @@ def _capture_toml(recording: Recording, name: str, mounts: Mapping[str, Mount], 
         head.append(f"# {late} frames came with a time that was not later, and are left out.")
     head += [f"# {event.message}" for event in recording.events]
     out = [each.replace("\n", " ") for each in head]
-    out += [f'name = "{_bare(name)}"', 'unit = "m"', 'up = "z"', "", "[files]"]
+    out += [
+        f'name = "{_bare(name)}"',
+        f'recorded = "{recording.started}"',
+        'unit = "m"',
+        'up = "z"',
+        "",
+        "[files]",
+    ]
     out += ['motion = "motion.csv"', "", "[agent]", 'name = "agent"']
     names = recording.description.sensors
     rides = {each: mounts.get(each, usual_mount(each)) for each in names}

@@ -73,13 +73,19 @@ def read_text(path: Path) -> str:
         return data.decode("latin-1")
 
 
-def source_of(path: Path, form: str) -> Source:
-    """The file's provenance: its path, format and SHA-256 as it lies on disk."""
+def source_of(path: Path, form: str, *, recorded_at: str = "") -> Source:
+    """The file's provenance: its path, format and SHA-256 as it lies on disk.
+
+    Args:
+        path: The file.
+        form: The name of its format.
+        recorded_at: When it says that it was recorded (ISO 8601); empty if it does not.
+    """
     digest = hashlib.sha256()
     with path.open("rb") as file:
         while block := file.read(1 << 20):
             digest.update(block)
-    return Source(path=str(path), format=form, sha256=digest.hexdigest())
+    return Source(str(path), form, digest.hexdigest(), recorded_at)
 
 
 def check_zip(path: Path, limit: int = EXPANDED_LIMIT) -> list[str]:

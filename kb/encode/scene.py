@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING
 
 from pyoxigraph import Literal, NamedNode
 
+from capar.model.capture import recorded_at
 from kb.store import literals, names
 from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
-from ontology.vocabularies import PREFIXES, PROV
+from ontology.vocabularies import PREFIXES, PROV, XSD
 
 if TYPE_CHECKING:
     from capar.model.capture import Agent
@@ -74,9 +75,16 @@ def capture(out: Statements, observation: "Observation") -> NamedNode:
         CAPAR.frames: observation.frames,
         CAPAR.rate: float(observation.rate_hz),
         CAPAR.duration: float(observation.duration_s),
+        CAPAR.recordedAt: _time(recorded_at(observation.sources)),
         DERIVED: files,
     }
     return out.add(names.part(out.about, "capture"), (CAPAR.Capture,), properties)
+
+
+def _time(stated: str) -> Literal | None:
+    """A date, or a date and time, of ISO 8601; None for an empty text."""
+    form = "dateTime" if "T" in stated else "date"
+    return Literal(stated, datatype=NamedNode(XSD + form)) if stated else None
 
 
 def agents(out: Statements, observation: "Observation") -> dict[str, NamedNode]:

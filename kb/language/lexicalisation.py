@@ -56,7 +56,7 @@ class Phrasebook:
             found = _first(above, cases)
             if found:
                 return found
-        return built(words_of(name), count, USUAL_PREPOSITION)
+        return built(words_of(name), count, "at" if "self" in cases else USUAL_PREPOSITION)
 
     def _own(self, words: PrimitiveWords, cases: Cases, count: int) -> str:
         stated = words.prepositions[0] if words.prepositions else ""

@@ -7,10 +7,17 @@ from kb.lexicon.levin import above, levin_class
 from kb.lexicon.links import ThesisStatus
 from kb.reports.linguistics import ClassReport, How, LinguisticReport
 from kb.reports.svg import rect, text
+from kb.reports.tables import EVIDENCE
 
-WIDTH = 960
-LEFT, BOX, GUTTER = 190, 360, 30
+WIDTH = 970
+LEFT, BOX, GUTTER = 200, 360, 30
 LINE, PAD, GAP = 17, 8, 8
+TITLE = 56
+"""Where titles begin, after numbers of up to six characters (``13.5.1``)."""
+
+TITLE_CHARACTERS = 21
+"""Letters of a title's size that fit between there and the first boxes."""
+
 CHARACTERS = 50
 """Letters of the drawing's size that a line of a box holds."""
 
@@ -52,7 +59,7 @@ def draw(report: LinguisticReport) -> str:
             parts.append(f'<line x1="0" y1="{y + 20}" x2="{WIDTH}" y2="{y + 20}" class="rule"/>')
             y += 30
         y = _row(parts, levin, y)
-    return _page(parts, y + 52)
+    return _page(parts, y + 52 + NOTE_LINE * len(_note()))
 
 
 def _top(number: str) -> str:
@@ -66,12 +73,13 @@ def _heading(number: str) -> str:
 def _row(parts: list[str], each: ClassReport, y: int) -> int:
     thesis, ours = _thesis_boxes(each), _own_boxes(each)
     parts.append(text(0, y + 20, each.number, class_="number"))
-    for index, line in enumerate(_wrapped(each.title.split(), 22, " ")):
-        parts.append(text(44, y + 20 + index * 14, line, class_="title"))
+    title = _wrapped(each.title.split(), TITLE_CHARACTERS, " ")
+    for index, line in enumerate(title):
+        parts.append(text(TITLE, y + 20 + index * 14, line, class_="title"))
     bottoms = [
         _column(parts, thesis, LEFT, y) if thesis else _nothing(parts, LEFT, y),
         _column(parts, ours, LEFT + BOX + GUTTER, y),
-        y + 20 + 14 * len(_wrapped(each.title.split(), 22, " ")),
+        y + 20 + 14 * len(title),
     ]
     return max(bottoms) + GAP
 
@@ -127,6 +135,15 @@ def _wrapped(words: Sequence[str], width: int, between: str) -> list[str]:
     return [line.rstrip() for line in lines]
 
 
+NOTE_LINE, NOTE_CHARACTERS = 15, 120
+"""Height and letters of a line below the legend."""
+
+
+def _note() -> list[str]:
+    """What the words in the boxes say of evidence."""
+    return _wrapped(EVIDENCE.split(), NOTE_CHARACTERS, " ")
+
+
 _STYLE = """
 svg { font-family: Charter, "Bitstream Charter", "Iowan Old Style", Palatino, Georgia, serif; }
 text { fill: #1d1b18; font-size: 13px; }
@@ -150,11 +167,13 @@ def _page(parts: Sequence[str], height: int) -> str:
         ("not", "not addressed"),
     )
     marks: list[str] = []
-    x = LEFT
+    x, legend_y = LEFT, height - 20 - NOTE_LINE * len(_note())
     for style, words in legend:
-        marks.append(rect(x, height - 32, 22, 14, radius=2, class_=style))
-        marks.append(text(x + 30, height - 20, words, class_="title"))
+        marks.append(rect(x, legend_y - 12, 22, 14, radius=2, class_=style))
+        marks.append(text(x + 30, legend_y, words, class_="title"))
         x += 60 + 11 * len(words) // 2
+    for index, line in enumerate(_note(), start=1):
+        marks.append(text(LEFT, legend_y + 4 + NOTE_LINE * index, line, class_="title"))
     heads = [
         text(LEFT, 22, "The thesis (section 6.1)", class_="column"),
         text(LEFT + BOX + GUTTER, 22, "This system, by its rules", class_="column"),

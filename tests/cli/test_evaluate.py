@@ -185,7 +185,6 @@ def test_a_hand_may_do_events_that_are_segments(tmp_path: Path) -> None:
     [
         (["a.toml", "--kind", "carries"], "an evaluation file says itself what --kind would say"),
         ([str(DEMO), "l.csv", "--takes", "x"], "--takes belongs to an evaluation file"),
-        ([str(DEMO), "l.csv"], "need --mapping"),
         ([str(DEMO), "l.csv", str(DEMO)], "3 arguments: each capture is followed by its label"),
     ],
 )

@@ -74,7 +74,6 @@ def test_a_bundle_without_takes_is_called_by_its_folder(tmp_path: Path) -> None:
         ('kind = "carries"\n', "names no labels"),
         ('kind = "carries"\nlabels = "${NOT_SET_X}/l"\n', "evaluation.toml:2: "),
         ('kind = "carries"\nlabels = "l"\ntakes = ["q*"]\n', "evaluation.toml:3: no take 'q*'"),
-        ('kind = "actions"\nlabels = "{take}.csv"\n', "labels of actions need --mapping"),
         ('kind = "carries"\nlabel = "l"\n', "evaluation.toml:2: no key 'label'"),
         ('kind = "carries"\nlabels = "l"\n[carries]\nwithin_s = -1.0\n', "evaluation.toml:4: "),
     ],

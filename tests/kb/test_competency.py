@@ -16,7 +16,7 @@ import pytest
 from competency import QUERIES
 from observations import drink_from_mug, with_unknown
 
-from capar.model.capture import Agent, Capture
+from capar.model.capture import Agent, Capture, recorded_at
 from capar.model.errors import UnknownNameError
 from capar.model.facts import Fact, Leans, Lies, LookingAt, Moving, Touching
 from capar.model.observation import Observation, Segment
@@ -314,6 +314,8 @@ def test_when_with_which_version_and_from_which_files(world: World, actionary: A
     columns = ("observation", "version", "rules", "file", "sha256")
     assert {tuple(row[c] for c in columns) for row in rows if row["file"]} == expected
     assert all(row["observed"] for row in rows)
+    recorded = {seen.capture: recorded_at(seen.sources) or None for seen in world.seen}
+    assert all(row["recorded"] == recorded[str(row["observation"])] for row in rows)
 
 
 def test_how_long_each_object_was_touched_and_by_which_hand(

@@ -23,7 +23,9 @@ from kb.corrections import Correction, Span, account, claims, correct, overlay
 from kb.errors import CorrectionError
 from kb.language.describe import describe as described
 from kb.lexicon.evidence import seen_in
+from kb.store import names
 from kb.store_checks import check
+from ontology import CAPAR
 
 CAPTURE = "DrinkFromMug"
 
@@ -74,6 +76,14 @@ def test_the_machines_segments_stay_and_the_account_differs(drunk: Actionary) ->
     assert said(drunk) == [*machine[:2], ("Sip", start, end, "Ada"), *machine[3:]]
     assert name != "Sip"
     assert check(drunk.store) == ()
+
+
+def test_a_damaged_claim_is_found(drunk: Actionary) -> None:
+    correct(drunk.store, at(2), Correction(name="Sip"), by="Ada")
+    assert check(drunk.store) == ()
+    graph = f"GRAPH {names.GRAPHS['corrections']}"
+    drunk.store.change(f"DELETE WHERE {{ {graph} {{ ?claim {CAPAR.actionName} ?name }} }}")
+    assert any("names one action" in each.message for each in check(drunk.store))
 
 
 def test_a_claim_outlasts_observing_and_forgetting(drunk: Actionary) -> None:

@@ -84,7 +84,8 @@ def _sources(
     document: "CaptureFile", files: Mapping[str, WorldRecording], group: Declared
 ) -> tuple[Source, ...]:
     """The capture.toml, the motion files, and each mesh once."""
-    own = replace(source_of(document.file_path, "capture.toml"), path=document.file_path.name)
+    own = source_of(document.file_path, "capture.toml", recorded_at=document.recorded or "")
+    own = replace(own, path=document.file_path.name)
     return (own, *(file.source for file in files.values()), *dict.fromkeys(group.sources))
 
 

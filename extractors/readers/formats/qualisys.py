@@ -12,6 +12,7 @@ from capar.model.capture import Stream
 from capar.model.errors import CaptureError, FileError, UnknownNameError
 from extractors.readers.files import read_text, source_of
 from extractors.readers.formats.numbers import read_rows
+from extractors.readers.recorded_times import iso_time
 from extractors.readers.recording import Recording, track, uniform_clock
 
 MILLIMETRE = 0.001
@@ -49,7 +50,8 @@ def read(path: Path, options: Any) -> Recording:
         )
     times = uniform_clock(len(rows), float(header["FREQUENCY"][0]))
     table = rows[:, rows.shape[1] - width * len(names) :].reshape(len(rows), len(names), width)
-    source = source_of(path, "qualisys")
+    stamp = iso_time(header.get("TIME_STAMP", [""])[0])
+    source = source_of(path, "qualisys", recorded_at=stamp)
     if kind == "BODY_NAMES":
         bodies = {n: _body(n, times, table[:, i]) for i, n in enumerate(names)}
         return Recording(source=source, bodies=bodies, unit_m=MILLIMETRE)

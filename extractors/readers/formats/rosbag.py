@@ -10,6 +10,7 @@ import numpy as np
 from capar.model.capture import Source, Stream, notice
 from capar.model.errors import FileError
 from extractors.readers.files import source_of
+from extractors.readers.recorded_times import iso_of_stamp
 from extractors.readers.recording import Recording, track
 
 Sample = tuple[str, int, tuple[float, ...]]
@@ -48,18 +49,19 @@ def read(path: Path, options: Any) -> Recording:
     start = min(min(each) for each in samples.values())
     bodies = {name: _stream(name, each, start) for name, each in sorted(samples.items())}
     return Recording(
-        source=_source(path),
+        source=_source(path, iso_of_stamp(start)),
         bodies=bodies,
         unit_m=1.0,
         notices=(notice("doubled-stamps", samples=doubled),) if doubled else (),
     )
 
 
-def _source(path: Path) -> Source:
+def _source(path: Path, recorded_at: str) -> Source:
     if not path.is_dir():
-        return source_of(path, "rosbag")
+        return source_of(path, "rosbag", recorded_at=recorded_at)
     storage = sorted(each for each in path.iterdir() if each.suffix in {".db3", ".mcap"})
-    return source_of(storage[0] if storage else path / "metadata.yaml", "rosbag")
+    file = storage[0] if storage else path / "metadata.yaml"
+    return source_of(file, "rosbag", recorded_at=recorded_at)
 
 
 def _stream(name: str, samples: dict[int, tuple[float, ...]], start: int) -> Stream:

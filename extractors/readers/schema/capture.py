@@ -2,11 +2,13 @@
 
 # ruff: noqa: RUF012  (pydantic copies the defaults of fields)
 
+from datetime import date
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, Tag
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
+from extractors.readers.recorded_times import iso_time
 from extractors.readers.schema.bodies import (
     Filled,
     ManyObjects,
@@ -17,6 +19,19 @@ from extractors.readers.schema.bodies import (
 )
 from extractors.readers.schema.entry import Entry, key
 from extractors.readers.schema.shapes import Handedness, Unit, form_of_value
+
+
+def _as_text(value: object) -> object:
+    """TOML has dates of its own."""
+    return value.isoformat() if isinstance(value, date) else value
+
+
+def _is_time(value: str) -> str:
+    stated = iso_time(value)
+    if not stated:
+        raise PydanticCustomError("time", "no date, or date and time, of ISO 8601")
+    return stated
+
 
 Up = Literal["z", "y", "x", "-z", "-y", "-x"]
 Order = Literal["xyzw", "wxyz"]
@@ -144,6 +159,13 @@ class CaptureFile(Takes):
     one_of: ClassVar[tuple[str, ...]] = ("sensor", "sensors_from")
 
     name: Annotated[Filled | None, key("Name of the capture; its folder's if not given.")] = None
+    recorded: Annotated[
+        Annotated[str, BeforeValidator(_as_text), AfterValidator(_is_time)] | None,
+        key(
+            "When it was recorded: a date, or a date and time with or without a time zone (ISO "
+            "8601); it goes before what files say."
+        ),
+    ] = None
     unit: Annotated[
         UnitOrScale | None,
         key("Unit of lengths in files that do not state it, or metres per unit as a number."),

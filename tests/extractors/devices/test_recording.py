@@ -1,5 +1,6 @@
 """A recording holds what was written to it, survives a kill, and becomes a capture."""
 
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ import tracked
 from hypothesis import given
 from hypothesis import strategies as st
 
-from capar.model.capture import Role, TagType
+from capar.model.capture import Role, TagType, recorded_at
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from extractors.devices.addresses import parse_address
 from extractors.devices.flock import FlockTracker
@@ -139,6 +140,8 @@ def test_a_bundle_reads_as_the_capture_that_was_recorded(tmp_path: Path) -> None
     wanted = [each.positions[0] for each in made]
     np.testing.assert_allclose(hand.stream.positions, wanted, atol=1e-6)
     assert capture.rate_hz == pytest.approx(100.0, rel=1e-3)
+    age = datetime.now(UTC) - datetime.fromisoformat(recorded_at(capture.sources))
+    assert abs(age.total_seconds()) < 3600.0
 
 
 def test_sensors_whose_names_say_nothing_are_left_for_the_user_to_name(tmp_path: Path) -> None:

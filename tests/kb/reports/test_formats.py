@@ -30,6 +30,7 @@ FLAGS = (
     "--window-size=1200,1600",
 )
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+PDFLATEX = shutil.which("pdflatex")
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +51,8 @@ def test_every_format_is_the_same_each_time_and_names_every_class(
 
 @pytest.mark.parametrize("form", ["text", "md", "html", "json", "latex"])
 def test_every_claim_stands_there_with_its_sentence(report: LinguisticReport, form: str) -> None:
-    plain = " ".join(write(report, form).replace("&quot;", '"').replace("&#x27;", "'").split())
+    written = write(report, form).replace(r"\allowbreak{}", "")
+    plain = " ".join(written.replace("&quot;", '"').replace("&#x27;", "'").split())
     for claim in report.claims:
         if claim.levin:
             assert claim.quote in plain
@@ -85,11 +87,43 @@ def test_latex_leaves_no_sign_of_its_own_unescaped(report: LinguisticReport) -> 
         assert not re.search(r"(?<!\\)[%#$_]", line)
 
 
-@pytest.mark.parametrize("form", ["text", "md", "latex"])
+@pytest.mark.parametrize("form", ["text", "md", "latex", "svg", "html"])
 def test_it_is_said_what_counts_as_evidence(report: LinguisticReport, form: str) -> None:
-    plain = " ".join(write(report, form).split())
+    plain = " ".join(re.sub("<[^>]*>", " ", write(report, form)).split())
     for word in ("Observed: stored segments", "tested: a shipped", "by rule only: a rule says so"):
         assert word in plain
+
+
+@pytest.mark.skipif(PDFLATEX is None, reason="no pdflatex on this machine")
+def test_latex_compiles_and_no_cell_prints_over_another(
+    report: LinguisticReport, tmp_path: Path
+) -> None:
+    assert PDFLATEX is not None
+    (tmp_path / "report.tex").write_text(write(report, "latex"), encoding="utf-8")
+    done = subprocess.run(
+        [PDFLATEX, "-interaction=nonstopmode", "-halt-on-error", "report.tex"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        errors="replace",
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout[-2000:]
+    assert (tmp_path / "report.pdf").stat().st_size > 10_000
+    log = (tmp_path / "report.log").read_text(encoding="latin-1")
+    wide = [float(each) for each in re.findall(r"Overfull \\hbox \(([0-9.]+)pt too wide", log)]
+    assert not [each for each in wide if each > 1.0], log
+
+
+def test_numbers_of_classes_end_before_their_titles_begin(report: LinguisticReport) -> None:
+    """The widest letters that the page may be shown in are taken: 0.6 of the size each."""
+    root = ElementTree.fromstring(write(report, "svg"))
+    texts = list(root.iter("{http://www.w3.org/2000/svg}text"))
+    numbers = [each for each in texts if each.get("class") == "number"]
+    titles = [float(e.get("x", 0)) for e in texts if e.get("class") == "title" and e.get("x")]
+    assert max(len(each.text or "") for each in numbers) == len("13.5.1")
+    for each in numbers:
+        assert float(each.get("x", 0)) + 0.6 * 14 * len(each.text or "") < min(titles)
 
 
 def test_every_caption_of_latex_that_has_a_note_holds_it(report: LinguisticReport) -> None:

@@ -1,0 +1,124 @@
+"""The recording's own date: from files that carry it, else as stated, else unknown; and kept."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import motion_files as samples
+import pytest
+from typer.testing import CliRunner
+
+from capar.cli import app
+from capar.model.capture import Source, recorded_at
+from capar.model.errors import CaparError
+from extractors.readers.bundle.capture_toml import read_capture
+from extractors.readers.recorded_times import iso_of_stamp, iso_time
+from extractors.readers.registry import read_recording
+from kb import Actionary
+from ontology import CAPAR
+
+DEMO = Path(__file__).parents[3] / "capar" / "demo" / "drink_from_mug"
+
+
+@pytest.mark.parametrize(
+    ("text", "stated"),
+    [
+        ("2021-08-26", "2021-08-26"),
+        ("2021-08-26T15:19:24+02:00", "2021-08-26T15:19:24+02:00"),
+        ("2021-08-26, 15:19:24.317", "2021-08-26T15:19:24.317"),
+        (" 2021-08-26, 15:19:24 ", "2021-08-26T15:19:24"),
+        ("2021-02-30", ""),
+        ("26 August", ""),
+        ("", ""),
+    ],
+)
+def test_a_stated_time_is_read_and_nothing_added_to_it(text: str, stated: str) -> None:
+    assert iso_time(text) == stated
+
+
+def test_a_stamp_is_a_date_unless_it_counts_from_the_start_of_something() -> None:
+    stamp = int(datetime(2020, 2, 3, 4, 5, 6, 789000, tzinfo=UTC).timestamp() * 1000) * 1_000_000
+    assert iso_of_stamp(stamp) == "2020-02-03T04:05:06.789Z"
+    assert iso_of_stamp(12_500_000_000) == ""
+    assert iso_of_stamp(1 << 80) == ""
+
+
+def test_the_header_of_a_qualisys_file_says_when_it_was_recorded(tmp_path: Path) -> None:
+    path = samples.write_tsv(tmp_path / "walk.tsv")
+    assert read_recording(path).source.recorded_at == ""
+    path.write_text(f"{_opening(path)}TIME_STAMP\t2021-08-26, 15:19:24.317\t1.5\n{_rest(path)}")
+    assert read_recording(path).source.recorded_at == "2021-08-26T15:19:24.317"
+
+
+def _opening(path: Path) -> str:
+    return path.read_text().splitlines(keepends=True)[0]
+
+
+def _rest(path: Path) -> str:
+    return "".join(path.read_text().splitlines(keepends=True)[1:])
+
+
+def test_a_bag_is_as_old_as_its_first_stamp_if_that_is_a_date(tmp_path: Path) -> None:
+    uptime = samples.write_bag(tmp_path / "uptime.bag")
+    dated = samples.write_bag(tmp_path / "dated.bag", since_s=1_580_702_706)
+    assert read_recording(uptime).source.recorded_at == ""
+    assert read_recording(dated).source.recorded_at == "2020-02-03T04:05:06Z"
+
+
+def test_what_a_capture_toml_states_goes_before_its_files_and_else_the_earliest_counts() -> None:
+    own = Source("capture.toml", "capture.toml", "0", "2020-01-01")
+    late, early = (Source(day, "qualisys", day, f"2021-08-{day}") for day in ("27", "26"))
+    assert recorded_at([own, late, early]) == "2020-01-01"
+    assert recorded_at([late, early]) == "2021-08-26"
+    assert recorded_at([Source("a", "bvh", "0")]) == ""
+
+
+def bundle(folder: Path, line: str) -> Path:
+    """The demo with a line on top of its capture.toml."""
+    for each in DEMO.iterdir():
+        (folder / each.name).write_bytes(each.read_bytes())
+    toml = folder / "capture.toml"
+    toml.write_text(f"{line}\n{toml.read_text(encoding='utf-8')}", encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("line", "stated", "datatype"),
+    [
+        ("recorded = 2021-08-26", "2021-08-26", "date"),
+        ('recorded = "2021-08-26T15:19:24Z"', "2021-08-26T15:19:24Z", "dateTime"),
+    ],
+)
+def test_the_stated_date_is_shown_stored_and_asked_for(
+    line: str, stated: str, datatype: str, tmp_path: Path
+) -> None:
+    folder = bundle(tmp_path, line)
+    assert recorded_at(read_capture(folder).sources) == stated
+    shown = CliRunner().invoke(app, ["inspect", str(folder)])
+    assert f"frames, recorded {stated}" in " ".join(shown.output.split())
+    place = tmp_path / "actionary"
+    CliRunner().invoke(app, ["observe", str(folder), "--actionary", str(place), "--new"])
+    with Actionary.open(str(place), read_only=True) as actionary:
+        assert {str(row["recorded"]) for row in actionary.ask("sources")} == {stated}
+        (row,) = actionary.store.ask(
+            f"SELECT (DATATYPE(?at) AS ?type) {{ ?c {CAPAR.recordedAt} ?at }}"
+        ).rows
+        assert str(row[0].value).endswith(f"#{datatype}")
+    checked = CliRunner().invoke(app, ["check", "--actionary", str(place)])
+    assert checked.exit_code == 0, checked.output
+
+
+def test_without_a_date_none_is_made_up(tmp_path: Path) -> None:
+    assert recorded_at(read_capture(DEMO).sources) == ""
+    shown = CliRunner().invoke(app, ["inspect", str(DEMO)])
+    assert "no date of recording" in " ".join(shown.output.split())
+
+
+def test_what_is_no_date_is_refused_with_its_line(tmp_path: Path) -> None:
+    with pytest.raises(CaparError, match=r"capture.toml:1: recorded = .last summer. is not"):
+        read_capture(bundle(tmp_path, 'recorded = "last summer"'))
+
+
+def test_recordings_of_others_have_the_dates_that_their_files_carry() -> None:
+    folder = samples.recordings_folder()
+    pillow = read_recording(folder / "hand_embodiment_pillow" / "recording.tsv")
+    assert pillow.source.recorded_at == "2021-08-26T15:19:24.317"
