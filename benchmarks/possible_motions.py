@@ -3,8 +3,8 @@
 Run as ``PYTHONPATH=.:tests python benchmarks/possible_motions.py [PERFORMER ...]``; one BLAS thread
 (``OPENBLAS_NUM_THREADS=1``) is faster than several. A motion is possible if hands and feet, and the
 mouth where it is an object, are followed to 10 mm and 10 degrees, and the head's turn likewise,
-and no joint is faster than 25 rad/s. Feet that are not tracked stay where they are, and the weight
-above them; where the person stands for that is tried out.
+and no joint is faster than 25 rad/s. Feet that are not tracked stay where they are, and where
+that is is tried out; whether the person would fall is not judged.
 """
 
 import sys

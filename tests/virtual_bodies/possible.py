@@ -111,9 +111,9 @@ class Follow:
 def missed(capture: Capture) -> Missed:
     """How well the body of a capture's first agent can do what its sensors did.
 
-    Feet that are not tracked stay where they are, and the weight above them. Where the way from
-    the first posture on is not possible, others are tried: from other places to stand, and then
-    over other postures of the arm at the moment at which most was missed.
+    Feet that are not tracked stay where they are; balance is asked for, but not judged. Where the
+    way from the first posture on is not possible, others are tried: from other places to stand,
+    and then over other postures of the arm at the moment at which most was missed.
     """
     human = Human.of(measures_of(capture.agent))
     wanted = list(_wanted(capture, human))
