@@ -3,8 +3,8 @@
 Run as ``PYTHONPATH=.:tests python benchmarks/possible_motions.py [PERFORMER ...]``; one BLAS thread
 (``OPENBLAS_NUM_THREADS=1``) is faster than several. A motion is possible if hands and feet, and the
 mouth where it is an object, are followed to 10 mm and 10 degrees, and the head's turn likewise,
-and no joint is faster than 25 rad/s. Feet that are not tracked stay; where that is not enough they
-may step.
+and no joint is faster than 25 rad/s. Feet that are not tracked stay where they are, and where
+that is is tried out; whether the person would fall is not judged.
 """
 
 import sys
@@ -17,7 +17,8 @@ from virtual_bodies.possible import ACTS, Missed, missed
 def row(name: str, who: str, made: Missed) -> str:
     """A line of the table."""
     told = "yes" if made.possible else "no"
-    told += ", with steps" if made.possible and made.steps else ""
+    if made.possible and any(made.stands):
+        told += ", standing {:+.2f} m ahead and {:+.2f} m to the left".format(*made.stands)
     return (
         f"| {name} | {who} | {told} | {1e3 * made.metres:.1f} | {np.degrees(made.radians):.1f} "
         f"| {made.fastest_radps:.0f} | {made.what} |"
@@ -25,17 +26,20 @@ def row(name: str, who: str, made: Missed) -> str:
 
 
 def main(names: list[str]) -> None:
-    print("| motion | performer | possible | mm | degrees | rad/s | worst |")
-    print("|---|---|---|---|---|---|---|")
     found = []
     for performer in motions.PERFORMERS:
         if names and performer.name not in names:
             continue
-        for act in ACTS:
-            made = missed(act(performer).capture)
-            found.append(made.possible)
-            print(row(act.__name__, performer.name, made), flush=True)
-    print(f"\n{sum(found)} of {len(found)} are possible ({np.mean(found):.0%}).")
+        made = {act.__name__: missed(act(performer).capture) for act in ACTS}
+        possible = [each.possible for each in made.values()]
+        found += possible
+        print(f"## {performer.name}: {sum(possible)} of {len(possible)} are possible\n")
+        print("| motion | performer | possible | mm | degrees | rad/s | worst |")
+        print("|---|---|---|---|---|---|---|")
+        for name, each in made.items():
+            print(row(name, performer.name, each))
+        print(flush=True)
+    print(f"{sum(found)} of {len(found)} are possible ({np.mean(found):.0%}).")
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ TURN = 12.0
 """How hard it turns back where it is not held in between [ways / duration^2]."""
 
 AHEAD_M = 0.55
-"""How far the furniture's front is before the person [m]."""
+"""How far the furniture's front is before the person at most [m]."""
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,8 @@ def door(performer: Performer) -> Furniture:
 
 def lid(performer: Performer) -> Furniture:
     """A chest's lid, its hinge at the back, taken below its overhanging front edge."""
-    place = _standing(performer)
+    lower = min(0.0, 2.0 * (performer.size - 0.9))  # a child's raised lid would be out of reach
+    place = pose((0.0, 0.0, lower)) * _standing(performer)
     at = place.translation + np.array([-0.02, 0.0, HIGH + GAP])
     size = (DEEP + 0.04, WIDE, WALL)
     hinge = (float(at[0]) + size[0] / 2.0, 0.0, float(at[2]))
@@ -216,7 +217,8 @@ def work(
 
 
 def _standing(performer: Performer) -> RigidTransform:
-    return pose((AHEAD_M + DEEP / 2.0, -0.12 + performer.aside_m, performer.table_m))
+    ahead = min(AHEAD_M, 0.6 * performer.size)
+    return pose((ahead + DEEP / 2.0, -0.12 + performer.aside_m, performer.table_m))
 
 
 def _vector(values: np.ndarray) -> Vector:

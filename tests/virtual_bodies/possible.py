@@ -22,6 +22,8 @@ from capar.body.anthropometry import measures_of
 from capar.body.gaze import share_costs
 from capar.body.human import Human
 from capar.body.recording import segment_surface
+from capar.body.scripts import SIDES
+from capar.body.solving import Solver
 from capar.model import geometry
 from capar.model.capture import Capture, Sensor
 from capar.regeneration.hand_frames import body_hand_frame, hand_frame, palm_of
@@ -36,8 +38,22 @@ FASTEST_RADPS = 25.0
 """... and no joint is faster [rad/s]: elbows of throwers reach about forty."""
 
 RATE_HZ = 10.0
-SETTLING, FEWEST, MOST = 80, 4, 24
-"""Iterations at the first frame, and at the others: more while something is missed."""
+FEWEST, MOST = 4, 80
+"""Steps of the inverse kinematics at a frame: more while something is missed."""
+
+PLACES = (
+    (0.0, 0.0), (0.15, 0.0), (-0.15, 0.0), (0.0, 0.15), (0.0, -0.15), (0.15, 0.15), (0.15, -0.15),
+    (-0.15, 0.15), (-0.15, -0.15),
+)  # fmt: skip
+"""Where the feet may stand, of which a motion that does not track them tells nothing [m]."""
+
+ARMS = (
+    {"shoulder_abduction": 70.0, "elbow_flexion": 90.0},
+    {"shoulder_flexion": 60.0, "elbow_flexion": 60.0},
+    {"shoulder_flexion": -30.0, "elbow_flexion": 120.0},
+    {"shoulder_flexion": 60.0, "shoulder_rotation": 50.0, "elbow_flexion": 90.0},
+)
+"""Other postures of the arms from which a place is tried to be met [degrees]."""
 
 PALM, FOOT = (60.0, 8.0), (60.0, 8.0)
 HEAD, MOUTH = (0.0, 4.0), (60.0, 0.0)
@@ -62,9 +78,12 @@ class Missed:
     what: str
     """Where it is missed by most, and when [s]."""
 
+    frame: int
+    """Which frame that is."""
+
     fastest_radps: float
-    steps: bool
-    """Whether the feet, which are not tracked, must step for it."""
+    stands: tuple[float, float] = (0.0, 0.0)
+    """Where the feet, which are not tracked, stay throughout, from the motion's origin [m]."""
 
     @property
     def possible(self) -> bool:
@@ -92,15 +111,35 @@ class Follow:
 def missed(capture: Capture) -> Missed:
     """How well the body of a capture's first agent can do what its sensors did.
 
-    The feet stay where they are unless they are tracked; where that is not enough they may step.
+    Feet that are not tracked stay where they are; balance is asked for, but not judged. Where the
+    way from the first posture on is not possible, others are tried: from other places to stand,
+    and then over other postures of the arm at the moment at which most was missed.
     """
     human = Human.of(measures_of(capture.agent))
     wanted = list(_wanted(capture, human))
-    staying = _followed(capture, human, wanted, steps=False)
-    if staying.possible or any(each.foot for each in wanted):
-        return staying
-    stepping = _followed(capture, human, wanted, steps=True)
-    return stepping if _worse(staying) > _worse(stepping) else staying
+    best = None
+    for way in _ways(capture, human, wanted):
+        if best is None or _worse(way) < _worse(best):
+            best = way
+        if best.possible:
+            break
+    assert best is not None
+    return best
+
+
+def _ways(capture: Capture, human: Human, wanted: list[Follow]) -> Iterator[Missed]:
+    """What is missed on the ways that are tried, one after the other."""
+    led = any(each.foot for each in wanted)
+    ways = []
+    for stands in PLACES[:1] if led else PLACES:
+        follower = Follower(capture, human, wanted, stands)
+        ways.append(follower.run(0, follower.rest))
+        yield ways[-1]
+    best = min(ways, key=_worse)
+    follower = Follower(capture, human, wanted, best.stands)
+    for arm in ARMS:
+        angles = {f"{s}_{n}": float(np.radians(a)) for n, a in arm.items() for s in SIDES}
+        yield follower.run(best.frame, human.posture(angles, place=(*best.stands, 0.0)))
 
 
 def _worse(each: Missed) -> float:
@@ -148,44 +187,78 @@ def _ankle(sensor: Sensor, human: Human) -> RigidTransform:
     return RigidTransform.from_translation(sole - own)
 
 
-def _followed(capture: Capture, human: Human, wanted: list[Follow], *, steps: bool) -> Missed:
-    eased = {f"{s}_{n}": np.radians(a) for n, a in RELAXED.items() for s in ("right", "left")}
-    rest = human.posture({name: float(angle) for name, angle in eased.items()})
-    configuration = mink.Configuration(human.model)
-    configuration.update(rest)
-    tasks = [mink.FrameTask(each.frame, each.kind, *each.costs) for each in wanted]
-    ease = mink.PostureTask(human.model, cost=share_costs(human, 0.05))
-    ease.set_target(rest)
-    others: list[mink.Task] = [ease, mink.DampingTask(human.model, cost=0.05)]
-    led = {each.frame for each in wanted}
-    free = [name for name in ("right_foot", "left_foot") if name not in led]
-    others += _stance(free, configuration, steps=steps)
-    limits = [
-        mink.ConfigurationLimit(human.model),
-        mink.VelocityLimit(human.model, dict.fromkeys(human.joints, 0.25)),
-    ]
-    count = len(_frames(capture))
-    postures, errors = [], np.zeros((count, len(wanted), 2))
-    for frame in range(count):
-        for task, each in zip(tasks, wanted, strict=True):
+class Follower:
+    """A body that follows a motion from one place to stand."""
+
+    def __init__(
+        self, capture: Capture, human: Human, wanted: list[Follow], stands: tuple[float, float]
+    ) -> None:
+        self.times, self.wanted, self.stands = capture.times[_frames(capture)], wanted, stands
+        eased = {f"{s}_{n}": float(np.radians(a)) for n, a in RELAXED.items() for s in SIDES}
+        self.rest = human.posture(eased, place=(*stands, 0.0))
+        self.configuration = mink.Configuration(human.model)
+        self.configuration.update(self.rest)
+        self.tasks = [mink.FrameTask(each.frame, each.kind, *each.costs) for each in wanted]
+        ease = mink.PostureTask(human.model, cost=share_costs(human, 0.05))
+        ease.set_target(self.rest)
+        led = {each.frame for each in wanted}
+        feet = [f"{side}_foot" for side in SIDES if f"{side}_foot" not in led]
+        stance = _stance(feet, self.configuration)
+        damping = mink.DampingTask(human.model, cost=0.05)
+        self.solver = Solver(human, [*self.tasks, ease, damping, *stance])
+
+    def run(self, start: int, posture: Float[np.ndarray, "posture"]) -> Missed:
+        """Follow the motion from one frame to its end, and from there back to its beginning."""
+        postures = np.zeros((len(self.times), len(posture)))
+        errors = np.zeros((len(self.times), len(self.wanted), 2))
+        self.configuration.update(posture)
+        for frame in range(start, len(self.times)):
+            errors[frame] = self._meet(frame)
+            postures[frame] = self.configuration.q
+        self.configuration.update(postures[start])
+        for frame in reversed(range(start)):
+            errors[frame] = self._meet(frame)
+            postures[frame] = self.configuration.q
+        return self._judged(postures, errors)
+
+    def _meet(self, frame: int) -> Float[np.ndarray, "places 2"]:
+        """Go to a frame's targets; what is missed then [m, rad]."""
+        for task, each in zip(self.tasks, self.wanted, strict=True):
             task.set_target(_se3(each.path[frame]))
-        for number in range(MOST if frame else SETTLING):
-            velocity = mink.solve_ik(configuration, [*tasks, *others], 1.0, "daqp", limits=limits)
-            configuration.integrate_inplace(velocity, 1.0)
-            if number % FEWEST == FEWEST - 1:
-                errors[frame] = [_error(configuration, each, frame) for each in wanted]
-                if (errors[frame] < (CLOSE_M, CLOSE_RAD)).all():
-                    break
-        postures.append(np.array(configuration.q))
-    return _judged(capture, np.array(postures), errors, wanted, steps=steps)
+        self.solver.restart()
+        errors = np.zeros((len(self.wanted), 2))
+        for number in range(MOST):
+            self.solver.step(self.configuration)
+            errors = np.array([_error(self.configuration, each, frame) for each in self.wanted])
+            close = number >= FEWEST and (errors < (CLOSE_M, CLOSE_RAD)).all()
+            if close or self.solver.settled:
+                break
+        return errors.reshape(-1, 2)
+
+    def _judged(
+        self,
+        postures: Float[np.ndarray, "frames posture"],
+        errors: Float[np.ndarray, "frames places 2"],
+    ) -> Missed:
+        if not self.wanted:
+            return Missed(0.0, 0.0, "nothing of the body is tracked", 0, 0.0, self.stands)
+        relative = np.maximum(errors[..., 0] / NEAR_M, errors[..., 1] / NEAR_RAD)
+        frame, place = np.unravel_index(int(relative.argmax()), relative.shape)
+        speeds = np.abs(np.diff(postures[:, 7:], axis=0)) / np.diff(self.times)[:, None]
+        return Missed(
+            float(errors[..., 0].max()),
+            float(errors[..., 1].max()),
+            f"{self.wanted[place].frame} at {self.times[frame]:.2f} s",
+            int(frame),
+            float(speeds.max(initial=0.0)),
+            self.stands,
+        )
 
 
-def _stance(feet: list[str], configuration: mink.Configuration, *, steps: bool) -> list[mink.Task]:
-    """Feet that stay, or that are flat on the floor anywhere; and the weight above both."""
-    level = np.array([0.0, 0.0, FOOT[0]]) if steps else FOOT[0]
-    turn = np.array([FOOT[1], FOOT[1], 0.0]) if steps else FOOT[1]
-    tasks: list[mink.Task] = [mink.FrameTask(name, "body", level, turn) for name in feet]
-    if len(feet) == 2 and not steps:
+def _stance(feet: list[str], configuration: mink.Configuration) -> list[mink.Task]:
+    """Feet that stay, and the weight above both."""
+    tasks: list[mink.Task] = [mink.FrameTask(name, "body", *FOOT) for name in feet]
+    if len(feet) == 2:
         tasks.append(mink.ComTask(cost=[2.0, 2.0, 0.0]))
     for task in tasks:
         task.set_target_from_configuration(configuration)
@@ -199,29 +272,6 @@ def _error(configuration: mink.Configuration, each: Follow, frame: int) -> tuple
     metres = float(np.linalg.norm(pose.translation() - goal.translation))
     radians = float(turn.magnitude())
     return metres if each.costs[0] else 0.0, radians if each.costs[1] else 0.0
-
-
-def _judged(
-    capture: Capture,
-    postures: Float[np.ndarray, "frames posture"],
-    errors: Float[np.ndarray, "frames places 2"],
-    wanted: list[Follow],
-    *,
-    steps: bool,
-) -> Missed:
-    if not wanted:
-        return Missed(0.0, 0.0, "nothing of the body is tracked", 0.0, steps)
-    times = capture.times[_frames(capture)]
-    relative = np.maximum(errors[..., 0] / NEAR_M, errors[..., 1] / NEAR_RAD)
-    frame, place = np.unravel_index(int(relative.argmax()), relative.shape)
-    speeds = np.abs(np.diff(postures[:, 7:], axis=0)) / np.diff(times)[:, None]
-    return Missed(
-        float(errors[..., 0].max()),
-        float(errors[..., 1].max()),
-        f"{wanted[place].frame} at {times[frame]:.2f} s",
-        float(speeds.max(initial=0.0)),
-        steps,
-    )
 
 
 def _se3(pose: RigidTransform) -> mink.SE3:
