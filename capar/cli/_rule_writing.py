@@ -217,6 +217,9 @@ def print_word(found: "Glossary", name: str) -> None:
         typer.echo(f"{each}  {each.meaning}")
         typer.echo(f"  explained in {each.file}:{each.line}" if each.line else f"  in {each.file}")
     for signature in dict.fromkeys(word.signature for word in words):
+        if ways := found.needed(signature):
+            told = "; or ".join(", ".join(way) for way in ways)
+            typer.echo(f"  an example needs, beside frames, links and tags: {told}")
         for place in found.rules_of(signature):
             typer.echo(f"  defined at {place}\n{_rule(Path(place.file), place.line)}")
 
@@ -241,5 +244,6 @@ def _row(word: "Word", found: "Glossary") -> dict[str, object]:
         "meaning": word.meaning,
         "file": word.file,
         "line": word.line,
+        "needs": [list(way) for way in found.needed(word.signature)],
         "defined": [str(each) for each in found.rules_of(word.signature)],
     }
