@@ -13,9 +13,9 @@ falls, rolling, and how bodies are arranged. It does not hold for these:
   its beginning, so they need what ``Moving`` needs.
 * ``Guided``, ``Opening`` and what turns back on a guide: a hinge or rail is fitted to every motion
   of the recording. It would take the guide as part of the calibration.
-* ``Place``, ``Posture``, ``Distance``, ``Travelled`` and ``SweptAzimuth``: their frames are
-  those of the facts above; and ways and angles are summed up from the first frame: they agree
-  where a window is given the sums before it (``extractors.relations.running_sums``).
+* ``Place``, ``TrunkPlace``, ``Posture``, ``Distance``, ``Travelled`` and ``SweptAzimuth``: their
+  frames are those of the facts above; and ways and angles are summed up from the first frame:
+  they agree where a window is given the sums before it (``extractors.relations.running_sums``).
 * Which mobile objects are measured at all: those that an end-effector touches in the window.
 * ``Lies`` of a shifted grip: it compares all pauses of one contact, however long.
 * Contacts across a loss or a stay within the release distance that is longer than the margin: the

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.calibration import Calibration
-from capar.model.capture import Capture, TagType
+from capar.model.capture import Capture, Sensor, TagType
 from capar.model.facts import (
     Between,
     ClosingSpeed,
@@ -37,6 +37,7 @@ from capar.model.facts import (
 )
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.trunk import trunk_sensor
 from extractors.contact.normals import contact_normal
 from extractors.contact.touching_part import touching_part
 from extractors.motion.impacts import closing_speed, falls, release_speed
@@ -51,7 +52,7 @@ from extractors.relations.attention import seeing, sight
 from extractors.relations.grips import shifts
 from extractors.relations.guides import Guide, turns_on_guide
 from extractors.relations.loads import rides
-from extractors.relations.places import distances, places
+from extractors.relations.places import distances, places, trunk_places
 from extractors.relations.rooms import rooms
 from extractors.relations.running_sums import FROM_THE_BEGINNING, Sums
 from extractors.relations.seated import seated
@@ -104,6 +105,7 @@ def handling(
     mobiles = {body.name for body in mobile}
     upright = {thing.name: np.array(thing.upright) for thing in calibration.objects}
     upright |= {sensor.name: np.array(sensor.upright) for sensor in calibration.sensors}
+    trunks = _trunks(capture)
     out: list[Fact] = []
     for name, hand in hands.items():
         out += (Resting(name, *rest) for rest in resting(hand.poses, thresholds))
@@ -117,6 +119,9 @@ def handling(
     for one in (*hands.values(), *others):
         frames = tuple(borders.get(one.name, ()))
         out += places(one, upright[one.name], frames, since)
+        if one.name in trunks:
+            trunk = bodies.sensors[trunks[one.name]]
+            out += trunk_places(one, trunk, upright[trunk.name], frames)
         out += _openings(one.name, guides, frames)
         for other in things.values():
             if other.name != one.name:
@@ -134,6 +139,16 @@ def handling(
     out += _contacts(capture, bodies, touches, thresholds)
     out += _loads(capture, things, seen, thresholds)
     return tuple(out)
+
+
+def _trunks(capture: Capture) -> dict[str, str]:
+    """The trunk of the agent whose each end-effector is, where one is tracked."""
+    own: dict[str, list[Sensor]] = defaultdict(list)
+    for sensor in capture.sensors:
+        own[capture.agent_of(sensor)].append(sensor)
+    trunks = {agent: trunk_sensor(sensors) for agent, sensors in own.items()}
+    found = ((sensor.name, trunks[capture.agent_of(sensor)]) for sensor in capture.acting)
+    return {name: trunk.name for name, trunk in found if trunk and trunk.name != name}
 
 
 def _motion(

@@ -256,6 +256,7 @@ class CAPAR(metaclass=Closed):
     GuidedObject: NamedNode
     ZeroCrossings: NamedNode
     Places: NamedNode
+    TrunkPlaces: NamedNode
     Ways: NamedNode
     Postures: NamedNode
     Distances: NamedNode

@@ -30,6 +30,7 @@ from capar.model.motion_facts import Posture as Posture
 from capar.model.motion_facts import Resting as Resting
 from capar.model.motion_facts import SweptAzimuth as SweptAzimuth
 from capar.model.motion_facts import Travelled as Travelled
+from capar.model.motion_facts import TrunkPlace as TrunkPlace
 from capar.model.phase_facts import DrawsBack as DrawsBack
 from capar.model.phase_facts import Flies as Flies
 from capar.model.phase_facts import Guided as Guided

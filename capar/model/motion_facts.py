@@ -65,6 +65,28 @@ class Place(Observed):
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class TrunkPlace(Observed):
+    """Where the middle of an end-effector is at a frame, from its agent's trunk [millimetres].
+
+    The axes turn with the trunk about the vertical, and do not lean.
+    """
+
+    predicate = "from_trunk"
+    declaration = Declaration(
+        about="body",
+        span=Span.INSTANT,
+        border=False,
+        has_sentence=False,
+        rdf=("TrunkPlaces", "body", "samples"),
+    )
+    body: str
+    frame: int
+    x: int
+    y: int
+    z: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
 class Travelled(Observed):
     """How far a body has gone along its path, and turned, since the capture began.
 

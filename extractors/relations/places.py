@@ -6,8 +6,9 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model import geometry
-from capar.model.facts import Distance, Fact, Place, Posture, SweptAzimuth, Travelled
+from capar.model.facts import Distance, Fact, Place, Posture, SweptAzimuth, Travelled, TrunkPlace
 from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.trunk import from_trunk
 from extractors.motion.leaning import lean, spin_steps
 from extractors.relations.arrangement import beyond_shadow
 from extractors.relations.running_sums import FROM_THE_BEGINNING, Sums, summed
@@ -40,6 +41,29 @@ def places(
         yield Place(body.name, frame, *middle)
         yield Travelled(body.name, frame, *travelled)
         yield Posture(body.name, frame, *posture)
+
+
+def trunk_places(
+    body: BodyGeometry,
+    trunk: BodyGeometry,
+    upright: Float[np.ndarray, "3"],
+    frames: tuple[int, ...],
+) -> Iterator[Fact]:
+    """Place of an end-effector from its agent's trunk at some frames; lost ones are left out.
+
+    Args:
+        body: The end-effector.
+        trunk: The trunk.
+        upright: The trunk's axis that points up while it stands, in its own frame.
+        frames: Frames, ascending.
+    """
+    if not frames:
+        return
+    at = np.asarray(frames)
+    places_m = from_trunk(body, trunk, upright)[at]
+    known = ~np.isnan(places_m).any(axis=1)
+    for frame, place in zip(at[known].tolist(), _thousandths(places_m[known]), strict=True):
+        yield TrunkPlace(body.name, frame, *place)
 
 
 def distances(

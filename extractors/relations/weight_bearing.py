@@ -10,15 +10,13 @@ from capar.model.capture import Capture, Sensor
 from capar.model.facts import Bears, Touching
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.trunk import trunk_sensor
 from extractors.contact.footing import FOOT
 from extractors.contact.normals import contact_normal
 from extractors.contact.touching_part import touching_part
 from extractors.motion.rest import resting
 from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
-
-TRUNK = ("pelvis", "l5", "hips", "waist", "spine", "torso", "trunk", "chest", "neck")
-"""General types of sensors on the trunk, those first that are nearest to the body's middle."""
 
 WHOLE, PART, NONE = "whole", "part", "none"
 
@@ -137,9 +135,8 @@ def _spans(
 
 def _middle(sensors: Iterable[Sensor], bodies: Bodies) -> Float[np.ndarray, "frames 3"] | None:
     """Where the trunk's sensor nearest to the body's middle is, if there is one."""
-    trunk = {each.end_effector: each.name for each in sensors if each.end_effector in TRUNK}
-    name = next((trunk[kind] for kind in TRUNK if kind in trunk), None)
-    return None if name is None else bodies.sensors[name].poses.smooth.positions
+    trunk = trunk_sensor(sensors)
+    return None if trunk is None else bodies.sensors[trunk.name].poses.smooth.positions
 
 
 def _down(

@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
-from capar.model.facts import Observed, Place, Resting, Touching
+from capar.model.facts import Observed, Place, Resting, Touching, TrunkPlace
 
 SAME_PLACE_MM = 10
 """Postures at rest nearer to each other than this along every axis are one [mm]."""
@@ -49,21 +49,27 @@ class RuleMemory:
 
     def _remember(self, gone: Sequence[Observed]) -> None:
         """Keep the places of an end-effector at rest, with what it touched meanwhile."""
-        places = {(each.body, each.frame): each for each in gone if isinstance(each, Place)}
+        places = {(fact.body, fact.frame): fact for fact in gone if isinstance(fact, Place)}
+        by_trunk = {(fact.body, fact.frame): fact for fact in gone if isinstance(fact, TrunkPlace)}
         touching: dict[str, list[Touching]] = defaultdict(list)
         for fact in gone:
             if isinstance(fact, Touching):
                 touching[fact.body].append(fact)
-        for (body, frame), place in places.items():
+        postures = {
+            at: (place, *((by_trunk[at],) if at in by_trunk else ()))
+            for at, place in places.items()
+        }
+        for (body, frame), posture in postures.items():
             if frame == 0:
-                self._postures.setdefault((body, "first"), (place,))
+                self._postures.setdefault((body, "first"), posture)
         for fact in gone:
-            if isinstance(fact, Resting) and (fact.ee, fact.last) in places:
-                place = places[fact.ee, fact.last]
+            if isinstance(fact, Resting) and (fact.ee, fact.last) in postures:
+                posture = postures[fact.ee, fact.last]
                 met = (
                     touch
                     for touch in touching[fact.ee]
                     if touch.first <= fact.last and fact.first <= touch.last
                 )
-                cell = tuple(round(axis / SAME_PLACE_MM) for axis in (place.x, place.y, place.z))
-                self._postures.setdefault((fact.ee, *cell), (fact, place, *met))
+                axes = (axis for place in posture for axis in (place.x, place.y, place.z))
+                cell = tuple(round(axis / SAME_PLACE_MM) for axis in axes)
+                self._postures.setdefault((fact.ee, *cell), (fact, *posture, *met))
