@@ -17,10 +17,10 @@ NUMBERED: Mapping[str, frozenset[str]] = {
     "undisturbed": frozenset({"resting"}),
     "shares": frozenset({"touching"}),
     "meanwhile": frozenset({"touching"}),
-    "sets_off": frozenset({"displaced"}),
-    "settles": frozenset({"displaced"}),
-    "lands": frozenset({"touching", "seated"}),
-    "leaves": frozenset({"touching", "seated"}),
+    "sets_off": frozenset({"moving"}),
+    "settles": frozenset({"moving"}),
+    "lands": frozenset({"touching"}),
+    "leaves": frozenset({"touching"}),
 }
 """Inputs numbered by ``capar_rules.borders``, each with the measured facts that they come from."""
 
