@@ -58,11 +58,12 @@ def excerpt(
 
         if told(cut) == tuple(each.name for each in near):
             borders = {frame - near[0].first for each in near for frame in (each.first, each.last)}
-
-            def stays(fact: Fact, borders: Collection[int] = borders) -> bool:
-                return type(fact).predicate in kept and getattr(fact, "frame", 0) in borders | {0}
-
-            few = _shortened(cut, told, kept, stays)
+            staying = {
+                str(each)
+                for each in cut
+                if type(each).predicate in kept and getattr(each, "frame", 0) in {0, *borders}
+            }
+            few = _shortened(cut, told, kept, staying)
             return few, told(few) or ()
     return None
 
@@ -137,7 +138,7 @@ def _shortened(
     facts: tuple[Fact, ...],
     told: Callable[[Sequence[Fact]], Names | None],
     kept: Collection[str],
-    stays: Callable[[Fact], bool],
+    staying: Collection[str],
 ) -> tuple[Fact, ...]:
     """Fewer facts of which the same is told: whole kinds go first, then some of what is left."""
     names = told(facts)
@@ -148,7 +149,7 @@ def _shortened(
     kinds = sorted({type(each).predicate for each in facts} - {*NEEDED, *kept})
     few = _without(facts, [{each} for each in kinds], alike, key=lambda each: type(each).predicate)
     spare = [each for each in few if type(each).predicate not in NEEDED]
-    for some in ([each for each in spare if not stays(each)], spare):
+    for some in ([each for each in spare if str(each) not in staying], spare):
         if len(few) > MOST_FACTS:
             few = _without(few, [{str(each)} for each in some], alike, key=str)
     return few
