@@ -9,7 +9,7 @@ primitive("Hoist").
 specialises("Hoist", "Lift").
 verb("Hoist", "hoist").
 fits(Segment, "Hoist") :-
-    carried_off(Segment, Object),
+    fits(Segment, "Lift"),
     rises(Segment, Object),
     from_rest(Segment),
     spins(Segment, Object).

@@ -119,6 +119,30 @@ def test_the_segments_change_as_the_comparison_foretold(kept):
     assert renamed(stored(place, profile="thesis").seen, before=after, after=after) == ()
 
 
+def test_a_name_that_shares_a_segment_is_told_beside_the_other_and_how_to_settle_it(kept):
+    raising = LIFT.replace("Lift", "Raising").replace('specialises("Raising", "MoveObjTo").\n', "")
+    (kept / "raising.lp").write_text(raising)
+    place = ["--profile", "thesis", "--actionary", str(kept / "actionary")]
+    told = CliRunner().invoke(app, ["rules", "diff", str(kept / "raising.lp"), *place])
+    changed, count, remedy = told.stdout.splitlines()
+    assert changed.endswith(": MoveObjTo -> MoveObjTo (or Raising)")
+    assert count == "1 segment changes"
+    assert remedy.startswith("Raising and MoveObjTo share a segment.")
+    assert 'precedes("Raising", "MoveObjTo")' in remedy
+
+
+def test_names_that_share_a_segment_are_stored_with_it(kept):
+    raising = LIFT.replace("Lift", "Raising").replace('specialises("Raising", "MoveObjTo").\n', "")
+    (kept / "raising.lp").write_text(raising)
+    after = admitted_profile("thesis", added=(kept / "raising.lp",))
+    place = str(kept / "actionary")
+    effect = reclassified(place, after=after, captures=[kept / "captures"])
+    assert [(each.after, each.after_others) for each in effect.changes] == [
+        ("MoveObjTo", ("Raising",))
+    ]
+    assert renamed(stored(place, profile="thesis").seen, before=after, after=after) == ()
+
+
 def test_observations_of_another_profile_are_left_alone_and_said_so(kept):
     place = str(kept / "actionary")
     with Actionary.open(place, read_only=True) as store:

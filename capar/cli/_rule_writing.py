@@ -99,25 +99,39 @@ def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) 
     from capar.rulebook.changes import NOTHING
 
     for change in changes:
-        what = f"{change.before} -> {change.after}"
-        if NOTHING in (change.before, change.after):
-            what = (
-                f"{change.before} vanishes"
-                if change.after == NOTHING
-                else f"{change.after} appears"
+        before, after = (
+            f"{name} (or {', '.join(shared)})" if shared else name
+            for name, shared in (
+                (change.before, change.before_others), (change.after, change.after_others)
             )
+        )  # fmt: skip
+        what = f"{before} -> {after}"
+        if NOTHING in (change.before, change.after):
+            what = f"{before} vanishes" if change.after == NOTHING else f"{after} appears"
         address = SegmentAddress(change.ee, change.index, change.capture)
         typer.echo(f"{address}  {change.start_s:.2f} to {change.end_s:.2f} s: {what}")
     typer.echo("1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change")
+    for line in sorted({_settling(change) for change in changes if change.after_others}):
+        typer.echo(line)
     print_others(others)
+
+
+def _settling(change: "Renamed") -> str:
+    """How several names that share a segment are ordered."""
+    old = {change.before, *change.before_others}
+    new, *rest = sorted((change.after, *change.after_others), key=lambda name: (name in old, name))
+    return (
+        f"{new} and {' and '.join(rest)} share a segment. To settle it, state "
+        f'precedes("{new}", "{rest[0]}"), or add the file with --over {rest[0]}; if {new} is a '
+        f"kind of {rest[0]}, with --kind-of {rest[0]}."
+    )
 
 
 def print_precedence(file: Path, over: Sequence[str]) -> None:
     """What the primitives of a file precede, where that was asked for."""
     from capar_rules.authoring.catalogue import preceded
-    from capar_rules.authoring.user_primitives import ALL
 
-    if ALL in over:
+    if over:
         for name, others in preceded(file).items():
             typer.echo(f"{name} precedes {', '.join(others) or 'nothing'}; {file} says so")
 
@@ -155,6 +169,11 @@ def print_audit(found: "Audit") -> None:
         typer.echo(f"shadowed: {name}")
     for name in found.unreachable:
         typer.echo(f"never fits in the worlds of the audit: {name} (`capar rules check` says why)")
+    for name in found.unchecked:
+        typer.echo(
+            f"not checked: {name}; its conditions are outside the worlds of the audit "
+            "(`capar rules check` lists them)"
+        )
     typer.echo("the rules are clean" if found.clean else "the rules are not clean")
 
 
@@ -198,6 +217,9 @@ def print_word(found: "Glossary", name: str) -> None:
         typer.echo(f"{each}  {each.meaning}")
         typer.echo(f"  explained in {each.file}:{each.line}" if each.line else f"  in {each.file}")
     for signature in dict.fromkeys(word.signature for word in words):
+        if ways := found.needed(signature):
+            told = "; or ".join(", ".join(way) for way in ways)
+            typer.echo(f"  an example needs, beside frames, links and tags: {told}")
         for place in found.rules_of(signature):
             typer.echo(f"  defined at {place}\n{_rule(Path(place.file), place.line)}")
 
@@ -222,5 +244,6 @@ def _row(word: "Word", found: "Glossary") -> dict[str, object]:
         "meaning": word.meaning,
         "file": word.file,
         "line": word.line,
+        "needs": [list(way) for way in found.needed(word.signature)],
         "defined": [str(each) for each in found.rules_of(word.signature)],
     }

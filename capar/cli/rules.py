@@ -132,8 +132,14 @@ def add(
     over: Annotated[
         list[str] | None,
         typer.Option(
-            help="A primitive that it is a kind of and more specific than; may be repeated. With "
-            "all it precedes each that names a segment with it; these are written into the file."
+            help="A primitive that it precedes where both fit; may be repeated. all stands for "
+            "each that names a segment with it, or may. It is written into the file."
+        ),
+    ] = None,
+    kind_of: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A primitive that it is a kind of; may be repeated. It is written into the file."
         ),
     ] = None,
     reclassify: Reclassify = False,
@@ -163,13 +169,16 @@ def add(
     make_folder(folder)
     beside = _others(file, rules, actionary)
     if not reclassify:
-        added = add_rule(file, folder=folder, base=profile, over=over or (), beside=beside)
+        added = add_rule(
+            file, folder=folder, base=profile, over=over or (), kind_of=kind_of or (),
+            beside=beside,
+        )  # fmt: skip
         typer.echo(f"added {added}")
         print_precedence(added, over or ())
         return
     added, effect = add_reclassifying(
-        file, folder=folder, actionary=actionary, base=profile, over=over or (), beside=beside,
-        captures=captures or [Path()],
+        file, folder=folder, actionary=actionary, base=profile, over=over or (),
+        kind_of=kind_of or (), beside=beside, captures=captures or [Path()],
     )  # fmt: skip
     typer.echo(f"added {added}")
     print_precedence(added, over or ())
@@ -267,7 +276,7 @@ def audit(
     """Audit the whole rule base over every segment that there can be."""
     from dataclasses import asdict
 
-    from capar_rules.lint.audit import audit as audited
+    from capar_rules.lint.profile_audit import audit as audited
 
     found = audited(rule_base(profile, rules, opened(actionary)))
     if json:

@@ -55,6 +55,11 @@ class Renamed:
     end_s: float
     before: str
     after: str
+    before_others: tuple[str, ...] = ()
+    """Names that shared the segment with the one before."""
+
+    after_others: tuple[str, ...] = ()
+    """Names that share it with the one after, until one of them precedes the other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +92,7 @@ def captured(captures: Iterable[str], *, rules: Profile) -> Seen:
 
 
 def renamed(seen: Seen, *, before: Profile, after: Profile) -> tuple[Renamed, ...]:
-    """The segments that have another name by another rule base, by capture and time.
+    """The segments that have another name, or share theirs with others, by capture and time.
 
     Args:
         seen: Trials; what is stored of one is what its segments are named before.
@@ -107,10 +112,12 @@ def renamed(seen: Seen, *, before: Profile, after: Profile) -> tuple[Renamed, ..
         for key in sorted(old.keys() | new.keys()):
             was, now = old.get(key), new.get(key)
             segment = now or old[key]
-            words = [each.name if each else NOTHING for each in (was, now)]
-            if words[0] != words[1]:
+            old_name, new_name = (each.name if each else NOTHING for each in (was, now))
+            old_others, new_others = (each.others if each else () for each in (was, now))
+            if (old_name, old_others) != (new_name, new_others):
                 place = segment.ee, segment.index, segment.start_s, segment.end_s
-                changes.append(Renamed(capture, *place, *words))
+                told = old_name, new_name, old_others, new_others
+                changes.append(Renamed(capture, *place, *told))
     return tuple(changes)
 
 
@@ -143,6 +150,7 @@ def add_reclassifying(
     actionary: str | None,
     base: str,
     over: Sequence[str] = (),
+    kind_of: Sequence[str] = (),
     beside: Sequence[Path],
     captures: Sequence[Path],
 ) -> tuple[Path, Effect]:
@@ -153,7 +161,9 @@ def add_reclassifying(
         folder: The folder of rules that it goes to.
         actionary: The Actionary's place; None for the usual one.
         base: The profile that it joins.
-        over: Primitives that it is to be more specific than.
+        over: Primitives that it is to precede; ``all`` stands for each that may name a segment
+            with it.
+        kind_of: Primitives that it is to specialise.
         beside: Every rule file that counts already.
         captures: Folders below which the captures are.
 
@@ -163,7 +173,9 @@ def add_reclassifying(
     Raises:
         CaparError: The rule does not count, or the observations cannot be made again.
     """
-    with checked_draft(path, folder=folder, base=base, over=over, beside=beside) as draft:
+    with checked_draft(
+        path, folder=folder, base=base, over=over, kind_of=kind_of, beside=beside
+    ) as draft:
         after = admitted_profile(base, added=(*beside, draft))
         with Actionary.open(actionary) as store:
             effect, renewed = _planned(store, after, captures)
@@ -253,7 +265,14 @@ def _kept(store: Actionary, profile: str) -> Kept:
 def _names(measured: tuple[Fact, ...], rules: Profile) -> tuple[NamedSegment, ...]:
     return tuple(
         NamedSegment(
-            each.ee, each.index, each.first, each.last, each.start_s, each.end_s, each.name
+            each.ee,
+            each.index,
+            each.first,
+            each.last,
+            each.start_s,
+            each.end_s,
+            each.name,
+            tuple(sorted(each.candidates)) if each.known else (),
         )
         for link in infer(measured, profile=rules).links
         for each in link.segments

@@ -12,11 +12,13 @@ from capar.model.segment_address import find_segment, split_capture
 from capar.pipelines.observation import facts_program
 from capar_rules.authoring.examples import Example, written
 from capar_rules.authoring.excerpts import excerpt
+from capar_rules.authoring.required_facts import required_facts
 from capar_rules.authoring.telling_bits import bits_of, distinction, fitting, written_rule
 from capar_rules.authoring.user_primitives import LACKING, new_rule, rules_of
 from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.engine.profiles import Profile, profile
-from capar_rules.engine.syntax import parse, parse_text
+from capar_rules.engine.slicing import FITS, signatures_below
+from capar_rules.engine.syntax import Statement, parse, parse_text
 from capar_rules.lint.admission import admitted_profile
 from capar_rules.lint.name_checks import rivals
 from capar_rules.lint.text_checks import known
@@ -132,9 +134,10 @@ def _examples(
         draft.write_text(text, encoding="utf-8")
         joined = admitted_profile(rules.name, added=(*rules.added, draft), steady=rules.steady)
         links = infer(measured, profile=joined).links
+        kept = _needed(parse([draft]), joined)
         out = []
         for link, each in _shown(links, segment, name):
-            short = excerpt(measured, link, each, rules=joined, name=name)
+            short = excerpt(measured, link, each, rules=joined, name=name, kept=kept)
             facts, names = short or (tuple(measured), tuple(one.name for one in link.segments))
             positive = each.name == name
             if positive or name not in names:
@@ -143,6 +146,14 @@ def _examples(
                 )
                 out.append(written(Example(story, positive, facts, ((link.ee, names),), 0)))
         return out
+
+
+def _needed(draft: Sequence[Statement], joined: Profile) -> frozenset[str]:
+    """Predicates of the facts that the words of a drafted rule are defined by."""
+    rules = parse(joined.files)
+    needs = required_facts(rules, measured=known(rules).measured)
+    words = signatures_below(each for each in draft if each.kind == "rule") - {FITS}
+    return frozenset(name for word in words for way in needs.get(word, ()) for name in way)
 
 
 def _shown(

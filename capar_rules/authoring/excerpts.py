@@ -1,6 +1,6 @@
 """Short examples: what was measured about one segment, cut to the facts that its names need."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import fields, replace
 
 from capar.model.facts import Fact, Frames, Link, RateMhz, Tag, Touching, program
@@ -23,7 +23,13 @@ Names = tuple[str, ...]
 
 
 def excerpt(
-    facts: Sequence[Fact], link: ObservedLink, segment: Segment, *, rules: Profile, name: str
+    facts: Sequence[Fact],
+    link: ObservedLink,
+    segment: Segment,
+    *,
+    rules: Profile,
+    name: str,
+    kept: Collection[str] = (),
 ) -> tuple[tuple[Fact, ...], Names] | None:
     """Facts about a segment and its neighbours, as few as name it alike, and the names they give.
 
@@ -33,6 +39,8 @@ def excerpt(
         segment: One of the link's segments.
         rules: The rules, the drafted one among them.
         name: Which name must be given as often as the rules give it to the whole excerpt.
+        kept: Predicates whose facts stay even where the names do not need them: in a long excerpt
+            those at the borders of its segments, in one too long with these none.
 
     Returns:
         The facts, with frames counted from the excerpt's first one; None if no cut keeps the name.
@@ -49,7 +57,13 @@ def excerpt(
             return names if names.count(name) == wanted else None
 
         if told(cut) == tuple(each.name for each in near):
-            few = _shortened(cut, told)
+            borders = {frame - near[0].first for each in near for frame in (each.first, each.last)}
+            staying = {
+                str(each)
+                for each in cut
+                if type(each).predicate in kept and getattr(each, "frame", 0) in {0, *borders}
+            }
+            few = _shortened(cut, told, kept, staying)
             return few, told(few) or ()
     return None
 
@@ -121,7 +135,10 @@ def _shifted(fact: Fact, first: int, last: int) -> Fact:
 
 
 def _shortened(
-    facts: tuple[Fact, ...], told: Callable[[Sequence[Fact]], Names | None]
+    facts: tuple[Fact, ...],
+    told: Callable[[Sequence[Fact]], Names | None],
+    kept: Collection[str],
+    staying: Collection[str],
 ) -> tuple[Fact, ...]:
     """Fewer facts of which the same is told: whole kinds go first, then some of what is left."""
     names = told(facts)
@@ -129,11 +146,12 @@ def _shortened(
     def alike(some: Sequence[Fact]) -> bool:
         return told(some) == names
 
-    kinds = sorted({type(each).predicate for each in facts} - {*NEEDED})
+    kinds = sorted({type(each).predicate for each in facts} - {*NEEDED, *kept})
     few = _without(facts, [{each} for each in kinds], alike, key=lambda each: type(each).predicate)
-    if len(few) > MOST_FACTS:
-        spare = [{str(each)} for each in few if type(each).predicate not in NEEDED]
-        few = _without(few, spare, alike, key=str)
+    spare = [each for each in few if type(each).predicate not in NEEDED]
+    for some in ([each for each in spare if str(each) not in staying], spare):
+        if len(few) > MOST_FACTS:
+            few = _without(few, [{str(each)} for each in some], alike, key=str)
     return few
 
 

@@ -6,15 +6,17 @@ to its file.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
 from capar.model.errors import UnknownNameError
+from capar_rules.authoring.required_facts import Ways, required_facts
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.solver import rule_file
 from capar_rules.engine.syntax import Place, Signature, parse, split_arguments
+from capar_rules.lint.text_checks import known
 
 _ATOM = r"[a-z_]\w*\((?:[^()]|\([^()]*\))*\)"
 _DEFINED = re.compile(
@@ -24,6 +26,9 @@ _CONSTANT = re.compile(r"#const\s+(\w+)\s*=\s*([^.]+)\.\s*%\s*(.+)")
 _ENTRY = re.compile(rf" {{3}}({_ATOM})(?: +(\S.*)|$)")
 _NOTE = re.compile(rf"%\s*({_ATOM}):\s+(.*)")
 _COMMENT = re.compile(r"%\*.*?\*%", re.DOTALL)
+INPUTS = "inputs.lp"
+"""The file that explains the measured facts."""
+
 _INDENT = 3
 """Indentation of the entries of a comment; continuation lines are indented further."""
 
@@ -127,6 +132,12 @@ class Glossary:
     defined: tuple[tuple[Signature, Place], ...]
     """Each predicate with the rules that define it."""
 
+    primitives: frozenset[str]
+    """The names of the primitives."""
+
+    needs: Mapping[Signature, Ways]
+    """The predicates of measured facts that each predicate needs, for each way to define it."""
+
     def find(self, name: str) -> tuple[Word, ...]:
         """The explanations of a word; several files may explain one.
 
@@ -139,14 +150,36 @@ class Glossary:
             for file, (word, arity) in self.internal
             if word == name
         )
+        if not found and name in self.primitives:
+            raise NoWordButPrimitiveError(name)
         if not found:
             names = {each.name for each in self.words} | {word for _, (word, _) in self.internal}
             raise UnknownNearError(name, names)
         return found
 
+    def needed(self, signature: Signature) -> tuple[tuple[str, ...], ...]:
+        """The measured facts that an example of a word needs, one set for each way to define it.
+
+        Each is written with its arguments.
+        """
+        forms = {each.name: str(each) for each in self.words if each.file == INPUTS}
+        ways = self.needs.get(signature, ())
+        return tuple(tuple(forms[name] for name in way) for way in ways if way)
+
     def rules_of(self, signature: Signature) -> tuple[Place, ...]:
         """The places of the rules that define a predicate."""
         return tuple(dict.fromkeys(place for each, place in self.defined if each == signature))
+
+
+class NoWordButPrimitiveError(UnknownNameError):
+    """A primitive was asked for where words of rules are explained."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__("word of rules", name, ())
+        self.args = (
+            f"no word of rules {name!r}: it is a primitive. `capar rules show {name}` prints its "
+            f'rules; a rule asks for it with fits(Segment, "{name}").',
+        )
 
 
 class UnknownNearError(UnknownNameError):
@@ -166,7 +199,8 @@ def glossary(rules: Profile) -> Glossary:
         RuleError: A file is no logic program.
     """
     statements = parse(rules.files)
-    first = [str(rule_file("inputs.lp")), str(rule_file("thresholds.lp"))]
+    vocabulary = known(statements)
+    first = [str(rule_file(INPUTS)), str(rule_file("thresholds.lp"))]
     others = {each.place.file for each in statements if each.place.file} - {*first}
     mine = [str(each) for each in rules.added]
     ordered = [*first, *sorted(others - {*mine}), *mine]
@@ -186,6 +220,8 @@ def glossary(rules: Profile) -> Glossary:
         (*words, *stated),
         tuple(sorted(internal)),
         tuple((head.signature, each.place) for each in statements for head in each.heads),
+        frozenset(vocabulary.primitives),
+        required_facts(statements, measured=vocabulary.measured),
     )
 
 

@@ -126,6 +126,7 @@ def add_rule(
     folder: Path,
     base: str = DEFAULT,
     over: Sequence[str] = (),
+    kind_of: Sequence[str] = (),
     beside: Sequence[Path] | None = None,
 ) -> Path:
     """Add a rule file to the user's rules, if its check finds no error and its examples hold.
@@ -134,8 +135,9 @@ def add_rule(
         path: The file.
         folder: The folder of rules to which it is copied.
         base: The profile that it joins.
-        over: Primitives that it is to specialise, which resolves ambiguities; ``all`` puts it
-            before each that names a segment with it.
+        over: Primitives that it is to precede, which resolves ambiguities; ``all`` stands for each
+            that names a segment with it, or may do so.
+        kind_of: Primitives that it is to specialise.
         beside: Every rule file loaded already; None for those of the folder.
 
     Returns:
@@ -145,7 +147,9 @@ def add_rule(
         RuleError: The check finds errors, an ambiguity among them, or an example fails.
         FileError: A file of that name is there already.
     """
-    with checked_draft(path, folder=folder, base=base, over=over, beside=beside) as draft:
+    with checked_draft(
+        path, folder=folder, base=base, over=over, kind_of=kind_of, beside=beside
+    ) as draft:
         return draft.replace(folder / path.name)
 
 
@@ -156,6 +160,7 @@ def checked_draft(
     folder: Path,
     base: str = DEFAULT,
     over: Sequence[str] = (),
+    kind_of: Sequence[str] = (),
     beside: Sequence[Path] | None = None,
 ) -> Iterator[Path]:
     """The same up to the last step: a checked copy that only needs to be moved into the folder.
@@ -173,8 +178,8 @@ def checked_draft(
     with TemporaryDirectory(dir=folder, prefix=".draft") as place:
         draft = Path(place) / path.name
         draft.write_text(_text(path), encoding="utf-8")
-        if over:
-            ordering = _ordering(draft, over, base=base, beside=others)
+        if over or kind_of:
+            ordering = _ordering(draft, over, kind_of, base=base, beside=others)
             draft.write_text(_text(path) + ordering, encoding="utf-8")
         findings = check(draft, profile=base, beside=others)
         require(
@@ -227,34 +232,37 @@ ALL = "all"
 """Stands for every primitive that names a segment together with a new one."""
 
 
-def _ordering(path: Path, over: Sequence[str], *, base: str, beside: Sequence[Path]) -> str:
-    """The facts that put the primitives of a file before others."""
+def _ordering(
+    path: Path, over: Sequence[str], kind_of: Sequence[str], *, base: str, beside: Sequence[Path]
+) -> str:
+    """The facts that put the primitives of a file before others, or make them kinds of those."""
     lines = []
     for name in introduced(path):
-        lines += [f'specialises("{name}", "{other}").' for other in over if other != ALL]
+        stated = [f'specialises("{name}", "{other}").' for other in kind_of]
+        stated += [f'precedes("{name}", "{other}").' for other in over if other != ALL]
+        lines += stated
         if ALL in over:
-            found = beaten(path, name, base=base, beside=beside, over=over)
+            found = beaten(path, name, base=base, beside=beside, stated=stated)
             lines += [f'precedes("{name}", "{other}").' for other in found]
     return "".join(f"{each}\n" for each in lines)
 
 
 def beaten(
-    path: Path, name: str, *, base: str, beside: Sequence[Path], over: Sequence[str] = ()
+    path: Path, name: str, *, base: str, beside: Sequence[Path], stated: Sequence[str] = ()
 ) -> tuple[str, ...]:
-    """The primitives that name a segment together with one of a file; nothing if it has errors.
+    """The primitives that name a segment with one of a file, or may; nothing if it has errors.
 
     Args:
         path: The rule file.
         name: The primitive.
         base: The profile that it joins.
         beside: The user's other rule files.
-        over: Primitives that it specialises beside what the file states.
+        stated: What it specialises or precedes beside what the file states, as facts.
     """
     found = errors(check(path, profile=base, beside=beside))
     if any(each.code != "ambiguous" for each in found):
         return ()
-    stated = "".join(f'specialises("{name}", "{each}").' for each in over if each != ALL)
-    own = [*parse([path]), *parse_text(stated)]
+    own = [*parse([path]), *parse_text("\n".join(stated))]
     return rivals(name, own, known(parse(profile(base).files)), parse(beside) if beside else ())
 
 

@@ -5,11 +5,10 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from capar_rules.engine.profiles import Profile
 from capar_rules.engine.search import Atom, brave, worlds
 from capar_rules.engine.slicing import heads_of, signatures_below, towards
 from capar_rules.engine.solver import rule_file
-from capar_rules.engine.syntax import Signature, Statement, parse, parse_text
+from capar_rules.engine.syntax import Signature, Statement, parse_text
 
 ASKED: tuple[Signature, ...] = (
     ("nameless", 4),
@@ -57,7 +56,10 @@ class Audit:
     """Primitives that fit some segment, but never as the most specific one."""
 
     unreachable: tuple[str, ...]
-    """Primitives that fit no possible segment."""
+    """Primitives that fit no possible segment, though the audit can decide their conditions."""
+
+    unchecked: tuple[str, ...] = ()
+    """Those with conditions that it cannot decide: on what no world contains, or other segments."""
 
     @property
     def clean(self) -> bool:
@@ -69,17 +71,13 @@ class Audit:
         return not (self.ambiguous or self.shadowed or self.unreachable or unreasoned)
 
 
-def audit(profile: Profile) -> Audit:
-    """Audit the rules of a profile.
+def summarise(atoms: frozenset[Atom], *, undecided: Container[str] = ()) -> Audit:
+    """The audit of what holds in some world.
 
-    Raises:
-        RuleError: The rules have an error.
+    Args:
+        atoms: What was asked of the worlds.
+        undecided: Primitives of which the worlds cannot tell whether they fit.
     """
-    return summarise(evaluate(parse(profile.files), ASKED))
-
-
-def summarise(atoms: frozenset[Atom]) -> Audit:
-    """The audit of what holds in some world."""
     primitives = {str(each) for (each,) in _rows(atoms, "primitive")}
     fitting = {str(each) for (each,) in _rows(atoms, "fitting")}
     winning = {str(each) for (each,) in _rows(atoms, "winning")}
@@ -89,7 +87,8 @@ def summarise(atoms: frozenset[Atom]) -> Audit:
         excused=tuple(sorted((_features(each), str(each[4])) for each in _rows(atoms, "excused"))),
         ambiguous=_clashes(_rows(atoms, "clash")),
         shadowed=tuple(sorted(fitting - winning)),
-        unreachable=tuple(sorted(primitives - fitting)),
+        unreachable=tuple(sorted(each for each in primitives - fitting if each not in undecided)),
+        unchecked=tuple(sorted(each for each in primitives - fitting if each in undecided)),
     )
 
 

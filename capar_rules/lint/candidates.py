@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from capar_rules.engine.slicing import FITS
 from capar_rules.engine.syntax import Atom, Statement, split_arguments
 from capar_rules.lint.extents import Extents, Worlds, every_world
+from capar_rules.lint.segment_terms import FITTED, about_others
 from capar_rules.lint.word_places import STRING
 
 ROW = ("feature_row", 6)
@@ -30,7 +31,10 @@ def candidates(user: Sequence[Statement], extents: Extents) -> Mapping[str, Worl
 def worlds_of(rule: Statement, own: Mapping[str, Worlds], extents: Extents) -> Worlds:
     """The worlds in which a rule can fire, at most."""
     worlds = every_world()
+    others = about_others(rule, [FITTED])
     for literal in rule.body:
+        if literal.text in others:
+            continue
         if literal.kind == "atom" and not literal.sign and literal.atoms[0].signature == FITS:
             name = primitive_in(literal.atoms[0])
             if name in own:

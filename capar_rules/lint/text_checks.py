@@ -4,8 +4,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from pathlib import Path
 
 from capar_rules.engine.slicing import heads_of
+from capar_rules.engine.solver import rule_file
 from capar_rules.engine.syntax import Atom, Place, Signature, Statement, split_arguments
 from capar_rules.lint.findings import NOTE, Finding
 
@@ -122,8 +124,8 @@ def _statements(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-def _heads(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
-    taken = base.heads | base.inputs
+def _heads(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
+    taken = (base.heads | base.inputs) - _beside(own, base)
     arities = dict(AUTHORED.keys())
     for statement in own:
         for head in statement.heads:
@@ -142,6 +144,17 @@ def _heads(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
                     f"{name} has {arities[name]} arguments, not {arity}.",
                     f"Write it like {AUTHORED[name, arities[name]]}.",
                 )  # fmt: skip
+
+
+def _beside(own: Iterable[Statement], base: Known) -> frozenset[Signature]:
+    """What files of the user define that introduce a primitive of this one, as its copy does."""
+    names = introduced_names(own)
+    files = {file for name, file in base.primitives.items() if name in names and not _ships(file)}
+    return heads_of(each for each in base.rules if each.place.file in files)
+
+
+def _ships(file: str) -> bool:
+    return Path(file).is_relative_to(rule_file("inputs.lp").parent)
 
 
 def _bodies(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
@@ -188,7 +201,10 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
                 yield Finding(
                     head.place, "taken-name",
                     f"there is a primitive {arguments[0]} already, in {taken}.",
-                    "Choose another name, or take one of the two files away.",
+                    "Choose another name, or take one of the two files away."
+                    if _ships(taken)
+                    else "Remove that one first: capar rules remove "
+                    f"{arguments[0].strip(chr(34))}. Or choose another name.",
                 )  # fmt: skip
             at = {"fits": 1, "feature_row": 0, "specialises": 0, "precedes": 0, "verb": 0}.get(name)
             if at is None or (name, len(arguments)) not in AUTHORED:

@@ -45,9 +45,11 @@ class NamedSegment:
     start_s: float
     end_s: float
     name: str
+    others: tuple[str, ...] = ()
+    """Names that fit it equally well; none of an unknown segment."""
 
 
-_SEGMENTS = f"""SELECT ?ee ?index ?first ?last ?start ?end ?name
+_SEGMENTS = f"""SELECT ?ee ?index ?first ?last ?start ?end ?name ?other
 WHERE {{
   GRAPH @graph@ {{
     @graph@ {CAPAR.segment} ?segment .
@@ -59,20 +61,26 @@ WHERE {{
     GRAPH @graph@ {{ ?segment {CAPAR.action} ?action }}
     ?action {CAPAR.name} ?name
   }}
+  OPTIONAL {{
+    GRAPH @graph@ {{ ?segment {CAPAR.candidate} ?candidate }}
+    ?candidate {CAPAR.name} ?other
+  }}
 }}
 ORDER BY ?ee ?index"""
 
 
 def named_segments(store: Store, name: str) -> tuple[NamedSegment, ...]:
     """The segments of an observation as they are stored, by end-effector and time."""
-    found = set()
+    found: dict[tuple[str, int, int, int, float, float, str], set[str]] = {}
     for row in store.ask(fill(_SEGMENTS, graph=str(names.observation(name)))).rows:
-        ee, index, first, last, start, end, called = (
+        ee, index, first, last, start, end, called, other = (
             each.value if isinstance(each, Literal) else "" for each in row
         )
         place = ee, int(index), int(first), int(last), float(start), float(end)
-        found.add(NamedSegment(*place, called or UNKNOWN))
-    return tuple(sorted(found))
+        others = found.setdefault((*place, called or UNKNOWN), set())
+        if other and called:
+            others.add(other)
+    return tuple(sorted(NamedSegment(*place, tuple(sorted(found[place]))) for place in found))
 
 
 def replace_all(store: Store, observations: Iterable[tuple["Observation", str]]) -> None:

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from capar_rules.engine.profiles import profile
-from capar_rules.lint.audit import Audit, audit
+from capar_rules.lint.audit import Audit
+from capar_rules.lint.profile_audit import audit
 
 pytestmark = pytest.mark.long
 

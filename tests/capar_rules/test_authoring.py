@@ -7,6 +7,7 @@ import pytest
 
 from capar.model.errors import FileError, RuleError, UnknownNameError
 from capar.model.par import FeatureSet
+from capar_rules.authoring.catalogue import preceded
 from capar_rules.authoring.examples import Example, read_examples, written
 from capar_rules.authoring.user_primitives import (
     add_rule,
@@ -21,6 +22,9 @@ from capar_rules.authoring.user_primitives import (
 )
 from capar_rules.engine.profiles import profile
 from capar_rules.lint.admission import admitted_profile
+from capar_rules.lint.checking import check
+from capar_rules.lint.findings import errors
+from capar_rules.lint.profile_audit import audit
 from capar_rules.pars.inference import infer
 from extractors.measure import measure
 
@@ -200,7 +204,72 @@ def test_an_ambiguity_is_refused_unless_it_is_ordered(grasp, tmp_path):
         add_rule(grasp, folder=folder, base="thesis")
     assert user_rules(folder) == ()
     added = add_rule(grasp, folder=folder, base="thesis", over=["Touch"])
-    assert added.read_text().endswith('specialises("Grasp", "Touch").\n')
+    assert added.read_text().endswith('\n*%\nprecedes("Grasp", "Touch").\n')
+    added.unlink()
+    added = add_rule(grasp, folder=folder, base="thesis", kind_of=["Touch"])
+    assert added.read_text().endswith('\n*%\nspecialises("Grasp", "Touch").\n')
+
+
+UNLOAD = """%* Unload: a possessed object is taken off a thing that bore it. *%
+primitive("Unload").
+specialises("Unload", "MoveObj").
+fits(Segment, "Unload") :-
+    fits(Segment, "MoveObj"),
+    taken_off(Segment, _, _).
+taken_off(Segment, Load, Bearer) :-
+    possessed(Segment, Load, _),
+    borne_at(Segment, start, Load, Bearer),
+    tag(Bearer, mobile),
+    not borne_at(Segment, end, Load, Bearer).
+
+%* Example: a cup is taken off a tray and held in the air.
+   frames(0, 400).  rate_mhz(100000).  link(hand, hand, right).
+   tag(cup, mobile).  tag(tray, mobile).
+   touching(hand, cup, 100, 400).  touching(cup, tray, 0, 200).
+   upward(cup, tray, 0, 1000).
+   moving(cup, 200, 300).
+   => hand: Reach, Touch, Unload, Touch
+*%
+
+%* Counter-example: a cup is taken off a table, which is fixed.
+   frames(0, 400).  rate_mhz(100000).  link(hand, hand, right).
+   tag(cup, mobile).  tag(table, fixed).
+   touching(hand, cup, 100, 400).  touching(cup, table, 0, 200).
+   upward(cup, table, 0, 1000).
+   moving(cup, 200, 300).
+   => hand: Reach, Touch, MoveObj, Touch
+*%
+"""
+
+
+@pytest.fixture
+def unload(tmp_path):
+    path = tmp_path / "unload.lp"
+    path.write_text(UNLOAD)
+    return path
+
+
+def test_names_that_may_share_a_segment_are_refused_until_they_are_ordered(unload, tmp_path):
+    folder = tmp_path / "rules"
+    with pytest.raises(RuleError, match=r"Unload and Carry, .* may name the same segments"):
+        add_rule(unload, folder=folder)
+    with pytest.raises(RuleError, match="may name the same segments") as refused:
+        add_rule(unload, folder=folder, over=["Carry"])
+    assert '"Carry"' not in str(refused.value)
+    added = add_rule(unload, folder=folder, over=["all"])
+    first = preceded(added)["Unload"]
+    assert {"Carry", "Lift", "Slide"} <= {*first}
+    assert not {"MoveObj", "Reach", "Touch"} & {*first}
+    assert errors(check(added)) == ()
+    audited = audit(profile("extended", added=(added,)))
+    assert (audited.unchecked, audited.clean) == (("Unload",), True)
+
+
+def test_a_file_that_is_there_already_is_refused_in_one_line(unload, tmp_path):
+    added = add_rule(unload, folder=tmp_path / "rules", over=["all"])
+    (finding,) = check(unload, beside=[added])
+    assert finding.message == f'there is a primitive "Unload" already, in {added}.'
+    assert "capar rules remove Unload" in finding.remedy
 
 
 def test_a_rule_whose_example_fails_is_not_added(grasp, tmp_path):

@@ -52,4 +52,5 @@ def test_a_draft_holds_by_its_own_short_examples_and_says_what_it_left_out(tmp_p
     examples = read_examples(text)
     assert [each.positive for each in examples] == [True, False]
     assert all(len(each.facts) <= MOST_FACTS for each in examples)
+    assert all("place" in {type(fact).predicate for fact in each.facts} for each in examples)
     assert try_rule(path) == ()

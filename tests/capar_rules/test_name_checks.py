@@ -7,10 +7,11 @@ import pytest
 
 from capar_rules.engine.profiles import profile
 from capar_rules.engine.syntax import parse
-from capar_rules.lint.audit import audit, evaluate
+from capar_rules.lint.audit import evaluate
 from capar_rules.lint.checking import check
 from capar_rules.lint.extents import NAMED, PROFILES, every_world, extents_of, fingerprint
 from capar_rules.lint.findings import Finding, errors
+from capar_rules.lint.profile_audit import audit
 
 FITS = ("fits", 2)
 
@@ -75,19 +76,78 @@ def test_a_rule_about_the_left_hand_is_judged_like_one_about_the_right(tmp_path)
 
 
 def test_names_that_only_unjudged_conditions_could_keep_apart_are_refused(tmp_path):
-    peck = written(tmp_path, "Peck", "Touch", PECK)
+    peck = written(tmp_path, "Peck", "Touch", PECK.replace(").", f"){NOT_CLASHING}."))
     rap = written(tmp_path, "Rap", "Touch", PECK.replace("Peck", "Rap"))
     assert {code for code, each in found(peck).items()} == {"not-judged"}
     clash = found(rap, peck)["ambiguous"]
-    assert "Rap and Peck may name the same segments" in clash.message
+    assert clash.message.startswith(
+        "Rap and Peck, RestFoot, Stand, StandOnOneLeg, TouchOneself may name the same segments"
+    )
     assert "looking_at(_,Object,_,_)" in clash.message
+
+
+@pytest.mark.parametrize(
+    "stated",
+    ['precedes("Rap", "Peck").', 'precedes("Peck", "Rap").', 'specialises("Rap", "Peck").'],
+)
+def test_a_stated_order_settles_names_that_unjudged_conditions_might_keep_apart(tmp_path, stated):
+    peck = PECK.replace(").", f"){NOT_CLASHING}.")
+    subject = stated.split('"')[1]
+    rap, peck = (
+        written(
+            tmp_path, name, "Touch",
+            f"{peck.replace('Peck', name)}\n{stated if name == subject else ''}",
+        )
+        for name in ("Rap", "Peck")
+    )  # fmt: skip
+    assert errors(tuple(found(rap, peck).values())) == ()
+
+
+def test_a_helper_of_the_file_keeps_apart_what_its_decided_conditions_do(tmp_path):
+    """Whatever is measured of the eyes, what rises is not pushed; a helper tells so as well."""
+    rule = 'fits(S, "Peek") :- fits(S, "MoveObj"), peeked(S, _).\n'
+    helper = "peeked(S, Object) :- possessed(S, Object, _), looking_at(_, Object, _, _)"
+    rivals = {
+        each: found(written(tmp_path, "Peek", "MoveObj", f"{rule}{helper}{each}."))["ambiguous"]
+        for each in ("", ", rises(S, Object)", ", not rises(S, Object)")
+    }
+    assert {each: told.remedy.count("Carry") > 0 for each, told in rivals.items()} == {
+        "": True, ", rises(S, Object)": False, ", not rises(S, Object)": True,
+    }  # fmt: skip
+
+
+def test_a_condition_that_is_not_fulfilled_in_any_world_shadows_nothing(tmp_path):
+    """That nobody looks is so in every world, as no world has eyes that do."""
+    idle = 'fits(S, "Idle") :- fits(S, "TouchOneself"), not looking_at(_, _, _, _).'
+    assert errors(tuple(found(written(tmp_path, "Idle", "TouchOneself", idle)).values())) == ()
+
+
+BEFORE = """fits(seg(Hand, From), "Renew") :-
+    fits(seg(Hand, From), "Touch"),
+    segment(seg(Hand, Before), Before, From),
+    fits(seg(Hand, Before), "Touch").
+"""
+
+
+def test_a_rule_that_joins_two_segments_is_not_said_never_to_fire(tmp_path):
+    notes = found(written(tmp_path, "Renew", "Touch", BEFORE))
+    assert "it joins more than one segment" in notes["not-judged"].message
+    assert "never-fires" not in notes
+    assert "Renew and RestFoot" in notes["ambiguous"].message
+
+
+def test_names_of_two_segments_may_share_whatever_the_other_segment_is_called(tmp_path):
+    """A world has one segment: what is asked of another one must not leave out any world."""
+    rule = BEFORE.replace('Before), "Touch"', 'Before), "Lift"')
+    renew = written(tmp_path, "Renew", "Touch", rule)
+    assert "Renew and RestFoot" in found(renew)["ambiguous"].message
 
 
 @pytest.mark.parametrize("apart", ['not fits(S, "Peck")', "not looking_at(head, table, 0, 1)"])
 def test_names_that_an_unjudged_condition_does_keep_apart_are_taken(tmp_path, apart):
     looking = "looking_at(head, table, 0, 1)"
-    rule = f'fits(S, "Peck") :- fits(S, "Touch"), {looking}.'
-    other = f'fits(S, "Rap") :- fits(S, "Touch"), {apart}, looking_at(_, _, _, _).'
+    rule = f'fits(S, "Peck") :- fits(S, "Touch"), {looking}{NOT_CLASHING}.'
+    other = f'fits(S, "Rap") :- fits(S, "Touch"), {apart}, looking_at(_, _, _, _){NOT_CLASHING}.'
     peck = written(tmp_path, "Peck", "Touch", rule)
     rap = written(tmp_path, "Rap", "Touch", other)
     assert errors(tuple(found(rap, peck).values())) == ()

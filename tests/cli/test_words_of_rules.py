@@ -33,12 +33,34 @@ def test_all_words_stand_below_their_files():
 
 
 def test_one_word_is_told_with_its_file_and_its_rules():
-    first, second, third, *rule = run("carried_off").splitlines()
+    first, second, needs, third, *rule = run("carried_off").splitlines()
     assert first.startswith("carried_off(Segment, Object)  it moves in the hand")
     assert second.startswith("  explained in vocabulary/directions.lp:")
+    assert needs.startswith("  an example needs, beside frames, links and tags: moving(Object, ")
     assert third.startswith("  defined at ")
     assert rule[0] == "    carried_off(Segment, Object) :-"
     assert rule[-1].endswith(".")
+
+
+@pytest.mark.parametrize(
+    ("word", "facts"),
+    [
+        ("borne_at", [["touching", "upward"]]),
+        ("contains_at", [["lies"]]),
+        ("toward_performer", [["apart"]]),
+        ("hangs_at", [["lies", "touching"], ["touching", "upward"]]),
+        ("moving", []),
+    ],
+)
+def test_the_facts_that_an_example_of_a_word_needs_follow_from_its_rules(word, facts):
+    (row,) = json.loads(run(word, "--json"))
+    assert [[each.partition("(")[0] for each in way] for way in row["needs"]] == facts
+
+
+def test_a_primitive_is_no_word_but_is_shown_by_its_own_command():
+    result = CliRunner().invoke(app, ["rules", "words", "HandOver"])
+    assert isinstance(result.exception, UnknownNameError)
+    assert "capar rules show HandOver" in str(result.exception)
 
 
 def test_words_are_told_as_json():
