@@ -21,6 +21,9 @@ GROWN = 8.0
 No threshold: as displacement grows with the cube of time, that is twice as long after it began.
 """
 
+RETURNED = 0.5
+"""A stroke is over where no more than this share of its way is left, and a hair less [1]."""
+
 
 def motion_edges(
     poses: Poses, moved: Interval, rests: tuple[RestPose, ...], floor: Floor, thresholds: Thresholds
@@ -165,22 +168,22 @@ def _well_beyond(
 ) -> int:
     """The frame, from the first of a motion to the last, at which it is clear how it grew.
 
-    It is the last one before the object is lost, and the farthest if it never goes well beyond.
+    It is the last one before the object is lost, and the farthest if it never goes well beyond, or
+    comes most of the way back before that: a stroke to and fro grows from the place as well.
     """
-    edge, other = motion
+    step = 1 if motion[0] <= motion[1] else -1
+    frames = np.arange(motion[0], motion[1] + step, step)
     reach = min(floor.position_m / near.position_m, floor.rotation_rad / near.rotation_rad)
-
-    def beyond(frames: slice) -> Bool[np.ndarray, "some"]:
-        return ~(growth(poses, frames, stay, near) < max(reach, GROWN))
-
-    forward = edge <= other
-    found = first_where(beyond, edge, other + 1) if forward else last_where(beyond, edge)
-    if found is None or (not forward and found < other):
-        first, last = min(edge, other), max(edge, other)
-        return first + int(np.argmax(growth(poses, slice(first, last + 1), stay, near)))
-    if poses.smooth.lost[found]:
-        return found - 1 if forward else found + 1
-    return found
+    grows = growth(poses, frames, stay, near)
+    lost = np.flatnonzero(np.isnan(grows))
+    grows = grows[: int(lost[0])] if lost.size else grows
+    if not grows.size:
+        return int(frames[0])
+    farthest = np.maximum.accumulate(grows)
+    back = np.flatnonzero(grows < np.minimum(RETURNED * farthest, farthest - 1.0))
+    grows = grows[: int(back[0])] if back.size else grows
+    beyond = np.flatnonzero(grows >= max(reach, GROWN))
+    return int(frames[beyond[0] if beyond.size else np.argmax(grows)])
 
 
 def _along(
