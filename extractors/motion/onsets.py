@@ -11,7 +11,7 @@ STROKES_S = tuple(0.15 * 40.0 ** (step / 11.0) for step in range(12))
 """Durations of smooth strokes (minimum jerk; Flash and Hogan 1985) that are tried [s]: from the
 least duration of a rest to 6 s; longer ones begin alike."""
 
-USUAL_S, RATIO = 1.0, 2.2
+USUAL_S, RATIO = 1.0, 2.5
 """Most strokes of people's arms last for this [s], or up to so many times more or less [1]: a place
 of rest is reached in half a second, a bowl is emptied in two."""
 

@@ -43,7 +43,7 @@ class Direction:
         )
 
     def noise(self, poses: Poses, lever_m: float = 0.0) -> float:
-        """Deviation along it [1], where a body is as recorded, of a point so far from its origin."""
+        """Deviation along it [1] of a body as recorded, or of a point so far from its origin."""
         noise = poses.noise
         goes = float(np.hypot(noise.position_m, lever_m * noise.orientation_rad))
         along = noise.orientation_rad if self.turns else goes
