@@ -23,6 +23,9 @@ FRAMES = np.arange(45, 72)
 SEEN = 18
 """Of those frames the one at which a stroke of 0.2 m has gone a hair."""
 
+HELD_M = np.array([0.0, 0.05, 0.1])
+"""Where the sensor of a hand is beside that of the thing that it holds [m]."""
+
 STILL = np.tile([1.0, 0.0, 0.0, 0.0], (len(TIMES), 1))
 
 
@@ -68,10 +71,9 @@ def line(way: np.ndarray) -> np.ndarray:
 def test_a_hand_that_holds_a_thing_takes_away_almost_half_of_the_variance() -> None:
     """Not quite half: a tenth of a metre from its sensor the hand's turning is noise as well."""
     thing = poses(line(0.2 * step(BEGIN_S, END_S)), 1)
-    hand = poses(line(0.2 * step(BEGIN_S, END_S)) + [0.0, 0.05, 0.1], 2)
+    hand = poses(line(0.2 * step(BEGIN_S, END_S)) + HELD_M, 2)
     alone, beside = told(thing)[1], told(thing, hand)[1]
-    lever_m = float(np.hypot(0.05, 0.1))
-    its_m = np.hypot(hand.noise.position_m, lever_m * hand.noise.orientation_rad)
+    its_m = np.hypot(hand.noise.position_m, np.linalg.norm(HELD_M) * hand.noise.orientation_rad)
     gain = np.sqrt(1.0 + (thing.noise.position_m / its_m) ** 2)
     assert np.median(alone / beside) == pytest.approx(gain, rel=0.03)
     assert gain > 1.2
@@ -115,7 +117,7 @@ def test_edges_are_nearer_to_the_truth_with_the_hand_that_carries() -> None:
     errors = []
     for draw in range(40):
         go = line(0.2 * step(BEGIN_S, END_S))
-        thing, hand = poses(go, 2 * draw), poses(go + [0.0, 0.05, 0.1], 2 * draw + 1)
+        thing, hand = poses(go, 2 * draw), poses(go + HELD_M, 2 * draw + 1)
         errors.append((edges(thing) - truth, edges(thing, hand) - truth))
     alone, beside = np.sqrt(np.mean(np.square(errors), axis=(0, 2)))
     assert beside < 0.9 * alone
