@@ -1,7 +1,7 @@
 """All measurements of a capture, as ground facts and the arrays that later stages need."""
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from operator import attrgetter
 from typing import Any, cast
@@ -146,8 +146,8 @@ def measured(
         for name, body in bodies.sensors.items()
     }
     looks = {sensor.name: attention(capture, sensor, bodies, limits) for sensor in seeing(capture)}
-    moves = tuple(_moving(capture, bodies, calibration, limits))
     near = contacts(capture, bodies, calibration, limits, answers)
+    moves = tuple(_moving(capture, bodies, calibration, near, limits))
     touches = tuple(arrivals(capture, bodies, calibration, near, moves, limits))
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
     reach = horizon_frames(capture.times, limits)
@@ -248,7 +248,11 @@ def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
 
 
 def _moving(
-    capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
+    capture: Capture,
+    bodies: Bodies,
+    calibration: Calibration,
+    touches: Iterable[Contact],
+    thresholds: Thresholds,
 ) -> Iterator[Fact]:
     """When each object moves, by its floor, and when that truly began and ended."""
     for thing in capture.objects:
@@ -259,8 +263,25 @@ def _moving(
             rests = rest_poses(pose, floor, thresholds)
             for interval in moving(pose, rests, floor, thresholds):
                 yield Moving(thing.name, *interval)
-                edges = motion_edges(pose, interval, rests, floor, thresholds)
+                partners = _touched(thing.name, interval, touches, bodies)
+                edges = motion_edges(pose, interval, rests, floor, thresholds, partners)
                 yield Displaced(thing.name, *edges)
+
+
+def _touched(
+    name: str, motion: Interval, touches: Iterable[Contact], bodies: Bodies
+) -> list[Poses]:
+    """Poses of what an object touches as it moves and what is not fixed."""
+    others = {
+        touch.second if touch.first == name else touch.first
+        for touch in touches
+        if name in (touch.first, touch.second)
+        and touch.interval[0] <= motion[1]
+        and motion[0] <= touch.interval[1]
+    }
+    own = bodies.objects[name].poses
+    found = (bodies.named(other).poses for other in sorted(others))
+    return [poses for poses in found if not poses.rests and poses is not own]
 
 
 def _motions(moves: tuple[Fact, ...]) -> dict[str, list[Interval]]:

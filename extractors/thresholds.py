@@ -96,8 +96,8 @@ class Thresholds(FootThresholds):
     rest_minimum_s: float = 0.15
     """A shorter standstill is no rest [s] (spec 5.4)."""
 
-    rest_begins_s: float = 0.5
-    """Where an object came to rest is the middle of its poses in so much of its rest [s]: less than
+    rest_begins_s: float = 0.75
+    """Where an object came to rest is the middle of its poses in so much of its rest [s]: no more than
     live observation waits before it settles anything, and enough to take the noise out."""
 
     motion_floor_m: float = 0.010

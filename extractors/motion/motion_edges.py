@@ -1,15 +1,16 @@
 """When a motion truly begins and ends, within the floor that separates motion from rest."""
 
+from collections.abc import Collection
 from functools import partial
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
-from scipy.spatial.transform import Rotation
+from jaxtyping import Float, Int
 
 from capar.model import geometry
 from extractors.bodies.poses import Poses, median_pose
 from extractors.motion.object_motion import Floor, RestPose, rests_at
 from extractors.motion.onsets import onset
+from extractors.motion.ways import way_out
 from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, first_where, last_where
@@ -21,9 +22,17 @@ GROWN = 8.0
 No threshold: as displacement grows with the cube of time, that is twice as long after it began.
 """
 
+RETURNED = 0.5
+"""A stroke is over where no more than this share of its way is left, and a hair less [1]."""
+
 
 def motion_edges(
-    poses: Poses, moved: Interval, rests: tuple[RestPose, ...], floor: Floor, thresholds: Thresholds
+    poses: Poses,
+    moved: Interval,
+    rests: tuple[RestPose, ...],
+    floor: Floor,
+    thresholds: Thresholds,
+    partners: Collection[Poses] = (),
 ) -> Interval:
     """The interval of a motion, from when the object left one place to when it was at another.
 
@@ -40,21 +49,28 @@ def motion_edges(
         rests: Places where it rests, in time.
         floor: The floor of its motion.
         thresholds: Least displacement, and deviations of noise that it must exceed.
+        partners: Poses of what touches the object meanwhile: where it moves as one with the object,
+            it tells of the same motion with noise of its own.
     """
     before = [each for each in rests if each.interval[0] < moved[0]]
     after = [each for each in rests if each.interval[1] > moved[1]]
     first, last = moved
     if before:
-        first = _left(poses, before[-1], moved, floor, thresholds)
+        first = _left(poses, before[-1], moved, floor, thresholds, partners)
     if after:
-        last = _arrived(poses, after[0].at_first, moved, floor, thresholds)
+        last = _arrived(poses, after[0].at_first, moved, floor, thresholds, partners)
     creeps = round(thresholds.creep_s * frame_rate(poses.filled.times))
     first, last = max(first, moved[0] - creeps), min(last, moved[1] + creeps)
     return min(first, moved[0]), max(last, moved[1])
 
 
 def _left(
-    poses: Poses, stay: RestPose, moved: Interval, floor: Floor, thresholds: Thresholds
+    poses: Poses,
+    stay: RestPose,
+    moved: Interval,
+    floor: Floor,
+    thresholds: Thresholds,
+    partners: Collection[Poses],
 ) -> int:
     """When an object left a place."""
     near = hair(poses, thresholds)
@@ -62,11 +78,16 @@ def _left(
     nudged = _nudged(poses, np.arange(moved[0], edge - 1, -1), stay, near, thresholds)
     if nudged is not None:
         stay, edge = nudged, _gone(poses, nudged, moved, near)
-    return _onset(poses, stay, (edge, max(moved[1], edge)), 1, floor, thresholds)
+    return _onset(poses, stay, (edge, max(moved[1], edge)), 1, floor, thresholds, partners)
 
 
 def _arrived(
-    poses: Poses, stay: RestPose, moved: Interval, floor: Floor, thresholds: Thresholds
+    poses: Poses,
+    stay: RestPose,
+    moved: Interval,
+    floor: Floor,
+    thresholds: Thresholds,
+    partners: Collection[Poses],
 ) -> int:
     """When an object was at a place to stay."""
     near = hair(poses, thresholds)
@@ -74,7 +95,7 @@ def _arrived(
     nudged = _nudged(poses, np.arange(moved[1], edge + 1), stay, near, thresholds)
     if nudged is not None:
         stay, edge = nudged, _come(poses, nudged, moved, near)
-    return _onset(poses, stay, (edge, min(moved[0], edge)), -1, floor, thresholds)
+    return _onset(poses, stay, (edge, min(moved[0], edge)), -1, floor, thresholds, partners)
 
 
 def _gone(poses: Poses, stay: RestPose, moved: Interval, near: Floor) -> int:
@@ -135,6 +156,7 @@ def _onset(
     step: int,
     floor: Floor,
     thresholds: Thresholds,
+    partners: Collection[Poses],
 ) -> int:
     """The frame at which a motion out of a place truly began, or one into it truly ended.
 
@@ -146,6 +168,7 @@ def _onset(
         step: 1 out of the place, -1 where the motion leads to it.
         floor: The floor of its motion, as far as which it is followed at least.
         thresholds: What a hair is, and how long it takes at most to go so far.
+        partners: Poses of what may move as one with it.
     """
     near, rate_hz = hair(poses, thresholds), frame_rate(poses.filled.times)
     most, rest = longest(poses, near, thresholds), round(thresholds.rest_minimum_s * rate_hz)
@@ -155,8 +178,13 @@ def _onset(
     frames = np.arange(edge - step * seen, far + step, step)
     if len(frames) <= seen + 1:
         return edge
-    way, smooth, noise = _along(poses, frames, stay, near)
-    begin = onset(way, smooth, seen, noise=noise, most=most, rest=rest, rate_hz=rate_hz)
+    left = gains(rate_hz, thresholds)[0]
+    way, smooth, noise = way_out(poses, partners, frames, seen, stay, near, left)
+    # A place is the mean of the middle half of the poses there.
+    place = float(np.median(noise)) / np.sqrt(0.5 * (stay.interval[1] - stay.interval[0] + 1))
+    begin = onset(
+        way, smooth, seen, noise=noise, place=place, most=most, rest=rest, rate_hz=rate_hz
+    )
     return int(frames[begin])
 
 
@@ -165,55 +193,22 @@ def _well_beyond(
 ) -> int:
     """The frame, from the first of a motion to the last, at which it is clear how it grew.
 
-    It is the last one before the object is lost, and the farthest if it never goes well beyond.
+    It is the last one before the object is lost, and the farthest if it never goes well beyond, or
+    comes most of the way back before that: a stroke to and fro grows from the place as well.
     """
-    edge, other = motion
+    step = 1 if motion[0] <= motion[1] else -1
+    frames = np.arange(motion[0], motion[1] + step, step)
     reach = min(floor.position_m / near.position_m, floor.rotation_rad / near.rotation_rad)
-
-    def beyond(frames: slice) -> Bool[np.ndarray, "some"]:
-        return ~(growth(poses, frames, stay, near) < max(reach, GROWN))
-
-    forward = edge <= other
-    found = first_where(beyond, edge, other + 1) if forward else last_where(beyond, edge)
-    if found is None or (not forward and found < other):
-        first, last = min(edge, other), max(edge, other)
-        return first + int(np.argmax(growth(poses, slice(first, last + 1), stay, near)))
-    if poses.smooth.lost[found]:
-        return found - 1 if forward else found + 1
-    return found
-
-
-def _along(
-    poses: Poses, frames: Int[np.ndarray, "some"], stay: RestPose, near: Floor
-) -> tuple[Float[np.ndarray, "some"], Float[np.ndarray, "some"], float]:
-    """How far an object goes toward its last pose, or turns, whichever is clearer.
-
-    Returns:
-        Displacement [hairs] as recorded and low-passed, and the noise of one that was recorded.
-    """
-    ends = poses.smooth.positions[frames[-1:]], poses.smooth.orientations[frames[-1:]]
-    way, turn = ends[0] - stay.position, _turned(ends[1], stay)
-    goes = np.linalg.norm(way) / near.position_m >= np.linalg.norm(turn) / near.rotation_rad
-    to, unit = (way[0], near.position_m) if goes else (turn[0], near.rotation_rad)
-    to = to / (np.linalg.norm(to) * unit)
-    streams = poses.filled, poses.smooth
-    if goes:
-        raw, smooth = ((each.positions[frames] - stay.position) @ to for each in streams)
-        return raw, smooth, poses.noise.position_m / unit
-    raw, smooth = (_turned(each.orientations[frames], stay) @ to for each in streams)
-    return raw, smooth, poses.noise.orientation_rad / unit
-
-
-def _turned(
-    orientations: Float[np.ndarray, "some 4"], stay: RestPose
-) -> Float[np.ndarray, "some 3"]:
-    """Rotation vectors from the orientation of a place [rad]; NaN where the object is lost."""
-    out = np.full((len(orientations), 3), np.nan)
-    known = ~np.isnan(orientations[:, 0])
-    back = Rotation.from_quat(stay.orientation, scalar_first=True).inv()
-    turns = Rotation.from_quat(orientations[known], scalar_first=True) * back
-    out[known] = turns.as_rotvec()
-    return out
+    grows = growth(poses, frames, stay, near)
+    lost = np.flatnonzero(np.isnan(grows))
+    grows = grows[: int(lost[0])] if lost.size else grows
+    if not grows.size:
+        return int(frames[0])
+    farthest = np.maximum.accumulate(grows)
+    back = np.flatnonzero(grows < np.minimum(RETURNED * farthest, farthest - 1.0))
+    grows = grows[: int(back[0])] if back.size else grows
+    beyond = np.flatnonzero(grows >= max(reach, GROWN))
+    return int(frames[beyond[0] if beyond.size else np.argmax(grows)])
 
 
 def longest(poses: Poses, near: Floor, thresholds: Thresholds) -> int:

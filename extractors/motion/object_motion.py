@@ -199,8 +199,8 @@ def slow_frames(
 ) -> Bool[np.ndarray, "frames"]:
     """Whether the way's slope over the window of rest is no more than noise makes it."""
     half = max(1, round(0.5 * thresholds.rest_window_s * rate_hz))
-    # Least squares over n samples: the slope's deviation is sigma sqrt(12 / n^3) a step.
-    left = thresholds.rest_sigmas * rate_hz * np.sqrt(3.0 * 12.0 / (2 * half + 1) ** 3)
+    # Least squares over n samples: by sigma sqrt(12 / n^3) a step the slope deviates on each axis.
+    left = thresholds.rest_sigmas * rate_hz * np.sqrt(12.0 / (2 * half + 1) ** 3)
     slow = np.zeros(len(stream.times), dtype=bool)
     for first, last in geometry.runs(~stream.lost):
         part = slice(first, last + 1)

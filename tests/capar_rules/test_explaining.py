@@ -32,6 +32,7 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "sends_off", 2, ""): "no story strikes away what a hand does not hold; the scenes do",
     ("", "awaited", 1, ""): "no story has hands that meet; the scenes of hands have",
     ("", "walks", 1, ""): "no story has feet; tests/test_whole_bodies.py has",
+    ("", "event", 6, "turns"): "no story leaves one thing for another; turning.cases have",
 }
 """Templates of what holds that no explanation tells, and why."""
 

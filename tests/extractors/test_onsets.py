@@ -40,7 +40,8 @@ def told_s(times: np.ndarray, way: np.ndarray, noise: np.ndarray | float = 0.0) 
         (way + noise)[part] / HAIR_M,
         way[part] / HAIR_M,
         seen,
-        noise=float(np.std(noise)) / HAIR_M,
+        noise=np.full(len(way[part]), float(np.std(noise)) / HAIR_M),
+        place=0.0,
         most=round(MOST_S * rate_hz),
         rest=round(0.15 * rate_hz),
         rate_hz=rate_hz,
@@ -96,5 +97,6 @@ def test_any_displacement_has_an_answer_no_earlier_than_the_most_and_within_it(
     way: np.ndarray, most: int, data: st.DataObject
 ) -> None:
     seen = data.draw(st.integers(0, len(way) - 1))
-    found = onset(way, way, seen, noise=0.2, most=most, rest=5, rate_hz=30.0)
+    noise = np.full(len(way), 0.2)
+    found = onset(way, way, seen, noise=noise, place=0.1, most=most, rest=5, rate_hz=30.0)
     assert max(seen - most, 0) <= found < len(way)

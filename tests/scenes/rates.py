@@ -104,7 +104,8 @@ def stays(one: Outcome, usual: Outcome) -> bool | None:
     mine, its = borders(one), borders(usual)
     if [step for step, _ in mine] != [step for step, _ in its]:
         return None
-    return all(abs(a - b) <= MOVED_S for (_, a), (_, b) in zip(mine, its, strict=True))
+    # Times are shown in hundredths of a second, whose differences are not exact in binary.
+    return all(round(abs(a - b), 2) <= MOVED_S for (_, a), (_, b) in zip(mine, its, strict=True))
 
 
 def row(cell: Cell, battery: str, found: list[Outcome], usual: list[Outcome] | None) -> str:

@@ -54,6 +54,7 @@ def test_noiseless_scenes_are_recorded_once_at_each_rate() -> None:
 
 def test_a_border_stays_within_50_ms_and_other_steps_do_not_count() -> None:
     assert stays(outcome(1.04), outcome(1.0)) is True
+    assert stays(outcome(1.05), outcome(1.0)) is True
     assert stays(outcome(1.06), outcome(1.0)) is False
     other = Outcome("a", "hand", (), ("Touch(cup) 0.00-1.00",), False, False, None)
     assert stays(other, outcome(1.0)) is None
