@@ -97,8 +97,8 @@ class Thresholds(FootThresholds):
     """A shorter standstill is no rest [s] (spec 5.4)."""
 
     rest_begins_s: float = 0.75
-    """Where an object came to rest is the middle of its poses in so much of its rest [s]: no more than
-    live observation waits before it settles anything, and enough to take the noise out."""
+    """Where an object came to rest is the middle of its poses in so much of its rest [s]: enough to
+    take the noise out, and no more than live observation waits before it settles anything."""
 
     motion_floor_m: float = 0.010
     """An object nearer than this to a place where it rests is still there [m]."""
