@@ -276,9 +276,19 @@ FORMS = (
         rf"lengthwise motion of the {NAME} was measured from {TIME} to {TIME}",
         measured_lengthwise,
     ),
-    (rf"the {NAME} had left its place by {TIME}, which counts from {TIME} on", left_place),
-    (rf"the {NAME} had come to its place by {TIME}, which counts from {TIME} on", came_to_place),
-    (rf"the {NAME} rested and touched nothing from {TIME} to {TIME}", rested_free),
+    (
+        rf"the {NAME} was seen to have left its place at {TIME}; its motion is taken to begin at "
+        rf"{TIME}",
+        left_place,
+    ),
+    (
+        rf"the {NAME} was seen in its last place at {TIME}; its motion is taken to end at {TIME}",
+        came_to_place,
+    ),
+    (
+        rf"the {NAME} rested and touched none of the tracked objects from {TIME} to {TIME}",
+        rested_free,
+    ),
     (rf"the {NAME} came to rest at {TIME}", came_to_rest),
     (rf"it ended where the {NAME} had rested before", came_back),
     (rf"the {NAME} began to move at {TIME}", left_rest),
