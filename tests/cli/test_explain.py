@@ -35,7 +35,7 @@ def test_every_segment_is_told_in_one_sentence():
     assert len(lines) == 12
     assert lines[3].startswith(
         "MoveObjTo, because the right hand touched the mug at 1.70 s and 2.38 s, the mug moved "
-        "0.60 m between 1.70 s and 2.38 s, the mug did not touch the head at 1.70 s, and "
+        "0.59 m between 1.75 s and 2.38 s, the mug did not touch the head at 1.70 s, and "
         "the mug touched the head at 2.38 s."
     )
 
