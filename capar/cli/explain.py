@@ -119,10 +119,20 @@ def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bo
     for each in told:
         typer.echo(_header(each))
         typer.echo(each.summary)
-        for line in mover_lines(seen.observation, each.ee, each.index):
+        for line in mover_lines(seen.observation, each.ee, each.index, staying=_staying(each)):
             typer.echo(line)
         if tree:
             _branch(each.reason.with_sentences(), 0)
+
+
+def _staying(told: "Explanation") -> set[str]:
+    """The objects that a segment's explanation says to stay where they are."""
+    from capar_rules.engine.syntax import split_arguments
+
+    segment = split_arguments(told.reason.atom)[0]
+    atoms = (each.atom for each in told.reason.walk() if each.atom.startswith("stays("))
+    pairs = (split_arguments(each) for each in atoms)
+    return {thing for thing, where in pairs if where == segment}
 
 
 def _branch(reason: "Reason", depth: int) -> None:

@@ -1,7 +1,6 @@
 """The pipeline from a capture to reasons: observe it, then say why, and why not."""
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.explain.explanation import Explainer, Explanation
+from capar_rules.explain.sentences import Distances
 from capar_rules.explain.why_not import Alternative
 from capar_rules.explain.why_not import why_not as alternatives
 from extractors.measure import Measurements, measure
@@ -38,7 +38,7 @@ def explained(capture: Capture, *, rules: Profile) -> Explained:
     measurements = measure(capture)
     observation = observe_measured(capture, measurements, rules=rules)
     explainer = Explainer(
-        observation.facts, profile=rules, distance_m=distances(capture, measurements)
+        observation.facts, profile=rules, distances_m=distances(capture, measurements)
     )
     return Explained(observation, explainer)
 
@@ -118,14 +118,18 @@ def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def distances(capture: Capture, measurements: Measurements) -> Callable[[str, int, int], float]:
-    """How far an object's origin is from where it was, between two frames [m]."""
+def distances(capture: Capture, measurements: Measurements) -> Distances:
+    """How far an object's origin comes between two frames [m]: straight, and along its path.
 
-    def distance(name: str, first: int, last: int) -> float:
-        track = measurements.bodies.named(name).poses.smooth.positions
-        return float(np.linalg.norm(track[last] - track[first]))
+    Steps between lost frames are left out of the path.
+    """
 
-    return distance
+    def moved(name: str, first: int, last: int) -> tuple[float, float]:
+        track = measurements.bodies.named(name).poses.smooth.positions[first : last + 1]
+        steps = np.linalg.norm(np.diff(track, axis=0), axis=1)
+        return float(np.linalg.norm(track[-1] - track[0])), float(np.nansum(steps))
+
+    return moved
 
 
 def segment_named(observation: Observation, text: str) -> Segment:

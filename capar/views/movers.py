@@ -1,7 +1,7 @@
 """What moves the objects of a segment, in words."""
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from capar.model.facts import MovedBy
 from capar.model.observation import Observation
@@ -18,13 +18,16 @@ WORDS: Mapping[str, str] = {
 """How each kind of mover is told, of the mover's name."""
 
 
-def mover_lines(seen: Observation, ee: str, index: int) -> tuple[str, ...]:
+def mover_lines(
+    seen: Observation, ee: str, index: int, *, staying: Collection[str] = ()
+) -> tuple[str, ...]:
     """For each object that moves in a segment, what moves it and in how much of its motion.
 
     Args:
         seen: What was observed.
         ee: The end-effector of the segment.
         index: Its number in the link.
+        staying: Objects whose motion does not count there; nothing is told of what moves them.
     """
     segment = next(
         each
@@ -37,7 +40,8 @@ def mover_lines(seen: Observation, ee: str, index: int) -> tuple[str, ...]:
         if isinstance(fact, MovedBy) and fact.object in segment.objects:
             span = range(max(fact.first, segment.first), min(fact.last, segment.last - 1) + 1)
             frames[fact.object][WORDS[fact.how].format(fact.mover)].update(span)
-    return tuple(line for thing in segment.objects if (line := _line(thing, frames.get(thing, {}))))
+    things = [each for each in segment.objects if each not in staying]
+    return tuple(line for thing in things if (line := _line(thing, frames.get(thing, {}))))
 
 
 def _line(thing: str, movers: Mapping[str, set[int]]) -> str:
@@ -46,4 +50,5 @@ def _line(thing: str, movers: Mapping[str, set[int]]) -> str:
         return ""
     shares = sorted(((len(found), how) for how, found in movers.items() if found), reverse=True)
     told = "; ".join(f"{how} ({100.0 * count / len(every):.0f} %)" for count, how in shares)
-    return f"motion of the {thing}: {told}"
+    shared = sum(count for count, _ in shares) > len(every)
+    return f"motion of the {thing}: {told}" + "; at times by several at once" * shared

@@ -1,13 +1,14 @@
 """Why a segment has its name: its derivation tree as sentences."""
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from pathlib import Path
 
 from capar.model.errors import RuleError
-from capar.model.facts import Fact
+from capar.model.facts import Fact, Moving
 from capar.model.observation import Segment
 from capar.model.par import UNKNOWN
 from capar_rules.borders.border_numbers import number_borders
@@ -18,7 +19,7 @@ from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.instants import corrected, frames_of
 from capar_rules.explain.near_misses import more_specific, near_misses, preceding
 from capar_rules.explain.reason import Reason as Reason
-from capar_rules.explain.sentences import Clock, Sentences
+from capar_rules.explain.sentences import Clock, Distances, Sentences
 from capar_rules.explain.summary import summary
 from capar_rules.explain.windows import Windows
 
@@ -109,18 +110,23 @@ class Explainer:
         facts: Sequence[Fact],
         *,
         profile: Profile,
-        distance_m: Callable[[str, int, int], float] | None = None,
+        distances_m: Distances | None = None,
     ) -> None:
         """Index the facts of a capture.
 
         Args:
             facts: What the extractors measured.
             profile: The rules to explain by.
-            distance_m: How far an object moved between two frames [m]; None to leave it out.
+            distances_m: How far an object moved between two frames [m], straight and along its
+                path; None to leave it out.
         """
         self.base = rule_base(profile)
         self.windows = Windows(facts, number_borders(facts, crossings_only=profile.crossings_only))
-        self.distance_m = distance_m
+        self.distances_m = distances_m
+        self.moving: dict[str, list[tuple[int, int]]] = defaultdict(list)
+        for each in facts:
+            if isinstance(each, Moving):
+                self.moving[each.object].append((each.first, each.last))
         self.corrected = corrected(facts)
         self.worlds: dict[Segment, str] = {}
         """The program of counterfactual worlds of each segment that was asked about."""
@@ -196,7 +202,7 @@ class Explainer:
         ends = {}
         for term, first, last in derived.holding("segment"):
             ends[term[4:].split(",")[0], int(first)] = int(last)
-        return Clock(self.windows.rate, self.windows.frames, ends, self.distance_m)
+        return Clock(self.windows.rate, self.windows.frames, ends, self.distances_m, self.moving)
 
     def _reason(self, grounds: Grounds, clock: Clock, done: dict[str, Reason]) -> Reason:
         if grounds.atom in done:

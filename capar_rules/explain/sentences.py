@@ -26,8 +26,17 @@ Moods: "" (it holds), "not", "had" and "had not" (counterfactual), "mended" (tak
 some frames are doubted).
 """
 
+Distances = Callable[[str, int, int], tuple[float, float]]
+"""How far an object moved between two frames [m]: straight, and along its path."""
+
 LEAST_M = 0.01
 """Shorter distances are left out of sentences [m]: the body ended where it began."""
+
+DRIFT_M = 0.005
+"""Of a body that stays, shorter distances are left out of sentences [m]."""
+
+LONGER, LONGER_M = 1.5, 0.05
+"""By this factor and by so much [m] a path is longer than the straight way, to be told instead."""
 
 
 @dataclass(frozen=True)
@@ -41,8 +50,11 @@ class Clock:
     ends: Mapping[tuple[str, int], int] = field(default_factory=dict)
     """The tick where the segment ends that begins at a tick."""
 
-    distance_m: Callable[[str, int, int], float] | None = None
-    """How far an object moved between two frames [m], where that was measured."""
+    distances_m: Distances | None = None
+    """How far objects moved, where that was measured."""
+
+    moving: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
+    """First and last frames of the measured motions, by object."""
 
     objects: Mapping[str, str] = field(default_factory=dict)
     """The object that each segment is about, by the segment's term."""
@@ -59,6 +71,14 @@ class Clock:
     def about(self, segment: str) -> str:
         """The object that a segment is about."""
         return self.objects.get(segment, "object").replace("_", " ")
+
+    def motion(self, name: str, span: tuple[int, int]) -> tuple[int, int]:
+        """From when to when an object was measured to move within a span; the span if never."""
+        parts = [
+            (max(first, span[0]), min(last, span[1])) for first, last in self.moving.get(name, ())
+        ]
+        parts = [each for each in parts if each[0] < each[1]]
+        return (min(parts)[0], max(last for _, last in parts)) if parts else span
 
     def span(self, segment: str) -> tuple[int, int] | None:
         """First and last frame of the segment that a term names."""
@@ -109,6 +129,10 @@ class Sentences:
         return template.text.format(*values)
 
 
+SPANS = ("segment", "motion", "distance", "ended", "drift")
+"""Formats that tell of the time in which a segment lies."""
+
+
 class _Value:
     """An argument, formatted as a name, a time or a distance."""
 
@@ -135,18 +159,27 @@ class _Value:
             return self.clock.about(self.text)
         if form == "hand":
             return self.text.removeprefix("seg(").split(",")[0].replace("_", " ")
-        return self._of_span(form) if form in ("segment", "distance") else None
+        return self._of_span(form) if form in SPANS else None
 
     def _of_span(self, form: str) -> str:
         span = self.clock.span(self.text)
         if span is None:
-            return "its start and its end" * (form == "segment")
-        if form == "segment":
+            return "its start and its end" * (form in ("segment", "motion"))
+        if form in ("motion", "distance", "ended"):
+            span = self.clock.motion(self.beside[0], span)
+        if form in ("segment", "motion"):
             return f"{self.clock.at(span[0])} and {self.clock.at(span[1])}"
-        return self._distance(span)
+        return self._distance(form, span)
 
-    def _distance(self, span: tuple[int, int]) -> str:
-        if self.clock.distance_m is None:
+    def _distance(self, form: str, span: tuple[int, int]) -> str:
+        if self.clock.distances_m is None:
             return ""
-        distance = self.clock.distance_m(self.beside[0], *span)
-        return f" {distance:.2f} m" if distance >= LEAST_M else ""
+        straight, path = self.clock.distances_m(self.beside[0], *span)
+        if form == "drift":
+            drift = f", but for {1e3 * straight:.0f} mm that do not count as motion,"
+            return drift if straight >= DRIFT_M else ""
+        if path > LONGER * straight and path > straight + LONGER_M:
+            if form == "distance":
+                return f" along {path:.2f} m of path"
+            return f", and ended {straight:.2f} m from where it began"
+        return f" {straight:.2f} m" if form == "distance" and straight >= LEAST_M else ""

@@ -17,6 +17,9 @@ FEATURES = "features("
 BORDERS = ("segment(", "border(", "member(")
 """Prefixes of atoms that say where a segment begins and ends, not what it is."""
 
+APART = ("no_contact", "uncounted")
+"""Predicates of no contact that counts at a border; where that border lies is no reason."""
+
 
 def summary(name: str, reason: Reason) -> str:
     """Why a segment has a name, in one sentence."""
@@ -46,7 +49,7 @@ def _deciding(reason: Reason) -> list[Reason]:
     shared = [each for each in own if each.atom.startswith(FEATURES)]
     features = [each for top in shared for each in _resting_on(top.because, passed)]
     features += [each for each in own if _rank(each) == 0]
-    return [*(each for each in own if _rank(each)), *sorted(features, key=_rank)]
+    return [*(each for each in own if _rank(each)), *sorted(features, key=_order)]
 
 
 def _resting_on(tops: "Iterable[Reason]", passed: set[int]) -> Iterator[Reason]:
@@ -69,7 +72,7 @@ def _bears(reason: Reason, below: Reason) -> bool:
     """
     if below.atom.startswith("doubted("):
         return bool(reason.rule)
-    return not reason.atom.startswith(BORDERS)
+    return not reason.atom.startswith((*BORDERS, *APART))
 
 
 def _rank(reason: Reason) -> int:
@@ -78,7 +81,17 @@ def _rank(reason: Reason) -> int:
     if predicate == "contact_at":
         hand, body = split_arguments(reason.atom)[:2]
         return 0 if hand == body else 2
+    if predicate in APART:
+        segment, _, body = split_arguments(reason.atom)[:3]
+        return 0 if segment.startswith(f"seg({body},") else 2
     return {"moved": 1, "stays": 1}.get(predicate, 3)
+
+
+def _order(reason: Reason) -> tuple[int, float]:
+    """The rank, and among contacts the time: what was so at the start comes first."""
+    rank = _rank(reason)
+    time = _TIME.search(reason.sentence) if rank in (0, 2) else None
+    return rank, _seconds(time[0]) if time else 0.0
 
 
 def _seconds(time: str) -> float:

@@ -42,7 +42,7 @@ def told(capture: Capture, rules: Profile) -> Iterator[tuple[Known, str]]:
     measurements = measure(capture)
     observation = observe_measured(capture, measurements, rules=rules)
     explainer = Explainer(
-        observation.facts, profile=rules, distance_m=distances(capture, measurements)
+        observation.facts, profile=rules, distances_m=distances(capture, measurements)
     )
     for segment in observation.segments:
         known = Known(Explained(observation, explainer), measurements.facts, segment, capture, {})

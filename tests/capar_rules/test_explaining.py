@@ -31,6 +31,8 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "pushes_with", 2, ""): "no story has a tool",
     ("", "sends_off", 2, ""): "no story strikes away what a hand does not hold; the scenes do",
     ("", "awaited", 1, ""): "no story has hands that meet; the scenes of hands have",
+    ("", "uncounted", 4, ""): "no story has a contact that ends within the border it is read at",
+    ("", "event", 6, "turns"): "no named segment of a story begins or ends where the hand turns",
     ("", "walks", 1, ""): "no story has feet; tests/test_whole_bodies.py has",
     ("", "event", 6, "turns"): "no story leaves one thing for another; turning.cases have",
 }
@@ -63,7 +65,10 @@ TRUE_OF_ANY_SEGMENT = {
     ),
     r"the ([\w ]+?) was not borne by the ([\w ]+?)": "no story has a load",
     r"the ([\w ]+?) stayed with the ([\w ]+?)": "it is said of a whole contact",
-    r"the ([\w ]+?) touched nothing when the segment began, nor when it ended": (
+    (
+        r"the ([\w ]+?) touched none of the tracked objects when the segment began, nor when it "
+        r"ended"
+    ): (
         "who moves and touches nothing in a story never does; test_circumstances.py finds it false"
     ),
 }

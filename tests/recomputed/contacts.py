@@ -8,10 +8,18 @@ def touched(known: Known, one: str, other: str, at: str) -> bool:
 
 
 def not_touched(known: Known, one: str, other: str, at: str) -> bool:
-    """No contact covers the instant, but for one that ends in the same border."""
+    """No contact covers the instant."""
     frame = known.at(at)
     return not any(
-        each.first + ROUNDED < frame < each.last - ROUNDED and each.last - frame > known.reach
+        each.first + ROUNDED < frame < each.last - ROUNDED for each in known.touching(one, other)
+    )
+
+
+def ended_within(known: Known, one: str, other: str, at: str) -> bool:
+    """A contact covers the instant, and ends within the reach of the same border."""
+    frame = known.at(at)
+    return any(
+        each.first <= frame + ROUNDED and -ROUNDED <= each.last - frame <= known.reach
         for each in known.touching(one, other)
     )
 
@@ -72,14 +80,19 @@ FORMS = (
     (rf"the {NAME} still touched the {NAME} at {TIME}", touched),
     (rf"no relation of the {NAME} with the {NAME} counted at {TIME}", uncounted),
     (rf"the {NAME} touched the {NAME} at {TIME}", touched),
-    (rf"no contact of the {NAME} with the {NAME} counted at {TIME}", not_touched),
+    (rf"the {NAME} did not touch the {NAME} at {TIME}", not_touched),
+    (
+        rf"contact of the {NAME} with the {NAME} at {TIME} does not count, as it ended within that "
+        r"border",
+        ended_within,
+    ),
     (rf"contact of the {NAME} with the {NAME} was measured from {TIME} to {TIME}", measured),
     (rf"the {NAME} began to touch the {NAME} at {TIME}", begins),
     (
         rf"the {NAME} possessed the {NAME}, as it moved in the contact that began at {TIME}",
         possessed,
     ),
-    (rf"the {NAME} moved while the {NAME} touched it, from {TIME} on", moved_in_contact),
+    (rf"the {NAME} moved in the contact with the {NAME} that began at {TIME}", moved_in_contact),
     (
         rf"the possessed object rested on the {NAME}, which it did before the hand came",
         rested_on,

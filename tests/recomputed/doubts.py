@@ -113,7 +113,10 @@ FORMS = (
     (rf"contact of the {NAME} with the {NAME} was taken to last {SPAN}", taken_contact),
     (rf"motion of the {NAME} was taken to last {SPAN}", taken_motion),
     (rf"rest of the {NAME} was taken to last {SPAN}", taken_rest),
-    (rf"the {NAME} was taken to rest, touching nothing, {SPAN}", taken_to_rest),
+    (
+        rf"the {NAME} was taken to rest, touching none of the tracked objects, {SPAN}",
+        taken_to_rest,
+    ),
     (rf"the {NAME} was taken to touch the {NAME} at {TIME}", taken_to_touch),
     (rf"the {NAME} was taken to stay where it was between {TIME} and {TIME}", taken_to_stay),
 )

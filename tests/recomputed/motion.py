@@ -24,14 +24,34 @@ GRAVITY = np.array([0.0, 0.0, -9.81])
 
 
 def moved(known: Known, what: str, distance: str, first: str, last: str) -> bool:
-    """It is displaced by so much, or, where no distance is told, elsewhere meanwhile."""
+    """It is displaced by so much, or, where no distance is told, elsewhere meanwhile.
+
+    A time that is told of motion may be that of an impact, of which smoothing blurs one step.
+    """
     begin, end = known.frame(first), known.frame(last)
     place = known.stream(what).positions
     way = float(np.linalg.norm(place[end] - place[begin]))
     if distance:
-        return abs(way - float(distance)) < 0.02
+        step = max(float(np.linalg.norm(place[at] - place[at - 1])) for at in (begin + 1, end))
+        return abs(way - float(distance)) < 0.02 + step
     far = _apart(known, what, range(begin, end + 1), begin)
     return way < 0.015 and float(far.max()) > 1.0
+
+
+def went(known: Known, what: str, path: str, first: str, last: str, ended: str) -> bool:
+    """Its steps sum to the path, and it is displaced by so much at the end."""
+    place = known.stream(what).positions[known.frame(first) : known.frame(last) + 1]
+    steps = float(np.linalg.norm(np.diff(place, axis=0), axis=1).sum())
+    straight = float(np.linalg.norm(place[-1] - place[0]))
+    return abs(steps - float(path)) < 0.03 and abs(straight - float(ended)) < 0.02
+
+
+def drifted(known: Known, what: str, drift: str, first: str, last: str) -> bool:
+    """It stays, and is displaced by so much, or, where nothing is told, by next to nothing."""
+    place = known.stream(what).positions
+    way = float(np.linalg.norm(place[known.frame(last)] - place[known.frame(first)]))
+    told = abs(way - float(drift or 0) / 1000.0) < (0.003 if drift else 0.008)
+    return told and stayed(known, what, first, last)
 
 
 def stayed(known: Known, what: str, first: str, last: str) -> bool:
@@ -263,7 +283,16 @@ def flew_on(known: Known) -> bool:
 FORMS = (
     (rf"the path of the {NAME} became level, or ceased to be, at {TIME}", levelled),
     (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),
-    (rf"the {NAME} stayed where it was between {TIME} and {TIME}", stayed),
+    (
+        rf"the {NAME} moved along (\d+\.\d\d) m of path between {TIME} and {TIME}, and ended "
+        r"(\d+\.\d\d) m from where it began",
+        went,
+    ),
+    (
+        rf"the {NAME} stayed where it was(?:, but for (\d+) mm that do not count as motion,)? "
+        rf"between {TIME} and {TIME}",
+        drifted,
+    ),
     (rf"motion of the {NAME} to and fro was measured from {TIME} to {TIME}", measured_swings),
     (rf"motion of the {NAME} was measured from {TIME} to {TIME}", measured),
     (rf"rolling of the {NAME} was measured from {TIME} to {TIME}", measured_rolling),
@@ -276,9 +305,19 @@ FORMS = (
         rf"lengthwise motion of the {NAME} was measured from {TIME} to {TIME}",
         measured_lengthwise,
     ),
-    (rf"the {NAME} had left its place by {TIME}, which counts from {TIME} on", left_place),
-    (rf"the {NAME} had come to its place by {TIME}, which counts from {TIME} on", came_to_place),
-    (rf"the {NAME} rested and touched nothing from {TIME} to {TIME}", rested_free),
+    (
+        rf"the {NAME} was seen to have left its place at {TIME}; its motion is taken to begin at "
+        rf"{TIME}",
+        left_place,
+    ),
+    (
+        rf"the {NAME} was seen in its last place at {TIME}; its motion is taken to end at {TIME}",
+        came_to_place,
+    ),
+    (
+        rf"the {NAME} rested and touched none of the tracked objects from {TIME} to {TIME}",
+        rested_free,
+    ),
     (rf"the {NAME} came to rest at {TIME}", came_to_rest),
     (rf"it ended where the {NAME} had rested before", came_back),
     (rf"the {NAME} began to move at {TIME}", left_rest),

@@ -290,7 +290,8 @@ FORMS = (
     (r"it was not slid", not_slid),
     (r"it was not put down", not_put_down),
     (
-        rf"the {NAME} touched nothing when the segment began, nor when it ended",
+        rf"the {NAME} touched none of the tracked objects when the segment began, nor when it "
+        r"ended",
         touched_nothing,
     ),
     (rf"the {NAME} moved", not_resting),

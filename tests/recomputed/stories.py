@@ -59,7 +59,7 @@ def told(name: str) -> Told:
         facts = story.change(facts, trial.capture.rate_hz)
     observation = observe_measured(trial.capture, replace(measurements, facts=facts), rules=rules)
     explainer = Explainer(
-        observation.facts, profile=rules, distance_m=distances(trial.capture, measurements)
+        observation.facts, profile=rules, distances_m=distances(trial.capture, measurements)
     )
     seen = Explained(observation, explainer)
     steps = story.steps or trial.truth.steps[story.rules]

@@ -52,7 +52,7 @@ def checked(scene: Scene, chance: random.Random, rules: Profile, *, name: str = 
     measurements = measure(capture)
     observation = observe_measured(capture, measurements, rules=rules)
     explainer = Explainer(
-        observation.facts, profile=rules, distance_m=distances(capture, measurements)
+        observation.facts, profile=rules, distances_m=distances(capture, measurements)
     )
     steps = {unit.ee: [step.name for step in unit.steps] for unit in expectation.units}
     segment = chance.choice([each for each in observation.segments if name in ("", each.name)])
