@@ -34,7 +34,6 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "uncounted", 4, ""): "no story has a contact that ends within the border it is read at",
     ("", "event", 6, "turns"): "no named segment of a story begins or ends where the hand turns",
     ("", "walks", 1, ""): "no story has feet; tests/test_whole_bodies.py has",
-    ("", "event", 6, "turns"): "no story leaves one thing for another; turning.cases have",
 }
 """Templates of what holds that no explanation tells, and why."""
 
