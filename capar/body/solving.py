@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import mink
 import numpy as np
+from jaxtyping import Float
 
 from capar.body.human import Human
 
@@ -25,25 +26,35 @@ class Solver:
         tasks: Sequence[mink.Task],
         *,
         longest_rad: float = 0.25,
+        limits: Sequence[mink.Limit] = (),
     ) -> None:
         self.human, self.tasks = human, list(tasks)
         self.longest_rad = self.radius = longest_rad
         """Most that a joint may turn in a step, ever and now [rad]."""
 
         self.speed = mink.VelocityLimit(human.model, dict.fromkeys(human.joints, longest_rad))
-        self.limits = [mink.ConfigurationLimit(human.model), self.speed]
+        self.limits = [mink.ConfigurationLimit(human.model), self.speed, *limits]
 
     @property
     def settled(self) -> bool:
         """Whether no step longer than the shortest is of use any more."""
         return self.radius < SHORTEST_RAD
 
+    @property
+    def shortened(self) -> bool:
+        """Whether steps are shorter than they may be, because longer ones overshot."""
+        return self.radius < self.longest_rad
+
     def restart(self) -> None:
         """Allow long steps again, because the targets are new."""
         self.radius = self.longest_rad
 
-    def step(self, configuration: mink.Configuration) -> None:
-        """Go one step, or stay and take shorter steps from now on."""
+    def step(self, configuration: mink.Configuration) -> Float[np.ndarray, "dofs"]:
+        """Go one step, or stay and take shorter steps from now on.
+
+        Returns:
+            What was gone [rad], of the pelvis [m] and [rad].
+        """
         before, posture = self.error(configuration), configuration.q.copy()
         self.speed.limit = np.full(len(self.human.joints), self.radius)
         velocity = mink.solve_ik(configuration, self.tasks, 1.0, "daqp", limits=self.limits)
@@ -52,10 +63,12 @@ class Solver:
         if self.error(configuration) > before:
             configuration.update(posture)
             self.radius = 0.4 * min(self.radius, longest)
-        elif longest < SHORTEST_RAD:
+            return np.zeros_like(velocity)
+        if longest < SHORTEST_RAD:
             self.radius = longest
         elif longest > 0.9 * self.radius:
             self.radius = min(2.0 * self.radius, self.longest_rad)
+        return np.asarray(velocity)
 
     def error(self, configuration: mink.Configuration) -> float:
         """Sum of the squares of all weighted errors [1]; damping, which wants nothing, has none."""

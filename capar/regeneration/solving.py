@@ -12,6 +12,7 @@ from capar.body.acting import RELAXED
 from capar.body.gaze import LOOK_COST, look_tasks, share_costs
 from capar.body.human import Human
 from capar.body.scripts import SIDES
+from capar.body.solving import Solver as Steps
 
 PALM_COST = (60.0, 4.0)
 """Weights of a metre and of a radian at the palms."""
@@ -32,7 +33,7 @@ FREE_HEAD = 0.002
 """Share of that weight otherwise [1]."""
 
 FOOT_COST = 120.0
-BALANCE_COST = 2.0
+BALANCE_COST = 20.0
 """Weight of a metre of the centre of mass from above the feet."""
 
 DAMPING_COST = 0.1
@@ -76,7 +77,7 @@ class FrameLimit(mink.Limit):
 
     def __init__(self, hinges: int) -> None:
         self.steps = np.full(6 + hinges, np.inf)
-        self.largest = np.concatenate([np.full(6, np.inf), np.full(hinges, LARGEST_STEP)])
+        self.largest = np.full(6 + hinges, np.inf)
         self.gone = np.zeros(6 + hinges)
         self.rows = np.vstack([np.eye(6 + hinges), -np.eye(6 + hinges)])
 
@@ -116,7 +117,7 @@ class Solver:
         self.goals = {side: pose[4:] for side, pose in self.home.items()}
         self.tasks = [*self.palms.values(), self.head, *self.looks.values(), *self._stance()]
         self.frame = FrameLimit(len(human.joints))
-        self.limits = [self.frame, mink.ConfigurationLimit(human.model)]
+        self.steps = Steps(human, self.tasks, longest_rad=LARGEST_STEP, limits=[self.frame])
 
     def _stance(self) -> list[mink.Task]:
         feet = [mink.FrameTask(f"{s}_foot", "body", FOOT_COST, FOOT_COST) for s in SIDES]
@@ -165,14 +166,18 @@ class Solver:
             look.set_target(targets.look)
             look.set_cost(LOOK_COST * (1.0 - 0.9 * targets.firmness))
         self.frame.begin()
+        self.steps.restart()
         missed_m, missed_rad = np.inf, np.inf
         for number in range(most):
             self._step()
             before, (missed_m, missed_rad) = (missed_m, missed_rad), self.missed(targets)
             if (
                 number >= STALLED
+                and not self.steps.shortened
                 and abs(before[0] - missed_m) + abs(before[1] - missed_rad) < STALL
             ):
+                return
+            if self.steps.settled:
                 return
             if number + 1 >= FEWEST and missed_m < NEAR_M and missed_rad < NEAR_RAD:
                 return
@@ -192,9 +197,7 @@ class Solver:
         return metres, radians
 
     def _step(self) -> None:
-        velocity = mink.solve_ik(self.configuration, self.tasks, 1.0, "daqp", limits=self.limits)
-        self.configuration.integrate_inplace(velocity, 1.0)
-        self.frame.gone += velocity
+        self.frame.gone += self.steps.step(self.configuration)
 
 
 def vectors(pose: RigidTransform) -> Float[np.ndarray, "*frames 7"]:
