@@ -7,7 +7,7 @@ from itertools import zip_longest
 from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import Ipar, Motion
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import HELPS, MOMENTARY, QUIET, SOMEONE, Phrasebook
+from kb.language.lexicalisation import HELPS, MOMENTARY, QUIET, SOMEONE, STAYING, Phrasebook
 from kb.lexicon.english import joined, words_of
 from kb.lexicon.links import motion_senses
 from kb.lexicon.wordnet import wordnet
@@ -78,7 +78,8 @@ class Clause:
     @property
     def holds(self) -> bool:
         """Whether the end-effector only stays at the first object in it."""
-        return self.goes_on and self.known and not (self.changes or self.purpose or self.quiet)
+        stays = not STAYING.isdisjoint((self.name, *self.general))
+        return stays and self.goes_on and not (self.changes or self.purpose or self.quiet)
 
     @property
     def helps(self) -> bool:

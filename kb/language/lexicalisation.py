@@ -30,6 +30,12 @@ TIPPED = frozenset({"pour from {1}", "pour from {1} into {2}"})
 HELPS = frozenset({"steady {1}"})
 """Patterns of what moves nothing and yet is a part of what was done."""
 
+MOVING = frozenset({"MoveObj", "MoveObjTo"})
+"""Names, and kinds of names, of a thing that is moved."""
+
+STAYING = frozenset({"Touch", "TouchWith"})
+"""Names, and kinds of names, of a hand that only stays at a thing."""
+
 FREE = "move {ee}"
 """The pattern of what a hand does that is of no object."""
 

@@ -6,7 +6,7 @@ from itertools import accumulate, groupby
 
 from kb.language.clauses import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import TIPPED
+from kb.language.lexicalisation import MOVING, TIPPED
 
 REST_S = 0.4
 """A rest of so long [s] parts what is done; a shorter one is not noticed."""
@@ -175,7 +175,8 @@ def _short_hold(told: Sequence[Clause], at: int) -> bool:
 
 def _scrap(clause: Clause, following: Clause | None, scene: Scene) -> bool:
     """Whether it is a short motion in the grip that goes hardly anywhere, or with the next."""
-    if not (clause.changes and clause.possessed and clause.goes_on and clause.known):
+    moves = not MOVING.isdisjoint((clause.name, *clause.general))
+    if not (moves and clause.changes and clause.possessed and clause.goes_on and clause.known):
         return False
     moved = clause.pattern.split()[1:2] == ["{1}"]
     if clause.purpose or clause.end_s - clause.start_s >= SCRAP_S or not moved:

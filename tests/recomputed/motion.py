@@ -76,6 +76,15 @@ def _apart(
     return np.maximum(way / GONE_M, turn / GONE_RAD)
 
 
+def gone_at_once(known: Known, what: str) -> bool:
+    """Soon after the segment's end it is not any more where it is then, and did not move before."""
+    begin, end = known.segment.first, known.segment.last
+    soon = min(end + round(0.3 * known.rate), len(known.capture.times) - 1)
+    early = max(end - round(0.3 * known.rate), begin)
+    before = _apart(known, what, [early], max(early - round(0.1 * known.rate), 0))
+    return float(_apart(known, what, [soon], end)[0]) > 1.0 > float(before[0])
+
+
 def levelled(known: Known, what: str, at: str) -> bool:
     """Its path is steeper than 45 degrees on one side of that time, and less steep on the other."""
     frame, aside = known.frame(at), round(SIDE_S * known.rate)
@@ -281,6 +290,7 @@ def flew_on(known: Known) -> bool:
 
 
 FORMS = (
+    (rf"the {NAME} was gone at once", gone_at_once),
     (rf"the path of the {NAME} became level, or ceased to be, at {TIME}", levelled),
     (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),
     (

@@ -69,6 +69,6 @@ def test_a_sense_that_there_is_not_counts_as_not_stated(tmp_path: Path) -> None:
 def test_the_report_tells_the_doubts(tmp_path: Path, form: str) -> None:
     wrong = cover(tmp_path, 'verb("Cover", "coverr").')
     assert "coverr" in write(linguistics([wrong]), form)
-    told = " ".join(write(linguistics([wrong]), form).split())
+    told = " ".join(write(linguistics([wrong]), form).replace(r"\allowbreak{}", "").split())
     assert "WordNet has no verb" in told
     assert "WordNet has no verb" not in write(linguistics(), form)
