@@ -88,8 +88,36 @@ def _marks(fact: object) -> Iterable[int]:
 
 def features(known: Known, *strings: str) -> bool:
     """Each bit of the four strings, from contacts and motions around the borders."""
+    return _features_of(known, known.segment.objects, *strings)
+
+
+def core(known: Known, *strings: str) -> bool:
+    """The same of the first object alone, or of it and one other, where the hand has several."""
+    first, *others = known.segment.objects
+    chosen = [(first,), *((first, other) for other in others)]
+    several = sum(_held(known, each) for each in known.segment.objects) > 1
+    return several and any(_features_of(known, objects, *strings) for objects in chosen)
+
+
+def _held(known: Known, what: str) -> bool:
+    """The end-effector touches it in the middle of the segment."""
+    middle = (known.segment.first + known.segment.last) // 2
+    spans = known.touching(known.segment.ee, what)
+    return any(each.first <= middle <= each.last for each in spans)
+
+
+def accompanied(known: Known, hand: str) -> bool:
+    """The end-effector is that one, and has several in the middle of the segment."""
+    several = sum(_held(known, each) for each in known.segment.objects) > 1
+    return several and hand.replace(" ", "_") == known.segment.ee
+
+
+def _core_of(known: Known, hand: str, *strings: str) -> bool:
+    return accompanied(known, hand) and core(known, *strings)
+
+
+def _features_of(known: Known, objects: tuple[str, ...], *strings: str) -> bool:
     start, end, change, force = strings
-    objects = known.segment.objects
     pairs = [(known.segment.ee, each) for each in objects]
     pairs += [(objects[0], each) for each in objects[1:]]
     if [len(each) for each in strings] != [max(len(pairs), 0)] * 2 + [len(objects)] * 2:
@@ -141,7 +169,9 @@ def _forced(known: Known, what: str, forced: bool) -> bool:
 def row(known: Known, what: str, *strings: str) -> bool:
     """The table has that row, and so have the contacts and motions of what was named by it."""
     named = known.segment.name != UNKNOWN
-    return strings in table(known)[what] and (not named or features(known, *strings))
+    return strings in table(known)[what] and (
+        not named or features(known, *strings) or core(known, *strings)
+    )
 
 
 def written(known: Known, what: str) -> bool:
@@ -167,7 +197,10 @@ def fits(known: Known, what: str) -> bool:
     found = known.segment.features
     own = (found.rel_start, found.rel_end, found.change_loc, found.force)
     rows = table(known).get(what)
-    return written(known, what) and (rows is None or own in rows or _passes_on(known, what))
+    if not written(known, what):
+        return False
+    several = any(core(known, *each) for each in rows or ())
+    return rows is None or own in rows or several or _passes_on(known, what)
 
 
 def _passes_on(known: Known, what: str) -> bool:
@@ -278,6 +311,12 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         r"change of location is ?(\d*), force is ?(\d*)",
         features,
     ),
+    (
+        rf"leaving aside what else is in the {NAME}, the relations are (\d+) at the start and "
+        r"(\d+) at the end, change of location is (\d+), force is (\d+)",
+        _core_of,
+    ),
+    (rf"more than one thing was in the {NAME}", accompanied),
     (r"(\w+) is known by the features (\d+), (\d+), (\d+) and (\d+)", row),
     (r"it is (\w+)", written),
     (r"it fits (\w+)", fits),

@@ -241,6 +241,11 @@ def started_from_rest(known: Known) -> bool:
     return bool(np.linalg.norm(known.middle(what, start) - known.middle(what, before)) < 0.03)
 
 
+def _goes_along(known: Known, what: str, way: np.ndarray) -> bool:
+    """It makes nearly the same way."""
+    return bool(np.linalg.norm(known.way(what) - way) < 0.3 * np.linalg.norm(way))
+
+
 def not_slid(known: Known) -> bool:
     """Nothing touches it from border to border, or it hardly goes aside, or up or down."""
     what, way = known.segment.objects[0], known.way(known.segment.objects[0])
@@ -251,6 +256,7 @@ def not_slid(known: Known) -> bool:
         and each.other != known.segment.ee
         and each.first <= known.segment.first
         and each.last >= known.segment.last
+        and not _goes_along(known, each.other, way)
     ]
     return not kept or float(np.linalg.norm(way)) < 0.1 or abs(float(way[2])) > 0.03
 
