@@ -37,8 +37,8 @@ def main(names: list[str]) -> None:
         print("| motion | performer | possible | mm | degrees | rad/s | worst |")
         print("|---|---|---|---|---|---|---|")
         for name, each in made.items():
-            print(row(name, performer.name, each))
-        print(flush=True)
+            print(row(name, performer.name, each), flush=True)
+        print()
     print(f"{sum(found)} of {len(found)} are possible ({np.mean(found):.0%}).")
 
 

@@ -5,6 +5,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import overload
 
 import mink
 import motions
@@ -37,8 +38,14 @@ CLOSE_M, CLOSE_RAD = 0.002, float(np.radians(1.0))
 FASTEST_RADPS = 25.0
 """... and no joint is faster [rad/s]: elbows of throwers reach about forty."""
 
+BESIDE_M = 0.01
+"""... and the centre of mass stays above the soles, but for so much [m]."""
+
+BALANCE = 20.0
+"""Weight of a metre of the centre of mass from above the feet."""
+
 RATE_HZ = 10.0
-FEWEST, MOST = 4, 80
+FEWEST, MOST = 4, 60
 """Steps of the inverse kinematics at a frame: more while something is missed."""
 
 PLACES = (
@@ -82,6 +89,9 @@ class Missed:
     """Which frame that is."""
 
     fastest_radps: float
+    beside_m: float = 0.0
+    """How far the centre of mass is from above the soles [m]; not of feet that are tracked."""
+
     stands: tuple[float, float] = (0.0, 0.0)
     """Where the feet, which are not tracked, stay throughout, from the motion's origin [m]."""
 
@@ -91,6 +101,7 @@ class Missed:
             self.metres <= NEAR_M
             and self.radians <= NEAR_RAD
             and self.fastest_radps <= FASTEST_RADPS
+            and self.beside_m <= BESIDE_M
         )
 
 
@@ -117,33 +128,26 @@ def missed(capture: Capture) -> Missed:
     """
     human = Human.of(measures_of(capture.agent))
     wanted = list(_wanted(capture, human))
-    best = None
-    for way in _ways(capture, human, wanted):
-        if best is None or _worse(way) < _worse(best):
-            best = way
-        if best.possible:
-            break
-    assert best is not None
-    return best
+    follower = Follower(capture, human, wanted, PLACES[0])
+    first = follower.run(0, follower.rest)
+    if first.possible:
+        return first
+    others = _others(capture, human, wanted, first.frame)
+    return next((other for other in others if other is not None and other.possible), first)
 
 
-def _ways(capture: Capture, human: Human, wanted: list[Follow]) -> Iterator[Missed]:
-    """What is missed on the ways that are tried, one after the other."""
+def _others(
+    capture: Capture, human: Human, wanted: list[Follow], frame: int
+) -> Iterator[Missed | None]:
+    """What is missed on the other ways, one after the other; None where they were given up."""
     led = any(each.foot for each in wanted)
-    ways = []
-    for stands in PLACES[:1] if led else PLACES:
+    for stands in () if led else PLACES[1:]:
         follower = Follower(capture, human, wanted, stands)
-        ways.append(follower.run(0, follower.rest))
-        yield ways[-1]
-    best = min(ways, key=_worse)
-    follower = Follower(capture, human, wanted, best.stands)
+        yield follower.run(0, follower.rest, gives_up=True)
+    follower = Follower(capture, human, wanted, PLACES[0])
     for arm in ARMS:
         angles = {f"{s}_{n}": float(np.radians(a)) for n, a in arm.items() for s in SIDES}
-        yield follower.run(best.frame, human.posture(angles, place=(*best.stands, 0.0)))
-
-
-def _worse(each: Missed) -> float:
-    return max(each.metres / NEAR_M, each.radians / NEAR_RAD, each.fastest_radps / FASTEST_RADPS)
+        yield follower.run(frame, human.posture(angles), gives_up=True)
 
 
 def _wanted(capture: Capture, human: Human) -> Iterator[Follow]:
@@ -206,20 +210,36 @@ class Follower:
         stance = _stance(feet, self.configuration)
         damping = mink.DampingTask(human.model, cost=0.05)
         self.solver = Solver(human, [*self.tasks, ease, damping, *stance])
+        self.soles = _soles(human, feet, self.configuration)
 
-    def run(self, start: int, posture: Float[np.ndarray, "posture"]) -> Missed:
-        """Follow the motion from one frame to its end, and from there back to its beginning."""
+    @overload
+    def run(self, start: int, posture: Float[np.ndarray, "posture"]) -> Missed: ...
+
+    @overload
+    def run(
+        self, start: int, posture: Float[np.ndarray, "posture"], *, gives_up: bool
+    ) -> Missed | None: ...
+
+    def run(
+        self, start: int, posture: Float[np.ndarray, "posture"], *, gives_up: bool = False
+    ) -> Missed | None:
+        """Follow the motion from one frame to its end, and from there back to its beginning.
+
+        Returns:
+            What is missed; None if it was given up at the first frame that is missed.
+        """
         postures = np.zeros((len(self.times), len(posture)))
+        weights = np.zeros((len(self.times), 2))
         errors = np.zeros((len(self.times), len(self.wanted), 2))
-        self.configuration.update(posture)
-        for frame in range(start, len(self.times)):
-            errors[frame] = self._meet(frame)
-            postures[frame] = self.configuration.q
-        self.configuration.update(postures[start])
-        for frame in reversed(range(start)):
-            errors[frame] = self._meet(frame)
-            postures[frame] = self.configuration.q
-        return self._judged(postures, errors)
+        for frames in (range(start, len(self.times)), range(start - 1, -1, -1)):
+            self.configuration.update(posture if frames.step > 0 else postures[start])
+            for frame in frames:
+                errors[frame] = self._meet(frame)
+                postures[frame] = self.configuration.q
+                weights[frame] = self.configuration.data.subtree_com[1, :2]
+                if gives_up and (errors[frame] > (NEAR_M, NEAR_RAD)).any():
+                    return None
+        return self._judged(postures, errors, weights)
 
     def _meet(self, frame: int) -> Float[np.ndarray, "places 2"]:
         """Go to a frame's targets; what is missed then [m, rad]."""
@@ -239,9 +259,10 @@ class Follower:
         self,
         postures: Float[np.ndarray, "frames posture"],
         errors: Float[np.ndarray, "frames places 2"],
+        weights: Float[np.ndarray, "frames 2"],
     ) -> Missed:
         if not self.wanted:
-            return Missed(0.0, 0.0, "nothing of the body is tracked", 0, 0.0, self.stands)
+            return Missed(0.0, 0.0, "nothing of the body is tracked", 0, 0.0)
         relative = np.maximum(errors[..., 0] / NEAR_M, errors[..., 1] / NEAR_RAD)
         frame, place = np.unravel_index(int(relative.argmax()), relative.shape)
         speeds = np.abs(np.diff(postures[:, 7:], axis=0)) / np.diff(self.times)[:, None]
@@ -251,15 +272,38 @@ class Follower:
             f"{self.wanted[place].frame} at {self.times[frame]:.2f} s",
             int(frame),
             float(speeds.max(initial=0.0)),
+            self._beside(weights),
             self.stands,
         )
+
+    def _beside(self, weights: Float[np.ndarray, "frames 2"]) -> float:
+        """How far the centre of mass is from above the soles, at worst [m]."""
+        if self.soles is None:
+            return 0.0
+        low, high = self.soles
+        outside = np.maximum(np.maximum(low - weights, weights - high), 0.0)
+        return float(np.linalg.norm(outside, axis=1).max())
+
+
+def _soles(
+    human: Human, feet: list[str], configuration: mink.Configuration
+) -> Float[np.ndarray, "2 2"] | None:
+    """The rectangle round both feet as they stand [m]; None if one of them is tracked."""
+    if len(feet) < 2:
+        return None
+    corners = []
+    for foot in feet:
+        at = configuration.get_transform_frame_to_world(foot, "body").translation()
+        surface = segment_surface(human.measures, (foot, foot.replace("foot", "toes")), foot)
+        corners.append(surface.bounds[:, :2] + at[:2])
+    return np.array([np.min(corners, axis=(0, 1)), np.max(corners, axis=(0, 1))])
 
 
 def _stance(feet: list[str], configuration: mink.Configuration) -> list[mink.Task]:
     """Feet that stay, and the weight above both."""
     tasks: list[mink.Task] = [mink.FrameTask(name, "body", *FOOT) for name in feet]
     if len(feet) == 2:
-        tasks.append(mink.ComTask(cost=[2.0, 2.0, 0.0]))
+        tasks.append(mink.ComTask(cost=[BALANCE, BALANCE, 0.0]))
     for task in tasks:
         task.set_target_from_configuration(configuration)
     return tasks
