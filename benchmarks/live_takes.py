@@ -61,13 +61,14 @@ class Agreement:
 def agreement(capture: Capture) -> Agreement:
     """Observe a take live and offline."""
     known = calibrate(capture)
-    offline = {_told(each) for each in observe_measured(capture, measure(capture, known)).segments}
+    whole = observe_measured(capture, measure(capture, known))
+    offline = {_told(segment) for segment in whole.segments}
     observer = LiveObserver(capture, known, keep_result=False)
     events: list[SegmentEvent] = []
     start = time.process_time()
     for frame in replayed(capture):
         events += observer.push([frame])
-    late_s = tuple(each.late_s for each in events if each.status is Status.SETTLED)
+    late_s = tuple(event.late_s for event in events if event.status is Status.SETTLED)
     events += observer.finish()[0]
     spent_s = time.process_time() - start
     first: dict[tuple[str, int], Segment] = {}
@@ -78,11 +79,11 @@ def agreement(capture: Capture) -> Agreement:
             first.setdefault(key, event.segment)
         if event.status is Status.SETTLED:
             last[key] = event.segment
-    pairs = [(each, last[key]) for key, each in first.items() if key in last]
+    pairs = [(segment, last[key]) for key, segment in first.items() if key in last]
     return Agreement(
         float(capture.times[-1]),
         len(last),
-        sum(_told(each) not in offline for each in last.values()),
+        sum(_told(segment) not in offline for segment in last.values()),
         len(pairs),
         sum(one.name != other.name for one, other in pairs),
         sum(_moves(one, other) for one, other in pairs),
@@ -101,13 +102,13 @@ def _moves(one: Segment, other: Segment) -> bool:
 
 
 def _row(name: str, found: list[Agreement]) -> str:
-    late_s = [late for each in found for late in each.late_s]
-    recorded_s = sum(each.recorded_s for each in found)
+    late_s = [late for take in found for late in take.late_s]
+    recorded_s = sum(take.recorded_s for take in found)
     counts = [
-        sum(getattr(each, field) for each in found)
+        sum(getattr(take, field) for take in found)
         for field in ("segments", "differ", "provisional", "renamed", "moved")
     ]
-    factor = recorded_s / sum(each.spent_s for each in found)
+    factor = recorded_s / sum(take.spent_s for take in found)
     told = f"{name:18}{recorded_s:9.1f}" + "".join(f"{count:12}" for count in counts)
     return f"{told}{np.percentile(late_s, 99):12.2f}{factor:8.1f}"
 

@@ -31,13 +31,13 @@ def main(names: list[str]) -> None:
         if names and performer.name not in names:
             continue
         made = {act.__name__: missed(act(performer).capture) for act in ACTS}
-        possible = [each.possible for each in made.values()]
+        possible = [judged.possible for judged in made.values()]
         found += possible
         print(f"## {performer.name}: {sum(possible)} of {len(possible)} are possible\n")
         print("| motion | performer | possible | mm | degrees | rad/s | worst |")
         print("|---|---|---|---|---|---|---|")
-        for name, each in made.items():
-            print(row(name, performer.name, each))
+        for name, judged in made.items():
+            print(row(name, performer.name, judged))
         print(flush=True)
     print(f"{sum(found)} of {len(found)} are possible ({np.mean(found):.0%}).")
 

@@ -63,27 +63,27 @@ def explain(
     base = rule_base(profile, rules, actionary, steady=steady)
     seen = explained(read_capture(capture), rules=base)
     every_one = seen.observation.segments
-    chosen = tuple(each for each in every_one if not segment or each.ee == segment)
+    chosen = tuple(one for one in every_one if not segment or one.ee == segment)
     alone = bool(segment) and not chosen
     if segment and alone:
         chosen = (segment_named(seen.observation, segment),)
     if why_not:
-        asked = [each for each in chosen if alone or each.name != why_not]
+        asked = [one for one in chosen if alone or one.name != why_not]
         limit = 100 if every else 1
         rows = [
             (
-                each,
-                alternatives(seen.explainer, each, why_not, limit=limit),
-                () if why_not in each.general else nearest_rules(seen.explainer, each, why_not),
+                one,
+                alternatives(seen.explainer, one, why_not, limit=limit),
+                () if why_not in one.general else nearest_rules(seen.explainer, one, why_not),
             )
-            for each in asked
+            for one in asked
         ]
         if json:
             print_json(_rows(rows, seen))
             return
-        for each, found, rules_near in rows:
+        for one, found, rules_near in rows:
             if not alone:
-                typer.echo(f"{_header(each)}  {each.name}")
+                typer.echo(f"{_header(one)}  {one.name}")
             _print_why_not(why_not, found, rules_near, others=alone or every)
         _print_notices(asked, seen)
         return
@@ -130,8 +130,8 @@ def _staying(told: "Explanation") -> set[str]:
     from capar_rules.engine.syntax import split_arguments
 
     segment = split_arguments(told.reason.atom)[0]
-    atoms = (each.atom for each in told.reason.walk() if each.atom.startswith("stays("))
-    pairs = (split_arguments(each) for each in atoms)
+    atoms = (node.atom for node in told.reason.walk() if node.atom.startswith("stays("))
+    pairs = (split_arguments(atom) for atom in atoms)
     return {thing for thing, where in pairs if where == segment}
 
 

@@ -72,9 +72,9 @@ def recorded_at(sources: Sequence[Source]) -> str:
 
     Empty if none of them says.
     """
-    stated = [each.recorded_at for each in sources if each.format == "capture.toml"]
+    stated = [source.recorded_at for source in sources if source.format == "capture.toml"]
     return next(filter(None, stated), "") or min(
-        (each.recorded_at for each in sources if each.recorded_at), default=""
+        (source.recorded_at for source in sources if source.recorded_at), default=""
     )
 
 

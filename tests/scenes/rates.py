@@ -135,6 +135,18 @@ def pooled(cell: Cell, found: dict[str, list[Outcome]], usual: dict[str, list[Ou
     return row(cell, f"**all**, worst {worst}", every, beside)
 
 
+def overall(cells: Iterable[dict[str, list[Outcome]]], usual: dict[str, list[Outcome]]) -> str:
+    """The row of all cells together."""
+    pairs = [
+        (one, its)
+        for found in cells
+        for name, outcomes in found.items()
+        for one, its in zip(outcomes, usual[name], strict=True)
+    ]
+    row_of_all = row(USUAL, "**all cells**", [one for one, _ in pairs], [its for _, its in pairs])
+    return "| any | any | any " + row_of_all[row_of_all.index("| **all cells**") :]
+
+
 def table(folder: Path) -> str:
     """All cells of a folder."""
     usual = _batteries(folder, USUAL)
@@ -144,6 +156,9 @@ def table(folder: Path) -> str:
         rows += [row(cell, name, each, usual.get(name)) for name, each in found.items()]
         if len(found) == len(BATTERIES):
             rows.append(pooled(cell, found, usual))
+    cells = [_batteries(folder, cell) for cell in ALL]
+    if all(name in usual for found in cells for name in found):
+        rows.append(overall(cells, usual))
     return HEADER + "\n".join(rows) + "\n"
 
 

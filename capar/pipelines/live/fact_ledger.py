@@ -45,17 +45,17 @@ class FactLedger:
             begin: The frame of the recording with which the window begins.
         """
         seen = [
-            _moved(each, begin)
-            for each in facts
-            if isinstance(each, Observed)
+            _moved(fact, begin)
+            for fact in facts
+            if isinstance(fact, Observed)
             and not (
-                each.declaration.span is Span.INSTANT and begin + each.ends()[0] <= self.frontier
+                fact.declaration.span is Span.INSTANT and begin + fact.ends()[0] <= self.frontier
             )
         ]
         firsts = self._firsts(seen)
-        own = {(_key(each), each.ends()[0]) for each in seen if _is_interval(each)}
+        own = {(_key(fact), fact.ends()[0]) for fact in seen if _is_interval(fact)}
         continued = {place for place in own if firsts.get(place, place[1]) != place[1]}
-        ended = {(_key(each), each.ends()[0]) for each in seen if self._has_ended(each)}
+        ended = {(_key(fact), fact.ends()[0]) for fact in seen if self._has_ended(fact)}
         out: list[Observed] = []
         for fact in seen:
             span = fact.declaration.span

@@ -235,13 +235,13 @@ class LiveObserver:
     def _undecided(self, recent: list[Observed], last: int) -> dict[str, int]:
         """Before when segments of end-effectors may settle, where later frames may decide."""
         facts = (*self._memory, *recent)
-        acting = {each.name for each in self._buffer.rig.acting}
+        acting = {sensor.name for sensor in self._buffer.rig.acting}
         margin = round(in_frames(times().merge_ms, self._rate_mhz / 1000.0))
         open_since = undecided(
             Handling(
-                [each for each in facts if isinstance(each, Touching) and each.body in acting],
-                [each for each in facts if isinstance(each, Moving)],
-                {each.name for each in self._buffer.rig.objects if each.tag is TagType.MOBILE},
+                [fact for fact in facts if isinstance(fact, Touching) and fact.body in acting],
+                [fact for fact in facts if isinstance(fact, Moving)],
+                {thing.name for thing in self._buffer.rig.objects if thing.tag is TagType.MOBILE},
                 last=last,
                 margin=margin,
                 longest=self._frames(self.horizons.handing_s),

@@ -34,7 +34,9 @@ def undecided(handling: Handling) -> dict[str, int]:
     for own in _going(handling):
         besides = _besides(handling, own)
         if besides or _is_shared(handling, own):
-            first = min(own.first, *(each.first for each in besides), out.get(own.body, own.first))
+            first = min(
+                own.first, *(touch.first for touch in besides), out.get(own.body, own.first)
+            )
             out[own.body] = first
     return out
 
@@ -42,9 +44,9 @@ def undecided(handling: Handling) -> dict[str, int]:
 def _going(handling: Handling) -> list[Touching]:
     """The contacts with things that can be moved that go on."""
     return [
-        each
-        for each in handling.touching
-        if each.other in handling.mobile and each.last >= handling.last - handling.margin
+        touch
+        for touch in handling.touching
+        if touch.other in handling.mobile and touch.last >= handling.last - handling.margin
     ]
 
 
@@ -54,10 +56,10 @@ def _is_shared(handling: Handling, own: Touching) -> bool:
     Who takes it over is known once one of the two lets go of it, or is taken not to.
     """
     joined = any(
-        each.other == own.other
-        and each.body != own.body
-        and each.first < own.first - handling.margin
-        for each in _going(handling)
+        touch.other == own.other
+        and touch.body != own.body
+        and touch.first < own.first - handling.margin
+        for touch in _going(handling)
     )
     return joined and handling.last - own.first <= handling.longest
 
@@ -68,13 +70,13 @@ def _besides(handling: Handling, own: Touching) -> list[Touching]:
     Once it moves, the hand has possessed it from the first, and its other contacts do not count;
     for some time it is awaited that it does.
     """
-    if any(each.object == own.other and each.last >= own.first for each in handling.moving):
+    if any(move.object == own.other and move.last >= own.first for move in handling.moving):
         return []
     return [
-        each
-        for each in handling.touching
-        if each.body == own.body
-        and each.other != own.other
-        and each.last >= own.first
-        and handling.last - max(own.first, each.first) <= handling.longest
+        touch
+        for touch in handling.touching
+        if touch.body == own.body
+        and touch.other != own.other
+        and touch.last >= own.first
+        and handling.last - max(own.first, touch.first) <= handling.longest
     ]

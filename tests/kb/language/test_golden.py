@@ -45,8 +45,7 @@ def test_a_recording_is_told_as_we_read_it(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
     monkeypatch.setenv("CAPAR_DATA", str(DATA))
-    capture = groceries(tmp_path) if take.startswith("boxed_vr") else str(EXAMPLES / take)
-    seen = observed(capture, tmp_path_factory)
+    seen = observed(capture_of(take, tmp_path), tmp_path_factory)
     words = primitive_words(primitive_files())
     steps, summary = describe(seen, words=words), describe(seen, detail="summary", words=words)
     told = f"{steps}\n\n{summary}\n"
@@ -67,15 +66,19 @@ def test_what_is_told_of_a_recording_agrees_with_its_times(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
     monkeypatch.setenv("CAPAR_DATA", str(DATA))
-    capture = groceries(tmp_path) if take.startswith("boxed_vr") else str(EXAMPLES / take)
     words = primitive_words(primitive_files())
-    told = describe(observed(capture, tmp_path_factory), timed=True, words=words)
+    told = describe(observed(capture_of(take, tmp_path), tmp_path_factory), timed=True, words=words)
     assert against_time(told) == []
     assert len(steps_of(told)) == len(verbs_of(told))
 
 
 def test_every_golden_text_is_of_a_take_that_is_told() -> None:
     assert sorted(GOLDEN.iterdir()) == sorted(golden(take) for take in TAKES)
+
+
+def capture_of(take: str, folder: Path) -> str:
+    """Where a take is; some need a bundle of their own."""
+    return groceries(folder) if take.startswith("boxed_vr") else str(EXAMPLES / take)
 
 
 def groceries(folder: Path) -> str:
