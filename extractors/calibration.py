@@ -7,7 +7,7 @@ falls, rolling, and how bodies are arranged. It does not hold for these:
 
 * ``Moving``, ``Displaced``, ``Resting`` and ``Bears``: a place of rest that is left is the median
   pose of a whole standstill, and holds for as long as the body is within the floor of it; the place
-  that a body comes to is that of its first half second there. A window that is
+  that a body comes to is that of its beginning (``rest_begins_s``). A window that is
   given the poses from longer ago (``Poses.longer``) tells it by them, as live observation does;
   a rest that goes on after a window has no end yet.
 * ``Reverses``, ``DrawsBack``, ``Swings`` and ``Lengthwise``: all are sought within a motion from
