@@ -1,4 +1,4 @@
-"""What a whole body does: feet that walk, and parts of the arm beside the hand that does the work."""
+"""What a whole body does: feet that walk, parts of the arm beside the hand that does the work."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -29,7 +29,7 @@ def as_one_body(
     contacts of a hand that touches it were missed, what the arm's other parts did stands for it.
     """
     if not any(link.kind == HAND and part for link, part in zip(links, told, strict=True)):
-        return list(told)
+        return _on_foot(links, told, objects, scene)
     out = [list(part) for part in told]
     for place, link in enumerate(links):
         if link.kind == HAND:
@@ -48,6 +48,25 @@ def as_one_body(
         elif link.kind != HAND:
             out[place] = [step for step in out[place] if not moved.intersection(step.objects[:1])]
     return [tuple(part) for part in out]
+
+
+def _on_foot(
+    links: Sequence[ObservedLink],
+    told: Sequence[Told],
+    objects: Sequence[ObservedObject],
+    scene: Scene,
+) -> list[Told]:
+    """What feet did that only walk about on one ground, as walking."""
+    feet = [place for place, link in enumerate(links) if link.kind == FOOT]
+    ground = _ground(links, told, objects)
+    walks = tuple(_walks((step for place in feet for step in told[place]), scene))
+    if not walks or not ground:
+        return list(told)
+    out = list(told)
+    for place in feet:
+        out[place] = tuple(step for step in told[place] if step.objects[:1] != ground)
+    out[feet[0]] = tuple(sorted((*walks, *out[feet[0]]), key=in_time))
+    return out
 
 
 def _of_arm(link: ObservedLink, hand: ObservedLink) -> bool:
@@ -103,12 +122,12 @@ def with_walks(
     Args:
         steps: What was done, in order of time.
         links: The links.
-        told: What each of them did, feet as they were.
+        told: What each of them did, feet as they were; empty where walking is told as it is.
         objects: The objects.
         scene: Measured contacts and places.
     """
     manual = [step for step in steps if step.objects]
-    if not manual or not _ground(links, told, objects):
+    if not (manual and told) or not _ground(links, told, objects):
         return tuple(steps)
     feet = [
         step for link, part in zip(links, told, strict=True) for step in part if link.kind == FOOT

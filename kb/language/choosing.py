@@ -20,8 +20,11 @@ def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     told: list[Clause] = []
     repeated: list[Clause] = []
     for step in steps:
-        again = any(_says_the_same(each, step) for each in told)
-        (repeated if again else told).append(step)
+        said = next((each for each in told if _says_the_same(each, step)), None)
+        if said is None:
+            told.append(step)
+        elif (said.ees, said.grip) != (step.ees, step.grip):
+            repeated.append(step)
     if len(steps) > MOST_DEEDS:
         told = [each for each in told if not _beside_what_recurs(each, repeated, told)]
     if len(told) > MOST_DEEDS:
@@ -59,7 +62,7 @@ def _says_the_same(one: Clause, other: Clause) -> bool:
 
 
 def _beside_what_recurs(step: Clause, repeated: Sequence[Clause], told: Sequence[Clause]) -> bool:
-    """Whether it is of a time in which a hand had a thing and mainly did what it had done before."""
+    """Whether a hand that had a thing mainly did what it had done before, and this beside it."""
     same = [each for each in repeated if (each.ees, each.grip) == (step.ees, step.grip)]
     beside = [each for each in told if (each.ees, each.grip) == (step.ees, step.grip)]
     main_s = max((_lasts_s(each) for each in same), default=0.0)

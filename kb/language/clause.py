@@ -50,7 +50,7 @@ class Clause:
     """How often the end-effector had come to a thing, or left one, when it was done."""
 
     unseen: bool = False
-    """Whether no contact was measured in it: that the hand moves the thing is told by its motion."""
+    """Whether no contact was measured in it: its motion tells that the hand moves the thing."""
 
     rights: bool = False
     """Whether it ends as the first object is turned upright again."""

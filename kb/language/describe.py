@@ -7,7 +7,7 @@ from typing import Literal
 from capar.model.capture import Agent
 from capar.model.observation import Observation, ObservedLink
 from kb.language.aggregation import edited
-from kb.language.bodily import as_one_body, with_walks
+from kb.language.bodily import Told, as_one_body, with_walks
 from kb.language.choosing import chosen, longest, mattering
 from kb.language.clause import Clause
 from kb.language.clauses import clauses, main_things
@@ -61,38 +61,40 @@ def _story(
 ) -> str:
     """What one agent did."""
     links = spoken_links(observation.links)
-    to_the_letter = observation.profile == TO_THE_LETTER
-    holding = None if to_the_letter else Holding(observation)
-    turning = Turning(observation)
-    told = [clauses(observation, link, book, scene, turning, holding) for link in links]
-    seen = told
-    if to_the_letter:
-        told = [as_segmented(each) for each in told]
-    else:
-        told = as_the_other_hand(links, told)
-        ways = [turned(each, turning) for each in told]
-        seen = [with_turning(deeds(rest, scene), found) for rest, found in ways]
-        told = as_one_body(links, seen, observation.objects, scene)
+    seen, told = _deeds(observation, links, book, scene)
     if detail == "summary":
         changes = any(each.changes for part in told for each in part)
         told = [mattering(part) if changes else _counted(main_things(part)) for part in told]
-    steps = told_in_order(links, told)
-    if detail == "summary" and not to_the_letter:
-        steps = chosen(steps)
-    elif not to_the_letter:
-        steps = with_walks(steps, links, seen, observation.objects, scene)
+        steps = chosen(told_in_order(links, told))
+    else:
+        steps = with_walks(told_in_order(links, told), links, seen, observation.objects, scene)
     if not timed:
         steps = edited(steps)
     subject = the_agent(observation.agent.name, observation.agent.kind)
     realiser = Realiser(links, observation.objects, timed=timed)
     if not steps:
         moved = _moved_freely(links, book)
-        reached = () if to_the_letter else reaches(observation, moved)
+        reached = () if observation.profile == TO_THE_LETTER else reaches(observation, moved)
         return f"{capital(subject)} {realiser.idle(moved, reached)}."
     return " ".join(
-        capital(f"{part.opening}{subject} {realiser.sentence(part.steps, part.often, part.end_s)}.")
+        capital(f"{part.opening}{subject} {realiser.sentence(part)}.")
         for part in sentences(steps, lead=longest(steps) if detail == "summary" else ())
     )
+
+
+def _deeds(
+    observation: Observation, links: Sequence[ObservedLink], book: Phrasebook, scene: Scene
+) -> tuple[list[Told], list[Told]]:
+    """What each link did by itself, and as one body."""
+    to_the_letter = observation.profile == TO_THE_LETTER
+    holding = None if to_the_letter else Holding(observation)
+    turning = Turning(observation)
+    told = [clauses(observation, link, book, scene, turning, holding) for link in links]
+    if to_the_letter:
+        return [], [as_segmented(each) for each in told]
+    ways = [turned(each, turning) for each in as_the_other_hand(links, told)]
+    seen = [with_turning(deeds(rest, scene), found) for rest, found in ways]
+    return seen, as_one_body(links, seen, observation.objects, scene)
 
 
 def _of(observation: Observation, agent: Agent) -> Observation:

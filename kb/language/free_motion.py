@@ -37,7 +37,7 @@ class Reached:
 def reaches(
     observation: Observation, moved: Mapping[str, tuple[float, float]]
 ) -> tuple[Reached, ...]:
-    """Where hands reach that move freely; empty where that cannot be told of the one that does.
+    """Where hands reach from rest that move freely; empty where that cannot be told.
 
     Args:
         observation: What was understood of a capture.
@@ -49,7 +49,7 @@ def reaches(
     found = [
         each
         for link in hands
-        if link.ee in moved
+        if link.ee in moved and moved[link.ee][0] > link.segments[0].start_s
         for each in [_reached(link.ee, tracks[link.ee], moved[link.ee], ahead)]
         if each is not None
     ]

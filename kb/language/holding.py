@@ -41,12 +41,9 @@ class Holding:
     """What moved each thing, and contacts of hands with it."""
 
     def __init__(self, observation: Observation) -> None:
-        last = max(observation.segments, key=lambda segment: segment.last)
-        self._step_s = last.end_s / last.last if last.last else 0.0
+        self._step_s = observation.duration_s / max(observation.frames - 1, 1)
         self._moves = [
-            each
-            for each in observation.facts
-            if isinstance(each, MovedBy) and each.how in BY_HAND
+            each for each in observation.facts if isinstance(each, MovedBy) and each.how in BY_HAND
         ]
         self._touches = [each for each in observation.facts if isinstance(each, Touching)]
         self._motions = [each for each in observation.facts if isinstance(each, Moving)]
@@ -76,7 +73,7 @@ class Holding:
         return max(ends) * self._step_s if ends else segment.start_s
 
     def passed(self, giving: Segment) -> Span | None:
-        """From when the other hand has it to when this one has it no more; None if none takes it."""
+        """From when the other hand has it to when this one has not; None if none takes it."""
         end_s = self.released_s(giving)
         begins = [
             each.first * self._step_s
@@ -93,8 +90,7 @@ class Holding:
         spans = [
             self.passed(each)
             for each in self._gives
-            if each.objects[:1] == receiving.objects[:1]
-            and self._other_hand(receiving.ee, each.ee)
+            if each.objects[:1] == receiving.objects[:1] and self._other_hand(receiving.ee, each.ee)
         ]
         return any(span and abs(span.start_s - receiving.end_s) < REST_S for span in spans)
 
@@ -184,9 +180,7 @@ class Holding:
         leaves = [each for each in part if each.clause.frees and each.segment.end_s > end_s]
         if leaves and not again:
             left_s = max(moves[-1].end_s, self.released_s(leaves[-1].segment))
-            gone = replace(
-                leaves[-1].clause, pattern="let go of {1}", start_s=left_s, end_s=left_s
-            )
+            gone = replace(leaves[-1].clause, pattern="let go of {1}", start_s=left_s, end_s=left_s)
             out.append(Handled(leaves[-1].segment, gone))
         return out
 
@@ -204,7 +198,10 @@ class Holding:
     def _in_motion(self, thing: Sequence[str], span: Span) -> Span:
         """The part of a time in which the thing moves."""
         parts = [
-            (max(each.first * self._step_s, span.start_s), min(each.last * self._step_s, span.end_s))
+            (
+                max(each.first * self._step_s, span.start_s),
+                min(each.last * self._step_s, span.end_s),
+            )
             for each in self._motions
             if each.object in thing
         ]
@@ -254,9 +251,7 @@ class Holding:
         carried_s = sum(end - begin for how, begin, end in cut if how == "carried" and end > begin)
         return spans if carried_s >= UNSEEN_S else []
 
-    def _first_touch_s(
-        self, ee: str, thing: Sequence[str], start_s: float, end_s: float
-    ) -> float:
+    def _first_touch_s(self, ee: str, thing: Sequence[str], start_s: float, end_s: float) -> float:
         """When the hand came to the thing, by a contact or by moving it."""
         hand = self._hand(ee)
         begins = [

@@ -64,11 +64,17 @@ RUNNING = "keep a hand on {1}"
 THIS_WAY = "turn {1} about"
 """The pattern of a thing that is turned about in the hand."""
 
-UPSIDE_DOWN, UPRIGHT, AROUND = "turn {1} upside down", "turn {1} upright", "turn {1} around"
-"""Patterns of a thing that is turned over, set upright, or made to face another way."""
+UPSIDE_DOWN, AROUND = "turn {1} upside down", "turn {1} around"
+"""Patterns of a thing that is turned over, or made to face another way."""
+
+UPRIGHT, BACK_UPRIGHT = "turn {1} upright", "turn {1} back upright"
+"""Patterns of a thing that is set on its base; the second where the hand had turned it over."""
 
 REACH = "reach for {1}"
 """The pattern of a hand that goes to a thing."""
+
+STIR = "stir in {2} with {1}"
+"""The pattern of an instrument that goes without saying where it was just spoken of."""
 
 WALK, STEP = "walk", "take a step"
 """What the whole body does, with no word of the feet."""

@@ -6,7 +6,7 @@ of what the sentence tells was done during that. What stands beside the first ha
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from kb.language.clause import Clause, in_time
 from kb.language.lexicalisation import REACH
@@ -50,6 +50,8 @@ class Part:
     """When the last of its clauses, or of their repetitions, ends."""
 
     opening: str = ""
+    more: bool = False
+    """Whether the next sentence tells what is counted here once more."""
 
 
 def sentences(steps: Sequence[Clause], *, lead: tuple[str, ...] = ()) -> list[Part]:
@@ -68,6 +70,8 @@ def sentences(steps: Sequence[Clause], *, lead: tuple[str, ...] = ()) -> list[Pa
     while any(streams.values()):
         part = _next_part(streams, lead)
         opening = _opening(part, out, end_s, OPENINGS[afterwards % len(OPENINGS)])
+        if opening == ONCE_MORE:
+            out[-1] = replace(out[-1], more=True)
         afterwards = afterwards + 1 if opening in OPENINGS else 0
         out.append(Part(part.steps, part.often, part.end_s, opening))
         end_s = max(end_s, part.end_s)
@@ -138,13 +142,11 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
         return False
     if (last.start_s, last.end_s) == (following.start_s, following.end_s):
         return False
-    if last.frees or _turns_away(taken, following):
+    long = len(taken) >= LONGEST and not _soon_over(streams[ees])
+    if last.frees or _turns_away(taken, following) or long:
         return True
-    if len(taken) >= LONGEST and not _soon_over(streams[ees]):
-        return True
-    if _repeated(streams, ees, 0)[1] > 1 or _waits(following, streams):
-        return True
-    if _changes_hands(last, following, streams):
+    recurs = _repeated(streams, ees, 0)[1] > 1
+    if recurs or _waits(following, streams) or _changes_hands(last, following, streams):
         return True
     waiting = [
         each

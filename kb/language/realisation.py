@@ -8,7 +8,8 @@ from dataclasses import replace
 from capar.model.observation import ObservedLink, ObservedObject
 from kb.language.clause import Clause
 from kb.language.free_motion import Reached
-from kb.language.lexicalisation import BIT_BY_BIT, STEP, SUSTAINED, WALK, in_past
+from kb.language.lexicalisation import BIT_BY_BIT, STEP, STIR, SUSTAINED, WALK, in_past
+from kb.language.planning import Part
 from kb.language.vocabulary import SIDES
 from kb.lexicon.english import joined, noun, number, the, times
 
@@ -31,8 +32,9 @@ class Realiser:
         self._several: tuple[str, ...] = ()
         self._ees: tuple[str, ...] = ()
 
-    def sentence(self, steps: Sequence[Clause], often: str, until_s: float) -> str:
-        """The clauses as the rest of a sentence whose subject is the agent."""
+    def sentence(self, part: Part) -> str:
+        """What a sentence tells, as the rest of one whose subject is the agent."""
+        steps, often = part.steps, part.often
         self._spans = self._timed and not often
         streams: dict[tuple[str, ...], list[Clause]] = {}
         for step in steps:
@@ -50,8 +52,8 @@ class Realiser:
             text = f"{text}{comma} while {joined(meanwhile)}"
         if not often:
             return text
-        span = f" ({steps[0].start_s:.2f}–{until_s:.2f} s)" if self._timed else ""
-        return f"{text}, {often} in all{span}"
+        span = f" ({steps[0].start_s:.2f}–{part.end_s:.2f} s)" if self._timed else ""
+        return f"{text}, {often}{'' if part.more else ' in all'}{span}"
 
     def idle(
         self, moved: Mapping[str, tuple[float, float]], reached: Sequence[Reached] = ()
@@ -134,7 +136,7 @@ class Realiser:
 
     def _verb_phrase(self, step: Clause) -> str:
         pattern = in_past(step.pattern)
-        if pattern.endswith(" with {1}") and step.objects[0] == self._topic:
+        if step.pattern == STIR and step.objects[0] == self._topic:
             pattern = pattern.removesuffix(" with {1}")
         if step.pattern == "let go of {1}" and step.objects[0] == self._topic:
             pattern = in_past("let go")

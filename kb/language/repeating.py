@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import accumulate, groupby
+from itertools import accumulate
 
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
@@ -138,9 +138,7 @@ def _goes_on_with(last: Clause, clause: Clause) -> bool:
 def _without_scraps(told: Sequence[Clause], scene: Scene) -> list[Clause]:
     """The clauses, with each scrap of a motion in what it belongs to, and no short hold."""
     waiting = [
-        each
-        for at, each in enumerate(told)
-        if not (_short_hold(told, at) or _only_there(told, at))
+        each for at, each in enumerate(told) if not (_short_hold(told, at) or _only_there(told, at))
     ]
     out: list[Clause] = []
     while waiting:

@@ -7,11 +7,19 @@ from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from capar.model.facts import Posture, Travelled
 from capar.model.observation import Observation, Segment
 from kb.language.clause import Clause
-from kb.language.lexicalisation import AROUND, THIS_WAY, UPRIGHT, UPSIDE_DOWN, moves_only
+from kb.language.lexicalisation import (
+    AROUND,
+    BACK_UPRIGHT,
+    THIS_WAY,
+    UPRIGHT,
+    UPSIDE_DOWN,
+    moves_only,
+)
 from kb.language.thresholds import (
     AROUND_RAD,
     OVER_RAD,
@@ -39,8 +47,7 @@ class Turning:
     """Postures of an observation's objects by time."""
 
     def __init__(self, observation: Observation) -> None:
-        ends = max((each.last, each.end_s) for each in observation.segments)
-        self._step_s = ends[1] / ends[0] if ends[0] else 0.0
+        self._step_s = observation.duration_s / max(observation.frames - 1, 1)
         self._postures: dict[str, list[Attitude]] = defaultdict(list)
         self._turns: dict[str, dict[int, int]] = defaultdict(dict)
         for fact in sorted(each for each in observation.facts if isinstance(each, Posture)):
@@ -81,25 +88,26 @@ class Turning:
             return
         over = seen[0].lean > OVER_RAD
         leant = not over and seen[0].lean > UPRIGHT_RAD
-        since = seen[0]
-        for before, after in zip(seen, seen[1:], strict=False):
+        since, turned_over = seen[0], False
+        for before, after in pairwise(seen):
             if not over and not leant and before.lean <= UPRIGHT_RAD:
                 since = before
             if not over and after.lean > OVER_RAD:
                 yield _turned(grip, UPSIDE_DOWN, since, after)
-                over, leant, since = True, False, after
+                over, leant, since, turned_over = True, False, after, True
             elif over and after.lean > OVER_RAD:
                 since = after
             elif (over or leant) and after.lean < UPRIGHT_RAD:
-                yield _turned(grip, UPRIGHT, since, after)
+                yield _turned(grip, BACK_UPRIGHT if turned_over else UPRIGHT, since, after)
                 over, leant, since = False, False, after
-        if max(each.lean for each in seen) < OVER_RAD and abs(
-            seen[-1].spin - seen[0].spin
-        ) > AROUND_RAD:
+        if (
+            max(each.lean for each in seen) < OVER_RAD
+            and abs(seen[-1].spin - seen[0].spin) > AROUND_RAD
+        ):
             yield _turned(grip, AROUND, *_course(seen))
 
     def _between(self, thing: str, start_s: float, end_s: float) -> list[Attitude]:
-        """Its postures from the last one that is known at the start to the one nearest to the end."""
+        """Its postures from the last one before the start to the one nearest to the end."""
         found, slack_s = self._postures[thing], 0.5 * self._step_s
         begin = bisect_right(found, start_s + slack_s, key=_time) - 1
         end = bisect_right(found, end_s + slack_s, key=_time)
