@@ -6,7 +6,7 @@ from dataclasses import replace
 from capar.model.observation import ObservedLink, ObservedObject
 from kb.language.clause import Clause, in_time
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import ON_FOOT, REACH, STEP, WALK
+from kb.language.lexicalisation import ON_FOOT, REACH, STEP, WALK, WALK_UP
 from kb.language.thresholds import STEP_M, STRIDE_S
 
 Told = tuple[Clause, ...]
@@ -137,8 +137,14 @@ def with_walks(
     out = list(steps)
     for walk in _walks(feet, scene):
         if walk.end_s <= begin_s:
-            first = min(manual, key=in_time)
             out = [_after(walk, step) for step in out if not _within(step, walk)]
+            first = min((step for step in out if step.objects), key=in_time)
+            thing = first.objects[0]
+            up_to = any(
+                scene.nears(foot, thing, walk.start_s, walk.end_s, STEP_M) for foot in walk.ees
+            )
+            if up_to and walk.pattern == WALK:
+                walk = replace(walk, pattern=WALK_UP, objects=(thing,))  # noqa: PLW2901
             out.append(replace(walk, ees=first.ees))
         elif walk.start_s >= end_s:
             out.append(replace(walk, ees=max(manual, key=_end_s).ees))

@@ -52,6 +52,14 @@ class Scene:
             return None
         return float(np.linalg.norm(places - places[0], axis=1).max())
 
+    def nears(self, body: str, thing: str, start_s: float, end_s: float, by_m: float) -> bool:
+        """Whether a body is nearer to where a thing is at the end, by so much [m]."""
+        places, there = self._places(body, start_s, end_s), self._places(thing, end_s, end_s)
+        if places is None or there is None:
+            return False
+        ways = np.linalg.norm(places[[0, -1], :2] - there[-1, :2], axis=1)
+        return bool(ways[0] - ways[1] > by_m)
+
     def rises(self, segment: Segment) -> bool:
         """Whether the object is clearly higher when a segment ends."""
         places = self._places(segment.objects[0], segment.start_s, segment.end_s)

@@ -13,7 +13,7 @@ from capar.model.observation import Observation, ObservedLink
 from capar.model.sampled_track import SampledTrack
 from kb.language.thresholds import APEX_M, ASIDE_SHARE, REACHED_M, SWAYING
 
-HAND = "hand"
+HAND, HEAD = "hand", "head"
 
 
 @dataclass(frozen=True)
@@ -46,13 +46,14 @@ def reaches(
     tracks = {each.body: each for each in observation.tracks if each.step_s > 0.0}
     hands = [link for link in observation.links if link.kind == HAND and link.ee in tracks]
     ahead = _ahead(hands, tracks)
-    found = [
-        each
+    head = next((tracks[body] for body in tracks if body == HEAD), None)
+    free = [
+        link.ee
         for link in hands
         if link.ee in moved and moved[link.ee][0] > link.segments[0].start_s
-        for each in [_reached(link.ee, tracks[link.ee], moved[link.ee], ahead)]
-        if each is not None
     ]
+    ways = (_reached(ee, tracks[ee], moved[ee], ahead, head) for ee in free)
+    found = [each for each in ways if each is not None]
     furthest_m = max((way for _, way in found), default=0.0)
     return tuple(each for each, way in found if way >= SWAYING * furthest_m)
 
@@ -76,7 +77,9 @@ def _reached(
     track: SampledTrack,
     span: tuple[float, float],
     ahead: Float[np.ndarray, "3"] | None,
+    head: SampledTrack | None,
 ) -> tuple[Reached, float] | None:
+    """Where one hand gets that moves in that time, and how far [m]; None where it gets nowhere."""
     first, last = (round(each / track.step_s) for each in span)
     places = track.positions[first : last + 1]
     if len(places) < 2 or np.isnan(places).any():
@@ -86,6 +89,10 @@ def _reached(
     where = _direction(places[int(ways.argmax())] - places[0], ahead)
     if furthest_m < REACHED_M or not where:
         return None
+    if head is not None:
+        apex = first + int(ways.argmax())
+        above = track.positions[apex, 2] > head.positions[min(apex, len(head.positions) - 1), 2]
+        where += " above the head" if above else ""
     there = np.flatnonzero(ways > furthest_m - APEX_M)
     found = Reached(
         ee=ee,

@@ -48,6 +48,9 @@ What else has pauses is done bit by bit.
 MOVING = frozenset({"MoveObj", "MoveObjTo"})
 """Names, and kinds of names, of a thing that is moved."""
 
+SHIFTED = frozenset({"Slide", "Push", "Pull", "MoveObj"})
+"""Names of what moves a thing a little as it is put somewhere."""
+
 TRANSPORT = frozenset({"Lift", "Raise", "Carry", "MoveObj", "MoveObjTo"})
 """Names of what brings a thing to where it is put."""
 
@@ -78,6 +81,12 @@ STIR = "stir in {2} with {1}"
 
 WALK, STEP = "walk", "take a step"
 """What the whole body does, with no word of the feet."""
+
+WALK_UP = "walk up to {1}"
+"""The same, to the thing that a hand takes next."""
+
+BODILY = frozenset({WALK, STEP, WALK_UP})
+"""Patterns that name no end-effector."""
 
 ON_FOOT = frozenset({"Step", "Stand", "Walk", "StandOnOneLeg", "RestFoot"})
 """Names of what feet do on the ground."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 from capar.model.observation import ObservedLink, ObservedObject
 from kb.language.clause import Clause
 from kb.language.free_motion import Reached
-from kb.language.lexicalisation import BIT_BY_BIT, STEP, STIR, SUSTAINED, WALK, in_past
+from kb.language.lexicalisation import BIT_BY_BIT, BODILY, STIR, SUSTAINED, in_past
 from kb.language.planning import Part
 from kb.language.vocabulary import SIDES
 from kb.lexicon.english import joined, noun, number, the, times
@@ -90,7 +90,7 @@ class Realiser:
         self._topic, self._several = "", ()
         for step in steps:
             text = self._verb_phrase(step)
-            bodily = step.pattern in {WALK, STEP}
+            bodily = step.pattern in BODILY
             told = step.ees == self._ees or "{ee}" in step.pattern or bodily
             hand = "" if told else self._with_hands(step)
             if "{with}" in text:

@@ -15,6 +15,7 @@ from kb.language.clause import Clause
 from kb.language.lexicalisation import (
     AROUND,
     BACK_UPRIGHT,
+    SHIFTED,
     THIS_WAY,
     UPRIGHT,
     UPSIDE_DOWN,
@@ -24,6 +25,8 @@ from kb.language.thresholds import (
     AROUND_RAD,
     OVER_RAD,
     REST_S,
+    SCRAP_S,
+    SETTLING_S,
     SOMEWHAT_RAD,
     TO_AND_FRO_RAD,
     TURNED_RAD,
@@ -182,12 +185,19 @@ def _turn(clause: Clause, ways: Sequence[Clause], turning: Turning) -> Clause | 
 
 def with_turning(told: Sequence[Clause], ways: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses of one hand with those of turning, each in the grip to which it belongs."""
-    out = list(told)
+    out = [step for step in told if not any(_scrap_beside(step, way) for way in ways)]
     for way in ways:
         same = [step for step in told if step.objects[:1] == way.objects]
         grip = max(same, key=way.overlap_s).grip if same else way.grip
         out.append(replace(way, grip=grip))
     return tuple(sorted(out, key=_start))
+
+
+def _scrap_beside(step: Clause, way: Clause) -> bool:
+    """Whether it is a short shift of a thing that was just turned: the end of putting it there."""
+    brief = step.possessed and step.end_s - step.start_s < SCRAP_S
+    soon = 0.0 <= step.start_s - way.end_s < SETTLING_S
+    return brief and soon and step.name in SHIFTED and step.objects[:1] == way.objects
 
 
 def _start(clause: Clause) -> float:

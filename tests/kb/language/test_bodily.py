@@ -63,6 +63,13 @@ def test_steps_before_a_thing_is_taken_are_walking() -> None:
     )
 
 
+def test_who_comes_nearer_to_the_thing_walks_up_to_it() -> None:
+    made = seen({"right_hand": WORKED, **WALKED}, 0.6)
+    ahead = sampled_track("mug", 0.01, np.tile((1.5, 0.0, 0.8), (401, 1)))
+    told = describe(replace(made, tracks=(*made.tracks, ahead)))
+    assert told.startswith("The agent walked up to the mug, reached for it with the right hand,")
+
+
 def test_steps_on_the_spot_are_not_told_beside_what_hands_do() -> None:
     told = describe(seen({"right_hand": WORKED, **WALKED}, 0.05))
     assert told == "The agent reached for the mug with the right hand, lifted it, and let go."

@@ -37,7 +37,7 @@ def told(way: Sequence[float], facing: float = 0.0, *, back: bool = True) -> str
     share = np.clip((np.arange(301) - 50) / 100.0, 0.0, 1.0)
     if back:
         share -= np.clip((np.arange(301) - 150) / 100.0, 0.0, 1.0)
-    tracks = []
+    tracks = [sampled_track("head", 0.01, np.tile((0.0, 0.0, 1.6), (301, 1)))]
     for ee, place in AT.items():
         gone = share[:, None] * np.asarray(way) if ee == "right_hand" else np.zeros((301, 3))
         tracks.append(sampled_track(ee, 0.01, (np.asarray(place) + gone) @ turn.T))
@@ -62,6 +62,10 @@ def test_a_reach_has_its_direction(way: tuple[float, ...], words: str) -> None:
     assert text.startswith(f"The agent reached {words} with the right hand (0.50–")
     assert "took the hand back" in text
     assert text.endswith("and touched nothing.")
+
+
+def test_a_hand_that_gets_above_the_head_is_told_to() -> None:
+    assert "reached up above the head with the right hand" in told((0.0, 0.0, 0.9))
 
 
 def test_a_hand_that_stays_there_does_not_come_back() -> None:
