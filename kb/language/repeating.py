@@ -180,6 +180,8 @@ def _short_hold(told: Sequence[Clause], at: int) -> bool:
 
 def _scrap(clause: Clause, following: Clause | None, scene: Scene) -> bool:
     """Whether it is a short motion in the grip that goes hardly anywhere, or with the next."""
+    if _unseen(clause):
+        return True
     moves = not MOVING.isdisjoint((clause.name, *clause.general))
     if not (moves and clause.changes and clause.possessed and clause.goes_on and clause.known):
         return False
@@ -190,13 +192,18 @@ def _scrap(clause: Clause, following: Clause | None, scene: Scene) -> bool:
         return False
     if brief and only_moved:
         return True
-    if following is not None and _takes_up(clause, following):
-        unseen = clause.end_s - clause.start_s < UNSEEN_S
-        if unseen or not following.goes_on:
-            return True
+    if following is not None and _takes_up(clause, following) and not following.goes_on:
+        return True
     way = scene.strays_m if only_moved else scene.way_m
     gone_m = way(clause.objects[0], clause.start_s, clause.end_s)
     return gone_m is not None and gone_m < SCRAP_M
+
+
+def _unseen(clause: Clause) -> bool:
+    """Whether what the hand does with a thing that it goes on having is over before it is seen."""
+    keeps = clause.possessed and (clause.goes_on or clause.name == "MoveObjTo")
+    told = clause.purpose or not clause.known
+    return keeps and clause.changes and not told and clause.end_s - clause.start_s < UNSEEN_S
 
 
 def _takes_up(scrap: Clause, following: Clause) -> bool:

@@ -74,6 +74,21 @@ def test_a_summary_of_much_handling_says_each_verb_once() -> None:
     assert told == "The agent raised, lowered, and tilted the mug with the right hand."
 
 
+def test_what_is_over_before_it_is_seen_goes_with_what_follows() -> None:
+    own = FeatureSet("1", "1", "1", "hand", "0")
+    parts = (("Lift", 100), ("Tilt", 110), ("Carry", 200))
+    pieces = (
+        Piece("Reach", 50, ("mug",)),
+        *(Piece(name, end, ("mug",), features=own) for name, end in parts),
+    )
+    seen = observation("Brief", {"right_hand": pieces}, (MUG,), frames=201, rate_hz=100.0)
+    (link,) = seen.links
+    held = tuple(replace(each, possessed=each.index > 0) for each in link.segments)
+    assert describe(replace(seen, links=(replace(link, segments=held),))) == (
+        "The agent reached for the mug with the right hand, lifted it, and carried it."
+    )
+
+
 def test_what_is_not_to_and_fro_is_done_bit_by_bit_where_it_pauses() -> None:
     assert _handled("Turn", "Touch", "Turn") == " and turned it bit by bit."
 
