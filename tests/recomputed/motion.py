@@ -203,6 +203,11 @@ def stroked(known: Known, what: str, count: str) -> bool:
     return what == known.segment.ee.replace("_", " ") and abs(found - int(count)) <= 2
 
 
+def lasted(known: Known, at: str) -> bool:
+    """The segment does, from its first frame to its last."""
+    return abs((known.segment.last - known.segment.first) / known.rate - float(at)) < 0.011
+
+
 def wrung(known: Known, what: str) -> bool:
     """Its turning adds up to half a turn, and its way to no more than 15 cm for each radian."""
     frames = range(known.segment.first, known.segment.last + 1)
@@ -357,6 +362,7 @@ FORMS = (
         rf"what the {NAME} held turned back (\d+) times, in strokes of a finger's width and more",
         stroked,
     ),
+    (r"it lasted (\d+\.\d\d) s", lasted),
     (
         rf"the {NAME} turned by more than half a turn in all, "
         r"and went no further than the wrist takes it",
