@@ -75,8 +75,8 @@ class Realiser:
             start_s = min(moved[ee][0] for ee in ees)
             end_s = max(moved[ee][1] for ee in ees)
             span = f" ({start_s:.2f}–{end_s:.2f} s)" if self._timed else ""
-            parts.append(f"{self._hands(tuple(ees))}{span}")
-        return f"moved {joined(parts)} and touched nothing" if parts else "touched nothing"
+            parts.append(f"moved {self._hands(tuple(ees))}{span}")
+        return joined([*parts, "touched nothing"])
 
     def _there_and_back(self, reached: Reached) -> list[str]:
         hand, kind = self._hands((reached.ee,)), self._kinds[reached.ee]
