@@ -20,8 +20,8 @@ from capar.model.facts import (
     LookingAt,
     MovedBy,
     OfAgent,
-    RateMhz,
     Place,
+    RateMhz,
     Touching,
 )
 from capar.model.observation import Observation
