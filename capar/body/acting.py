@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures
+from capar.body.balance import BalanceLimit, BalanceTask, standing_support
 from capar.body.gaze import look_tasks, share_costs
 from capar.body.grips import PITCHES, YAWS, side_grip, top_grip
 from capar.body.human import Human
@@ -65,6 +66,7 @@ class Actor:
         self.rest = human.posture(relaxed, place=(*place, 0.0), heading=heading)
         self.configuration = mink.Configuration(human.model)
         self.configuration.update(self.rest)
+        self.base = standing_support(human, self.rest)
         self.things = {name: each.pose for name, each in scene.things.items()}
         self.grips: dict[tuple[str, str, str], RigidTransform] = {}
         self.palms = {s: mink.FrameTask(f"{s}_palm", "site", *PALM_COST) for s in SIDES}
@@ -73,6 +75,7 @@ class Actor:
         self.limits = [
             mink.ConfigurationLimit(human.model),
             mink.VelocityLimit(human.model, dict.fromkeys(human.joints, 0.15)),
+            BalanceLimit(self.base),
         ]
         self.home = {side: self.palm(side) for side in SIDES}
         self.mouth = mink.FrameTask("mouth", "site", PALM_COST[0], 0.0)
@@ -94,7 +97,8 @@ class Actor:
         balance.set_target_from_configuration(self.configuration)
         self.ease = mink.PostureTask(self.human.model, cost=share_costs(self.human, 0.15))
         self.ease.set_target(self.rest)
-        return [*feet, balance, self.ease, mink.DampingTask(self.human.model, cost=0.1)]
+        edge = BalanceTask(self.base)
+        return [*feet, balance, edge, self.ease, mink.DampingTask(self.human.model, cost=0.1)]
 
     def palm(self, side: str) -> RigidTransform:
         """Where a palm is."""
