@@ -122,7 +122,7 @@ def _holds(made: Performance, side: str) -> dict[str, Bool[np.ndarray, "frames"]
 def _at_mouth(made: Performance, name: str) -> Bool[np.ndarray, "frames"]:
     thing = made.scene.thing(name)
     turn = made.things[name].rotation
-    rim = 0.5 * thing.size[0]
+    rim = -thing.shape.bounds[0, 0]
     mouth = made.human.sites(made.motion, ["mouth"])["mouth"][0]
     local = turn.inv().apply(mouth - made.things[name].translation)
     height = np.abs(local[:, 2] - thing.shape.bounds[1, 2])
