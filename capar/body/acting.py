@@ -1,12 +1,13 @@
 """The inverse kinematics of a performance: palms, gaze, feet and balance, frame by frame."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mink
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures
+from capar.body.balance import BalanceLimit, BalanceTask, standing_support
 from capar.body.gaze import look_tasks, share_costs
 from capar.body.grips import PITCHES, YAWS, side_grip, top_grip
 from capar.body.human import Human
@@ -38,8 +39,8 @@ UP, OVER = 0.6, 0.75
 RISE_M = 0.13
 """How far above the straight way a hand goes to a thing [m]."""
 
-RELEASE_SHARE = 0.4
-"""Share of the phase after a drink in which the head is free again [1]."""
+RELEASE_S = 0.48
+"""How long it takes after a drink until the head is free again, in the next phase [s]."""
 
 ITERATIONS = 3
 
@@ -65,6 +66,7 @@ class Actor:
         self.rest = human.posture(relaxed, place=(*place, 0.0), heading=heading)
         self.configuration = mink.Configuration(human.model)
         self.configuration.update(self.rest)
+        self.base = standing_support(human, self.rest)
         self.things = {name: each.pose for name, each in scene.things.items()}
         self.grips: dict[tuple[str, str, str], RigidTransform] = {}
         self.palms = {s: mink.FrameTask(f"{s}_palm", "site", *PALM_COST) for s in SIDES}
@@ -73,6 +75,7 @@ class Actor:
         self.limits = [
             mink.ConfigurationLimit(human.model),
             mink.VelocityLimit(human.model, dict.fromkeys(human.joints, 0.15)),
+            BalanceLimit(self.base),
         ]
         self.home = {side: self.palm(side) for side in SIDES}
         self.mouth = mink.FrameTask("mouth", "site", PALM_COST[0], 0.0)
@@ -80,6 +83,9 @@ class Actor:
         self.mouth_at = self._site("mouth").translation
         self.drinks = self.drank = 0.0
         """How firmly the mouth is kept where it is when standing, now and when the phase began."""
+        self.phase: Phase | None = None
+        self.tilts: dict[str, float] = {}
+        """How far things that were at the mouth when the phase began were tilted [rad]."""
         self.look, self.look_at, self.since = "ahead", ("ahead", ""), np.inf
         self.point = self.look_from = self._looked_at("ahead")
         self.starts: dict[str, RigidTransform] = dict(self.home)
@@ -94,7 +100,8 @@ class Actor:
         balance.set_target_from_configuration(self.configuration)
         self.ease = mink.PostureTask(self.human.model, cost=share_costs(self.human, 0.15))
         self.ease.set_target(self.rest)
-        return [*feet, balance, self.ease, mink.DampingTask(self.human.model, cost=0.1)]
+        edge = BalanceTask(self.base)
+        return [*feet, balance, edge, self.ease, mink.DampingTask(self.human.model, cost=0.1)]
 
     def palm(self, side: str) -> RigidTransform:
         """Where a palm is."""
@@ -154,17 +161,17 @@ class Actor:
         self.starts = {side: self.palm(side) for side in SIDES}
         self.thing_starts = dict(self.things)
         self.drank = self.drinks
+        moves = self.phase.moves if self.phase else {}
+        self.tilts = {name: move.tilt for name, move in moves.items() if move.to_mouth}
+        self.phase = phase
 
     def frame(self, phase: Phase, share: float, looks: Phase, step_s: float) -> Frame:
         """Go on to one frame of a phase, the gaze being in that one or already in the next."""
         way = minimum_jerk(share)
         for name, move in phase.moves.items():
-            start = self.thing_starts[name]
-            pose = between(start, self._goal(name, move, start), way)
-            arc = [0.0, 0.0, move.lift * 4.0 * way * (1.0 - way)]
-            self.things[name] = RigidTransform.from_translation(arc) * pose
+            self.things[name] = self._moved(name, move, way)
         drinks = any(move.to_mouth for move in phase.moves.values())
-        held = way if drinks else minimum_jerk(share / RELEASE_SHARE)
+        held = way if drinks else minimum_jerk(share * max(phase.seconds / RELEASE_S, 1.0))
         self.drinks = self.drank + held * (float(drinks) - self.drank)
         goals = {side: self._hand_goal(side, phase.hand(side), share) for side in SIDES}
         self._gaze(looks, step_s)
@@ -178,6 +185,16 @@ class Actor:
         }
         return Frame(np.array(self.configuration.q), dict(self.things), self.point, slip)
 
+    def _moved(self, name: str, move: Move, way: float) -> RigidTransform:
+        """Where a thing is part of the way; one that is at the mouth turns about its rim."""
+        start = self.thing_starts[name]
+        if move.to_mouth and name in self.tilts:
+            tilt = self.tilts[name] + way * (move.tilt - self.tilts[name])
+            return self._goal(name, replace(move, tilt=tilt), start)
+        arc = [0.0, 0.0, move.lift * 4.0 * way * (1.0 - way)]
+        pose = between(start, self._goal(name, move, start), way)
+        return RigidTransform.from_translation(arc) * pose
+
     def _goal(self, name: str, move: Move, start: RigidTransform) -> RigidTransform:
         """Where a thing goes; to the mouth as it is when standing, where the head is then kept."""
         if move.home:
@@ -187,7 +204,7 @@ class Actor:
         thing = self.scene.thing(name)
         ahead = Rotation.from_euler("z", self.heading)
         turn = ahead * Rotation.from_euler("y", -move.tilt) * ahead.inv() * thing.pose.rotation
-        rim = np.array([-0.5 * thing.size[0], 0.0, thing.shape.bounds[1, 2]])
+        rim = np.array([thing.shape.bounds[0, 0], 0.0, thing.shape.bounds[1, 2]])
         local = thing.pose.rotation.inv() * ahead
         spot = self.mouth_at - turn.apply(local.apply(rim))
         return RigidTransform.from_components(spot, turn)

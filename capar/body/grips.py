@@ -40,7 +40,7 @@ def side_grip(
     low, high = thing.shape.bounds
     heel = PALM[0] * np.cos(pitch) + 0.44 * np.sin(pitch)
     height = max(0.5 * (low[2] + high[2]), low[2] + heel * measures["hand_length"] + CLEAR_M)
-    reach = 0.5 * thing.size[1] + AIR_M
+    reach = (-low[1] if side == "right" else high[1]) + AIR_M
     place = np.array([0.0, 0.0, height]) - inwards * reach
     return RigidTransform.from_components(place, palm_turn(inwards, fingers))
 

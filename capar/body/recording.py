@@ -6,15 +6,13 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.anthropometry import Measures
-from capar.body.body_shapes import forms
-from capar.body.form_meshes import form_mesh
 from capar.body.gaze import lines_of_sight
 from capar.body.mounting import Mount
 from capar.body.performing import TOUCH_M, Performance
 from capar.body.scripts import SIDES
 from capar.body.sensing import Tracker, recorded, sense, strap_on
 from capar.body.skeleton import skeleton
+from capar.body.surfaces import segment_surface
 from capar.model import geometry
 from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagObject, TagType
 
@@ -124,7 +122,7 @@ def _holds(made: Performance, side: str) -> dict[str, Bool[np.ndarray, "frames"]
 def _at_mouth(made: Performance, name: str) -> Bool[np.ndarray, "frames"]:
     thing = made.scene.thing(name)
     turn = made.things[name].rotation
-    rim = 0.5 * thing.size[0]
+    rim = -thing.shape.bounds[0, 0]
     mouth = made.human.sites(made.motion, ["mouth"])["mouth"][0]
     local = turn.inv().apply(mouth - made.things[name].translation)
     height = np.abs(local[:, 2] - thing.shape.bounds[1, 2])
@@ -201,19 +199,6 @@ def _head(made: Performance, worn: Sensor) -> TagObject:
 def _standing_frame(made: Performance, segment: str) -> RigidTransform:
     origin = skeleton(made.human.measures)[segment].origin
     return RigidTransform.from_translation(origin)
-
-
-def segment_surface(measures: Measures, segments: tuple[str, ...], frame: str) -> Shape:
-    """The surface of some segments of the standing body, in the frame of one of them."""
-    bones = skeleton(measures)
-    parts = []
-    for form in forms(measures, bones):
-        if form.body in segments:
-            mesh = form_mesh(form)
-            mesh.apply_translation(bones[form.body].origin - bones[frame].origin)
-            parts.append(mesh)
-    mesh = sum(parts[1:], parts[0])
-    return Shape(np.array(mesh.vertices), np.array(mesh.faces), description=" and ".join(segments))
 
 
 def _moved(shape: Shape, pose: RigidTransform) -> Shape:

@@ -14,6 +14,7 @@ from capar.body.scripts import (
     Script,
     drink,
     lift_with_both_hands,
+    sip,
     slide,
     touch,
 )
@@ -36,6 +37,7 @@ CARRY: Script = (
 )
 ACTIONS: dict[str, Script] = {
     "drink": drink("mug"),
+    "sip": sip("mug"),
     "touch": touch("crate"),
     "slide": slide("mug", (0.0, 0.12, 0.0)),
     "carry": CARRY,

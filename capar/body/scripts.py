@@ -112,6 +112,23 @@ def drink(thing: str, *, side: str = "right", tilt: float = float(np.radians(35.
     )
 
 
+def sip(thing: str, *, side: str = "right", tilt: float = float(np.radians(40.0))) -> Script:
+    """Drink from a cup in one go, in the six steps and about the times of thesis 5.2.1.
+
+    The cup is raised as soon as it is held, tipped further at the mouth, put back and let go.
+    """
+    held = {side: Hand("holds", thing)}
+    return (
+        Phase("stand", 0.8, look="ahead"),
+        Phase("reach", 1.0, {side: Hand("reaches", thing)}, look=thing),
+        Phase("raise", 0.8, held, {thing: Move(to_mouth=True, tilt=0.4 * tilt)}, look="ahead"),
+        Phase("drink", 0.13, held, {thing: Move(to_mouth=True, tilt=tilt)}, look="ahead"),
+        Phase("lower", 0.58, held, {thing: Move(home=True)}, look=thing),
+        Phase("release", 0.19, held, look=thing),
+        Phase("return", 0.75, look="ahead"),
+    )
+
+
 def lift_with_both_hands(thing: str, *, height: float = 0.25) -> Script:
     """Take a thing between both palms, lift it, hold it, and put it back."""
     both = {side: Hand("holds", thing) for side in SIDES}

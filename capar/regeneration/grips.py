@@ -8,7 +8,8 @@ import trimesh
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.recording import HAND_SEGMENTS, segment_surface
+from capar.body.recording import HAND_SEGMENTS
+from capar.body.surfaces import segment_surface
 from capar.body.things import Thing
 from capar.model.capture import Sensor, Shape
 from capar.regeneration.body_frames import BodyFrames

@@ -11,7 +11,8 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
-from capar.body.recording import HAND_SEGMENTS, segment_surface
+from capar.body.recording import HAND_SEGMENTS
+from capar.body.surfaces import segment_surface
 from capar.model.capture import Shape
 
 

@@ -5,6 +5,7 @@ from functools import cache
 import pytest
 from virtual_bodies.drinking import drinking, steps_of
 
+from capar.body.scripted_actions import action_capture
 from capar.model.capture import Capture
 from capar.pipelines.observation import observe
 
@@ -23,6 +24,18 @@ STEPS = {
 A support that bears the mug since before it was taken is no subordinate in ``extended`` alone.
 """
 
+
+SIPS = {
+    "extended": (
+        "Reach(mug)", "MoveObjTo(mug, head)", "Drink(mug, head)", "MoveObjTo(mug, table)",
+        "TouchWith(mug, table)", "ResumePosture(mug)",
+    ),
+    "thesis": (
+        "Reach(mug)", "MoveObjTo(mug, head)", "MoveObj(mug, head)", "MoveObjTo(mug, table)",
+        "TouchWith(mug, table)", "ResumePosture(mug)",
+    ),
+}  # fmt: skip
+"""The published steps (thesis 5.2.1); Drink is a MoveObj."""
 
 SLOW_CLOCK = pytest.mark.xfail(
     strict=True,
@@ -48,3 +61,11 @@ def test_a_drink_is_the_same_for_bodies_and_tables_of_any_size(
     who: str, number: int, rate_hz: float, profile: str
 ) -> None:
     assert steps_of(observe(trial(who, number, rate_hz), rules=profile)) == STEPS[profile]
+
+
+@pytest.mark.parametrize("who", ["man", "woman", "child"])
+@pytest.mark.parametrize("noisy", [False, True])
+@pytest.mark.parametrize("profile", ["extended", "thesis"])
+def test_a_sip_is_the_published_six_steps(who: str, profile: str, *, noisy: bool) -> None:
+    capture = action_capture("sip", who, rate_hz=103.3, noisy=noisy)
+    assert steps_of(observe(capture, rules=profile)) == SIPS[profile]

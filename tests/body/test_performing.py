@@ -17,6 +17,7 @@ from capar.body.scripts import (
     drink,
     lift_with_both_hands,
     reach_and_return,
+    sip,
     slide,
     touch,
 )
@@ -41,6 +42,7 @@ def _scene(human: Human) -> Scene:
 
 SCRIPTS: dict[str, Script] = {
     "drink": drink("mug"),
+    "sip": sip("mug"),
     "touch": touch("crate"),
     "reach": reach_and_return("crate", side="left"),
     "slide": slide("mug", (0.0, 0.12, 0.0)),
@@ -54,7 +56,12 @@ def _act(who: str, what: str) -> Performance:
     return perform(human, _scene(human), SCRIPTS[what], rate_hz=RATE_HZ)
 
 
-ACTED = [*(("man", what) for what in SCRIPTS), ("child", "drink"), ("woman", "lift")]
+ACTED = [
+    *(("man", what) for what in SCRIPTS),
+    ("child", "drink"),
+    ("woman", "lift"),
+    ("woman", "sip"),
+]
 
 
 @pytest.fixture(scope="module", params=ACTED, ids=" ".join)
@@ -131,6 +138,17 @@ def test_a_drink_meets_the_mouth_and_ends_where_it_began() -> None:
     assert sip[3] >= end - 0.05
     last = acted.things["mug"].translation[-1]
     np.testing.assert_allclose(last, acted.scene.thing("mug").place, atol=1e-9)
+
+
+def test_a_sip_keeps_the_rim_at_the_mouth_while_the_mug_is_tipped() -> None:
+    acted = _act("woman", "sip")
+    start, end = next(each[1:] for each in acted.phases if each[0] == "drink")
+    (sipped,) = [pair[2:] for pair in truth_of(acted).contacts if pair[:2] == ("mug", "head")]
+    assert sipped[0] <= start + 0.05
+    assert sipped[1] >= end - 0.05
+    now = (acted.times >= start) & (acted.times < end)
+    turns = acted.things["mug"][now].rotation
+    assert (turns[0].inv() * turns[-1]).magnitude() > np.radians(15.0)
 
 
 def test_hands_move_with_one_bell_of_speed_to_what_they_reach_for() -> None:

@@ -290,7 +290,10 @@ def open_door_farther(performer: Performer, **options: Unpack[Options]) -> Trial
 
 
 def open_and_close_lid(performer: Performer, **options: Unpack[Options]) -> Trial:
-    """A chest's lid is opened at its front edge, held, and closed."""
+    """A chest's lid is opened at its front edge, held, and closed.
+
+    Woman and child would fall over (POSSIBLE.md).
+    """
     steps = (*TAKE, "Open", "TouchWith", "Close", "TouchWith", *LEAVE)
     return work(performer, lid(performer), (Stroke(1.4), Stroke(0.0)), steps, **options)
 

@@ -41,7 +41,11 @@ EMPTIED = np.radians(-50.0)
 
 
 def drink_from_mug(performer: Performer, **options: Unpack[Options]) -> Trial:
-    """One who stands at a table drinks from the mug on it; 3.9 s by the tall man."""
+    """One who stands at a table drinks from the mug on it; 3.9 s by the tall man.
+
+    Only the woman could: the tall man's mouth is too high, the child's wrist turned too far
+    (POSSIBLE.md).
+    """
     grasp, mouth, sipped, down, release, done = _instants(performer)
     end = done + LAST_S
     table = (0.75, 0.0, performer.table_m)

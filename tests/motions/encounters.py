@@ -169,7 +169,10 @@ def clap(performer: Performer, **options: Unpack[Options]) -> Trial:
 
 
 def salute(performer: Performer, **options: Unpack[Options]) -> Trial:
-    """A hand is raised to the brow, stays there, and goes back."""
+    """A hand is raised to the brow, stays there, and goes back.
+
+    The tall man's head is higher than it is when he stands (POSSIBLE.md).
+    """
     met = 1.2 * performer.pace
     leaves, home = met + 0.9, met + 0.9 + 1.2 * performer.pace
     head = Still(pose((0.06, 0.0, performer.stature_m - shapes.HEAD[2])))

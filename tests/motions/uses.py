@@ -89,7 +89,10 @@ def turn_on_table(performer: Performer, **options: Unpack[Options]) -> Trial:
 
 
 def pour(performer: Performer, **options: Unpack[Options]) -> Trial:
-    """A block as a jug is brought over a bowl, leant over it, and set upright again."""
+    """A block as a jug is brought over a bowl, leant over it, and set upright again.
+
+    Nobody was found who can, standing in balance (POSSIBLE.md).
+    """
     stage = Stage(shapes.box(*BLOCK), beside(performer), (_bowl(performer, 0.3),))
     over = Leg((0.3, 0.0, 0.0))
     legs = (

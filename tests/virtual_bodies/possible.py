@@ -1,45 +1,32 @@
-"""Which test motions a human body can perform: hands, feet, head and mouth followed within limits.
+"""Which test motions a human body can perform: within its joints' limits, and without falling over.
 
 ``benchmarks/possible_motions.py`` prints them all; what is missed is the worst of all frames.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import mink
 import motions
 import numpy as np
-from jaxtyping import Float
 from motions.doors import DOORS
 from motions.encounters import ENCOUNTERS
-from motions.shapes import mouth
 from motions.uses import USES
 from motions.whole import WHOLE
-from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.acting import RELAXED
 from capar.body.anthropometry import measures_of
-from capar.body.gaze import share_costs
 from capar.body.human import Human
-from capar.body.recording import segment_surface
 from capar.body.scripts import SIDES
-from capar.body.solving import Solver
-from capar.model import geometry
-from capar.model.capture import Capture, Sensor
-from capar.regeneration.hand_frames import body_hand_frame, hand_frame, palm_of
+from capar.model.capture import Capture
+from virtual_bodies.following import Course, Follow, Follower, chosen_frames, followed
 
 NEAR_M, NEAR_RAD = 0.010, float(np.radians(10.0))
 """A motion is possible if nothing is missed by more [m, rad]: by skin, and by another grip."""
 
-CLOSE_M, CLOSE_RAD = 0.002, float(np.radians(1.0))
-"""What is missed by less is followed [m, rad]."""
-
 FASTEST_RADPS = 25.0
 """... and no joint is faster [rad/s]: elbows of throwers reach about forty."""
 
-RATE_HZ = 10.0
-FEWEST, MOST = 4, 80
-"""Steps of the inverse kinematics at a frame: more while something is missed."""
+BESIDE_M = 0.0
+"""... and the centre of mass is no further than this beyond the soles that bear weight [m]."""
 
 PLACES = (
     (0.0, 0.0), (0.15, 0.0), (-0.15, 0.0), (0.0, 0.15), (0.0, -0.15), (0.15, 0.15), (0.15, -0.15),
@@ -55,10 +42,6 @@ ARMS = (
 )
 """Other postures of the arms from which a place is tried to be met [degrees]."""
 
-PALM, FOOT = (60.0, 8.0), (60.0, 8.0)
-HEAD, MOUTH = (0.0, 4.0), (60.0, 0.0)
-"""Weights of a metre and of a radian; what has no weight is not asked for."""
-
 PUBLISHED = (
     motions.drink_from_mug, motions.touch_from_rest, motions.touch_cycle, motions.slide_object,
     motions.pick_up_with_both_hands, motions.hit, motions.touch_with, motions.move_obj,
@@ -71,7 +54,7 @@ ACTS: tuple[Callable[..., motions.Trial], ...] = (*PUBLISHED, *USES, *ENCOUNTERS
 
 @dataclass(frozen=True)
 class Missed:
-    """How well a body follows a motion."""
+    """How well a body follows a motion, at worst."""
 
     metres: float
     radians: float
@@ -82,197 +65,94 @@ class Missed:
     """Which frame that is."""
 
     fastest_radps: float
+    beside_m: float = 0.0
+    """How far the centre of mass is beyond the soles that bear weight [m]; negative above them."""
+
     stands: tuple[float, float] = (0.0, 0.0)
     """Where the feet, which are not tracked, stay throughout, from the motion's origin [m]."""
 
+    falls: bool = False
+    """Whether it is possible for a body that may fall over, if it is not possible."""
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why it is not possible, in words."""
+        out = []
+        if self.metres > NEAR_M or self.radians > NEAR_RAD:
+            far, turned = f"{1e3 * self.metres:.0f} mm", f"{np.degrees(self.radians):.0f} degrees"
+            out.append(f"{self.what} is missed, by {far} and {turned} at worst")
+        if self.fastest_radps > FASTEST_RADPS:
+            out.append(f"a joint turns at {self.fastest_radps:.0f} rad/s")
+        if self.beside_m > BESIDE_M:
+            out.append(f"the weight is {1e3 * self.beside_m:.0f} mm beside the soles")
+        return (*out, *["only who fell over could do it"] * self.falls) if out else ()
+
     @property
     def possible(self) -> bool:
-        return (
-            self.metres <= NEAR_M
-            and self.radians <= NEAR_RAD
-            and self.fastest_radps <= FASTEST_RADPS
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Follow:
-    """A site or segment of the body, and where it is to be."""
-
-    frame: str
-    kind: str
-    costs: tuple[float, float]
-    path: RigidTransform
-
-    @property
-    def foot(self) -> bool:
-        return self.frame.endswith("_foot")
+        return not self.reasons
 
 
 def missed(capture: Capture) -> Missed:
     """How well the body of a capture's first agent can do what its sensors did.
 
-    Feet that are not tracked stay where they are; balance is asked for, but not judged. Where the
-    way from the first posture on is not possible, others are tried: from other places to stand,
-    and then over other postures of the arm at the moment at which most was missed.
+    Feet that are not tracked stay where they are, and the weight stays above those that bear it.
+    Where the way from the first posture on is not possible, others are tried: from other places to
+    stand, and then over other postures of the arm at the moment at which most was missed.
     """
     human = Human.of(measures_of(capture.agent))
-    wanted = list(_wanted(capture, human))
-    best = None
-    for way in _ways(capture, human, wanted):
-        if best is None or _worse(way) < _worse(best):
-            best = way
-        if best.possible:
-            break
-    assert best is not None
-    return best
+    wanted = list(followed(capture, human))
+    times = capture.times[chosen_frames(capture)]
+    follower = Follower(times, human, wanted, PLACES[0])
+    course = follower.run(0, follower.rest)
+    assert course is not None
+    first = judged(course, wanted, PLACES[0])
+    if first.possible:
+        return first
+    for other in _others(times, human, wanted, first.frame):
+        if other.possible:
+            return other
+    falling = Follower(times, human, wanted, PLACES[0], balanced=False)
+    course = falling.run(0, falling.rest)
+    assert course is not None
+    unbalanced = replace(judged(course, wanted, PLACES[0]), beside_m=0.0)
+    return replace(first, falls=unbalanced.possible)
 
 
-def _ways(capture: Capture, human: Human, wanted: list[Follow]) -> Iterator[Missed]:
-    """What is missed on the ways that are tried, one after the other."""
-    led = any(each.foot for each in wanted)
-    ways = []
-    for stands in PLACES[:1] if led else PLACES:
-        follower = Follower(capture, human, wanted, stands)
-        ways.append(follower.run(0, follower.rest))
-        yield ways[-1]
-    best = min(ways, key=_worse)
-    follower = Follower(capture, human, wanted, best.stands)
-    for arm in ARMS:
-        angles = {f"{s}_{n}": float(np.radians(a)) for n, a in arm.items() for s in SIDES}
-        yield follower.run(best.frame, human.posture(angles, place=(*best.stands, 0.0)))
+def _others(times: np.ndarray, human: Human, wanted: list[Follow], frame: int) -> Iterator[Missed]:
+    """What is missed on the other ways, one after the other, but of those that were given up."""
+    led = any(place.frame.endswith("_foot") for place in wanted)
+    places = PLACES[:1] if led else PLACES
+    enough = (NEAR_M, NEAR_RAD)
+    for stands in places[1:]:
+        follower = Follower(times, human, wanted, stands)
+        course = follower.run(0, follower.rest, enough=enough)
+        if course is not None:
+            yield judged(course, wanted, stands)
+    for stands in places:
+        follower = Follower(times, human, wanted, stands)
+        for arm in ARMS:
+            angles = {f"{s}_{n}": float(np.radians(a)) for n, a in arm.items() for s in SIDES}
+            posture = human.posture(angles, place=(*stands, 0.0))
+            course = follower.run(frame, posture, enough=enough)
+            if course is not None:
+                yield judged(course, wanted, stands)
 
 
-def _worse(each: Missed) -> float:
-    return max(each.metres / NEAR_M, each.radians / NEAR_RAD, each.fastest_radps / FASTEST_RADPS)
-
-
-def _wanted(capture: Capture, human: Human) -> Iterator[Follow]:
-    """The body's places that the sensors of the first agent lead."""
-    chosen = _frames(capture)
-    for each in capture.sensors:
-        if capture.agent_of(each) != capture.agent.name or each.part_of:
-            continue
-        path = geometry.transforms(each.stream.positions[chosen], each.stream.orientations[chosen])
-        if each.end_effector == "hand" and each.shape is not None:
-            yield Follow(f"{each.side}_palm", "site", PALM, path * _palm(each, human))
-        elif each.end_effector == "foot":
-            yield Follow(f"{each.side}_foot", "body", FOOT, path * _ankle(each, human))
-        elif each.end_effector == "head":
-            yield Follow("head", "body", HEAD, path)
-            if "head" in {thing.name for thing in capture.objects}:
-                spot = RigidTransform.from_translation(mouth())
-                yield Follow("mouth", "site", MOUTH, path * spot)
-
-
-def _frames(capture: Capture) -> np.ndarray:
-    step = max(round(capture.rate_hz / RATE_HZ), 1)
-    return np.arange(0, len(capture.times), step)
-
-
-def _palm(sensor: Sensor, human: Human) -> RigidTransform:
-    """``T_sensor_palm``: a test motion's hand points along x, and its back is along z."""
-    assert sensor.shape is not None
-    frame = hand_frame(sensor.shape, np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0]))
-    return frame.pose * palm_of(human, sensor.side, body_hand_frame(human, sensor.side))
-
-
-def _ankle(sensor: Sensor, human: Human) -> RigidTransform:
-    """``T_sensor_ankle``: the soles of both feet have the same middle."""
-    segments = (f"{sensor.side}_foot", f"{sensor.side}_toes")
-    bounds = segment_surface(human.measures, segments, segments[0]).bounds
-    own = np.array([*bounds.mean(axis=0)[:2], bounds[0, 2]])
-    sole = np.zeros(3)
-    if sensor.shape is not None:
-        sole = np.array([*sensor.shape.bounds.mean(axis=0)[:2], sensor.shape.bounds[0, 2]])
-    return RigidTransform.from_translation(sole - own)
-
-
-class Follower:
-    """A body that follows a motion from one place to stand."""
-
-    def __init__(
-        self, capture: Capture, human: Human, wanted: list[Follow], stands: tuple[float, float]
-    ) -> None:
-        self.times, self.wanted, self.stands = capture.times[_frames(capture)], wanted, stands
-        eased = {f"{s}_{n}": float(np.radians(a)) for n, a in RELAXED.items() for s in SIDES}
-        self.rest = human.posture(eased, place=(*stands, 0.0))
-        self.configuration = mink.Configuration(human.model)
-        self.configuration.update(self.rest)
-        self.tasks = [mink.FrameTask(each.frame, each.kind, *each.costs) for each in wanted]
-        ease = mink.PostureTask(human.model, cost=share_costs(human, 0.05))
-        ease.set_target(self.rest)
-        led = {each.frame for each in wanted}
-        feet = [f"{side}_foot" for side in SIDES if f"{side}_foot" not in led]
-        stance = _stance(feet, self.configuration)
-        damping = mink.DampingTask(human.model, cost=0.05)
-        self.solver = Solver(human, [*self.tasks, ease, damping, *stance])
-
-    def run(self, start: int, posture: Float[np.ndarray, "posture"]) -> Missed:
-        """Follow the motion from one frame to its end, and from there back to its beginning."""
-        postures = np.zeros((len(self.times), len(posture)))
-        errors = np.zeros((len(self.times), len(self.wanted), 2))
-        self.configuration.update(posture)
-        for frame in range(start, len(self.times)):
-            errors[frame] = self._meet(frame)
-            postures[frame] = self.configuration.q
-        self.configuration.update(postures[start])
-        for frame in reversed(range(start)):
-            errors[frame] = self._meet(frame)
-            postures[frame] = self.configuration.q
-        return self._judged(postures, errors)
-
-    def _meet(self, frame: int) -> Float[np.ndarray, "places 2"]:
-        """Go to a frame's targets; what is missed then [m, rad]."""
-        for task, each in zip(self.tasks, self.wanted, strict=True):
-            task.set_target(_se3(each.path[frame]))
-        self.solver.restart()
-        errors = np.zeros((len(self.wanted), 2))
-        for number in range(MOST):
-            self.solver.step(self.configuration)
-            errors = np.array([_error(self.configuration, each, frame) for each in self.wanted])
-            close = number >= FEWEST and (errors < (CLOSE_M, CLOSE_RAD)).all()
-            if close or self.solver.settled:
-                break
-        return errors.reshape(-1, 2)
-
-    def _judged(
-        self,
-        postures: Float[np.ndarray, "frames posture"],
-        errors: Float[np.ndarray, "frames places 2"],
-    ) -> Missed:
-        if not self.wanted:
-            return Missed(0.0, 0.0, "nothing of the body is tracked", 0, 0.0, self.stands)
-        relative = np.maximum(errors[..., 0] / NEAR_M, errors[..., 1] / NEAR_RAD)
-        frame, place = np.unravel_index(int(relative.argmax()), relative.shape)
-        speeds = np.abs(np.diff(postures[:, 7:], axis=0)) / np.diff(self.times)[:, None]
-        return Missed(
-            float(errors[..., 0].max()),
-            float(errors[..., 1].max()),
-            f"{self.wanted[place].frame} at {self.times[frame]:.2f} s",
-            int(frame),
-            float(speeds.max(initial=0.0)),
-            self.stands,
-        )
-
-
-def _stance(feet: list[str], configuration: mink.Configuration) -> list[mink.Task]:
-    """Feet that stay, and the weight above both."""
-    tasks: list[mink.Task] = [mink.FrameTask(name, "body", *FOOT) for name in feet]
-    if len(feet) == 2:
-        tasks.append(mink.ComTask(cost=[2.0, 2.0, 0.0]))
-    for task in tasks:
-        task.set_target_from_configuration(configuration)
-    return tasks
-
-
-def _error(configuration: mink.Configuration, each: Follow, frame: int) -> tuple[float, float]:
-    pose = configuration.get_transform_frame_to_world(each.frame, each.kind)
-    goal = each.path[frame]
-    turn = Rotation.from_quat(pose.rotation().wxyz, scalar_first=True).inv() * goal.rotation
-    metres = float(np.linalg.norm(pose.translation() - goal.translation))
-    radians = float(turn.magnitude())
-    return metres if each.costs[0] else 0.0, radians if each.costs[1] else 0.0
-
-
-def _se3(pose: RigidTransform) -> mink.SE3:
-    return mink.SE3(np.concatenate([pose.rotation.as_quat(scalar_first=True), pose.translation]))
+def judged(course: Course, wanted: list[Follow], stands: tuple[float, float]) -> Missed:
+    """The worst of a course."""
+    if not wanted:
+        return Missed(0.0, 0.0, "nothing of the body is tracked", 0, 0.0)
+    errors = course.errors
+    relative = np.maximum(errors[..., 0] / NEAR_M, errors[..., 1] / NEAR_RAD)
+    frame, place = np.unravel_index(int(relative.argmax()), relative.shape)
+    steps_s = np.diff(course.times)[:, None]
+    speeds = np.abs(np.diff(course.postures[:, 7:], axis=0)) / steps_s
+    return Missed(
+        float(errors[..., 0].max()),
+        float(errors[..., 1].max()),
+        f"{wanted[place].frame} at {course.times[frame]:.2f} s",
+        int(frame),
+        float(speeds.max(initial=0.0)),
+        float(course.beside.max()),
+        stands,
+    )
