@@ -39,10 +39,10 @@ FLAT_COST = 2.0
 SOLE_COST = 5.0
 """Weight of a metre of its sole's height above the ground."""
 
-STANCE_COST = 1.0
+STANCE_COST = 0.3
 """Weight of a radian of tilt of the pelvis, and of the feet, where no leg is seen."""
 
-PLANTED_COST = 2.0
+PLANTED_COST = 0.5
 """Weight of a metre of such a foot from where it stands."""
 
 HANGING_COST = 0.5
