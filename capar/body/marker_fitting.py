@@ -1,21 +1,23 @@
 """From markers on the skin to the body's motion: size, places of the markers, then postures."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
+from capar.body.flat_feet import standing_flat
 from capar.body.human import Human
 from capar.body.model import body_spec
+from capar.body.point_following import Guidance, SkeletonError, segment_of
 from capar.body.skeleton import skeleton
 from capar.body.skeleton_fitting import (
-    SkeletonError,
     SkeletonFit,
     fit_skeleton,
     trunk_share,
+    with_ankles,
     with_trunk,
 )
 from extractors.readers.body_names.body_names import BodyName
@@ -36,6 +38,10 @@ LEAST_CLUSTER = 2
 
 MIDDLE_WEIGHT = 0.2
 """Weight of the middle of a segment by the markers that ride on it [1]."""
+
+CLUSTER_EASE = 20.0
+"""How much more than usual the standing posture counts until markers of unknown places have found
+theirs [1]: which way a segment is turned only they tell."""
 
 CLUSTER_WEIGHT = 0.7
 """Weight of markers whose places are found from the motion itself [1]."""
@@ -67,7 +73,9 @@ class MarkerFit:
     """Place of each marker in its segment's frame [m]."""
 
 
-def fit_markers(points: Points, names: Mapping[str, BodyName]) -> MarkerFit:
+def fit_markers(
+    points: Points, names: Mapping[str, BodyName], *, ground_m: float | None = None
+) -> MarkerFit:
     """Fit the body to markers in a world whose z axis points up.
 
     The size comes from distances of landmarks, what they do not tell from the stature that the
@@ -77,6 +85,7 @@ def fit_markers(points: Points, names: Mapping[str, BodyName]) -> MarkerFit:
     Args:
         points: By name [m]; NaN where lost.
         names: What the names mean; points of no name are ignored.
+        ground_m: Height of the ground on which feet stand, where it is known [m].
 
     Raises:
         SkeletonError: Too few markers are at known places, or none three of them at once.
@@ -90,17 +99,24 @@ def fit_markers(points: Points, names: Mapping[str, BodyName]) -> MarkerFit:
             f"{len(clusters)} segments with clusters of them; {LEAST_EXACT} or more place it"
         )
     human = Human.of(measures_from_markers(points, exact, seen))
-    frames = _samples(points, seen)
+    frames = sample_frames(points, seen)
     sampled = {name: points[name][frames] for name in seen}
-    first = _by_landmarks(human.measures, sampled, exact, clusters)
-    local = _local(first, sampled, seen)
+    places = {name: each.place for name, each in seen.items()}
+    known = Guidance(standing_flat(points, places), ground_m)
+    human = Human.of(with_ankles(human.measures, points, places, known))
+    ease = 1.0 if len(exact) >= LEAST_EXACT else CLUSTER_EASE
+    eased = replace(known.at(frames), ease=ease)
+    first = _by_landmarks(human.measures, sampled, exact, clusters, eased)
+    local = local_places(first, sampled, seen)
     for _ in range(ROUNDS):
-        human = _with_markers(human.measures, local, seen)
+        human = with_markers(human.measures, local, seen)
         own = _own_places(local, seen)
-        local = _local(fit_skeleton(sampled, own, human=human), sampled, seen)
-    human = _with_markers(human.measures, local, seen)
+        again = fit_skeleton(sampled, own, human=human, guidance=known.at(frames))
+        local = local_places(again, sampled, seen)
+    human = with_markers(human.measures, local, seen)
     own = _own_places(local, seen)
-    return MarkerFit(fit_skeleton({n: points[n] for n in local}, own, human=human), local)
+    shown = {name: points[name] for name in local}
+    return MarkerFit(fit_skeleton(shown, own, human=human, guidance=known), local)
 
 
 def _clusters(names: Mapping[str, BodyName]) -> dict[str, list[str]]:
@@ -117,6 +133,7 @@ def _by_landmarks(
     points: Points,
     exact: Mapping[str, BodyName],
     clusters: Mapping[str, list[str]],
+    guidance: Guidance,
 ) -> SkeletonFit:
     """A first fit: landmarks to where they usually are, clusters to the middles of segments."""
     spec, bones = body_spec(measures), skeleton(measures)
@@ -130,7 +147,7 @@ def _by_landmarks(
         places[f"middle_{segment}"] = f"middle_{segment}"
     weights = {place: MIDDLE_WEIGHT for place in places.values() if place.startswith("middle_")}
     human = Human(measures, spec.compile())
-    return fit_skeleton(known, _convention(places, weights), human=human)
+    return fit_skeleton(known, file_convention(places, weights), human=human, guidance=guidance)
 
 
 def _is_sided(each: BodyName) -> bool:
@@ -145,7 +162,7 @@ MIDDLE = {
 """Places of the middle of the body."""
 
 
-def _samples(points: Points, names: Mapping[str, BodyName]) -> np.ndarray:
+def sample_frames(points: Points, names: Mapping[str, BodyName]) -> np.ndarray:
     """Frames in which most markers are seen, evenly through the recording."""
     seen = np.sum([~np.isnan(points[name]).any(axis=1) for name in names], axis=0)
     known = np.flatnonzero(seen >= 0.8 * seen.max())
@@ -209,7 +226,7 @@ def _share(
     return float(np.nanmedian(apart)) / own
 
 
-def _convention(places: Mapping[str, str], weights: Mapping[str, float]) -> Convention:
+def file_convention(places: Mapping[str, str], weights: Mapping[str, float]) -> Convention:
     """Names of a file with their places on the body, as a convention of its own."""
     return Convention(
         "file", "the file's own markers", "", oriented=False, markers=True,
@@ -223,23 +240,16 @@ def _own_places(
     """Every marker at the site that was made for it."""
     riding = [f"marker_{name}" for name in local if not names[name].exact]
     places = {name: f"marker_{name}" for name in local}
-    return _convention(places, dict.fromkeys(riding, CLUSTER_WEIGHT))
+    return file_convention(places, dict.fromkeys(riding, CLUSTER_WEIGHT))
 
 
-def segment_of(human: Human, each: BodyName) -> str:
-    """The segment of the body that a place is on."""
-    site = next((s for s in range(human.model.nsite) if human.model.site(s).name == each.place), -1)
-    if site < 0:
-        return each.place
-    return str(human.model.body(human.model.site_bodyid[site]).name)
-
-
-def _local(
+def local_places(
     made: SkeletonFit, points: Points, names: Mapping[str, BodyName]
 ) -> dict[str, Float[np.ndarray, "3"]]:
     """The median place of every marker in its segment's frame [m]."""
     human = made.human
-    segments = {name: segment_of(human, each) for name, each in names.items() if _is_sided(each)}
+    sided = {name: each.place for name, each in names.items() if _is_sided(each)}
+    segments = {name: segment_of(human, place) for name, place in sided.items()}
     known = {human.model.body(each).name for each in range(human.model.nbody)}
     segments = {name: each for name, each in segments.items() if each in known}
     poses = human.sites(made.motion, set(segments.values()))
@@ -255,7 +265,7 @@ def _local(
     return out
 
 
-def _with_markers(
+def with_markers(
     measures: Measures,
     local: Mapping[str, Float[np.ndarray, "3"]],
     names: Mapping[str, BodyName],
@@ -264,6 +274,6 @@ def _with_markers(
     plain = Human.of(measures)
     spec = body_spec(measures)
     for name, place in local.items():
-        segment = segment_of(plain, names[name])
+        segment = segment_of(plain, names[name].place)
         spec.body(segment).add_site(name=f"marker_{name}", pos=place, size=[0.006, 0.0, 0.0])
     return Human(measures, spec.compile())

@@ -3,18 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import mink
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
-from capar.body.fitting import LARGEST_STEP, SOLVER
 from capar.body.human import Human
-from capar.body.point_task import PointTask
+from capar.body.point_following import Guidance, SkeletonError, followed
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
-from capar.model.errors import CaparError
-from extractors.readers.body_names.body_names import parts, without_side
+from extractors.readers.body_names.body_names import SIDES
 from extractors.readers.body_names.conventions import Convention
 
 LENGTHS = {
@@ -38,30 +34,11 @@ TRUNK_TRUST = 0.5
 """Weight of a trunk's length as it is seen against that by stature [1]: shoulders rise and fall by
 as much as trunks of one stature differ."""
 
-SIDES = ("right", "left")
-BENT = {"elbow_flexion": 0.4, "knee_flexion": 0.1, "hip_flexion": 0.05}
-"""Where the search begins [rad]: a straight limb does not tell which way it bends."""
-
-POINT_COST = 10.0
-EASE_COST = 0.05
-"""Weight of a radian away from standing."""
-
-SPINE_EASE_COST = 0.5
-"""... of a hinge of spine, neck and shoulder girdle: few points see so many hinges, which
-would bend to and fro for millimetres."""
-
-SPINE = ("lumbar", "thorax", "neck", "head", "clavicle")
-"""What names of such hinges begin with, without their side."""
-
-DAMPING_COST = 0.3
-"""Points slightly out of reach would throw a straight limb about: large damping keeps it calm."""
-
-SETTLING = 80
-ITERATIONS = 3
-
-
-class SkeletonError(CaparError):
-    """Points that no body can be fitted to."""
+TRUNK_HEIGHTS = ("acromial_height", "suprasternale_height", "cervicale_height")
+UPPER_HEIGHTS = ("eye_height", "stature")
+ANKLE_SHARE = (0.6, 1.7)
+"""Ankles are taken to be as high as they are seen if that is between these shares of the usual
+height [1]: soles of shoes raise them, and skeletons have them somewhere between heel and shank."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,11 +121,41 @@ def with_trunk(measures: Measures, share: float) -> Measures:
     Legs, arms and the head keep their sizes, so that the stature changes by as much as the trunk.
     """
     hip = measures.hip_height
-    names = ("acromial_height", "suprasternale_height", "cervicale_height")
-    heights = {name: hip + share * (measures[name] - hip) for name in names}
+    heights = {name: hip + share * (measures[name] - hip) for name in TRUNK_HEIGHTS}
     longer = heights["cervicale_height"] - measures["cervicale_height"]
-    heights |= {name: measures[name] + longer for name in ("eye_height", "stature")}
+    heights |= {name: measures[name] + longer for name in UPPER_HEIGHTS}
     given = {name: measures[name] for name in measures.given} | heights
+    try:
+        return estimate_measures(sex=measures.sex, age=measures.age, given=given)
+    except MeasuresError:
+        return measures
+
+
+def with_ankles(
+    measures: Measures,
+    points: Mapping[str, Float[np.ndarray, "frames 3"]],
+    places: Mapping[str, str],
+    guidance: Guidance,
+) -> Measures:
+    """The same body with its ankles as high above the ground as they are while its feet are flat.
+
+    All above the ankles moves up or down by as much; the same if no body has such feet.
+    """
+    heights = [
+        float(np.nanmedian(points[name][flat, 2])) - guidance.ground_m
+        for name, place in places.items()
+        for side, flat in guidance.flat.items()
+        if guidance.ground_m is not None
+        and place in {f"{side}_foot", f"{side}_ankle_lateral"}
+        and np.isfinite(points[name][flat, 2]).any()
+    ]
+    usual = measures["ankle_height"]
+    if not heights or not ANKLE_SHARE[0] < np.mean(heights) / usual < ANKLE_SHARE[1]:
+        return measures
+    higher = float(np.mean(heights)) - usual
+    raised = {name: measures[name] + higher for name in (*TRUNK_HEIGHTS, *UPPER_HEIGHTS)}
+    given = {name: measures[name] for name in measures.given} | raised
+    given["ankle_height"] = usual + higher
     try:
         return estimate_measures(sex=measures.sex, age=measures.age, given=given)
     except MeasuresError:
@@ -165,6 +172,7 @@ def fit_skeleton(
     convention: Convention,
     *,
     human: Human | None = None,
+    guidance: Guidance | None = None,
 ) -> SkeletonFit:
     """Fit the body to joints or key points in a world whose z axis points up.
 
@@ -172,6 +180,7 @@ def fit_skeleton(
         points: By foreign name [m]; NaN where lost. Names that the convention lacks are ignored.
         convention: What the names mean.
         human: The body; made from the skeleton's own bones where None.
+        guidance: What else is known of the motion.
 
     Raises:
         SkeletonError: Fewer than four places are known, or the points are of no body.
@@ -181,72 +190,9 @@ def fit_skeleton(
         raise SkeletonError(f"{len(named)} places of {convention.title}; four or more are needed")
     body = human or Human.of(measures_from_points(points, convention))
     spots = {name: np.asarray(points[name]) for name in named}
-    motion = _followed(body, spots, named, convention)
+    motion = followed(body, spots, named, convention, guidance or Guidance())
     where = body.sites(motion, set(named.values()))
     residuals = {
         name: np.linalg.norm(where[place][0] - spots[name], axis=1) for name, place in named.items()
     }
     return SkeletonFit(body, motion, residuals, derived=True)
-
-
-def _followed(
-    human: Human,
-    spots: Mapping[str, np.ndarray],
-    named: Mapping[str, str],
-    convention: Convention,
-) -> Float[np.ndarray, "frames posture"]:
-    costs = [POINT_COST * convention.weight(place) for place in named.values()]
-    targets = np.stack([spots[name] for name in named], axis=1)
-    seen = np.isfinite(targets).all(axis=2) & (np.array(costs) > 0.0)
-    best = int(np.argmax(seen.sum(axis=1)))
-    start = _start(human, spots, named, best)
-    task = PointTask(human.model, list(named.values()), costs)
-    ease = mink.PostureTask(human.model, cost=_ease_costs(human))
-    ease.set_target(start)
-    tasks = [task, ease, mink.DampingTask(human.model, cost=DAMPING_COST)]
-    speeds = dict.fromkeys(human.joints, LARGEST_STEP)
-    limits = [mink.ConfigurationLimit(human.model), mink.VelocityLimit(human.model, speeds)]
-    configuration = mink.Configuration(human.model)
-    out = np.empty((len(seen), len(start)))
-    for frames in (range(best, len(out)), range(best - 1, -1, -1)):
-        configuration.update(start if frames.step == 1 else out[best])
-        for frame in frames:
-            task.aim(targets[frame])
-            for _ in range((ITERATIONS if frame != best else SETTLING) * bool(seen[frame].any())):
-                step = mink.solve_ik(configuration, tasks, 1.0, SOLVER, limits=limits)
-                configuration.integrate_inplace(step, 1.0)
-            out[frame] = configuration.q
-    return out
-
-
-def _ease_costs(human: Human) -> Float[np.ndarray, "dofs"]:
-    """Weight of each hinge's angle; none for the pelvis's pose."""
-    spine = np.array([without_side(joint).startswith(SPINE) for joint in human.joints])
-    return np.r_[np.zeros(6), np.where(spine, SPINE_EASE_COST, EASE_COST)]
-
-
-def _start(
-    human: Human, spots: Mapping[str, np.ndarray], named: Mapping[str, str], frame: int
-) -> Float[np.ndarray, "posture"]:
-    """The standing posture, moved and turned as a whole to the points of one frame."""
-    bent = {f"{side}_{joint}": angle for joint, angle in BENT.items() for side in SIDES}
-    standing = human.posture(bent)
-    where = human.sites(standing[None], set(named.values()))
-    known = [name for name in named if np.isfinite(spots[name][frame]).all()]
-    trunk = [n for n in known if _steady(named[n])]
-    used = trunk if len(trunk) >= 3 else known
-    if len(used) < 3:
-        raise SkeletonError(f"{len(used)} points at once; three or more place the body")
-    body = np.array([where[named[name]][0][0] for name in used])
-    world = np.array([spots[name][frame] for name in used])
-    turn, _ = Rotation.align_vectors(world - world.mean(axis=0), body - body.mean(axis=0))
-    out = standing.copy()
-    out[:3] = world.mean(axis=0) + turn.apply(standing[:3] - body.mean(axis=0))
-    out[3:7] = turn.as_quat(scalar_first=True)
-    return out
-
-
-def _steady(place: str) -> bool:
-    """Whether a place is on the trunk, or is where a limb hangs on it."""
-    joint = without_side(place) in {"thigh", "upper_arm"}
-    return joint or parts().get(without_side(place)) in {"trunk", "pelvis"}

@@ -9,9 +9,11 @@ from jaxtyping import Float
 
 from capar.body.capture_fitting import fit_capture
 from capar.body.fitting import Fit
+from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import LEAST_EXACT, fit_markers
-from capar.body.skeleton_fitting import SkeletonFit, fit_skeleton
-from capar.model.capture import Capture
+from capar.body.skeleton_fitting import SkeletonFit
+from capar.model import geometry
+from capar.model.capture import Capture, TagType
 from extractors.readers.body_names.body_names import BY_WORDS, BodyName, body_names
 from extractors.readers.body_names.conventions import (
     ConventionError,
@@ -20,6 +22,9 @@ from extractors.readers.body_names.conventions import (
 )
 from extractors.readers.bundle.capture_toml import files_of
 from extractors.readers.drafting.sides import sided
+
+FLOOR_M, THICK_M = 1.5, 0.3
+"""A fixed thing that is as wide as this both ways, and no thicker, is a floor [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,24 +83,41 @@ def fit_body(place: str | Path, capture: Capture) -> Fit:
         CaparError: Neither joints, markers nor sensors place a body.
     """
     found = whole_body(place)
-    return fit_capture(capture) if found is None else fit_places(found)
+    return fit_capture(capture) if found is None else fit_places(found, ground_m=ground(capture))
 
 
-def fit_places(found: Places) -> Fit:
-    """The body fitted to joints or markers."""
+def ground(capture: Capture) -> float | None:
+    """Height of the lowest level floor that a capture has, as wide as one [m]."""
+    tops = []
+    for thing in capture.objects:
+        if thing.tag is TagType.FIXED and thing.shape is not None:
+            turn, place = thing.stream.orientations[0], thing.stream.positions[0]
+            corners = geometry.transforms(place, turn).apply(np.array(thing.shape.vertices))
+            if np.ptp(corners[:, :2], axis=0).min() > FLOOR_M and np.ptp(corners[:, 2]) < THICK_M:
+                tops.append(float(corners[:, 2].max()))
+    return min(tops, default=None)
+
+
+def fit_places(found: Places, *, ground_m: float | None = None) -> Fit:
+    """The body fitted to joints or markers.
+
+    Args:
+        found: Where they are.
+        ground_m: Height of the ground on which feet stand, where it is known [m].
+    """
     began = time.perf_counter()
-    made = _skeleton(found)
+    made = _skeleton(found, ground_m)
     seconds = time.perf_counter() - began
     lost = {name: np.isnan(found.points[name]).any(axis=1) for name in made.residuals_m}
     return Fit(made.human, found.times, made.motion, lost, made.residuals_m, {}, seconds)
 
 
-def _skeleton(found: Places) -> SkeletonFit:
+def _skeleton(found: Places, ground_m: float | None) -> SkeletonFit:
     """By the convention of a skeleton, where there are joints only; else by places of markers."""
     titles = {each.title for each in conventions().values() if each.markers}
     if not any(each.by in titles for each in found.names.values()):
         try:
-            return fit_skeleton(found.points, recognise(found.names))
+            return fit_joints(found.points, recognise(found.names), ground_m=ground_m)
         except ConventionError:
             pass
-    return fit_markers(found.points, found.names).skeleton
+    return fit_markers(found.points, found.names, ground_m=ground_m).skeleton

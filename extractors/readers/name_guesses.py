@@ -46,8 +46,12 @@ WHOLES = {"hand": ("hand", "wrist"), "foot": ("foot", "ankle")}
 """Words that name a hand or foot as a whole, and not a part of it."""
 
 _SIDES = {
-    "right": re.compile(r"right|(^|[_.\W])r([_.\W]|$)|[a-z]Rt?$|^R(?=[A-Z_])|(?<=[a-z])R$|_r$"),
-    "left": re.compile(r"left|(^|[_.\W])l([_.\W]|$)|[a-z]Lf?t?$|^L(?=[A-Z_])|(?<=[a-z])L$|_l$"),
+    "right": re.compile(
+        r"right|(^|[_.\W])[rR]([_.\W]|$)|^r(?=[A-Z])|[a-z]Rt?$|^R(?=[A-Z_])|(?<=[a-z])R$|_r$"
+    ),
+    "left": re.compile(
+        r"left|(^|[_.\W])[lL]([_.\W]|$)|^l(?=[A-Z])|[a-z]Lf?t?$|^L(?=[A-Z_])|(?<=[a-z])L$|_l$"
+    ),
 }
 
 

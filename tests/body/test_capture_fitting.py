@@ -20,6 +20,7 @@ from capar.body.recording import record, truth_of
 from capar.body.scripts import SIDES, touch
 from capar.body.things import Thing, box, scene, table
 from capar.cli import app
+from capar.model import geometry
 from capar.model.capture import Capture, Sensor
 
 
@@ -65,3 +66,20 @@ def test_sensors_on_no_place_of_the_body_are_refused(performed) -> None:  # type
     stray = Sensor("wand", "wand", "none", "wand", capture.sensors[0].stream)
     with pytest.raises(FitError, match=r"none of the sensors \(wand\) is on a known place"):
         fit_capture(Capture("stray", (stray,), ()))
+
+
+def test_a_trunk_that_only_hands_and_head_tell_of_leans_no_further_than_it_did(performed) -> None:  # type: ignore[no-untyped-def]
+    made, _ = performed
+    three = record(made, name="three", seed=3, sensors=("right_hand", "left_hand", "head"))
+    found = fit_capture(three)
+    true, fitted = (
+        geometry.rotations(h.sites(q, ["thorax_upper"])["thorax_upper"][1]).apply([0.0, 0.0, 1.0])
+        for h, q in ((made.human, made.motion), (found.human, found.motion))
+    )
+    leaning, own = (
+        np.degrees(np.arccos(np.clip(each[:, 2], -1.0, 1.0))) for each in (fitted, true)
+    )
+    assert leaning.max() < own.max() + 8.0
+    assert np.median(np.abs(leaning - own)) < 6.0
+    for metres in found.residuals_m.values():
+        assert metres.max() < 0.025

@@ -11,6 +11,9 @@ from capar.model.capture import Capture, Role, Sensor, Shape, TagObject, TagType
 SMOOTH_HZ = 60.0
 """Frames are thinned to about this rate [Hz]: what screens show."""
 
+GROUND_M = 2.0
+"""What is fixed and wider than this both ways is a floor [m]."""
+
 COLOURS = {
     "sensor": "#c98d6b",
     "looks": "#8a6bc9",
@@ -86,8 +89,16 @@ def _kind(body: Sensor | TagObject) -> str:
 
 def world_bounds(shown: Stage) -> Float[np.ndarray, "2 3"]:
     """Lowest and highest place where anything small is [m]: what a picture has to hold."""
-    places = np.concatenate([each for body in shown.bodies for each in _extent(body)])
+    small = [body for body in shown.bodies if not is_ground(body)] or shown.bodies
+    places = np.concatenate([each for body in small for each in _extent(body)])
     return np.stack([np.nanmin(places, axis=0), np.nanmax(places, axis=0)])
+
+
+def is_ground(body: StagedBody) -> bool:
+    """Whether it is fixed and as wide as a floor: wherever its middle is, nothing need be there."""
+    if body.kind != "fixed" or body.shape is None:
+        return False
+    return bool(np.sort(np.ptp(body.shape.vertices, axis=0))[1] > GROUND_M)
 
 
 def _extent(body: StagedBody) -> Iterator[Float[np.ndarray, "places 3"]]:

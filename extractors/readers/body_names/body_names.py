@@ -11,7 +11,10 @@ from itertools import pairwise
 from typing import Any
 
 from extractors.readers.body_names.conventions import Convention, conventions
+from extractors.readers.body_names.spelling import matched, spellings, split_name
 from extractors.readers.name_guesses import side_of, words_of
+
+Spelled = Mapping[str, list[tuple[str, str]]]
 
 LEAST_NAMES = 4
 """A convention of which fewer names are there is not taken to be followed."""
@@ -84,26 +87,20 @@ def parts() -> Mapping[str, str]:
     return {place: part for part, places in rows.items() for place in places}
 
 
-def split_name(name: str) -> tuple[str, str]:
-    """The subject before the last colon, and the rest of a name."""
-    subject, _, bare = name.rpartition(":")
-    return subject, bare
-
-
 def body_names(names: Iterable[str]) -> dict[str, BodyName]:
     """What each name means that is of a body; others are left out.
 
     The convention that knows most names has its say first, then the next, as long as they know
     ``LEAST_NAMES``; what none knows is known by its words, if they tell a part of the body.
     """
-    left = dict.fromkeys(names)
+    left = spellings(names)
     least = max(LEAST_NAMES, LEAST_SHARE * len(left))
     out: dict[str, BodyName] = {}
     while found := max((_known(each, left) for each in conventions().values()), key=len):
         if len(found) < least:
             break
         out |= found
-        left = {name: None for name in left if name not in found}
+        left = {name: each for name, each in left.items() if name not in found}
         least = LEAST_NAMES
     worded = dict(_by_words(left))
     seen = {each.part for each in [*out.values(), *worded.values()]}
@@ -116,13 +113,12 @@ def _doubtful(found: BodyName) -> bool:
     return found.side == "none" and found.part not in {"head", "pelvis"}
 
 
-def _known(convention: Convention, names: Iterable[str]) -> dict[str, BodyName]:
+def _known(convention: Convention, spelled: Spelled) -> dict[str, BodyName]:
     out = {}
-    for name in names:
-        subject, bare = split_name(name)
-        for table, exact in ((convention.points, True), (convention.on, False)):
-            if bare in table and name not in out:
-                out[name] = BodyName(name, table[bare], exact, convention.title, subject)
+    for name, (subject, known) in matched(spelled, convention.keys).items():
+        exact = known in convention.points
+        place = convention.points[known] if exact else convention.on[known]
+        out[name] = BodyName(name, place, exact, convention.title, subject)
     return out
 
 

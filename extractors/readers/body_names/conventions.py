@@ -3,11 +3,12 @@
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 from importlib.resources import files
 from typing import Any
 
 from capar.model.errors import CaparError, UnknownNameError
+from extractors.readers.body_names.spelling import key_of, matched, spellings
 
 LEAST_SHARE = 0.7
 """Share of a convention's names that a recording has to have to be taken for it [1]."""
@@ -49,9 +50,23 @@ class Convention:
     """Whether prefixes up to a colon belong to its names."""
 
     def named(self, names: Iterable[str]) -> dict[str, str]:
-        """The place of each name that it knows; prefixes up to a colon are left out."""
-        short = {name: name if self.whole_names else name.rpartition(":")[2] for name in names}
-        return {name: self.points[bare] for name, bare in short.items() if bare in self.points}
+        """The place of each name that it knows, however it is spelled, whoever's it is."""
+        if self.whole_names:
+            return {name: self.points[name] for name in names if name in self.points}
+        found = matched(spellings(names), self.keys)
+        return {n: self.points[known] for n, (_, known) in found.items() if known in self.points}
+
+    @cached_property
+    def keys(self) -> Mapping[str, str]:
+        """Its names by their keys; names of different places that have one key are left out."""
+        places: dict[str, set[str]] = {}
+        for name, place in (*self.points.items(), *self.on.items()):
+            places.setdefault(key_of(name), set()).add(place)
+        return {
+            key_of(name): name
+            for name in (*self.points, *self.on)
+            if len(places[key_of(name)]) == 1
+        }
 
     def weight(self, place: str) -> float:
         """How much a place counts [1]."""

@@ -42,6 +42,7 @@ class _Found:
     shape: str = ""
     gaze: tuple[float, float, float] | None = None
     fixed: bool = False
+    side: str = "none"
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,9 +82,13 @@ def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
     if not sensors and found and not any(file.sensors for file in files):
         lines += ["", f"{EDIT} no name tells of a hand, head or foot; the first body is taken."]
         sensors = found[:1]
-    for body in sensors:
+    plain = [_plain(body, of_limbs) for body in sensors]
+    for body, usual in zip(sensors, plain, strict=True):
         limb = of_limbs.get(body.name, "hand")
-        lines += sensor_lines(body.name, limb, body.file, body.key, body.shape, body.gaze, used)
+        own = usual if plain.count(usual) == 1 else body.name
+        lines += sensor_lines(
+            own, limb, body.side, body.file, body.key, body.shape, body.gaze, used
+        )
     for body in [other for other in found if other not in sensors]:
         lines += object_lines(body.name, body.file, body.key, body.shape, used, fixed=body.fixed)
     if ground is not None:
@@ -91,6 +96,14 @@ def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
     if not found and not any(file.sensors for file in files):
         lines += nothing_lines(recordings)
     return "\n".join(lines) + "\n"
+
+
+def _plain(body: _Found, of_limbs: Mapping[str, str]) -> str:
+    """``left_foot``, where side and limb are known; else the file's own name."""
+    limb = of_limbs.get(body.name, "")
+    if body.side != "none" and limb in {"hand", "foot"}:
+        return f"{body.side}_{limb}"
+    return limb if limb == "head" else body.name
 
 
 def _files(recordings: Sequence[Recording], folder: Path) -> dict[str, str]:
@@ -147,6 +160,7 @@ def _found(file: _File) -> list[_Found]:
             f"body = {quoted(name)}",
             _shape(kinds.get(name, ""), recording, name),
             _gaze(file, name) if kinds.get(name) == "head" else None,
+            side=_side(file, name),
         )
         for name in names
     ]
@@ -157,9 +171,16 @@ def _found(file: _File) -> list[_Found]:
             f"markers = [{', '.join(map(quoted, members))}]",
             'shape = { box = "markers" }     # a stand-in: the box that the markers span',
             fixed=name in file.others.fixed,
+            side=side_of(name),
         )
         for name, members in file.others.sets.items()
     ]
+
+
+def _side(file: _File, name: str) -> str:
+    """A body's side by its place on a skeleton, or by its name."""
+    known = file.contents.body.get(name)
+    return known.side if known is not None and known.side != "none" else side_of(name)
 
 
 def _shape(limb: str, recording: Recording, name: str) -> str:

@@ -9,7 +9,6 @@ from extractors.readers.drafting.floor import RADIUS_M as FOOT_RADIUS_M
 from extractors.readers.drafting.floor import THICK_M, Floor
 from extractors.readers.drafting.frame_lines import EDIT
 from extractors.readers.drafting.limb_sensors import LimbSensor
-from extractors.readers.name_guesses import side_of
 from extractors.readers.recording import Recording
 from extractors.readers.schema.names import constant_name
 
@@ -131,6 +130,7 @@ def _limb_shape(sensor: LimbSensor, body: Mapping[str, BodyName]) -> str:
 def sensor_lines(
     name: str,
     limb: str,
+    side: str,
     file: str,
     key: str,
     shape: str,
@@ -143,7 +143,7 @@ def sensor_lines(
         "[[sensor]]",
         f"name = {quoted(free_name(name, used))}",
         f"end_effector = {quoted(limb)}",
-        f"side = {quoted(side_of(name))}",
+        f"side = {quoted(side)}",
         f"file = {quoted(file)}",
         key,
     ]

@@ -1,0 +1,79 @@
+"""When feet stand flat on the ground, and tasks of inverse kinematics that keep segments level."""
+
+from collections.abc import Mapping
+
+import mink
+import numpy as np
+from jaxtyping import Bool, Float
+
+from extractors.readers.body_names.body_names import SIDES, parts, without_side
+
+FLAT_M = 0.02
+"""A foot stands flat while each of its points is no higher above its own lowest place [m]."""
+
+LOWEST_SHARE = 0.05
+"""Share of the frames of which the highest is taken for a point's lowest place [1]."""
+
+Points = Mapping[str, Float[np.ndarray, "frames 3"]]
+
+
+def standing_flat(points: Points, places: Mapping[str, str]) -> dict[str, Bool[np.ndarray, "f"]]:
+    """By side, the frames in which a foot stands flat; sides of which no foot is seen are left out.
+
+    Heel and toe are both at their lowest only on a foot that stands flat, on the ground as on the
+    belt of a treadmill.
+
+    Args:
+        points: By name [m], z up; NaN where lost.
+        places: The place on the body of each.
+    """
+    out = {}
+    for side in SIDES:
+        own = [name for name, place in places.items() if name in points and _on_foot(place, side)]
+        rises = [_rise(points[name][:, 2]) for name in own if not np.isnan(points[name]).all()]
+        if rises:
+            stack = np.stack(rises)
+            seen = ~np.isnan(stack)
+            flat = np.where(seen, stack <= FLAT_M, True).all(axis=0)
+            out[side] = flat & (seen.sum(axis=0) > len(rises) / 2)
+    return out
+
+
+def _on_foot(place: str, side: str) -> bool:
+    return place.startswith(side) and parts().get(without_side(place)) == "foot"
+
+
+def _rise(heights: Float[np.ndarray, "frames"]) -> Float[np.ndarray, "frames"]:
+    return np.asarray(heights - np.nanquantile(heights, LOWEST_SHARE))
+
+
+class UprightTask(mink.Task):
+    """Keeps a segment's own z axis upright, whichever way it faces."""
+
+    def __init__(self, segment: str, cost: float) -> None:
+        """Set up the task.
+
+        Args:
+            segment: Name of the body.
+            cost: Weight of a radian.
+        """
+        super().__init__(cost=np.full(2, cost))
+        self.segment = segment
+        self._full = np.full(2, cost)
+
+    def trust(self, share: float) -> None:
+        """Let it count by a share of its weight [1]."""
+        self.cost = share * self._full
+
+    def compute_error(self, configuration: mink.Configuration) -> Float[np.ndarray, "2"]:
+        """The upward direction across the segment's own axis [1]."""
+        return self._upwards(configuration)[:2]
+
+    def compute_jacobian(self, configuration: mink.Configuration) -> Float[np.ndarray, "2 dofs"]:
+        """How that turns with the joints."""
+        turning = configuration.get_frame_jacobian(self.segment, "body")[3:]
+        return np.cross(self._upwards(configuration)[:, None], turning, axis=0)[:2]
+
+    def _upwards(self, configuration: mink.Configuration) -> Float[np.ndarray, "3"]:
+        turn = configuration.data.body(self.segment).xmat.reshape(3, 3)
+        return np.array(turn[2])
