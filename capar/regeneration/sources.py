@@ -35,8 +35,8 @@ LOOSER = (1.0, 2.0)
 SETTLED_SHARE = 0.8
 """Noise may take so small a share of the frames in between out of that [1]."""
 
-MOVES_M = 0.02
-"""A thing that never goes further does not move [m]."""
+MOVES_M, MOVES_RAD = 0.02, float(np.radians(10.0))
+"""A thing that never goes or turns further does not move [m, rad]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +155,13 @@ def scene_of(capture: Capture, human: Human) -> Scene:
 def eyes_in_body(human: Human) -> Float[np.ndarray, "3"]:
     """Between the eyes of the standing body, from the place where it stands [m]."""
     return np.asarray(eyes_between(human.measures))
+
+
+def moves(path: RigidTransform) -> bool:
+    """Whether a thing goes or turns far enough from where it is at first."""
+    gone = np.linalg.norm(path.translation - path.translation[0], axis=1)
+    turned = (path.rotation * path.rotation[0].inv()).magnitude()
+    return bool(gone.max() >= MOVES_M or turned.max() >= MOVES_RAD)
 
 
 def _path(stream: Stream) -> RigidTransform:

@@ -16,11 +16,11 @@ from capar.regeneration.errors import PlanError
 from capar.regeneration.path_mapping import STRAIGHT, Detour
 from capar.regeneration.scenes import Scene, moved
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import MOVES_M, Meeting, Source
+from capar.regeneration.sources import Meeting, Source, moves
 from capar.regeneration.styles import Style
 
-STILL_M = 0.005
-"""A stretch in which a thing stays so near where it was is one of rest [m]."""
+STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
+"""A stretch in which a thing stays so near where it was is one of rest [m, rad]."""
 
 TOUCH_M = 0.0005
 """What is left between surfaces that touch [m]."""
@@ -99,14 +99,14 @@ def _lifted(name: str, at_s: float, detour: Detour) -> str:
 
 def _rests(part: RigidTransform, start: RigidTransform, goal: RigidTransform) -> bool:
     apart = np.linalg.norm(part.translation - part.translation[0], axis=1)
+    turned = (part.rotation * part.rotation[0].inv()).magnitude()
     near = np.linalg.norm(goal.translation - start.translation) < 1e-9
-    return bool(apart.max() < STILL_M and near)
+    return bool(apart.max() < STILL_M and turned.max() < STILL_RAD and near)
 
 
 def _handled(source: Source, name: str) -> list[tuple[int, int]]:
     """From when to when a thing is held without a break, if it moves at all."""
-    path = source.paths[name].translation
-    if np.linalg.norm(path - path[0], axis=1).max() < MOVES_M:
+    if not moves(source.paths[name]):
         return []
     out: list[tuple[int, int]] = []
     for hold in source.holds:
