@@ -13,7 +13,7 @@ from capar.body.skeleton import eyes_between
 from capar.body.targets import target
 from capar.body.things import Thing
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagType
-from capar.model.facts import Touching
+from capar.model.facts import Leans, Lies, Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
 from capar.regeneration.errors import PlanError
@@ -70,6 +70,19 @@ class Meeting:
     last: int
 
 
+@dataclass(frozen=True)
+class Poise:
+    """A held thing that leans over above or in another one that can be moved."""
+
+    thing: str
+    other: str
+    lowest: int
+    """The frame in the middle of its leaning over."""
+
+    frames: tuple[int, ...]
+    """Borders of the hand's steps meanwhile."""
+
+
 @dataclass(frozen=True, eq=False)
 class Source:
     """A recorded performance, as it is performed again."""
@@ -93,6 +106,7 @@ class Source:
 
     holds: tuple[Hold, ...]
     meetings: tuple[Meeting, ...]
+    poises: tuple[Poise, ...]
     notes: tuple[str, ...]
     pace: float = 1.0
     """How many times as long everything takes as it did [1]."""
@@ -132,9 +146,10 @@ def source_of(capture: Capture, observation: Observation) -> Source:
     notes = ["the point of contact on each hand is measured on the capture's meshes"]
     holds = _holds(hands, paths, touching)
     meetings = _meetings(capture, eyes, paths, touching)
+    poises = _poises(observation, hands, things, holds)
     made = Source(
         capture, observation, human, Scene(things, place, heading),
-        hands, paths, eyes, holds, meetings, tuple(notes),
+        hands, paths, eyes, holds, meetings, poises, tuple(notes),
     )  # fmt: skip
     _check_movers(made)
     return made
@@ -290,6 +305,30 @@ def _meetings(
                     first, last = (each.first + edge for edge in found)
                     out.append(Meeting(thing, part, first, last))
     return tuple(sorted(out, key=lambda meeting: meeting.first))
+
+
+def _poises(
+    observation: Observation,
+    hands: Mapping[str, HandTrack],
+    things: Mapping[str, Thing],
+    holds: tuple[Hold, ...],
+) -> tuple[Poise, ...]:
+    lean = [fact for fact in observation.facts if isinstance(fact, Leans)]
+    over = [f for f in observation.facts if isinstance(f, Lies) and f.how in {"above", "inside"}]
+    out = []
+    for hold in holds:
+        ends = {s.last for s in observation.segments if s.ee == hands[hold.side].sensor}
+        for fact in over:
+            first, last = max(fact.first, hold.first), min(fact.last, hold.last)
+            movable = fact.other in things and things[fact.other].tag is TagType.MOBILE
+            tilts = [
+                f for f in lean if f.object == hold.thing and first <= f.first and f.last <= last
+            ]
+            frames = tuple(sorted(frame for frame in ends if first <= frame <= last))
+            if fact.body == hold.thing and movable and tilts and frames:
+                middle = (tilts[0].first + tilts[0].last) // 2
+                out.append(Poise(hold.thing, fact.other, middle, frames))
+    return tuple(sorted(out, key=lambda poise: poise.frames))
 
 
 def _settled(relative: RigidTransform) -> tuple[int, int] | None:

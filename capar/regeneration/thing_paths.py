@@ -8,6 +8,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
+from capar.body.things import Thing
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
 from capar.regeneration.carrying import Carrying
 from capar.regeneration.collisions import Surroundings
@@ -16,7 +17,7 @@ from capar.regeneration.errors import PlanError
 from capar.regeneration.path_mapping import STRAIGHT, Detour
 from capar.regeneration.scenes import Scene, moved
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import Meeting, Source, moves
+from capar.regeneration.sources import MOVES_M, Meeting, Source, moves
 from capar.regeneration.styles import Style
 
 STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
@@ -59,7 +60,10 @@ def thing_goals(
                     reason = f"at the {meeting.part}, in its own measures"
                     goals.append(Goal(name, meeting.first, at, reason))
                     goals.append(Goal(name, min(meeting.last, last), at, reason))
-            goals.append(_put_down(source, scene, name, (first, last), pose))
+            down = _put_down(source, scene, name, (first, last), pose)
+            goals += _poised(source, scene, name, (first, last), (pose, down.pose))
+            goals.sort(key=lambda goal: goal.frame)
+            goals.append(down)
     return out
 
 
@@ -125,7 +129,7 @@ def _put_down(
     before, after = (source.paths[name][each] for each in span)
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
     by = turn.apply(after.translation - before.translation)
-    spun = turn * after.rotation * before.rotation.inv() * turn.inv() * pose.rotation
+    spun = _turned(source.paths[name], *span, turn) * pose.rotation
     came, support = (_support_at(source.scene, name, each) for each in (before, after))
     spot, reason = pose.translation + by, "as far from where it came from as it was [m]"
     onto = scene.goals.get(name, support if support != came else "")
@@ -140,6 +144,90 @@ def _put_down(
             f"not reach; a larger {support!r}, or {name!r} nearer its middle, would do"
         )
     return Goal(name, span[1], goal, reason)
+
+
+def _poised(
+    source: Source,
+    scene: Scene,
+    name: str,
+    span: tuple[int, int],
+    ends: tuple[RigidTransform, RigidTransform],
+) -> list[Goal]:
+    """Where it leans over another thing, its lowest point as high above that one as it was."""
+    turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
+    recorded = source.paths[name]
+    before, after = source.scene.thing(name), scene.thing(name)
+    out: list[Goal] = []
+    for poise in source.poises:
+        if poise.thing != name or not span[0] <= poise.frames[0] <= span[1]:
+            continue
+        corners = np.array(before.shape.vertices)
+        low = corners[np.argmin(recorded[poise.lowest].apply(corners)[:, 2])]
+        lip = low * after.size / np.maximum(before.size, 1e-9)
+        out += _beside(source, name, span, poise.frames, ends, turn)
+        over: list[Goal] = []
+        for frame in poise.frames:
+            spun = _turned(recorded, span[0], frame, turn) * ends[0].rotation
+            spot = _over(source, scene, poise.other, recorded[frame].apply(low), turn)
+            goal = RigidTransform.from_components(spot - spun.apply(lip), spun)
+            last = over[-1] if over else None
+            if last and _rests(recorded[last.frame : frame + 1], last.pose, last.pose):
+                goal = last.pose
+            over.append(Goal(name, frame, goal, f"over {poise.other!r}, in its own measures"))
+        out += over
+    return out
+
+
+def _beside(
+    source: Source,
+    name: str,
+    span: tuple[int, int],
+    frames: tuple[int, ...],
+    ends: tuple[RigidTransform, RigidTransform],
+    turn: Rotation,
+) -> list[Goal]:
+    """Goals at the nearest borders of steps before and after some frames, if it moves there."""
+    sensors = {source.hands[hold.side].sensor for hold in source.holds if hold.thing == name}
+    borders = sorted({e.last for e in source.observation.segments if e.ee in sensors})
+    path = source.paths[name].translation
+    away = [np.linalg.norm(path - path[frame], axis=1) > MOVES_M for frame in span]
+    before = [b for b in borders if span[0] < b < frames[0] and away[0][b]][-1:]
+    after = [b for b in borders if frames[-1] < b < span[1] and away[1][b]][:1]
+    out = [_displaced(source, name, (span[0], border), ends[0], turn) for border in before]
+    return out + [_displaced(source, name, (span[1], border), ends[1], turn) for border in after]
+
+
+def _displaced(
+    source: Source, name: str, frames: tuple[int, int], pose: RigidTransform, turn: Rotation
+) -> Goal:
+    """Where a thing is at the second frame, when it has a pose at the first."""
+    first, frame = frames
+    path = source.paths[name]
+    gone = turn.apply(path[frame].translation - path[first].translation)
+    spun = _turned(path, first, frame, turn) * pose.rotation
+    goal = RigidTransform.from_components(pose.translation + gone, spun)
+    return Goal(name, frame, goal, "as far from where it is put down, or came from, as it was [m]")
+
+
+def _turned(path: RigidTransform, first: int, frame: int, turn: Rotation) -> Rotation:
+    """How a recorded thing has turned, in a scene that is turned itself."""
+    return turn * path[frame].rotation * path[first].rotation.inv() * turn.inv()
+
+
+def _over(
+    source: Source, scene: Scene, other: str, spot: Float[np.ndarray, "3"], turn: Rotation
+) -> Float[np.ndarray, "3"]:
+    """A place above a thing: sideways in its measures, upwards in metres above its top."""
+    old, new = (_top(each.thing(other)) for each in (source.scene, scene))
+    by = turn.apply(spot - old)
+    sizes = [each.thing(other).size for each in (source.scene, scene)]
+    by[:2] *= float(np.mean(sizes[1][:2] / np.maximum(sizes[0][:2], 1e-9)))
+    return np.asarray(new + by)
+
+
+def _top(thing: Thing) -> Float[np.ndarray, "3"]:
+    low, high = thing.shape.bounds
+    return np.asarray(thing.pose.apply([*(0.5 * (low + high))[:2], high[2]]))
 
 
 def _on(
