@@ -13,11 +13,21 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from reach_search import search
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
 from capar.body.scripted_actions import ACTIONS, action_capture
-from capar.pipelines.round_trips import Trip, body, numbered_scene, observed_source, round_trip
+from capar.pipelines.round_trips import (
+    SAME,
+    Trip,
+    body,
+    numbered_scene,
+    observed_source,
+    round_trip,
+)
+from capar.regeneration.motions import Motion
 from capar.regeneration.scene_files import ASIDE_M
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source
@@ -72,8 +82,33 @@ def tried(source: Source, agent: str, human: Human, number: int, scene: Scene) -
     began = time.process_time()
     trip = round_trip(source, agent, human, number, scene)
     seconds = time.process_time() - began
+    if agent == SAME and not number and trip.motion:
+        print("from the recorded paths [mm], planned and performed:", off_paths(trip.motion))
     times = {"seconds": round(seconds, 1), "motion_s": float(source.times[-1])}
     return told(trip) | times | {"solved": None, "search": "not searched"}
+
+
+def off_paths(motion: Motion) -> dict[str, tuple[float, float]]:
+    """How far hands and things are from where they were recorded, at worst [mm]."""
+    plan = motion.plan
+    out = {}
+    for name, path in plan.source.paths.items():
+        off = _apart(plan.things[name], path)
+        out[name] = off, off
+    sites = plan.human.sites(motion.postures, [f"{side}_palm" for side in plan.hands])
+    for side, hand in plan.source.hands.items():
+        palm = RigidTransform.from_components(
+            sites[f"{side}_palm"][0],
+            Rotation.from_quat(sites[f"{side}_palm"][1], scalar_first=True),
+        )
+        made = palm * plan.frames.palms[side].inv()
+        out[f"{side} hand"] = _apart(plan.hands[side], hand.path), _apart(made, hand.path)
+    return out
+
+
+def _apart(one: RigidTransform, other: RigidTransform) -> float:
+    off = np.linalg.norm(one.translation - other.translation, axis=1)
+    return round(1e3 * float(off.max()), 1)
 
 
 def told(trip: Trip) -> Row:
@@ -117,7 +152,9 @@ def table(found: list[Row]) -> str:
                 for row in found
                 if action in {row["action"], "all"} and agent in {row["agent"], "all"}
             ]
-            out.append(f"| {action} | {agent} | {' | '.join(str(n) for n in counts(some))} |")
+            if some:
+                numbers = " | ".join(str(number) for number in counts(some))
+                out.append(f"| {action} | {agent} | {numbers} |")
     return "\n".join(out)
 
 
@@ -144,7 +181,7 @@ def options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("actions", nargs="*", metavar="ACTION", help=", ".join(ACTIONS))
     parser.add_argument(
-        "--scenes", type=int, nargs="+", default=list(range(1, 11)), help="numbers; 0 as recorded"
+        "--scenes", type=int, nargs="+", default=[1, 2], help="numbers; 0 as recorded"
     )
     parser.add_argument("--agents", nargs="+", default=list(AGENTS))
     parser.add_argument("--rules", default="extended", help="profile by which is observed")

@@ -153,7 +153,7 @@ def _poised(
     span: tuple[int, int],
     ends: tuple[RigidTransform, RigidTransform],
 ) -> list[Goal]:
-    """Where it leans over another thing, its lowest point as high above that one as it was."""
+    """Where it leans over another thing: the edge next to that one as high above it as it was."""
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
     recorded = source.paths[name]
     before, after = source.scene.thing(name), scene.thing(name)
@@ -162,13 +162,14 @@ def _poised(
         if poise.thing != name or not span[0] <= poise.frames[0] <= span[1]:
             continue
         corners = np.array(before.shape.vertices)
-        low = corners[np.argmin(recorded[poise.lowest].apply(corners)[:, 2])]
-        lip = low * after.size / np.maximum(before.size, 1e-9)
+        leant = recorded[poise.lowest].apply(corners) - _top(source.scene.thing(poise.other))
+        edge = corners[np.argmin(np.linalg.norm(leant, axis=1))]
+        lip = edge * after.size / np.maximum(before.size, 1e-9)
         out += _beside(source, name, span, poise.frames, ends, turn)
         over: list[Goal] = []
         for frame in poise.frames:
             spun = _turned(recorded, span[0], frame, turn) * ends[0].rotation
-            spot = _over(source, scene, poise.other, recorded[frame].apply(low), turn)
+            spot = _over(source, scene, poise.other, recorded[frame].apply(edge), turn)
             goal = RigidTransform.from_components(spot - spun.apply(lip), spun)
             last = over[-1] if over else None
             if last and _rests(recorded[last.frame : frame + 1], last.pose, last.pose):
