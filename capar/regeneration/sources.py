@@ -313,21 +313,31 @@ def _poises(
     things: Mapping[str, Thing],
     holds: tuple[Hold, ...],
 ) -> tuple[Poise, ...]:
-    lean = [fact for fact in observation.facts if isinstance(fact, Leans)]
-    over = [f for f in observation.facts if isinstance(f, Lies) and f.how in {"above", "inside"}]
+    leans = [fact for fact in observation.facts if isinstance(fact, Leans)]
     out = []
-    for hold in holds:
-        ends = {s.last for s in observation.segments if s.ee == hands[hold.side].sensor}
-        for fact in over:
-            first, last = max(fact.first, hold.first), min(fact.last, hold.last)
-            movable = fact.other in things and things[fact.other].tag is TagType.MOBILE
-            tilts = [
-                f for f in lean if f.object == hold.thing and first <= f.first and f.last <= last
-            ]
+    for fact in observation.facts:
+        if not isinstance(fact, Lies) or fact.how not in {"above", "inside"}:
+            continue
+        tilts = [
+            lean
+            for lean in leans
+            if lean.object == fact.body and fact.first <= lean.first and lean.last <= fact.last
+        ]
+        held = [
+            hold
+            for hold in holds
+            if hold.thing == fact.body
+            and any(hold.first <= tilt.first and tilt.last <= hold.last for tilt in tilts)
+        ]
+        if held and fact.other in things and things[fact.other].tag is TagType.MOBILE:
+            first = max(fact.first, min(hold.first for hold in held))
+            last = min(fact.last, max(hold.last for hold in held))
+            sensors = {hands[hold.side].sensor for hold in held}
+            ends = {part.last for part in observation.segments if part.ee in sensors}
             frames = tuple(sorted(frame for frame in ends if first <= frame <= last))
-            if fact.body == hold.thing and movable and tilts and frames:
-                middle = (tilts[0].first + tilts[0].last) // 2
-                out.append(Poise(hold.thing, fact.other, middle, frames))
+            lowest = (tilts[0].first + tilts[0].last) // 2
+            if frames:
+                out.append(Poise(fact.body, fact.other, lowest, frames))
     return tuple(sorted(out, key=lambda poise: poise.frames))
 
 

@@ -58,7 +58,7 @@ def test_a_mug_is_emptied_over_the_bowl_wherever_that_stands(number: int) -> Non
     draft = reachable(source, scene, body("man", source))
     (poise,) = source.poises
     mug = draft.things["mug"][poise.lowest].apply(np.array(scene.thing("mug").shape.vertices))
-    opening = np.array(bowl.place) + [0.0, 0.0, bowl.size[2]]
+    opening = np.asarray(bowl.place) + bowl.size * [0.0, 0.0, 1.0]
     lip = mug[np.argmin(np.linalg.norm(mug - opening, axis=1))]
     assert np.linalg.norm(lip[:2] - opening[:2]) < 0.5 * bowl.size[0]
     assert lip[2] > opening[2]
