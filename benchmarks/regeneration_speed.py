@@ -39,9 +39,9 @@ def timed(action: str, agent: str, number: int) -> str:
     lasts = float(source.times[-1])
     return (
         f"{action} by the {agent}, {lasts:.1f} s at {RATE_HZ:.0f} Hz: "
-        f"planning {goals + ways:.1f} s (goals and grips {goals:.1f}, ways of hands {ways:.1f}), motion {moving:.1f} s, "
-        f"{lasts / moving:.1f} x real time, verifying {verifying:.1f} s; failed: "
-        f"{', '.join(verdict.failed) or 'no gate'}; "
+        f"planning {goals + ways:.1f} s (goals and grips {goals:.1f}, ways of hands {ways:.1f}), "
+        f"motion {moving:.1f} s, {lasts / moving:.1f} x real time, "
+        f"verifying {verifying:.1f} s; failed: {', '.join(verdict.failed) or 'no gate'}; "
         f"{'the same' if same == repeated else 'OTHER'} bytes again"
     )
 

@@ -50,7 +50,7 @@ ACTIONS: dict[str, Script] = {
     "pick_up": lift_with_both_hands("crate", height=0.2),
     "turn": turn("mug", float(np.radians(40.0))),
     "push": push("crate", (0.15 * np.cos(ASKEW), 0.15 * np.sin(ASKEW), 0.0)),
-    "pour": pour("mug", lift=0.18, over=(0.0, 0.15, 0.0), angle=float(np.radians(80.0))),
+    "pour": pour("mug", lift=0.18, over=(0.0, 0.25, 0.0), angle=float(np.radians(80.0))),
 }
 """Each has the things of its own scene."""
 
@@ -62,7 +62,7 @@ def action_scene(human: Human, action: str) -> Scene:
     mug = Thing("mug", cup(0.035, 0.09), (0.22 * tall, -0.10 * tall, top), round=True)
     crate = Thing("crate", box(0.15, 0.20, 0.15), (0.24 * tall, 0.02 * tall, top))
     askew = Thing("crate", box(0.15, 0.20, 0.22), (0.29 * tall, -0.08 * tall, top), ASKEW)
-    bowl = Thing("bowl", cup(0.07, 0.06), (0.22 * tall, -0.10 * tall + 0.24, top), round=True)
+    bowl = Thing("bowl", cup(0.07, 0.06), (0.22 * tall, -0.10 * tall + 0.34, top), round=True)
     needed = {"touch": (crate,), "pick_up": (crate,), "push": (askew,), "pour": (mug, bowl)}
     return scene(table(top, near_m=0.13 * tall), *needed.get(action, (mug,)))
 

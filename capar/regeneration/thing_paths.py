@@ -17,7 +17,7 @@ from capar.regeneration.errors import PlanError
 from capar.regeneration.path_mapping import STRAIGHT, Detour
 from capar.regeneration.scenes import Scene, moved
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import MOVES_M, Meeting, Source, moves
+from capar.regeneration.sources import MOVES_M, Meeting, Poise, Source, moves
 from capar.regeneration.styles import Style
 
 STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
@@ -153,82 +153,96 @@ def _poised(
     span: tuple[int, int],
     ends: tuple[RigidTransform, RigidTransform],
 ) -> list[Goal]:
-    """Where it leans over another thing: the edge next to that one as high above it as it was."""
+    """Where it leans over another thing, and how it comes there and away.
+
+    While it leans, its edge next to the other thing is as high above that one as it was, and
+    sideways in that one's measures. Meanwhile it moves as far in metres as it did.
+    """
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
-    recorded = source.paths[name]
-    before, after = source.scene.thing(name), scene.thing(name)
+    recorded, reason = source.paths[name], "over {!r}, in its own measures"
     out: list[Goal] = []
     for poise in source.poises:
         if poise.thing != name or not span[0] <= poise.frames[0] <= span[1]:
             continue
-        corners = np.array(before.shape.vertices)
-        leant = recorded[poise.lowest].apply(corners) - _top(source.scene.thing(poise.other))
-        edge = corners[np.argmin(np.linalg.norm(leant, axis=1))]
-        lip = edge * after.size / np.maximum(before.size, 1e-9)
-        out += _beside(source, name, span, poise.frames, ends, turn)
-        over: list[Goal] = []
-        for frame in poise.frames:
-            spun = _turned(recorded, span[0], frame, turn) * ends[0].rotation
-            spot = _over(source, scene, poise.other, recorded[frame].apply(edge), turn)
-            goal = RigidTransform.from_components(spot - spun.apply(lip), spun)
-            last = over[-1] if over else None
-            if last and _rests(recorded[last.frame : frame + 1], last.pose, last.pose):
-                goal = last.pose
-            over.append(Goal(name, frame, goal, f"over {poise.other!r}, in its own measures"))
-        out += over
+        spun = _turned(recorded, span[0], poise.lowest, turn) * ends[0].rotation
+        lowest = RigidTransform.from_components(_leant(source, scene, poise, spun, turn), spun)
+        over: list[RigidTransform] = []
+        for number, frame in enumerate(poise.frames):
+            pose = _displaced(recorded, (poise.lowest, frame), lowest, turn)
+            part = recorded[poise.frames[max(number - 1, 0)] : frame + 1]
+            over.append(over[-1] if over and _rests(part, pose, pose) else pose)
+        goals = zip(poise.frames, over, strict=True)
+        out += [Goal(name, f, pose, reason.format(poise.other)) for f, pose in goals]
+        out += _beside(source, name, span, poise, ends, over, turn)
     return out
+
+
+def _leant(
+    source: Source, scene: Scene, poise: Poise, spun: Rotation, turn: Rotation
+) -> Float[np.ndarray, "3"]:
+    """Where a thing is when it leans over another one, turned like this."""
+    before, after = (each.thing(poise.thing) for each in (source.scene, scene))
+    old, new = (_top(each.thing(poise.other)) for each in (source.scene, scene))
+    corners = np.array(before.shape.vertices)
+    leant = source.paths[poise.thing][poise.lowest].apply(corners) - old
+    nearest = int(np.argmin(np.linalg.norm(leant, axis=1)))
+    sizes = [each.thing(poise.other).size[:2] for each in (source.scene, scene)]
+    by = turn.apply(leant[nearest])
+    by[:2] *= float(np.mean(sizes[1] / np.maximum(sizes[0], 1e-9)))
+    edge = corners[nearest] * after.size / np.maximum(before.size, 1e-9)
+    return np.asarray(new + by - spun.apply(edge))
+
+
+def _top(thing: Thing) -> Float[np.ndarray, "3"]:
+    low, high = thing.shape.bounds
+    return np.asarray(thing.pose.apply([*(0.5 * (low + high))[:2], high[2]]))
 
 
 def _beside(
     source: Source,
     name: str,
     span: tuple[int, int],
-    frames: tuple[int, ...],
+    poise: Poise,
     ends: tuple[RigidTransform, RigidTransform],
+    over: list[RigidTransform],
     turn: Rotation,
 ) -> list[Goal]:
-    """Goals at the nearest borders of steps before and after some frames, if it moves there."""
+    """Goals at the nearest borders of steps before and after, if it is on its way there.
+
+    Sideways as far from where it came from or is put down as it was, and as high as it was beside
+    where it leans over.
+    """
     sensors = {source.hands[hold.side].sensor for hold in source.holds if hold.thing == name}
     borders = sorted({e.last for e in source.observation.segments if e.ee in sensors})
-    path = source.paths[name].translation
+    recorded, frames = source.paths[name], poise.frames
+    path = recorded.translation
     away = [np.linalg.norm(path - path[frame], axis=1) > MOVES_M for frame in span]
     before = [b for b in borders if span[0] < b < frames[0] and away[0][b]][-1:]
     after = [b for b in borders if frames[-1] < b < span[1] and away[1][b]][:1]
-    out = [_displaced(source, name, (span[0], border), ends[0], turn) for border in before]
-    return out + [_displaced(source, name, (span[1], border), ends[1], turn) for border in after]
+    reason = "as far from where it came from or is put down as it was [m]"
+    out = []
+    for border, side in [(frame, 0) for frame in before] + [(frame, -1) for frame in after]:
+        pose = _displaced(recorded, (span[side], border), ends[side], turn)
+        spot = np.array(pose.translation)
+        spot[2] = over[side].translation[2] + path[border, 2] - path[frames[side], 2]
+        goal = RigidTransform.from_components(spot, pose.rotation)
+        out.append(Goal(name, border, goal, reason))
+    return out
 
 
 def _displaced(
-    source: Source, name: str, frames: tuple[int, int], pose: RigidTransform, turn: Rotation
-) -> Goal:
+    path: RigidTransform, frames: tuple[int, int], pose: RigidTransform, turn: Rotation
+) -> RigidTransform:
     """Where a thing is at the second frame, when it has a pose at the first."""
     first, frame = frames
-    path = source.paths[name]
     gone = turn.apply(path[frame].translation - path[first].translation)
     spun = _turned(path, first, frame, turn) * pose.rotation
-    goal = RigidTransform.from_components(pose.translation + gone, spun)
-    return Goal(name, frame, goal, "as far from where it is put down, or came from, as it was [m]")
+    return RigidTransform.from_components(pose.translation + gone, spun)
 
 
 def _turned(path: RigidTransform, first: int, frame: int, turn: Rotation) -> Rotation:
     """How a recorded thing has turned, in a scene that is turned itself."""
     return turn * path[frame].rotation * path[first].rotation.inv() * turn.inv()
-
-
-def _over(
-    source: Source, scene: Scene, other: str, spot: Float[np.ndarray, "3"], turn: Rotation
-) -> Float[np.ndarray, "3"]:
-    """A place above a thing: sideways in its measures, upwards in metres above its top."""
-    old, new = (_top(each.thing(other)) for each in (source.scene, scene))
-    by = turn.apply(spot - old)
-    sizes = [each.thing(other).size for each in (source.scene, scene)]
-    by[:2] *= float(np.mean(sizes[1][:2] / np.maximum(sizes[0][:2], 1e-9)))
-    return np.asarray(new + by)
-
-
-def _top(thing: Thing) -> Float[np.ndarray, "3"]:
-    low, high = thing.shape.bounds
-    return np.asarray(thing.pose.apply([*(0.5 * (low + high))[:2], high[2]]))
 
 
 def _on(
