@@ -62,13 +62,14 @@ class Found:
 def search(source: Source, scene: Scene, human: Human, seed: int = 1) -> Found:
     """Look for a standing place, grips and postures that reach every key goal."""
     rng = np.random.default_rng(seed)
-    furthest, tried = 0.0, 0
+    furthest, tried, impossible = 0.0, 0, ""
     for number in range(PLACES):
         nearby = scene if number == 0 or scene.stays else _beside(scene, rng)
         try:
             check_stance(nearby, human)
             draft = Draft(source, nearby, human, own_style(source))
-        except PlanError:
+        except PlanError as error:
+            impossible = str(error)
             continue
         postures = Postures(human, nearby)
         for attempt in range(GRIPS):
@@ -79,6 +80,8 @@ def search(source: Source, scene: Scene, human: Human, seed: int = 1) -> Found:
             if share == 1.0:
                 x, y = nearby.place
                 return Found(True, f"but a search does it standing at ({x:.2f}, {y:.2f}) m")
+    if not tried:
+        return Found(False, f"no posture was searched, for wherever it stands: {impossible}")
     return Found(
         False, f"a search of {tried} places and grips comes to {furthest:.0%} of the key postures"
     )
