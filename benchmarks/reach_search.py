@@ -26,7 +26,7 @@ from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import own_style
 
-PLACES, GRIPS, STARTS = 8, 6, 5
+PLACES, GRIPS, STARTS = 10, 6, 15
 """Standing places, grips in each, and starts of each posture that are tried."""
 
 NEARBY_M = 0.2
@@ -40,6 +40,9 @@ FOOT_M = 0.002
 
 LEAN_M = 0.08
 """How far the centre of mass may come from where it is when standing [m]."""
+
+SWAY_M = 0.1
+"""How far the pelvis is drawn from where it is when standing [m]."""
 
 HEAD_M = 0.0009
 """How far the head may be from where a thing meets it [m]."""
@@ -127,12 +130,13 @@ class Postures:
         return posture, False
 
     def random(self, rng: np.random.Generator) -> Float[np.ndarray, "posture"]:
-        """Legs as when standing, everything else half-way from ease to anywhere."""
+        """Legs about as when standing, everything else half-way from ease to anywhere."""
         out = self.rest.copy()
         drawn = rng.uniform(self.low, self.high)
         legs = [any(n in j for n in ("hip", "knee", "ankle", "toe")) for j in self.human.joints]
         eased = out[ROOT_SIZE:]
         out[ROOT_SIZE:] = np.where(legs, eased, 0.5 * (eased + drawn))
+        out[:3] += rng.uniform(-SWAY_M, SWAY_M, 3)
         return out
 
     def _step(

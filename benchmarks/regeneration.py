@@ -58,10 +58,10 @@ def rows(options: argparse.Namespace, before: list[Row]) -> Iterator[Row]:
                     yield dict(zip(KEY, key, strict=True)) | made
 
 
-def searched(before: list[Row]) -> Iterator[Row]:
-    """What was refused, with what an independent search says of it."""
-    for row in before:
-        if row["refused"] and row["solved"] is None:
+def searched(some: list[Row]) -> Iterator[Row]:
+    """Trips with what an independent search says of them."""
+    for row in some:
+        if row["solved"] is None:
             source = _source(row["action"], row["rules"])
             scene = numbered_scene(source, row["scene"], SEED, row["aside_m"])
             found = search(source, scene, body(row["agent"], source))
@@ -190,6 +190,9 @@ def options() -> argparse.Namespace:
     )
     parser.add_argument("--results", type=Path, help="file to which each trip is added")
     parser.add_argument("--search", action="store_true", help="try what was refused otherwise")
+    parser.add_argument(
+        "--validate", type=int, help="let the search try one in so many of what was performed"
+    )
     parser.add_argument("--table", action="store_true", help="sum the results up, and do no more")
     return parser.parse_args()
 
@@ -198,8 +201,14 @@ def main() -> None:
     """Do what is asked for."""
     asked = options()
     before = read(asked.results)
+    if asked.validate:
+        performed = [row for row in before if not row["refused"]][:: asked.validate]
+        found = [row["solved"] for row in searched(performed)]
+        print(f"of {len(found)} that the planner performed the search solves {sum(found)}")
+        return
+    refused = [row for row in before if row["refused"]]
     if not asked.table:
-        for row in searched(before) if asked.search else rows(asked, before):
+        for row in searched(refused) if asked.search else rows(asked, before):
             print(line(row), flush=True)
             if asked.results:
                 with asked.results.open("a", encoding="utf-8") as out:
