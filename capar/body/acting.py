@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.anthropometry import Measures
 from capar.body.balance import BalanceLimit, BalanceTask, standing_support
 from capar.body.gaze import look_tasks, share_costs
-from capar.body.grips import PITCHES, YAWS, side_grip, top_grip
+from capar.body.grips import PITCHES, ROLLS, YAWS, back_grip, side_grip, top_grip
 from capar.body.human import Human
 from capar.body.scripts import SIDES, Hand, Move, Phase, Script, between, minimum_jerk
 from capar.body.things import Scene, Thing
@@ -200,7 +200,8 @@ class Actor:
         if move.home:
             return self.scene.thing(name).pose
         if not move.to_mouth:
-            return RigidTransform.from_translation(np.array(move.by)) * start
+            turned = Rotation.from_rotvec(move.turn) * start.rotation
+            return RigidTransform.from_components(start.translation + np.array(move.by), turned)
         thing = self.scene.thing(name)
         ahead = Rotation.from_euler("z", self.heading)
         turn = ahead * Rotation.from_euler("y", -move.tilt) * ahead.inv() * thing.pose.rotation
@@ -272,6 +273,8 @@ def _grips(thing: Thing, side: str, kind: str, measures: Measures) -> list[Rigid
     """The grips that are tried."""
     if kind == "top":
         return [top_grip(thing, side, measures, yaw=yaw) for yaw in YAWS]
+    if kind == "back":
+        return [back_grip(thing, side, measures, roll=roll) for roll in ROLLS]
     turns = YAWS if thing.round else YAWS[:1]
     level = [side_grip(thing, side, measures, yaw=yaw) for yaw in turns]
     raised = [

@@ -17,6 +17,9 @@ CLEAR_M = 0.014
 YAWS = (0.0, -0.35, -0.7, -1.05, 0.35)
 """Directions of the fingers tried on a round thing, outwards positive [rad]."""
 
+ROLLS = (0.0, 0.7, 1.2, 1.4, 1.57)
+"""How far the fingers on a thing's near side lean outwards from upright [rad]."""
+
 PITCHES = (0.0, 0.25, 0.5)
 """Likewise their rise above the level [rad]."""
 
@@ -52,6 +55,24 @@ def top_grip(thing: Thing, side: str, measures: Measures, *, yaw: float = 0.0) -
     top = np.array([0.0, 0.0, thing.shape.bounds[1, 2] + AIR_M])
     back = 0.1 * measures["hand_length"] * fingers
     return RigidTransform.from_components(top - back, palm_turn([0.0, 0.0, -1.0], fingers))
+
+
+def back_grip(thing: Thing, side: str, measures: Measures, *, roll: float = 0.0) -> RigidTransform:
+    """``T_thing_palm`` of a hand on the side that faces the performer, fingers upwards.
+
+    Args:
+        thing: Whose frame it is in; its x axis leads away from the performer.
+        side: ``right`` or ``left``.
+        measures: Whose hand; its heel stays clear of what the thing stands on.
+        roll: How far the fingers lean outwards from upright [rad].
+    """
+    sign = 1.0 if side == "right" else -1.0
+    fingers = np.array([0.0, -sign * np.sin(roll), np.cos(roll)])
+    low, high = thing.shape.bounds
+    heel = PALM[0] * np.cos(roll) + 0.44 * np.sin(roll)
+    height = max(0.5 * (low[2] + high[2]), low[2] + heel * measures["hand_length"] + CLEAR_M)
+    place = np.array([low[0] - AIR_M, 0.0, height])
+    return RigidTransform.from_components(place, palm_turn([1.0, 0.0, 0.0], fingers))
 
 
 def palm_turn(

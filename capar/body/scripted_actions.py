@@ -2,6 +2,8 @@
 
 from functools import cache
 
+import numpy as np
+
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import Performance, perform
@@ -14,14 +16,20 @@ from capar.body.scripts import (
     Script,
     drink,
     lift_with_both_hands,
+    pour,
+    push,
     sip,
     slide,
     touch,
+    turn,
 )
 from capar.body.sensing import PERFECT, Tracker
 from capar.body.things import Scene, Thing, box, cup, scene, table
 from capar.model.capture import Capture
 from capar.model.errors import UnknownNameError
+
+ASKEW = 0.8
+"""How far the crate that is pushed is turned [rad]: straight ahead is at the wrist's limit."""
 
 HELD = {"right": Hand("holds", "mug")}
 CARRY: Script = (
@@ -42,6 +50,9 @@ ACTIONS: dict[str, Script] = {
     "slide": slide("mug", (0.0, 0.12, 0.0)),
     "carry": CARRY,
     "pick_up": lift_with_both_hands("crate", height=0.2),
+    "turn": turn("mug", float(np.radians(40.0))),
+    "push": push("crate", (0.15 * np.cos(ASKEW), 0.15 * np.sin(ASKEW), 0.0)),
+    "pour": pour("mug", lift=0.18, over=(0.0, 0.25, 0.0), angle=float(np.radians(80.0))),
 }
 """Each has the things of its own scene."""
 
@@ -52,7 +63,10 @@ def action_scene(human: Human, action: str) -> Scene:
     top = 0.52 * tall
     mug = Thing("mug", cup(0.035, 0.09), (0.22 * tall, -0.10 * tall, top), round=True)
     crate = Thing("crate", box(0.15, 0.20, 0.15), (0.24 * tall, 0.02 * tall, top))
-    return scene(table(top, near_m=0.13 * tall), crate if action in {"touch", "pick_up"} else mug)
+    askew = Thing("crate", box(0.15, 0.20, 0.22), (0.29 * tall, -0.08 * tall, top), ASKEW)
+    bowl = Thing("bowl", cup(0.07, 0.06), (0.22 * tall, -0.10 * tall + 0.34, top), round=True)
+    needed = {"touch": (crate,), "pick_up": (crate,), "push": (askew,), "pour": (mug, bowl)}
+    return scene(table(top, near_m=0.13 * tall), *needed.get(action, (mug,)))
 
 
 @cache

@@ -18,7 +18,7 @@ class Hand:
 
     thing: str = ""
     grip: str = "side"
-    """``side`` or ``top``."""
+    """``side``, ``top`` or ``back``, which is the side that faces the performer."""
 
 
 RESTS = Hand("rests")
@@ -30,6 +30,9 @@ class Move:
 
     by: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Displacement from where it is [m]."""
+
+    turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """How it turns meanwhile about its frame's origin, in the world's axes [rad]."""
 
     lift: float = 0.0
     """Height of the arc above the straight way [m]."""
@@ -93,6 +96,79 @@ def slide(thing: str, by: tuple[float, float, float], *, side: str = "right") ->
         Phase("return", 1.0, look="ahead"),
         Phase("stand", 0.6, look="ahead"),
     )
+
+
+def push(thing: str, by: tuple[float, float, float], *, side: str = "right") -> Script:
+    """Lay a palm on the near side of a thing and push it away over what it stands on."""
+    held = {side: Hand("holds", thing, "back")}
+    return (
+        STAND,
+        Phase("reach", 1.1, {side: Hand("reaches", thing, "back")}, look=thing),
+        Phase("touch", 0.4, held, look=thing),
+        Phase("push", 0.9, held, {thing: Move(by)}, look=thing),
+        Phase("hold", 0.3, held, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def turn(thing: str, angle: float, *, side: str = "right") -> Script:
+    """Take a thing at its side and turn it about the vertical where it stands.
+
+    Args:
+        thing: What is turned.
+        angle: How far, seen from above against the clock [rad].
+        side: Which hand.
+    """
+    held = {side: Hand("holds", thing)}
+    return (
+        STAND,
+        Phase("reach", 1.0, {side: Hand("reaches", thing)}, look=thing),
+        Phase("grasp", 0.4, held, look=thing),
+        Phase("turn", 0.9, held, {thing: Move(turn=(0.0, 0.0, angle))}, look=thing),
+        Phase("hold", 0.4, held, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def pour(
+    thing: str, *, lift: float, over: tuple[float, float, float], angle: float, side: str = "right"
+) -> Script:
+    """Take a thing, bring it to what it is emptied into, lean it over, and put it back.
+
+    Args:
+        thing: What is emptied.
+        lift: How high it is lifted first [m].
+        over: How far it then goes [m].
+        angle: How far it leans over, away from the hand's palm [rad].
+        side: Which hand.
+    """
+    held = {side: Hand("holds", thing)}
+    leant = (-angle if side == "right" else angle, 0.0, 0.0)
+    return (
+        STAND,
+        Phase("reach", 1.0, {side: Hand("reaches", thing)}, look=thing),
+        Phase("grasp", 0.4, held, look=thing),
+        Phase("lift", 0.9, held, {thing: Move((0.0, 0.0, lift))}, look=thing),
+        Phase("bring", 0.9, held, {thing: Move(over)}, look=thing),
+        Phase("stay", 0.4, held, look=thing),
+        Phase("lean", 1.0, held, {thing: Move(turn=leant)}, look=thing),
+        Phase("pour", 0.5, held, look=thing),
+        Phase("right", 1.0, held, {thing: Move(turn=_reversed(leant))}, look=thing),
+        Phase("stay", 0.4, held, look=thing),
+        Phase("bring back", 0.9, held, {thing: Move(_reversed(over))}, look=thing),
+        Phase("stay", 0.4, held, look=thing),
+        Phase("lower", 0.9, held, {thing: Move(home=True)}, look=thing),
+        Phase("release", 0.4, held, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def _reversed(way: tuple[float, float, float]) -> tuple[float, float, float]:
+    x, y, z = way
+    return -x, -y, -z
 
 
 def drink(thing: str, *, side: str = "right", tilt: float = float(np.radians(35.0))) -> Script:

@@ -20,7 +20,7 @@ from capar.regeneration.mirroring import OTHER, mirrored
 from capar.regeneration.motions import Motion
 from capar.regeneration.quality import Quality
 from capar.regeneration.regenerating import regenerate
-from capar.regeneration.scene_files import drawn_scene
+from capar.regeneration.scene_files import ASIDE_M, drawn_scene
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source, source_of
 
@@ -56,14 +56,18 @@ class Trip:
         return good and self.same_par and self.same_contacts and self.same_relations
 
 
-def observed_source(capture: Capture | Path | str) -> Source:
+def observed_source(capture: Capture | Path | str, *, rules: str = "extended") -> Source:
     """A capture, observed and ready to be performed.
+
+    Args:
+        capture: What was recorded, or where it is described.
+        rules: Profile by which it is observed.
 
     Raises:
         PlanError: The capture does not determine a performance.
     """
     trial = trial_of(capture)
-    return source_of(trial, observe(trial))
+    return source_of(trial, observe(trial, rules=rules))
 
 
 def by_hand(source: Source, side: str) -> Source:
@@ -106,14 +110,35 @@ def round_trips(
     """
     bodies = {agent: body(agent, source) for agent in agents}
     for number in range(1, scenes + 1) if scenes else (0,):
-        scene = source.scene
-        if number:
-            scene = drawn_scene(scene, np.random.default_rng([seed, number]))
+        scene = numbered_scene(source, number, seed)
         for agent, human in bodies.items():
-            yield _trip(source, agent, human, number, scene)
+            yield round_trip(source, agent, human, number, scene)
 
 
-def _trip(source: Source, agent: str, human: Human, number: int, scene: Scene) -> Trip:
+def numbered_scene(source: Source, number: int, seed: int, aside_m: float = ASIDE_M) -> Scene:
+    """The drawn scene of that number; 0 is the recorded one.
+
+    Args:
+        source: What was recorded.
+        number: Of the scene.
+        seed: Of all scenes.
+        aside_m: How far from its place a thing is drawn along each axis [m].
+    """
+    if not number:
+        return source.scene
+    return drawn_scene(source.scene, np.random.default_rng([seed, number]), aside_m)
+
+
+def round_trip(source: Source, agent: str, human: Human, number: int, scene: Scene) -> Trip:
+    """Perform on one body in one scene, and observe again.
+
+    Args:
+        source: What was recorded.
+        agent: Name of who performs.
+        human: Likewise, the body.
+        number: Of the scene.
+        scene: Where it is performed.
+    """
     try:
         motion, quality = regenerate(source, human, scene)
     except PlanError as error:

@@ -12,7 +12,7 @@ from capar.body.things import Thing
 from capar.model.capture import Capture, Shape, TagType
 from capar.regeneration.errors import PlanError
 from capar.regeneration.scenes import Scene
-from capar.regeneration.sources import MOVES_M, Source, scene_of
+from capar.regeneration.sources import Source, moves, scene_of
 
 ASIDE = "_beside"
 """What is put after the name of a thing that has no part and the name of one that has."""
@@ -80,7 +80,7 @@ def check_movable(source: Source, scene: Scene, parts: Cast) -> None:
         PlanError: Something has.
     """
     for name, actor in parts.items():
-        if scene.thing(actor).tag is TagType.FIXED and _moved(source, name):
+        if scene.thing(actor).tag is TagType.FIXED and moves(source.paths[name]):
             raise PlanError(f"{actor!r} is fixed and cannot be moved; {_movable(scene)}")
 
 
@@ -92,11 +92,6 @@ def own_names(source: Source, scene: Scene, parts: Cast) -> dict[str, str]:
         if name not in taken:
             found[name if name not in parts else name + ASIDE] = name
     return found
-
-
-def _moved(source: Source, name: str) -> bool:
-    path = source.paths[name].translation
-    return bool(np.linalg.norm(path - path[0], axis=1).max() > MOVES_M)
 
 
 def _movable(scene: Scene) -> str:

@@ -1,6 +1,7 @@
 """What is decided of a performance before hands' ways are: goals, and grips that reach."""
 
 import numpy as np
+from jaxtyping import Float
 
 from capar.body.human import Human
 from capar.body.recording import HAND_SEGMENTS
@@ -83,7 +84,7 @@ class Draft:
         """
         solver = Solver(self.new.human, (*self.scene.place, self.scene.floor_m), self.scene.heading)
         worst = (0.0, "")
-        for frame in self._keys(group):
+        for frame in self.key_frames(group):
             palms = {
                 grip.hold.side: vectors(
                     self.things[grip.hold.thing][frame] * grip.pose * self.new.palms[grip.hold.side]
@@ -99,7 +100,7 @@ class Draft:
             ratio = max(metres / REACH_M, radians / REACH_RAD)
             if ratio > worst[0]:
                 worst = (ratio, self._sentence(group, frame, metres, radians))
-            pair = self._cut(solver, grips, frame)
+            pair = self.deepest_cut(solver.posture, grips, frame)
             if pair and -pair.distance_m / CUT_M > worst[0]:
                 depth, sides = -pair.distance_m, _sides(group)
                 worst = (
@@ -119,15 +120,18 @@ class Draft:
             f"it misses by {metres * 1000:.0f} mm and {np.degrees(radians):.0f} degrees"
         )
 
-    def _cut(self, solver: Solver, grips: list[Grip], frame: int) -> Pair | None:
+    def deepest_cut(
+        self, posture: Float[np.ndarray, "posture"], grips: list[Grip], frame: int
+    ) -> Pair | None:
         """The part of the body that is deepest inside a thing, but for hands in what they hold."""
         around = self.gripping.around
-        around.pose(solver.posture, {name: path[frame] for name, path in self.things.items()})
+        around.pose(posture, {name: path[frame] for name, path in self.things.items()})
         held = {(g.hold.side, g.hold.thing) for g in grips}
         pairs = [p for p in around.near() if not _holds_it(p, held) and p.distance_m < 0.0]
         return min(pairs, default=None)
 
-    def _keys(self, group: list[Hold]) -> list[int]:
+    def key_frames(self, group: list[Hold]) -> list[int]:
+        """The frames at which reach is tried in some holds."""
         first, last = min(h.first for h in group), max(h.last for h in group)
         keys = {int(frame) for frame in np.linspace(first, last, KEYS)}
         keys |= {frame for frame in self.watched if first <= frame <= last}

@@ -16,7 +16,7 @@ from capar.regeneration.errors import PlanError
 from capar.regeneration.grips import Grip, Turn
 from capar.regeneration.hand_paths import Care, hand_paths
 from capar.regeneration.path_mapping import Detour
-from capar.regeneration.scenes import Scene, raised
+from capar.regeneration.scenes import Scene, mobile, moved, raised, resized
 from capar.regeneration.solving import Targets, vectors
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Style, own_style
@@ -33,7 +33,11 @@ STEPS_M = (
 
 NEARER_M = (0.05, 0.1, 0.15, 0.2, 0.3)
 HIGHER_M = (0.1, -0.1, 0.2, -0.2)
-"""Remedies that are tried where something is out of reach [m]."""
+DRAWN_M = (0.1, 0.2, 0.3)
+"""Remedies that are tried where something is out of reach [m]: standing, fixed things, others."""
+
+SMALLER = 0.7
+"""Likewise the size of what can be moved [1]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,7 +181,23 @@ def _remedy(source: Source, scene: Scene, human: Human) -> str:
             if _possible(source, raised(scene, name, by_m), human):
                 way = "higher" if by_m > 0 else "lower"
                 return f"{name!r} {abs(by_m):.1f} m {way} would do"
-    return "a larger body, or things nearer to it, would do"
+    for by_m in DRAWN_M:
+        if _possible(source, _drawn_nearer(scene, by_m), human):
+            return f"what can be moved {by_m:.1f} m nearer to the performer would do"
+    for name in mobile(scene):
+        if _possible(source, resized(scene, name, SMALLER), human):
+            return f"{name!r} of {SMALLER:.1f} times the size would do"
+    return "no other height, size or nearer place that was tried would do; a larger body might"
+
+
+def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
+    """The scene with what can be moved nearer to where the performer stands."""
+    for name in mobile(scene):
+        thing = scene.thing(name)
+        x, y, z = thing.place
+        back = (x - by_m * np.cos(scene.heading), y - by_m * np.sin(scene.heading), z)
+        scene = moved(scene, name, back, thing.heading)
+    return scene
 
 
 def _possible(source: Source, scene: Scene, human: Human) -> bool:

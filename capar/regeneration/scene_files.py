@@ -56,8 +56,14 @@ def read_scene(path: Path, scene: Scene) -> Scene:
     return replace(scene, place=(x, y), heading=turn, floor_m=floor, stays=stays)
 
 
-def drawn_scene(scene: Scene, rng: np.random.Generator) -> Scene:
-    """A scene with other sizes and places, its first fixed thing as high as a table may be."""
+def drawn_scene(scene: Scene, rng: np.random.Generator, aside_m: float = ASIDE_M) -> Scene:
+    """A scene with other sizes and places, its first fixed thing as high as a table may be.
+
+    Args:
+        scene: As it was recorded.
+        rng: What draws.
+        aside_m: How far from its place a thing is drawn along each axis [m].
+    """
     for name in mobile(scene):
         scene = resized(scene, name, float(rng.uniform(*SIZES)))
     fixed = [name for name, thing in scene.things.items() if thing.tag is TagType.FIXED]
@@ -69,7 +75,7 @@ def drawn_scene(scene: Scene, rng: np.random.Generator) -> Scene:
         found = scene
         for name in mobile(scene):
             x, y, z = scene.thing(name).place
-            dx, dy = rng.uniform(-ASIDE_M, ASIDE_M, 2)
+            dx, dy = rng.uniform(-aside_m, aside_m, 2)
             found = moved(found, name, (x + dx, y + dy, z), scene.thing(name).heading)
         if _sound(scene, found):
             return found

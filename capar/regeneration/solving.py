@@ -14,10 +14,10 @@ from capar.body.human import Human
 from capar.body.scripts import SIDES
 from capar.body.solving import Solver as Steps
 
-PALM_COST = (60.0, 4.0)
-"""Weights of a metre and of a radian at the palms."""
+PALM_COST = (150.0, 10.0)
+"""Weights of a metre and of a radian at the palms: so that balance does not cost a millimetre."""
 
-HEAD_COST = (60.0, 8.0)
+HEAD_COST = (150.0, 20.0)
 """Likewise of the head while a thing is at it."""
 
 FREE_PALM = (0.27, 0.1)
@@ -32,7 +32,7 @@ ROOT_MPS, ROOT_RADPS = 0.7, 2.0
 FREE_HEAD = 0.002
 """Share of that weight otherwise [1]."""
 
-FOOT_COST = 120.0
+FOOT_COST = 240.0
 BALANCE_COST = 20.0
 """Weight of a metre of the centre of mass from above the feet."""
 

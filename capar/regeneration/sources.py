@@ -13,7 +13,7 @@ from capar.body.skeleton import eyes_between
 from capar.body.targets import target
 from capar.body.things import Thing
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagType
-from capar.model.facts import Touching
+from capar.model.facts import Leans, Lies, Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
 from capar.regeneration.errors import PlanError
@@ -35,8 +35,8 @@ LOOSER = (1.0, 2.0)
 SETTLED_SHARE = 0.8
 """Noise may take so small a share of the frames in between out of that [1]."""
 
-MOVES_M = 0.02
-"""A thing that never goes further does not move [m]."""
+MOVES_M, MOVES_RAD = 0.02, float(np.radians(10.0))
+"""A thing that never goes or turns further does not move [m, rad]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +70,19 @@ class Meeting:
     last: int
 
 
+@dataclass(frozen=True)
+class Poise:
+    """A held thing that leans over above or in another one that can be moved."""
+
+    thing: str
+    other: str
+    lowest: int
+    """The frame in the middle of its leaning over."""
+
+    frames: tuple[int, ...]
+    """Borders of the hand's steps meanwhile."""
+
+
 @dataclass(frozen=True, eq=False)
 class Source:
     """A recorded performance, as it is performed again."""
@@ -93,6 +106,7 @@ class Source:
 
     holds: tuple[Hold, ...]
     meetings: tuple[Meeting, ...]
+    poises: tuple[Poise, ...]
     notes: tuple[str, ...]
     pace: float = 1.0
     """How many times as long everything takes as it did [1]."""
@@ -132,9 +146,10 @@ def source_of(capture: Capture, observation: Observation) -> Source:
     notes = ["the point of contact on each hand is measured on the capture's meshes"]
     holds = _holds(hands, paths, touching)
     meetings = _meetings(capture, eyes, paths, touching)
+    poises = _poises(observation, hands, things, holds)
     made = Source(
         capture, observation, human, Scene(things, place, heading),
-        hands, paths, eyes, holds, meetings, tuple(notes),
+        hands, paths, eyes, holds, meetings, poises, tuple(notes),
     )  # fmt: skip
     _check_movers(made)
     return made
@@ -155,6 +170,13 @@ def scene_of(capture: Capture, human: Human) -> Scene:
 def eyes_in_body(human: Human) -> Float[np.ndarray, "3"]:
     """Between the eyes of the standing body, from the place where it stands [m]."""
     return np.asarray(eyes_between(human.measures))
+
+
+def moves(path: RigidTransform) -> bool:
+    """Whether a thing goes or turns far enough from where it is at first."""
+    gone = np.linalg.norm(path.translation - path.translation[0], axis=1)
+    turned = (path.rotation * path.rotation[0].inv()).magnitude()
+    return bool(gone.max() >= MOVES_M or turned.max() >= MOVES_RAD)
 
 
 def _path(stream: Stream) -> RigidTransform:
@@ -283,6 +305,40 @@ def _meetings(
                     first, last = (each.first + edge for edge in found)
                     out.append(Meeting(thing, part, first, last))
     return tuple(sorted(out, key=lambda meeting: meeting.first))
+
+
+def _poises(
+    observation: Observation,
+    hands: Mapping[str, HandTrack],
+    things: Mapping[str, Thing],
+    holds: tuple[Hold, ...],
+) -> tuple[Poise, ...]:
+    leans = [fact for fact in observation.facts if isinstance(fact, Leans)]
+    out = []
+    for fact in observation.facts:
+        if not isinstance(fact, Lies) or fact.how not in {"above", "inside"}:
+            continue
+        tilts = [
+            lean
+            for lean in leans
+            if lean.object == fact.body and fact.first <= lean.first and lean.last <= fact.last
+        ]
+        held = [
+            hold
+            for hold in holds
+            if hold.thing == fact.body
+            and any(hold.first <= tilt.first and tilt.last <= hold.last for tilt in tilts)
+        ]
+        if held and fact.other in things and things[fact.other].tag is TagType.MOBILE:
+            first = max(fact.first, min(hold.first for hold in held))
+            last = min(fact.last, max(hold.last for hold in held))
+            sensors = {hands[hold.side].sensor for hold in held}
+            ends = {part.last for part in observation.segments if part.ee in sensors}
+            frames = tuple(sorted(frame for frame in ends if first <= frame <= last))
+            lowest = (tilts[0].first + tilts[0].last) // 2
+            if frames:
+                out.append(Poise(fact.body, fact.other, lowest, frames))
+    return tuple(sorted(out, key=lambda poise: poise.frames))
 
 
 def _settled(relative: RigidTransform) -> tuple[int, int] | None:

@@ -8,6 +8,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
+from capar.body.things import Thing
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
 from capar.regeneration.carrying import Carrying
 from capar.regeneration.collisions import Surroundings
@@ -16,11 +17,11 @@ from capar.regeneration.errors import PlanError
 from capar.regeneration.path_mapping import STRAIGHT, Detour
 from capar.regeneration.scenes import Scene, moved
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import MOVES_M, Meeting, Source
+from capar.regeneration.sources import MOVES_M, Meeting, Poise, Source, moves
 from capar.regeneration.styles import Style
 
-STILL_M = 0.005
-"""A stretch in which a thing stays so near where it was is one of rest [m]."""
+STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
+"""A stretch in which a thing stays so near where it was is one of rest [m, rad]."""
 
 TOUCH_M = 0.0005
 """What is left between surfaces that touch [m]."""
@@ -59,7 +60,10 @@ def thing_goals(
                     reason = f"at the {meeting.part}, in its own measures"
                     goals.append(Goal(name, meeting.first, at, reason))
                     goals.append(Goal(name, min(meeting.last, last), at, reason))
-            goals.append(_put_down(source, scene, name, (first, last), pose))
+            down = _put_down(source, scene, name, (first, last), pose)
+            goals += _poised(source, scene, name, (first, last), (pose, down.pose))
+            goals.sort(key=lambda goal: goal.frame)
+            goals.append(down)
     return out
 
 
@@ -99,14 +103,14 @@ def _lifted(name: str, at_s: float, detour: Detour) -> str:
 
 def _rests(part: RigidTransform, start: RigidTransform, goal: RigidTransform) -> bool:
     apart = np.linalg.norm(part.translation - part.translation[0], axis=1)
+    turned = (part.rotation * part.rotation[0].inv()).magnitude()
     near = np.linalg.norm(goal.translation - start.translation) < 1e-9
-    return bool(apart.max() < STILL_M and near)
+    return bool(apart.max() < STILL_M and turned.max() < STILL_RAD and near)
 
 
 def _handled(source: Source, name: str) -> list[tuple[int, int]]:
     """From when to when a thing is held without a break, if it moves at all."""
-    path = source.paths[name].translation
-    if np.linalg.norm(path - path[0], axis=1).max() < MOVES_M:
+    if not moves(source.paths[name]):
         return []
     out: list[tuple[int, int]] = []
     for hold in source.holds:
@@ -125,7 +129,7 @@ def _put_down(
     before, after = (source.paths[name][each] for each in span)
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
     by = turn.apply(after.translation - before.translation)
-    spun = turn * after.rotation * before.rotation.inv() * turn.inv() * pose.rotation
+    spun = _turned(source.paths[name], *span, turn) * pose.rotation
     came, support = (_support_at(source.scene, name, each) for each in (before, after))
     spot, reason = pose.translation + by, "as far from where it came from as it was [m]"
     onto = scene.goals.get(name, support if support != came else "")
@@ -140,6 +144,105 @@ def _put_down(
             f"not reach; a larger {support!r}, or {name!r} nearer its middle, would do"
         )
     return Goal(name, span[1], goal, reason)
+
+
+def _poised(
+    source: Source,
+    scene: Scene,
+    name: str,
+    span: tuple[int, int],
+    ends: tuple[RigidTransform, RigidTransform],
+) -> list[Goal]:
+    """Where it leans over another thing, and how it comes there and away.
+
+    While it leans, its edge next to the other thing is as high above that one as it was, and
+    sideways in that one's measures. Meanwhile it moves as far in metres as it did.
+    """
+    turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
+    recorded, reason = source.paths[name], "over {!r}, in its own measures"
+    out: list[Goal] = []
+    for poise in source.poises:
+        if poise.thing != name or not span[0] <= poise.frames[0] <= span[1]:
+            continue
+        spun = _turned(recorded, span[0], poise.lowest, turn) * ends[0].rotation
+        lowest = RigidTransform.from_components(_leant(source, scene, poise, spun, turn), spun)
+        over: list[RigidTransform] = []
+        for number, frame in enumerate(poise.frames):
+            pose = _displaced(recorded, (poise.lowest, frame), lowest, turn)
+            part = recorded[poise.frames[max(number - 1, 0)] : frame + 1]
+            over.append(over[-1] if over and _rests(part, pose, pose) else pose)
+        goals = zip(poise.frames, over, strict=True)
+        out += [Goal(name, f, pose, reason.format(poise.other)) for f, pose in goals]
+        out += _beside(source, name, span, poise, ends, over, turn)
+    return out
+
+
+def _leant(
+    source: Source, scene: Scene, poise: Poise, spun: Rotation, turn: Rotation
+) -> Float[np.ndarray, "3"]:
+    """Where a thing is when it leans over another one, turned like this."""
+    before, after = (each.thing(poise.thing) for each in (source.scene, scene))
+    old, new = (_top(each.thing(poise.other)) for each in (source.scene, scene))
+    corners = np.array(before.shape.vertices)
+    leant = source.paths[poise.thing][poise.lowest].apply(corners) - old
+    nearest = int(np.argmin(np.linalg.norm(leant, axis=1)))
+    sizes = [each.thing(poise.other).size[:2] for each in (source.scene, scene)]
+    by = turn.apply(leant[nearest])
+    by[:2] *= float(np.mean(sizes[1] / np.maximum(sizes[0], 1e-9)))
+    edge = corners[nearest] * after.size / np.maximum(before.size, 1e-9)
+    return np.asarray(new + by - spun.apply(edge))
+
+
+def _top(thing: Thing) -> Float[np.ndarray, "3"]:
+    low, high = thing.shape.bounds
+    return np.asarray(thing.pose.apply([*(0.5 * (low + high))[:2], high[2]]))
+
+
+def _beside(
+    source: Source,
+    name: str,
+    span: tuple[int, int],
+    poise: Poise,
+    ends: tuple[RigidTransform, RigidTransform],
+    over: list[RigidTransform],
+    turn: Rotation,
+) -> list[Goal]:
+    """Goals at the nearest borders of steps before and after, if it is on its way there.
+
+    Sideways as far from where it came from or is put down as it was, and as high as it was beside
+    where it leans over.
+    """
+    sensors = {source.hands[hold.side].sensor for hold in source.holds if hold.thing == name}
+    borders = sorted({e.last for e in source.observation.segments if e.ee in sensors})
+    recorded, frames = source.paths[name], poise.frames
+    path = recorded.translation
+    away = [np.linalg.norm(path - path[frame], axis=1) > MOVES_M for frame in span]
+    before = [b for b in borders if span[0] < b < frames[0] and away[0][b]][-1:]
+    after = [b for b in borders if frames[-1] < b < span[1] and away[1][b]][:1]
+    reason = "as far from where it came from or is put down as it was [m]"
+    out = []
+    for border, side in [(frame, 0) for frame in before] + [(frame, -1) for frame in after]:
+        pose = _displaced(recorded, (span[side], border), ends[side], turn)
+        spot = np.array(pose.translation)
+        spot[2] = over[side].translation[2] + path[border, 2] - path[frames[side], 2]
+        goal = RigidTransform.from_components(spot, pose.rotation)
+        out.append(Goal(name, border, goal, reason))
+    return out
+
+
+def _displaced(
+    path: RigidTransform, frames: tuple[int, int], pose: RigidTransform, turn: Rotation
+) -> RigidTransform:
+    """Where a thing is at the second frame, when it has a pose at the first."""
+    first, frame = frames
+    gone = turn.apply(path[frame].translation - path[first].translation)
+    spun = _turned(path, first, frame, turn) * pose.rotation
+    return RigidTransform.from_components(pose.translation + gone, spun)
+
+
+def _turned(path: RigidTransform, first: int, frame: int, turn: Rotation) -> Rotation:
+    """How a recorded thing has turned, in a scene that is turned itself."""
+    return turn * path[frame].rotation * path[first].rotation.inv() * turn.inv()
 
 
 def _on(

@@ -1,0 +1,74 @@
+"""What one body did another does in a drawn scene, and the same action is observed again."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from capar.body.scripted_actions import action_capture
+from capar.pipelines.round_trips import body, numbered_scene, observed_source, round_trip
+from capar.regeneration import Source
+from capar.regeneration.planning import reachable
+
+pytestmark = pytest.mark.long
+
+RATE_HZ, SEED = 30.0, 7
+
+TRIPS = (
+    ("drink", "child", 2),
+    ("drink", "woman", 5),
+    ("touch", "woman", 1),
+    ("slide", "man", 3),
+    ("carry", "woman", 2),
+    ("pick_up", "man", 0),
+    ("turn", "child", 1),
+    ("turn", "man", 4),
+    ("push", "man", 1),
+    ("push", "child", 2),
+    ("pour", "man", 2),
+    ("pour", "child", 3),
+)
+"""Action, agent, and number of the scene; 0 is the recorded one."""
+
+
+@cache
+def _source(action: str) -> Source:
+    return observed_source(action_capture(action, rate_hz=RATE_HZ))
+
+
+@pytest.mark.parametrize(("action", "agent", "number"), TRIPS)
+def test_the_same_action_comes_out_of_a_good_motion(action: str, agent: str, number: int) -> None:
+    source = _source(action)
+    scene = numbered_scene(source, number, SEED)
+    trip = round_trip(source, agent, body(agent, source), number, scene)
+    assert not trip.refused
+    assert trip.quality is not None
+    assert trip.quality.passed, [gate for gate in trip.quality.gates if not gate.passed]
+    assert trip.same_par, trip.names
+    assert trip.same_contacts
+
+
+@pytest.mark.parametrize("number", [2, 3])
+def test_a_mug_is_emptied_over_the_bowl_wherever_that_stands(number: int) -> None:
+    source = _source("pour")
+    scene = numbered_scene(source, number, SEED)
+    bowl = scene.thing("bowl")
+    apart = np.array(bowl.place[:2]) - source.scene.thing("bowl").place[:2]
+    assert np.linalg.norm(apart) > 0.02
+    draft = reachable(source, scene, body("man", source))
+    (poise,) = source.poises
+    mug = draft.things["mug"][poise.lowest].apply(np.array(scene.thing("mug").shape.vertices))
+    opening = np.asarray(bowl.place) + bowl.size * [0.0, 0.0, 1.0]
+    lip = mug[np.argmin(np.linalg.norm(mug - opening, axis=1))]
+    assert np.linalg.norm(lip[:2] - opening[:2]) < 0.5 * bowl.size[0]
+    assert lip[2] > opening[2]
+
+
+def test_a_thing_that_only_turns_is_turned_as_far() -> None:
+    source = _source("turn")
+    scene = numbered_scene(source, 1, SEED)
+    draft = reachable(source, scene, body("child", source))
+    path = draft.things["mug"]
+    turned = (path.rotation[-1] * path.rotation[0].inv()).as_rotvec()
+    np.testing.assert_allclose(turned, [0.0, 0.0, np.radians(40.0)], atol=np.radians(1.0))
+    np.testing.assert_allclose(path.translation[-1], path.translation[0], atol=0.002)
