@@ -70,6 +70,15 @@ def regenerate(
             show_default=False,
         ),
     ] = None,
+    assume: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
+            "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'.",
+            show_default=False,
+        ),
+    ] = None,
     actionary: Place = None,
     rules: Rules = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
@@ -83,6 +92,7 @@ def regenerate(
     from capar.model.errors import CaparError
     from capar.pipelines.round_trips import body, by_hand, observed_source
     from capar.regeneration.captures import capture_of, write_motion
+    from capar.regeneration.completing import read_completion
     from capar.regeneration.regenerating import regenerate as perform
     from capar.regeneration.scene_files import read_scene
     from capar.regeneration.style_kinds import style_kind
@@ -103,7 +113,7 @@ def regenerate(
         return
     if capture is None:
         raise CaparError("name a CAPTURE, or what to do: --say 'touch the mug' --scene CAPTURE")
-    recorded = observed_source(capture)
+    recorded = observed_source(capture, read_completion(assume) if assume else None)
     human = body(agent, recorded)
     place = read_scene(scene, recorded.scene) if scene else recorded.scene
     source = by_hand(recorded, hand) if hand else recorded

@@ -10,11 +10,11 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import ROOT_SIZE
 from capar.regeneration.collisions import Pair, Surroundings
+from capar.regeneration.holding import SETTLED_M, Hold
 from capar.regeneration.motions import Motion
 from capar.regeneration.path_mapping import way
 from capar.regeneration.planning import Plan
 from capar.regeneration.solving import vectors
-from capar.regeneration.sources import SETTLED_M, Hold
 from capar.regeneration.style_kinds import Kind
 
 LEAVING_S = 0.3
