@@ -258,6 +258,9 @@ def _still_gate(motion: Motion) -> Gate:
         for hold in plan.source.holds:
             if hold.thing == name:
                 steps[hold.first : hold.last] = 0.0
+        for launch in plan.source.launches:
+            if launch.thing == name:
+                steps[launch.frame :] = 0.0
         worst = max(worst, (float(steps.max()), int(steps.argmax()), name))
     return Gate("things not held", 1e3 * worst[0], 0.5, "mm a frame", False, *worst[1:])
 

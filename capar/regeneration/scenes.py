@@ -10,7 +10,7 @@ from capar.body.things import Thing, Things
 from capar.model.capture import Shape, TagType
 
 FEET = ("_foot", "_toes")
-HANDS = ("_hand", "_fingers", "_fingertips", "_thumb")
+LOWER_ARMS = ("_hand", "_fingers", "_fingertips", "_thumb", "_forearm")
 """How the names of these parts of the body end."""
 
 ON_M = 0.02
@@ -37,7 +37,7 @@ class Scene(Things):
     """What a thing is put on in the end, where that is not what the recording says."""
 
     entered: frozenset[str] = frozenset()
-    """Things that do not stop hands, since their sizes are only assumed."""
+    """Things that stop neither hands nor forearms, since their sizes are only assumed."""
 
     def stops(self, part: str, name: str) -> bool:
         """Whether a thing stops a part of the body: no ground stops the feet that stand on it."""
@@ -45,7 +45,7 @@ class Scene(Things):
             thing = self.thing(name)
             top = _corners(thing)[1, 2]
             return thing.tag is not TagType.FIXED or abs(top - self.floor_m) >= ON_M
-        return not (part.endswith(HANDS) and name in self.entered)
+        return not (part.endswith(LOWER_ARMS) and name in self.entered)
 
     def support(self, name: str) -> str:
         """What a thing stands on; empty where nothing is beneath it."""

@@ -17,6 +17,7 @@ from capar.model.facts import Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
 from capar.regeneration.errors import PlanError
+from capar.regeneration.forces.launches import Launch, launches_of, with_blows
 from capar.regeneration.hand_frames import HandFrame, hand_frame
 from capar.regeneration.holding import (
     GRASP_M,
@@ -38,6 +39,9 @@ WALKS_M = 0.8
 
 STANDS_M = 0.5
 """While a head stays within this, its bearer is taken to stand [m]."""
+
+LAUNCH_FRAMES = 3
+"""A thing may be seen to move so long before the frame of the blow: filters blur it [1]."""
 
 MOVES_M = 0.02
 """A thing that never goes further does not move [m]."""
@@ -78,6 +82,9 @@ class Source:
     holds: tuple[Hold, ...]
     meetings: tuple[Meeting, ...]
     notes: tuple[str, ...]
+    launches: tuple[Launch, ...] = ()
+    """Things that a hand set going, after which they moved on alone."""
+
     pace: float = 1.0
     """How many times as long everything takes as it did [1]."""
 
@@ -130,17 +137,20 @@ def source_of(
     told = [*notes, "the point of contact on each hand is measured on the capture's meshes"]
     tracks_of_hands = {side: (hand.sensor, hand.path) for side, hand in hands.items()}
     holds = holds_of(tracks_of_hands, paths, touching)
+    sides = {hand.sensor: side for side, hand in hands.items()}
+    launches = launches_of(observation.forces, sides, holds, capture.times)
+    holds = with_blows(holds, launches)
     told += wanderings(tracks_of_hands, paths, holds)
     meetings = meetings_of(capture, eyes, paths, touching)
     entered = _entered(capture, holds, hands, touching)
     told += [
-        f"hands may enter {name!r}, whose size is assumed, as the recorded ones do"
+        f"hands and forearms may enter {name!r}, whose size is assumed, as the recorded hand does"
         for name in sorted(entered)
     ]
     scene = Scene(things, place, heading, floor_m, entered=entered)
     made = Source(
         capture, observation, human, scene,
-        hands, paths, eyes, holds, meetings, tuple(told),
+        hands, paths, eyes, holds, meetings, tuple(told), launches,
     )  # fmt: skip
     _check_stands(made)
     _check_movers(made, touching)
@@ -310,6 +320,9 @@ def _check_movers(source: Source, touching: list[Touching]) -> None:
         for hold in source.holds:
             if hold.thing == name:
                 held[hold.first : hold.last + 1] = True
+        for launch in source.launches:
+            if launch.thing == name:
+                held[max(launch.frame - LAUNCH_FRAMES, 0) :] = True
         moved = np.linalg.norm(path.translation - path.translation[0], axis=1)
         for first, last in runs(~held):
             far_m = float(np.ptp(moved[first : last + 1]))
@@ -337,4 +350,7 @@ def _why(source: Source, name: str, span: tuple[int, int], touching: list[Touchi
                         "grips and things that turn in the hand are not regenerated. A part of "
                         "the recording with one grip would do: from_s and to_s with --assume FILE"
                     )
-    return "without a steady contact with a hand; throwing, hitting and pushing are not regenerated"
+    return (
+        "without a steady contact with a hand, and no hand was seen to set it going; what moves "
+        "for another reason is not regenerated"
+    )
