@@ -83,7 +83,8 @@ def regenerate(
         typer.Option(
             metavar="FILE",
             help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
-            "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'.",
+            "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'; "
+            "[assumed_size] OBJECT = [X, Y].",
             show_default=False,
         ),
     ] = None,

@@ -18,7 +18,7 @@ from capar.model.geometry import transforms
 from capar.regeneration.mirroring import LOCAL, OTHER, mirrored_shape
 from capar.regeneration.sources import eyes_in_body
 
-KEYS = {"from_s", "to_s", "performer", "mirrored"}
+KEYS = {"from_s", "to_s", "performer", "mirrored", "assumed_size"}
 PERFORMER_KEYS = {"kind", "stature_m", "place", "heading_deg", "floor_m"}
 
 
@@ -47,6 +47,9 @@ class Completion:
     """Hands without a sensor (``left_hand``), and the object in whose middle plane each is the
     other hand's mirror image."""
 
+    sizes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Other lengths along x and y of things whose size the capture only assumes [m]."""
+
     @property
     def stance(self) -> tuple[tuple[float, float], float] | None:
         """Where the performer stands [m] and faces [rad]; None where the head says it."""
@@ -73,6 +76,8 @@ class Completion:
                 f"assumed: {hand!r} has no sensor and is the other hand's mirror image in the "
                 f"middle plane of {thing!r}"
             )
+        for thing, (x, y) in self.sizes.items():
+            out.append(f"assumed: {thing!r} is {x:.2f} x {y:.2f} m")
         return tuple(out)
 
 
@@ -80,7 +85,8 @@ def read_completion(path: Path) -> Completion:
     """What a TOML file states of a recording.
 
     ``from_s`` and ``to_s``; ``[performer]`` with ``kind``, ``stature_m``, ``place``,
-    ``heading_deg`` and ``floor_m``; ``[mirrored]`` with ``left_hand = "OBJECT"``.
+    ``heading_deg`` and ``floor_m``; ``[mirrored]`` with ``left_hand = "OBJECT"``;
+    ``[assumed_size]`` with ``OBJECT = [X, Y]`` of things whose size is assumed in the capture [m].
 
     Raises:
         FileError: The file cannot be read, or says something else.
@@ -90,7 +96,7 @@ def read_completion(path: Path) -> Completion:
     except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise FileError(path, f"is no TOML: {error}.", "See `capar regenerate --help`.") from None
     performer = _table(path, table, "performer")
-    mirrored = _table(path, table, "mirrored")
+    mirrored, sizes = (_table(path, table, name) for name in ("mirrored", "assumed_size"))
     _check_keys(path, "the file", table, KEYS)
     _check_keys(path, "[performer]", performer, PERFORMER_KEYS)
     try:
@@ -104,6 +110,7 @@ def read_completion(path: Path) -> Completion:
             heading_deg=float(performer.get("heading_deg", 0.0)),
             floor_m=float(performer.get("floor_m", 0.0)),
             mirrored={str(hand): str(thing) for hand, thing in mirrored.items()},
+            sizes={n: (float(s[0]), float(s[1])) for n, s in sizes.items()},
         )
     except (TypeError, ValueError, IndexError) as error:
         raise FileError(path, f"{error}.", "Numbers are needed, and place = [x, y].") from None
@@ -122,12 +129,32 @@ def completed(capture: Capture, completion: Completion) -> Capture:
     if completion.stature_m is not None:
         agent = replace(agent, measures={**agent.measures, "stature": completion.stature_m})
     made = replace(made, agent=agent)
+    for name, size in completion.sizes.items():
+        made = _sized(made, name, size)
     sensors = list(made.sensors)
     if completion.place is not None and not any(s.end_effector == "head" for s in sensors):
         sensors.append(_head(made, completion))
     for hand, thing in completion.mirrored.items():
         sensors.append(_mirrored_hand(made, hand, thing, completion.heading_deg))
     return replace(made, sensors=tuple(sensors))
+
+
+def _sized(capture: Capture, name: str, size: tuple[float, float]) -> Capture:
+    thing = capture.tag_object(name)
+    if not thing.assumed or thing.shape is None:
+        raise CaparError(
+            f"the size of {name!r} is recorded; [assumed_size] is for {_assumed(capture)}"
+        )
+    middle = thing.shape.bounds.mean(axis=0)
+    factors = np.array([*size, thing.shape.size[2]]) / thing.shape.size
+    vertices = (np.array(thing.shape.vertices) - middle) * factors + middle
+    shape = replace(thing.shape, vertices=vertices)
+    objects = (replace(o, shape=shape) if o.name == name else o for o in capture.objects)
+    return replace(capture, objects=tuple(objects))
+
+
+def _assumed(capture: Capture) -> str:
+    return ", ".join(o.name for o in capture.objects if o.assumed) or "nothing in this capture"
 
 
 def _cut(capture: Capture, from_s: float, to_s: float) -> Capture:

@@ -162,18 +162,20 @@ class _Course:
         for _ in range(1 if damping else 2):
             motion = self.motion(late, bounce)
             if _lands(motion):
-                bounce = _least(partial(self.miss, late), 0.0, 1.0)
+                bounce = _least(partial(self._miss_of_bounce, late), 0.0, 1.0)
             if damping is None and _slid_s(motion, self.times) >= SLIDES_S:
-                value = _least(partial(self._miss_of_both, bounce=bounce), 0.0, LATE_DAMPING)
+                value = _least(partial(self._miss_of_damping, bounce), 0.0, LATE_DAMPING)
                 late = value, value
         return late, bounce
 
-    def _miss_of_both(self, damping: float, *, bounce: float) -> float:
-        return self.miss((damping, damping), bounce)
+    def _miss_of_bounce(self, damping: tuple[float, float], bounce: float) -> float:
+        """Mean square distance of heights, which damping does not change [m^2]."""
+        off = self.motion(damping, bounce).positions[:, 2] - self.places[:, 2]
+        return float(np.mean(off**2))
 
-    def miss(self, damping: tuple[float, float], bounce: float) -> float:
-        """Mean square distance from the recorded places [m^2]."""
-        off = self.motion(damping, bounce).positions - self.places
+    def _miss_of_damping(self, bounce: float, damping: float) -> float:
+        """Mean square distance on the level [m^2]."""
+        off = self.motion((damping, damping), bounce).positions[:, :2] - self.places[:, :2]
         return float(np.mean(off**2))
 
 
@@ -303,6 +305,27 @@ def velocity_at(
         return np.zeros(3)
     powers = np.stack([(times[known] - at_s) ** power for power in range(degree + 1)], axis=1)
     return np.asarray(np.linalg.lstsq(powers, places[known], rcond=None)[0][1])
+
+
+def velocities_about(
+    times: Float[np.ndarray, "frames"], places: Float[np.ndarray, "frames 3"], at_s: float
+) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """The velocities just before and just after a blow [m/s].
+
+    Both ways are quadratic in time and meet in one place, which makes the fit less sensitive to
+    noise than two fits would be.
+
+    Args:
+        times: Of places on both sides of the blow [s].
+        places: Recorded ones; lost ones are NaN [m].
+        at_s: When the blow is [s].
+    """
+    near = (np.abs(times - at_s) <= VELOCITY_S) & ~np.isnan(places[:, 0])
+    past = times[near] - at_s
+    early, late = np.minimum(past, 0.0), np.maximum(past, 0.0)
+    powers = np.stack([np.ones_like(past), early, early**2, late, late**2], axis=1)
+    found = np.linalg.lstsq(powers, places[near], rcond=None)[0]
+    return np.asarray(found[1]), np.asarray(found[3])
 
 
 def restitution(

@@ -16,7 +16,7 @@ from extractors.forces.estimating import (
     fit_free_motion,
     restitution,
     thesis_damping,
-    velocity_at,
+    velocities_about,
 )
 from extractors.forces.free_motion import Phase, Surface
 from extractors.motion.impacts import recorded_middles
@@ -129,12 +129,9 @@ def _striker(
 ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
     """The velocities of an end-effector just before and just after a time [m/s]."""
     body, times = bodies.sensors[name], capture.times
-    out = []
-    for low, high in ((at_s - VELOCITY_S, at_s), (at_s, at_s + VELOCITY_S)):
-        first, last = np.searchsorted(times, [low, high])
-        span = slice(int(first), int(last))
-        out.append(velocity_at(times[span], recorded_middles(body, span), at_s))
-    return out[0], out[1]
+    first, last = np.searchsorted(times, [at_s - VELOCITY_S, at_s + VELOCITY_S])
+    span = slice(int(first), int(last))
+    return velocities_about(times[span], recorded_middles(body, span), at_s)
 
 
 def _rested(

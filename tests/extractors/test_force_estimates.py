@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from extractors.forces.estimating import (
-    VELOCITY_S,
     Fit,
     fit_free_motion,
     restitution,
     thesis_damping,
-    velocity_at,
+    velocities_about,
 )
 from extractors.forces.free_motion import Resistance, Surface, free_motion
 
@@ -53,12 +52,7 @@ def _estimated(e: float, damping: float, noise_m: float, seed: int) -> tuple[Fit
         times[first:], box[first:], rested=rested, half=HALF, surfaces=[TABLE, GROUND]
     )
     assert found is not None
-    start = found.start_s
-    early = (times > start - VELOCITY_S) & (times < start)
-    late = (times > start) & (times < start + VELOCITY_S)
-    before = velocity_at(times[early], hand[early], start)
-    after = velocity_at(times[late], hand[late], start)
-    value = restitution(before, after, found.velocity)
+    value = restitution(*velocities_about(times, hand, found.start_s), found.velocity)
     assert value is not None
     return found, value
 

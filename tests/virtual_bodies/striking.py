@@ -1,5 +1,6 @@
-"""A virtual man strikes a crate from its right side: known restitution and damping."""
+"""A virtual man strikes a crate, pushes a mug and tosses one: known restitution and damping."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 
@@ -24,6 +25,9 @@ STRIKE_MPS = 1.2
 
 MASSES = 2.0
 """How many times the crate's mass the arm's is."""
+
+SKIN_M = 0.002
+"""How far the skin gives way [m]."""
 
 LINE = np.array([0.0, 1.0, 0.0])
 
@@ -56,23 +60,7 @@ def struck(
     given = (1.0 + restitution) * MASSES / (1.0 + MASSES) * STRIKE_MPS
     hand = _swing(times, picked.sensor("right_hand"), arrives, STRIKE_MPS - given / MASSES)
     crate = _slide(times, picked, given * LINE, Resistance((damping, damping), restitution))
-    rng = np.random.default_rng(seed)
-
-    def stream(body: Sensor | TagObject) -> Stream:
-        """How a body moved, with the noise of a tracker if it is no part of the room."""
-        path = {"right_hand": hand, "crate": crate}.get(body.name)
-        if path is None:
-            path = RigidTransform.concatenate([body.stream.pose(0)] * len(times))
-        loud = 0.0 if body.name in {"table", "head"} else noise_m
-        spots = path.translation + rng.normal(scale=loud, size=(len(times), 3))
-        return Stream(times, spots, path.rotation.as_quat(scalar_first=True))
-
-    return replace(
-        picked,
-        name="strike",
-        sensors=tuple(replace(sensor, stream=stream(sensor)) for sensor in picked.sensors),
-        objects=tuple(replace(thing, stream=stream(thing)) for thing in picked.objects),
-    )
+    return _recorded(picked, "strike", times, {"right_hand": hand, "crate": crate}, noise_m, seed)
 
 
 def _swing(
@@ -81,7 +69,7 @@ def _swing(
     """From hanging up beside the crate, against it, on a little, and back."""
     known = transforms(sensor.stream.positions, sensor.stream.orientations)
     hangs, meets = known[0], known[arrives]
-    start, end = hangs.translation, meets.translation
+    start, end = hangs.translation, meets.translation + SKIN_M * LINE
     aside = start + [0.3, 0.0, 0.0] * (end - start)
     aside = np.array([aside[0], end[1] - 0.2, end[2] + 0.12])
     stops = end + 0.5 * THROUGH_S * follow_mps * LINE
@@ -127,6 +115,100 @@ def _slide(
     )
     spots = np.tile(pose.translation, (len(times), 1))
     spots[after] += moved.positions[1:] - moved.positions[0]
-    return RigidTransform.from_components(
-        spots, Rotation.concatenate([pose.rotation] * len(times))
+    return RigidTransform.from_components(spots, Rotation.concatenate([pose.rotation] * len(times)))
+
+
+def let_go(
+    action: str,
+    *,
+    faster: float = 2.0,
+    damping: float = 3.0,
+    bounce: float = 0.3,
+    noise_m: float = 0.0,
+    seed: int = 0,
+) -> Capture:
+    """An action in which the right hand takes a mug, that lets it go where it is fastest aside.
+
+    Args:
+        action: ``slide`` makes it a push, ``carry`` a toss.
+        faster: How many times as fast the action is done [1].
+        damping: Of the mug on the table [1/s].
+        bounce: Of the mug on the table [1].
+        noise_m: Standard deviation of every recorded place along each axis [m].
+        seed: Of the noise.
+    """
+    done = action_capture(action, rate_hz=RATE_HZ / faster)
+    mug, table, hand = done.tag_object("mug"), done.tag_object("table"), done.sensor("right_hand")
+    assert mug.shape is not None
+    assert table.shape is not None
+    steps = np.linalg.norm(np.diff(mug.stream.positions[:, :2], axis=0), axis=1) * RATE_HZ
+    leaves = int(np.argmax(steps)) + 1
+    paces = (mug.stream.positions[leaves] - mug.stream.positions[leaves - 1]) * RATE_HZ
+    slows = round(0.2 * RATE_HZ)
+    frames = leaves + slows + leaves
+    times = np.arange(frames + 1) / RATE_HZ
+    there = transforms(hand.stream.positions[: leaves + 1], hand.stream.orientations[: leaves + 1])
+    late = np.arange(1, slows + 1) / RATE_HZ
+    on = np.outer(late - late**2 * RATE_HZ / (2.0 * slows), paces) + there.translation[-1]
+    lift = np.outer(np.minimum(np.arange(1, leaves + 1) / RATE_HZ, 0.3), [0.0, 0.0, 0.3])
+    ways = (
+        there.translation[-2::-1]
+        + (on[-1] - there.translation[-1]) * np.linspace(1.0, 0.0, leaves)[:, None]
+    )
+    fade = np.linspace(1.0, 0.0, leaves)[:, None]
+    spots = np.concatenate([there.translation, on, ways + lift * fade])
+    held = Rotation.concatenate([there.rotation[-1]] * slows)
+    turns = Rotation.concatenate([there.rotation, held, there.rotation[-2::-1]])
+    pose = mug.stream.pose(leaves)
+    corners = table.stream.pose(0).apply(np.array(table.shape.vertices))
+    (x0, y0, _), (x1, y1, top) = corners.min(axis=0), corners.max(axis=0)
+    alone = free_motion(
+        pose.apply(mug.shape.bounds.mean(axis=0)),
+        paces,
+        times[leaves:],
+        half=0.5 * mug.shape.size,
+        surfaces=[Surface(top, (x0, y0), (x1, y1)), Surface(0.0)],
+        resistance=Resistance((damping, damping), bounce),
+    )
+    rests = alone.positions - alone.positions[0] + mug.stream.positions[leaves]
+    path = np.concatenate([mug.stream.positions[:leaves], rests])
+    own = {
+        "right_hand": RigidTransform.from_components(spots, turns),
+        "mug": RigidTransform.from_components(
+            path,
+            Rotation.concatenate(
+                [
+                    Rotation.from_quat(mug.stream.orientations[:leaves], scalar_first=True),
+                    *([pose.rotation] * (frames + 1 - leaves)),
+                ]
+            ),
+        ),
+    }
+    return _recorded(done, f"let_go_{action}", times, own, noise_m, seed)
+
+
+def _recorded(
+    capture: Capture,
+    name: str,
+    times: Float[np.ndarray, "frames"],
+    ways: Mapping[str, RigidTransform],
+    noise_m: float,
+    seed: int,
+) -> Capture:
+    """A capture of these ways; what has none stays where it was at first."""
+    rng = np.random.default_rng(seed)
+
+    def stream(body: Sensor | TagObject) -> Stream:
+        path = ways.get(body.name)
+        if path is None:
+            path = RigidTransform.concatenate([body.stream.pose(0)] * len(times))
+        loud = 0.0 if body.name in {"table", "head"} else noise_m
+        spots = path.translation + rng.normal(scale=loud, size=(len(times), 3))
+        return Stream(times, spots, path.rotation.as_quat(scalar_first=True))
+
+    return replace(
+        capture,
+        name=name,
+        sensors=tuple(replace(sensor, stream=stream(sensor)) for sensor in capture.sensors),
+        objects=tuple(replace(thing, stream=stream(thing)) for thing in capture.objects),
     )

@@ -23,7 +23,7 @@ ARM = ("upper_arm", "forearm", "hand", "fingers", "fingertips", "thumb")
 SHARE = 0.98
 """The largest share of a blow's momentum that a striker keeps for its own mass [1]."""
 
-SLOWEST, FASTEST = 0.2, 3.0
+SLOWEST, FASTEST = 0.2, 2.5
 """How many times as fast a hand may be led into a blow as its own way has it [1]."""
 
 DAMPING, BOUNCE = (2.0, 2.0), 0.4
@@ -88,10 +88,11 @@ def flights(
         recorded = np.array(force.velocity_mps)
         speed = float(np.linalg.norm(recorded))
         line = recorded / speed
-        old = float(np.array(force.striker_mps) @ line)
+        came = _velocity(source, source.hands[launch.side].path, launch.frame)
+        old = float(came @ line)
         share = _share(source, scene, humans, launch, old, speed)
         before = _velocity(source, paths[launch.side], launch.frame)
-        about = _angle(np.array(force.striker_mps), before, turn)
+        about = _angle(came, before, turn)
         new_line = _turned(about, line) if kind is ForceKind.SIMILAR else _turned(turn, line)
         new = float(before @ new_line)
         if kind is ForceKind.SIMILAR:
@@ -171,9 +172,7 @@ def _velocity(source: Source, hand: RigidTransform, frame: int) -> Float[np.ndar
     return velocity_at(source.times[part], hand.translation[part], float(source.times[frame]))
 
 
-def _angle(
-    old: Float[np.ndarray, "3"], new: Float[np.ndarray, "3"], usual: float
-) -> float:
+def _angle(old: Float[np.ndarray, "3"], new: Float[np.ndarray, "3"], usual: float) -> float:
     """How far a velocity has turned about z [rad]."""
     if min(np.hypot(*old[:2]), np.hypot(*new[:2])) < 0.1:
         return usual
