@@ -76,7 +76,7 @@ def holds_of(
             if contact.body == sensor and contact.other in paths:
                 part = slice(contact.first, contact.last + 1)
                 thing = paths[contact.other][part]
-                span = settled(thing.inv() * hand[part]) or _carried(thing, hand[part])
+                span = _together(thing, hand[part])
                 if span:
                     first, last = (contact.first + edge for edge in span)
                     out.append(Hold(side, contact.other, first, last))
@@ -129,6 +129,15 @@ def settled(relative: RigidTransform) -> tuple[int, int] | None:
         if len(frames) > 1 and steady[frames[0] : frames[-1] + 1].mean() >= SETTLED_SHARE:
             return int(frames[0]), int(frames[-1])
     return None
+
+
+def _together(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | None:
+    """When a hand and a thing that touch are together: rigidly, or while it is carried."""
+    rigid = settled(thing.inv() * hand)
+    under_way = np.flatnonzero(_under_way(thing))
+    if rigid and (not len(under_way) or (rigid[0] <= under_way[0] and under_way[-1] <= rigid[1])):
+        return rigid
+    return _carried(thing, hand) or rigid
 
 
 def _carried(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | None:

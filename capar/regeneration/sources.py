@@ -17,7 +17,6 @@ from capar.model.facts import Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
 from capar.regeneration.errors import PlanError
-from capar.regeneration.forces.launches import Launch, launches_of, with_blows
 from capar.regeneration.hand_frames import HandFrame, hand_frame
 from capar.regeneration.holding import (
     GRASP_M,
@@ -29,6 +28,7 @@ from capar.regeneration.holding import (
 )
 from capar.regeneration.holding import Hold as Hold
 from capar.regeneration.holding import Meeting as Meeting
+from capar.regeneration.launches import Launch, launches_of, with_blows
 from capar.regeneration.scenes import Scene
 
 START_FRAMES = 10

@@ -11,7 +11,7 @@ from capar.body.human import Human
 from capar.model.capture import TagType
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.force_kinds import ForceKind
-from capar.regeneration.forces.launches import Launch
+from capar.regeneration.launches import Launch
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source
 from extractors.forces.estimating import VELOCITY_S, velocity_at
