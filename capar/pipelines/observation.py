@@ -121,7 +121,7 @@ def observe_measured(
         others=capture.others,
         calibration=measurements.calibration,
         guides=() if base.crossings_only else tuple(_guides(measurements)),
-        forces=force_styles(capture, measurements.bodies, facts),
+        forces=force_styles(capture, measurements.bodies, facts, measurements.guides),
         naming=naming_rules(base, (segment.name for segment in _segments(inference))),
         tracks=tuple(sampled_tracks(measurements.bodies, capture.times)),
     )

@@ -1,6 +1,6 @@
 """The force styles of a capture: what set things going that then moved on alone."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 import numpy as np
 from jaxtyping import Float
@@ -33,12 +33,15 @@ SHORT_S = 0.2
 RESTED_S = 0.15
 """Over so long before a contact a struck thing was at rest [s]."""
 
+OFF_M, OFF_SHARE = 0.02, 0.1
+"""A motion that is further off the fitted one, in metres and shares of its way, is no free one."""
+
 BEFORE_S = 0.05
 """Beside a contact so much is left out, which the filter blurs [s]."""
 
 
 def force_styles(
-    capture: Capture, bodies: Bodies, facts: Iterable[object]
+    capture: Capture, bodies: Bodies, facts: Iterable[object], guided: Collection[str] = ()
 ) -> tuple[ForceStyle, ...]:
     """How end-effectors set things going that moved on alone, in order of time.
 
@@ -49,10 +52,12 @@ def force_styles(
         capture: The trial.
         bodies: Its bodies.
         facts: What was measured of it.
+        guided: Objects on hinges and rails, which do not move freely.
     """
     touching = [fact for fact in facts if isinstance(fact, Touching)]
     acting = {sensor.name for sensor in capture.acting}
     mobile = {thing.name for thing in capture.objects if thing.tag is TagType.MOBILE}
+    mobile -= set(guided)
     surfaces = _surfaces(capture, bodies)
     out = []
     for contact in touching:
@@ -73,24 +78,42 @@ def _style(
 ) -> ForceStyle | None:
     """What one contact gave to a thing; None where it did not move on alone."""
     times, thing = capture.times, bodies.objects[contact.other]
-    if any(c is not contact and c.first <= contact.last < c.last for c in others):
-        return None
-    last = min((c.first for c in others if c.first > contact.last), default=len(times)) - 1
     rested = _rested(thing, contact, times)
     first = contact.first if rested is not None else contact.last
-    if thing.shape is None or times[last] - times[first] < VELOCITY_S:
+    last = _last_alone(contact, others, len(times))
+    if thing.shape is None or last is None or times[last] - times[first] < VELOCITY_S:
         return None
     span = slice(first, last + 1)
     places = recorded_middles(thing, span)
-    gone = np.linalg.norm(places - places[0], axis=1)
-    soon = times[span] <= times[first] + VELOCITY_S
-    if np.nanmax(gone) < GOES_M or np.nanmax(gone[soon]) < GOES_MPS * VELOCITY_S * 0.5:
+    far_m = _gone(times[span], places)
+    if far_m is None:
         return None
     half = 0.5 * _extent(thing, first)
     found = fit_free_motion(times[span], places, rested=rested, half=half, surfaces=surfaces)
-    if found is None or np.linalg.norm(found.velocity) < GOES_MPS:
+    if found is None or found.residual_m > OFF_M + OFF_SHARE * far_m:
+        return None
+    if np.linalg.norm(found.velocity) < GOES_MPS:
         return None
     return _stated(capture, bodies, contact, found, rested is not None, times[span])
+
+
+def _last_alone(contact: Touching, others: list[Touching], frames: int) -> int | None:
+    """The last frame before a thing is touched again; None where others touch it still."""
+    if any(c is not contact and c.first <= contact.last < c.last for c in others):
+        return None
+    return min((c.first for c in others if c.first > contact.last), default=frames) - 1
+
+
+def _gone(
+    times: Float[np.ndarray, "frames"], places: Float[np.ndarray, "frames 3"]
+) -> float | None:
+    """How far a thing goes [m]; None where it does not go off at once, or was lost."""
+    gone = np.linalg.norm(places - places[0], axis=1)
+    soon = times <= times[0] + VELOCITY_S
+    if np.isnan(gone[0]) or np.nanmax(gone[soon]) < 0.5 * GOES_MPS * VELOCITY_S:
+        return None
+    far_m = float(np.nanmax(gone))
+    return far_m if far_m >= GOES_M else None
 
 
 def _stated(

@@ -7,7 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from capar.body.bundles import write_bundle
+from capar.body.recording import Truth
 from capar.body.scripted_actions import action_capture
+from capar.cli import main
 from capar.model.capture import Capture, Sensor, Stream
 from capar.model.errors import CaparError, FileError
 from capar.pipelines.observation import observe
@@ -158,3 +161,35 @@ def test_every_key_of_a_file_is_read(tmp_path: Path) -> None:
     assert len(found.notes) == 6
     assert found.stance is not None
     np.testing.assert_allclose(found.stance[1], 0.5 * np.pi)
+
+
+def _run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["capar", *arguments])
+    try:
+        main()
+    except SystemExit as end:
+        return int(end.code or 0)
+    return 0
+
+
+@pytest.mark.parametrize("command", ["regenerate", "roundtrip"])
+def test_what_is_assumed_is_read_by_both_commands(
+    command: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    folder, assumed = tmp_path / "take", tmp_path / "assumed.toml"
+    write_bundle(_carried(), Truth((), (), (), ()), folder)
+    assumed.write_text("from_s = 50\nto_s = 60\n")
+    assert _run(monkeypatch, command, str(folder), "--assume", str(assumed)) == 2
+    assert "is between 50 and 60 s; it lasts" in capsys.readouterr().err
+    assert _run(monkeypatch, command, str(folder), "--assume", str(tmp_path / "none.toml")) == 2
+    assert "none.toml" in capsys.readouterr().err
+
+
+def test_a_force_that_there_is_not_is_refused_with_those_that_are(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert _run(monkeypatch, "regenerate", "somewhere", "--force", "hard") == 2
+    assert "similar" in capsys.readouterr().err
