@@ -6,7 +6,6 @@ from functools import partial
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import least_squares, minimize_scalar
 
 from extractors.forces.free_motion import (
     GRAVITY_MPS2,
@@ -204,6 +203,8 @@ def _slide(
     level: float,
 ) -> tuple[_Begin | None, tuple[float, float] | None]:
     """Start, velocity and damping of a slide: x = x0 + v (1 - exp(-k t)) / k along each axis."""
+    from scipy.optimize import least_squares
+
     off = np.flatnonzero(np.abs(places[:, 2] - level) > NEAR_M)
     last = int(off[0]) if len(off) else len(times)
     if last < FEWEST:
@@ -265,6 +266,8 @@ def _flight(
 
 def _least(miss: Callable[[float], float], low: float, high: float) -> float:
     """Where a function of one number is least: the best of a grid, refined."""
+    from scipy.optimize import minimize_scalar
+
     grid = np.linspace(low, high, GRID)
     best = int(np.argmin([miss(float(value)) for value in grid]))
     step = grid[1] - grid[0]

@@ -10,7 +10,6 @@ from enum import StrEnum
 
 import numpy as np
 from jaxtyping import Float
-from scipy.integrate import solve_ivp
 
 GRAVITY_MPS2 = 9.81
 """Standard acceleration of free fall, rounded [m/s^2]."""
@@ -99,6 +98,8 @@ def free_motion(
         surfaces: What may bear it.
         resistance: What takes its speed.
     """
+    from scipy.integrate import solve_ivp  # takes long to import, and few captures need it
+
     out = np.empty((len(times), 6))
     state = np.concatenate([place, velocity]).astype(float)
     now, end = float(times[0]), float(times[-1])
