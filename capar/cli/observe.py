@@ -230,6 +230,7 @@ def _tables(observation: "Observation") -> None:
     from capar.views.notices import note_lines
     from capar.views.tables import (
         aligned,
+        force_lines,
         joint_lines,
         segment_rows,
         segments_table,
@@ -247,7 +248,7 @@ def _tables(observation: "Observation") -> None:
     else:
         for rows in (segment_rows(observation), step_rows(observation.complex_par)):
             typer.echo("\n".join(aligned(rows)) + "\n")
-    for line in joint_lines(observation):
+    for line in (*joint_lines(observation), *force_lines(observation)):
         typer.echo(line)
     for segment in observation.segments:
         if not segment.known:

@@ -1,5 +1,6 @@
 """The command that performs a capture's action, or what is asked for, on another body."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -62,11 +63,28 @@ def regenerate(
         str | None,
         typer.Option(help="Which hand does it: right or left.", show_default=False),
     ] = None,
+    force: Annotated[
+        str,
+        typer.Option(
+            help="What of a blow or a throw is kept: similar (the force, in proportion to arm and "
+            "speed) or same (the thing's motion; the hand strikes as fast as that takes)."
+        ),
+    ] = "similar",
     recordings: Annotated[
         Path | None,
         typer.Option(
             metavar="FOLDER",
             help="With --say: the folder that holds the Actionary's captures; else this one.",
+            show_default=False,
+        ),
+    ] = None,
+    assume: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
+            "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'; "
+            "[assumed_size] OBJECT = [X, Y].",
             show_default=False,
         ),
     ] = None,
@@ -83,6 +101,8 @@ def regenerate(
     from capar.model.errors import CaparError
     from capar.pipelines.round_trips import body, by_hand, observed_source
     from capar.regeneration.captures import capture_of, write_motion
+    from capar.regeneration.completing import read_completion
+    from capar.regeneration.forces.force_kinds import force_kind
     from capar.regeneration.regenerating import regenerate as perform
     from capar.regeneration.scene_files import read_scene
     from capar.regeneration.style_kinds import style_kind
@@ -90,7 +110,7 @@ def regenerate(
 
     if output:
         check_new_folder(output)
-    kind = style_kind(style)
+    kind, kept = style_kind(style), force_kind(force)
     if say is not None:
         from capar.cli._requests import Where, perform_request
 
@@ -103,7 +123,7 @@ def regenerate(
         return
     if capture is None:
         raise CaparError("name a CAPTURE, or what to do: --say 'touch the mug' --scene CAPTURE")
-    recorded = observed_source(capture)
+    recorded = observed_source(capture, read_completion(assume) if assume else None)
     human = body(agent, recorded)
     place = read_scene(scene, recorded.scene) if scene else recorded.scene
     source = by_hand(recorded, hand) if hand else recorded
@@ -111,6 +131,7 @@ def regenerate(
     if style_of:
         other = observed_source(style_of)
         chosen = borrowed_style(source, by_hand(other, hand) if hand else other, kind)
+    chosen = replace(chosen, force=kept)
     if duration:
         source = paced(source, duration)
     motion, quality = perform(source, human, place, chosen)

@@ -1,5 +1,6 @@
 """The command that observes, performs on other bodies, and observes again."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -25,13 +26,24 @@ def roundtrip(
         int, typer.Option(min=0, help="How many scenes to draw; 0 performs in the recorded one.")
     ] = 0,
     seed: Annotated[int, typer.Option(min=0, help="Of the drawn scenes.")] = 0,
+    assume: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
+            "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'; "
+            "[assumed_size] OBJECT = [X, Y].",
+            show_default=False,
+        ),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
     """Observe CAPTURE, perform it on other bodies, observe that, and compare."""
     from capar.cli._output import print_json
     from capar.pipelines.round_trips import body, observed_source, round_trips
+    from capar.regeneration.completing import read_completion
 
-    source = observed_source(capture)
+    source = observed_source(capture, read_completion(assume) if assume else None)
     names = tuple(each.strip() for each in agents.split(","))
     for name in names:
         body(name, source)  # a misspelt one is refused before anything is computed

@@ -7,6 +7,7 @@ from capar.model.calibration import Calibration
 from capar.model.capture import Agent, Notice, Source
 from capar.model.display import display
 from capar.model.facts import Fact
+from capar.model.forces import ForceStyle
 from capar.model.locations import ConstraintLocation, GuideLocation
 from capar.model.naming_rule import NamingRule
 from capar.model.par import (
@@ -201,6 +202,9 @@ class Observation:
 
     guides: tuple[GuideLocation, ...] = ()
     """The hinges and rails on which objects move, by object."""
+
+    forces: tuple[ForceStyle, ...] = ()
+    """What set things going that then moved on alone, in order of time."""
 
     tracks: tuple[SampledTrack, ...] = ()
     """Where each sensor and object was throughout, by name."""

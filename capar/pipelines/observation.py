@@ -25,6 +25,7 @@ from capar_rules.pars.primitive_pars import Measured, ipars, upars
 from extractors.bodies.observed_objects import observed_object
 from extractors.calibration import calibrate as calibration_of
 from extractors.calibration import thresholds_of
+from extractors.forces.force_styles import force_styles
 from extractors.measure import Measurements, measure
 from extractors.relations.guide_locations import guide_location
 from extractors.segments.locations import constraint_location
@@ -120,6 +121,7 @@ def observe_measured(
         others=capture.others,
         calibration=measurements.calibration,
         guides=() if base.crossings_only else tuple(_guides(measurements)),
+        forces=force_styles(capture, measurements.bodies, facts, measurements.guides),
         naming=naming_rules(base, (segment.name for segment in _segments(inference))),
         tracks=tuple(sampled_tracks(measurements.bodies, capture.times)),
     )

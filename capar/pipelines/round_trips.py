@@ -15,6 +15,7 @@ from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from capar.pipelines.trials import trial_of
 from capar.regeneration.captures import capture_of
+from capar.regeneration.completing import Completion, completed
 from capar.regeneration.errors import PlanError
 from capar.regeneration.mirroring import OTHER, mirrored
 from capar.regeneration.motions import Motion
@@ -56,18 +57,34 @@ class Trip:
         return good and self.same_par and self.same_contacts and self.same_relations
 
 
-def observed_source(capture: Capture | Path | str, *, rules: str = "extended") -> Source:
+def observed_source(
+    capture: Capture | Path | str,
+    completion: Completion | None = None,
+    *,
+    rules: str = "extended",
+) -> Source:
     """A capture, observed and ready to be performed.
 
     Args:
         capture: What was recorded, or where it is described.
+        completion: What is assumed where the recording does not say it.
         rules: Profile by which it is observed.
 
     Raises:
         PlanError: The capture does not determine a performance.
+        CaparError: What is assumed contradicts it.
     """
     trial = trial_of(capture)
-    return source_of(trial, observe(trial, rules=rules))
+    if completion is None:
+        return source_of(trial, observe(trial, rules=rules))
+    trial = completed(trial, completion)
+    return source_of(
+        trial,
+        observe(trial, rules=rules),
+        stance=completion.stance,
+        floor_m=completion.floor_m,
+        notes=completion.notes,
+    )
 
 
 def by_hand(source: Source, side: str) -> Source:

@@ -52,6 +52,12 @@ class Surroundings:
             for geom in range(self.model.ngeom)
             if geom not in things
         }
+        self.ignored = {
+            (part, name)
+            for part in set(self.parts.values())
+            for name in scene.things
+            if not scene.stops(part, name)
+        }
         self.hollow = {n: _surface_points(t.shape) for n, t in scene.things.items()}
 
     def pose(
@@ -77,6 +83,8 @@ class Surroundings:
         for geom, part in self.parts.items():
             if wanted is None or part in wanted:
                 for name, other in self.geoms.items():
+                    if (part, name) in self.ignored:
+                        continue
                     found = self._distance(geom, other)
                     if found < 0.0 and self.hollow[name] is not None:
                         found = max(found, self._outside(geom, name))

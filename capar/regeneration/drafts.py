@@ -9,6 +9,7 @@ from capar.regeneration import attending
 from capar.regeneration.body_frames import body_frames, head_path
 from capar.regeneration.collisions import Pair, Surroundings
 from capar.regeneration.errors import PlanError
+from capar.regeneration.forces.flights import first_guess
 from capar.regeneration.grips import Grip, Gripping, turns
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, Targets, vectors
@@ -49,6 +50,7 @@ class Draft:
         self.new = body_frames(human, scene)
         self.goals = thing_goals(source, scene, self.old, self.new)
         self.things, self.told = thing_paths(source, scene, self.goals, human, style)
+        self.things = first_guess(source, scene, self.things)
         self.head = head_path(source, self.old, self.new)
         self.firmness = attending.around(source, source.meetings, SETTLE_S)
         self.looks = attending.looks(source, self.things, self.head)

@@ -34,7 +34,7 @@ def mirrored(capture: Capture, place: tuple[float, float], heading: float) -> Ca
             side=OTHER.get(sensor.side, sensor.side),
             link=_renamed(sensor.link),
             stream=_stream(sensor.stream, plane, origin),
-            shape=_shape(sensor.shape),
+            shape=mirrored_shape(sensor.shape),
             gaze=_vector(sensor.gaze),
             eye=_vector(sensor.eye),
             part_of=names.get(sensor.part_of, sensor.part_of),
@@ -42,7 +42,9 @@ def mirrored(capture: Capture, place: tuple[float, float], heading: float) -> Ca
         for sensor in capture.sensors
     )
     objects = tuple(
-        replace(thing, stream=_stream(thing.stream, plane, origin), shape=_shape(thing.shape))
+        replace(
+            thing, stream=_stream(thing.stream, plane, origin), shape=mirrored_shape(thing.shape)
+        )
         for thing in capture.objects
     )
     return replace(
@@ -79,7 +81,8 @@ def _stream(
     return Stream(np.array(stream.times), spots, turns)
 
 
-def _shape(shape: Shape | None) -> Shape | None:
+def mirrored_shape(shape: Shape | None) -> Shape | None:
+    """A shape mirrored in its own frame, so that the frame stays right-handed."""
     if shape is None:
         return None
     faces = np.array(shape.faces)[:, ::-1]

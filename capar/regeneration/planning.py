@@ -13,6 +13,7 @@ from capar.regeneration import attending
 from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.drafts import Draft, check_stance
 from capar.regeneration.errors import PlanError
+from capar.regeneration.forces.flights import flight_notes, flights
 from capar.regeneration.grips import Grip, Turn
 from capar.regeneration.hand_paths import Care, hand_paths
 from capar.regeneration.path_mapping import Detour
@@ -144,10 +145,13 @@ def led(draft: Draft, care: Care) -> Plan:
     hands, detours = hand_paths(
         source, scene, draft.old, draft.new, held, draft.things, care=care, style=draft.style
     )
+    humans, kind = (source.human, draft.new.human), draft.style.force
+    things, hands, launched = flights(source, scene, humans, draft.things, hands, kind)
     return Plan(
         source, scene, draft.new.human, draft.new, draft.goals, draft.grips, detours, hands,
-        draft.style, attending.grasps(source, care.firm_s), draft.things, draft.head,
-        draft.firmness, draft.looks, (*_notes(source, draft.grips, draft.goals), *draft.told),
+        draft.style, attending.grasps(source, care.firm_s), things, draft.head, draft.firmness,
+        draft.looks,
+        (*_notes(source, draft.grips, draft.goals), *draft.told, *flight_notes(source, launched)),
     )  # fmt: skip
 
 

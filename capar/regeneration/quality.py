@@ -10,11 +10,12 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import ROOT_SIZE
 from capar.regeneration.collisions import Pair, Surroundings
+from capar.regeneration.forces.force_kinds import ForceKind
+from capar.regeneration.holding import SETTLED_M, Hold
 from capar.regeneration.motions import Motion
 from capar.regeneration.path_mapping import way
 from capar.regeneration.planning import Plan
 from capar.regeneration.solving import vectors
-from capar.regeneration.sources import SETTLED_M, Hold
 from capar.regeneration.style_kinds import Kind
 
 LEAVING_S = 0.3
@@ -258,6 +259,9 @@ def _still_gate(motion: Motion) -> Gate:
         for hold in plan.source.holds:
             if hold.thing == name:
                 steps[hold.first : hold.last] = 0.0
+        for launch in plan.source.launches:
+            if launch.thing == name:
+                steps[launch.frame :] = 0.0
         worst = max(worst, (float(steps.max()), int(steps.argmax()), name))
     return Gate("things not held", 1e3 * worst[0], 0.5, "mm a frame", False, *worst[1:])
 
@@ -278,8 +282,13 @@ def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
 
 
 def _model(plan: Plan, side: str) -> RigidTransform:
-    """The way of a hand whose timing is to be kept: the planned one where none is recorded."""
-    return plan.hands[side] if plan.style.kind is Kind.EVEN else plan.style.hands[side]
+    """The way of a hand whose timing is to be kept: the planned one where none is recorded.
+
+    Nor is there one where a hand strikes faster or slower so that the thing moves as it did.
+    """
+    led = {each.side for each in plan.source.launches if plan.style.force is ForceKind.SAME}
+    planned = plan.style.kind is Kind.EVEN or side in led
+    return plan.hands[side] if planned else plan.style.hands[side]
 
 
 def _pieces(motion: Motion, side: str) -> list[tuple[int, int]]:

@@ -9,6 +9,10 @@ from jaxtyping import Float
 from capar.body.things import Thing, Things
 from capar.model.capture import Shape, TagType
 
+FEET = ("_foot", "_toes")
+LOWER_ARMS = ("_hand", "_fingers", "_fingertips", "_thumb", "_forearm")
+"""How the names of these parts of the body end."""
+
 ON_M = 0.02
 """A thing whose lowest point is this near above another one's top stands on it [m]."""
 
@@ -31,6 +35,17 @@ class Scene(Things):
 
     goals: Mapping[str, str] = field(default_factory=dict)
     """What a thing is put on in the end, where that is not what the recording says."""
+
+    entered: frozenset[str] = frozenset()
+    """Things that stop neither hands nor forearms, since their sizes are only assumed."""
+
+    def stops(self, part: str, name: str) -> bool:
+        """Whether a thing stops a part of the body: no ground stops the feet that stand on it."""
+        if part.endswith(FEET):
+            thing = self.thing(name)
+            top = _corners(thing)[1, 2]
+            return thing.tag is not TagType.FIXED or abs(top - self.floor_m) >= ON_M
+        return not (part.endswith(LOWER_ARMS) and name in self.entered)
 
     def support(self, name: str) -> str:
         """What a thing stands on; empty where nothing is beneath it."""

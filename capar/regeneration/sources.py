@@ -13,27 +13,37 @@ from capar.body.skeleton import eyes_between
 from capar.body.targets import target
 from capar.body.things import Thing
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagType
-from capar.model.facts import Leans, Lies, Touching
+from capar.model.facts import Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
 from capar.regeneration.errors import PlanError
 from capar.regeneration.hand_frames import HandFrame, hand_frame
+from capar.regeneration.holding import (
+    GRASP_M,
+    GRASP_RAD,
+    holds_of,
+    meetings_of,
+    wandering,
+    wanderings,
+)
+from capar.regeneration.holding import Hold as Hold
+from capar.regeneration.holding import Meeting as Meeting
+from capar.regeneration.launches import Launch, launches_of, with_blows
+from capar.regeneration.poises import Poise as Poise
+from capar.regeneration.poises import poises_of
 from capar.regeneration.scenes import Scene
 
 START_FRAMES = 10
 """Frames from which it is taken where everything is at the beginning [1]."""
 
-SETTLED_M = 0.0025
-"""While two bodies' relative pose is so near its median, they are rigidly together [m]."""
+WALKS_M = 0.8
+"""A head that goes further aside is carried there by steps [m]."""
 
-SETTLED_RAD = float(np.radians(2.0))
-"""Likewise the angle [rad]."""
+STANDS_M = 0.5
+"""While a head stays within this, its bearer is taken to stand [m]."""
 
-LOOSER = (1.0, 2.0)
-"""Multiples of both that are tried: noisy sensors keep less still [1]."""
-
-SETTLED_SHARE = 0.8
-"""Noise may take so small a share of the frames in between out of that [1]."""
+LAUNCH_FRAMES = 3
+"""A thing may be seen to move so long before the frame of the blow: filters blur it [1]."""
 
 MOVES_M, MOVES_RAD = 0.02, float(np.radians(10.0))
 """A thing that never goes or turns further does not move [m, rad]."""
@@ -48,39 +58,6 @@ class HandTrack:
     frame: HandFrame
     path: RigidTransform
     """``T_world_frame`` at every frame."""
-
-
-@dataclass(frozen=True)
-class Hold:
-    """A hand and a thing that are rigidly together."""
-
-    side: str
-    thing: str
-    first: int
-    last: int
-
-
-@dataclass(frozen=True)
-class Meeting:
-    """A held thing that is rigidly together with the performer's head."""
-
-    thing: str
-    part: str
-    first: int
-    last: int
-
-
-@dataclass(frozen=True)
-class Poise:
-    """A held thing that leans over above or in another one that can be moved."""
-
-    thing: str
-    other: str
-    lowest: int
-    """The frame in the middle of its leaning over."""
-
-    frames: tuple[int, ...]
-    """Borders of the hand's steps meanwhile."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +85,9 @@ class Source:
     meetings: tuple[Meeting, ...]
     poises: tuple[Poise, ...]
     notes: tuple[str, ...]
+    launches: tuple[Launch, ...] = ()
+    """Things that a hand set going, after which they moved on alone."""
+
     pace: float = 1.0
     """How many times as long everything takes as it did [1]."""
 
@@ -122,15 +102,29 @@ class Source:
         return self.capture.rate_hz / self.pace
 
 
-def source_of(capture: Capture, observation: Observation) -> Source:
+def source_of(
+    capture: Capture,
+    observation: Observation,
+    *,
+    stance: tuple[tuple[float, float], float] | None = None,
+    floor_m: float = 0.0,
+    notes: tuple[str, ...] = (),
+) -> Source:
     """What a capture and its observation say of the performance.
+
+    Args:
+        capture: What was recorded.
+        observation: What was done in it.
+        stance: Where the performer stands [m] and faces [rad]; by the head, unless stated.
+        floor_m: Height of the floor [m].
+        notes: What is to be told of it.
 
     Raises:
         PlanError: It is not known where the performer stands, or a hand or thing has no shape.
     """
     human = Human.of(measures_of(capture.agent))
     eyes = _eyes(capture)
-    place, heading = _stance(human, eyes)
+    place, heading = stance or _stance(human, eyes)
     tracks = {name: _path(body.stream) for name, body in capture.bodies.items()}
     objects = [each for each in capture.objects if each.tag is not TagType.SELF]
     things, paths = {}, {}
@@ -143,15 +137,28 @@ def source_of(capture: Capture, observation: Observation) -> Source:
         if sensor.end_effector == "hand" and sensor.side in {"right", "left"}:
             near = _touched(sensor, touching, paths, things)
             hands[sensor.side] = _hand(sensor, tracks[sensor.name], shoulder, near)
-    notes = ["the point of contact on each hand is measured on the capture's meshes"]
-    holds = _holds(hands, paths, touching)
-    meetings = _meetings(capture, eyes, paths, touching)
-    poises = _poises(observation, hands, things, holds)
+    told = [*notes, "the point of contact on each hand is measured on the capture's meshes"]
+    tracks_of_hands = {side: (hand.sensor, hand.path) for side, hand in hands.items()}
+    holds = holds_of(tracks_of_hands, paths, touching)
+    sides = {hand.sensor: side for side, hand in hands.items()}
+    launches = launches_of(observation.forces, sides, holds, capture.times)
+    holds = with_blows(holds, launches)
+    told += wanderings(tracks_of_hands, paths, holds)
+    meetings = meetings_of(capture, eyes, paths, touching)
+    entered = _entered(capture, holds, hands, touching)
+    told += [
+        f"hands and forearms may enter {name!r}, whose size is assumed, as the recorded hand does"
+        for name in sorted(entered)
+    ]
+    sensors = {side: hand.sensor for side, hand in hands.items()}
+    poises = poises_of(observation, sensors, things, holds)
+    scene = Scene(things, place, heading, floor_m, entered=entered)
     made = Source(
-        capture, observation, human, Scene(things, place, heading),
-        hands, paths, eyes, holds, meetings, poises, tuple(notes),
+        capture, observation, human, scene,
+        hands, paths, eyes, holds, meetings, poises, tuple(told), launches,
     )  # fmt: skip
-    _check_movers(made)
+    _check_stands(made)
+    _check_movers(made, touching)
     return made
 
 
@@ -274,99 +281,88 @@ def _hand(
     return HandTrack(sensor.name, sensor.side, own, path * own.pose)
 
 
-def _holds(
-    hands: Mapping[str, HandTrack], paths: Mapping[str, RigidTransform], touching: list[Touching]
-) -> tuple[Hold, ...]:
-    out = []
-    for side, hand in hands.items():
-        for each in touching:
-            if each.body == hand.sensor and each.other in paths:
-                part = slice(each.first, each.last + 1)
-                span = _settled(paths[each.other][part].inv() * hand.path[part])
-                if span:
-                    out.append(Hold(side, each.other, each.first + span[0], each.first + span[1]))
-    return tuple(sorted(out, key=lambda hold: (hold.first, hold.side)))
-
-
-def _meetings(
+def _entered(
     capture: Capture,
-    eyes: RigidTransform,
-    paths: Mapping[str, RigidTransform],
-    touching: list[Touching],
-) -> tuple[Meeting, ...]:
-    own = {each.name for each in capture.objects if each.tag is TagType.SELF}
-    out = []
-    for each in touching:
-        for thing, part in ((each.body, each.other), (each.other, each.body)):
-            if thing in paths and part in own:
-                span = slice(each.first, each.last + 1)
-                found = _settled(eyes[span].inv() * paths[thing][span])
-                if found:
-                    first, last = (each.first + edge for edge in found)
-                    out.append(Meeting(thing, part, first, last))
-    return tuple(sorted(out, key=lambda meeting: meeting.first))
-
-
-def _poises(
-    observation: Observation,
-    hands: Mapping[str, HandTrack],
-    things: Mapping[str, Thing],
     holds: tuple[Hold, ...],
-) -> tuple[Poise, ...]:
-    leans = [fact for fact in observation.facts if isinstance(fact, Leans)]
-    out = []
-    for fact in observation.facts:
-        if not isinstance(fact, Lies) or fact.how not in {"above", "inside"}:
-            continue
-        tilts = [
-            lean
-            for lean in leans
-            if lean.object == fact.body and fact.first <= lean.first and lean.last <= fact.last
-        ]
-        held = [
-            hold
-            for hold in holds
-            if hold.thing == fact.body
-            and any(hold.first <= tilt.first and tilt.last <= hold.last for tilt in tilts)
-        ]
-        if held and fact.other in things and things[fact.other].tag is TagType.MOBILE:
-            first = max(fact.first, min(hold.first for hold in held))
-            last = min(fact.last, max(hold.last for hold in held))
-            sensors = {hands[hold.side].sensor for hold in held}
-            ends = {part.last for part in observation.segments if part.ee in sensors}
-            frames = tuple(sorted(frame for frame in ends if first <= frame <= last))
-            lowest = (tilts[0].first + tilts[0].last) // 2
-            if frames:
-                out.append(Poise(fact.body, fact.other, lowest, frames))
-    return tuple(sorted(out, key=lambda poise: poise.frames))
+    hands: Mapping[str, HandTrack],
+    touching: list[Touching],
+) -> frozenset[str]:
+    """Assumed things that a hand touched while it held another: they cannot be as assumed."""
+    assumed = {each.name for each in capture.objects if each.assumed}
+    return frozenset(
+        contact.other
+        for hold in holds
+        for contact in touching
+        if contact.body == hands[hold.side].sensor
+        and contact.other in assumed - {hold.thing}
+        and contact.first <= hold.last
+        and hold.first <= contact.last
+    )
 
 
-def _settled(relative: RigidTransform) -> tuple[int, int] | None:
-    """First and last of the frames in which a relative pose is near its median, if most are."""
-    spots = relative.translation
-    off = np.linalg.norm(spots - np.median(spots, axis=0), axis=1)
-    near = off <= np.median(off)
-    turned = (relative.rotation * relative.rotation[near].mean().inv()).magnitude()
-    for factor in LOOSER:
-        steady = (off < factor * SETTLED_M) & (turned < factor * SETTLED_RAD)
-        frames = np.flatnonzero(steady)
-        if len(frames) > 1 and steady[frames[0] : frames[-1] + 1].mean() >= SETTLED_SHARE:
-            return int(frames[0]), int(frames[-1])
-    return None
+def _check_stands(source: Source) -> None:
+    """Nobody walks: what reaches further than a bent body is a step."""
+    spots = source.eyes.translation[:, :2]
+    apart = np.linalg.norm(spots - spots[0], axis=1)
+    if apart.max() <= WALKS_M:
+        return
+    first, last = _longest_stand(spots)
+    raise PlanError(
+        f"the performer walks: the head is {apart.max():.2f} m aside at "
+        f"{source.times[int(apart.argmax())]:.2f} s, and feet keep their place when an action is "
+        f"performed again; it stays within {STANDS_M:g} m from {source.times[first]:.2f} to "
+        f"{source.times[last]:.2f} s: state from_s and to_s of such a part with --assume FILE"
+    )
 
 
-def _check_movers(source: Source) -> None:
-    """Whatever moves does so in a hand."""
+def _longest_stand(spots: Float[np.ndarray, "frames 2"]) -> tuple[int, int]:
+    """First and last frame of the longest stretch whose places are all near each other."""
+    best, first = (0, 0), 0
+    for last in range(len(spots)):
+        while np.linalg.norm(spots[first : last + 1] - spots[last], axis=1).max() > STANDS_M:
+            first += 1
+        best = max(best, (first, last), key=lambda span: span[1] - span[0])
+    return best
+
+
+def _check_movers(source: Source, touching: list[Touching]) -> None:
+    """Whatever moves does so in a hand, or on its own after a hand set it going."""
     for name, path in source.paths.items():
         held = np.zeros(len(source.times), dtype=bool)
         for hold in source.holds:
             if hold.thing == name:
                 held[hold.first : hold.last + 1] = True
+        for launch in source.launches:
+            if launch.thing == name:
+                held[max(launch.frame - LAUNCH_FRAMES, 0) :] = True
         moved = np.linalg.norm(path.translation - path.translation[0], axis=1)
         for first, last in runs(~held):
-            if float(np.ptp(moved[first : last + 1])) > MOVES_M:
+            far_m = float(np.ptp(moved[first : last + 1]))
+            if far_m > MOVES_M:
+                span = f"from {source.times[first]:.2f} to {source.times[last]:.2f} s"
                 raise PlanError(
-                    f"{name!r} moves by {np.ptp(moved[first : last + 1]) * 1000:.0f} mm from "
-                    f"{source.times[first]:.2f} to {source.times[last]:.2f} s without a steady "
-                    "contact with a hand; throwing, hitting and pushing are not regenerated"
+                    f"{name!r} moves by {1e3 * far_m:.0f} mm {span} "
+                    + _why(source, name, (first, last), touching)
                 )
+
+
+def _why(source: Source, name: str, span: tuple[int, int], touching: list[Touching]) -> str:
+    """Why a stretch in which a thing moves has no hold."""
+    for side, hand in source.hands.items():
+        for contact in touching:
+            meets = contact.first <= span[1] and span[0] <= contact.last
+            if contact.body == hand.sensor and contact.other == name and meets:
+                part = slice(contact.first, contact.last + 1)
+                off_m, off_rad = wandering(source.paths[name][part], hand.path[part])
+                if off_m > GRASP_M or off_rad > GRASP_RAD:
+                    return (
+                        f"while the {side} hand touches it, whose grasp gives way by "
+                        f"{1e3 * off_m:.0f} mm and {np.degrees(off_rad):.0f} degrees, more than "
+                        f"{1e3 * GRASP_M:.0f} mm and {np.degrees(GRASP_RAD):.0f} degrees; new "
+                        "grips and things that turn in the hand are not regenerated. A part of "
+                        "the recording with one grip would do: from_s and to_s with --assume FILE"
+                    )
+    return (
+        "without a steady contact with a hand, and no hand was seen to set it going; what moves "
+        "for another reason is not regenerated"
+    )

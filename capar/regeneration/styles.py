@@ -8,6 +8,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation, Slerp
 
 from capar.regeneration.errors import PlanError
+from capar.regeneration.forces.force_kinds import ForceKind
 from capar.regeneration.sources import Hold, Meeting, Source
 from capar.regeneration.style_kinds import Kind
 
@@ -28,6 +29,9 @@ class Style:
 
     name: str = ""
     """Of whom it is borrowed; empty for the recorded performer's own."""
+
+    force: ForceKind = ForceKind.SIMILAR
+    """What of a force that sets things going is kept."""
 
 
 def own_style(source: Source, kind: Kind = Kind.PATH) -> Style:
@@ -69,7 +73,7 @@ def paced(source: Source, duration_s: float) -> Source:
     pace = duration_s / float(source.times[-1] - source.times[0])
     for span in _spans(source):
         held_s = float(source.times[span.last] - source.times[span.first])
-        if held_s * pace < SHORTEST_S:
+        if 0.0 < held_s * pace < SHORTEST_S:  # a blow lasts no time
             least = SHORTEST_S * duration_s / (held_s * pace)
             raise PlanError(
                 f"in {duration_s:g} s the contact with {span.thing!r} would last "

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
+from capar.model.forces import ForceStyle
 from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import ComplexPar, FeatureSet, Step
 from capar.model.segment_address import SegmentAddress
@@ -85,6 +86,28 @@ def joint_lines(observation: Observation) -> tuple[str, ...]:
         f"{each.start_s:.2f}-{each.end_s:.2f} s"
         for each in observation.joint
     )
+
+
+def force_lines(observation: Observation) -> tuple[str, ...]:
+    """What set things going that then moved on alone, a line for each (thesis 3.4.3)."""
+    return tuple(_force_line(force, observation.profile) for force in observation.forces)
+
+
+def _force_line(force: ForceStyle, profile: str) -> str:
+    pace = sum(part**2 for part in force.velocity_mps) ** 0.5
+    did = "strikes" if force.struck else "lets go of"
+    words = [f"{force.ee} {did} {force.object} at {force.start_s:.2f} s, which goes {pace:.2f} m/s"]
+    if force.restitution is not None:
+        words.append(f"restitution {force.restitution:.2f}")
+    if force.damping_per_s is not None:
+        words.append("damping {:.2f} and {:.2f} /s along x and y".format(*force.damping_per_s))
+    if profile == "thesis" and force.thesis_damping is not None:
+        words.append("by eq. 3.9 {:.2f} and {:.2f} /s^2".format(*force.thesis_damping))
+    if force.bounce is not None:
+        words.append(f"bounces with {force.bounce:.2f}")
+    if force.impulse_ns is not None:
+        words.append("impulse ({:.2f}, {:.2f}, {:.2f}) N s".format(*force.impulse_ns))
+    return ", ".join(words)
 
 
 def aligned(

@@ -18,6 +18,7 @@ from capar.model.par import (
 )
 from capar.views.tables import (
     aligned,
+    force_lines,
     joint_lines,
     segment_rows,
     segments_table,
@@ -28,6 +29,7 @@ from capar.views.tables import (
 __all__ = [
     "call",
     "condition",
+    "force_lines",
     "joint_lines",
     "observation_text",
     "par_text",
@@ -101,10 +103,11 @@ def _complex(par: ComplexPar) -> str:
 
 
 def observation_text(observation: Observation) -> str:
-    """The segments, joint actions, the complex PAR and every UPAR and IPAR of an observation."""
+    """The segments, joint actions, forces, complex PAR, UPARs and IPARs of an observation."""
     parts = [
         "\n".join(aligned(segment_rows(observation), right={1, 2})) + "\n",
-        *filter(None, ["".join(f"{each}\n" for each in joint_lines(observation))]),
+        *filter(None, ["".join(f"{line}\n" for line in joint_lines(observation))]),
+        *filter(None, ["".join(f"{line}\n" for line in force_lines(observation))]),
         par_text(observation.complex_par),
         *map(par_text, observation.upars),
         *map(par_text, observation.ipars),

@@ -13,6 +13,7 @@ from ontology.vocabularies import PREFIXES, PROV, XSD
 
 if TYPE_CHECKING:
     from capar.model.capture import Agent
+    from capar.model.forces import ForceStyle
     from capar.model.observation import Observation, ObservedObject
 
 TAGS = {"self": CAPAR.Self, "fixed": CAPAR.Fixed, "mobile": CAPAR.Mobile}
@@ -21,6 +22,9 @@ USED = NamedNode(PROV + "used")
 DERIVED = NamedNode(PROV + "wasDerivedFrom")
 GENERATED = NamedNode(PROV + "wasGeneratedBy")
 ASSOCIATED = NamedNode(PROV + "wasAssociatedWith")
+THESIS = "thesis"
+"""The profile by whose rules damping is the thesis's."""
+
 UNNAMED = "agent"
 """The name of an agent that nobody named."""
 
@@ -132,10 +136,38 @@ def performer(out: Statements, agent: "Agent", who: NamedNode, *, number: int = 
 
 def objects(out: Statements, observation: "Observation") -> dict[str, NamedNode]:
     """Every tag object by name."""
-    return {thing.name: _object(out, thing) for thing in observation.objects}
+    states = {
+        thing.name: [
+            _state(out, names.part(out.about, "object", thing.name), number, force, observation)
+            for number, force in enumerate(observation.forces)
+            if force.object == thing.name
+        ]
+        for thing in observation.objects
+    }
+    return {thing.name: _object(out, thing, states[thing.name]) for thing in observation.objects}
 
 
-def _object(out: Statements, seen: "ObservedObject") -> NamedNode:
+def _state(
+    out: Statements, of: NamedNode, number: int, force: "ForceStyle", observation: "Observation"
+) -> NamedNode:
+    """The state in which a thing began to move on alone (thesis Fig 4.13)."""
+    own = force.damping_per_s
+    damping = force.thesis_damping if observation.profile == THESIS else own
+    restitution = force.bounce if force.restitution is None else force.restitution
+    return out.add(
+        names.part(of, "state", number),
+        (CAPAR.StateSpace,),
+        {
+            CAPAR.position: literals.vector(force.position_m),
+            CAPAR.velocity: literals.vector(force.velocity_mps),
+            # The damping along z is taken for zero (thesis 3.4.3.4).
+            CAPAR.dampingForce: literals.vector((*damping, 0.0)) if damping else None,
+            CAPAR.restitution: restitution,
+        },
+    )
+
+
+def _object(out: Statements, seen: "ObservedObject", states: list[NamedNode]) -> NamedNode:
     node = names.part(out.about, "object", seen.name)
     site = out.add(
         names.part(node, "site"),
@@ -154,6 +186,7 @@ def _object(out: Statements, seen: "ObservedObject") -> NamedNode:
         CAPAR.shape: seen.shape,
         CAPAR.assumedFrom: seen.assumed,
         CAPAR.coordinateSystem: site,
+        CAPAR.state: states,
     }
     return out.add(node, (CAPAR.TagObject,), properties)
 

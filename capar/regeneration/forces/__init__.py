@@ -1,0 +1,1 @@
+"""Things that another body sets going: the force it gives them, and how they move on alone."""

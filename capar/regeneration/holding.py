@@ -1,0 +1,187 @@
+"""When hands and things, and things and the head, are rigidly together."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.spatial.transform import RigidTransform
+
+from capar.model.capture import Capture, TagType
+from capar.model.facts import Touching
+from capar.model.geometry import runs
+
+SETTLED_M = 0.0025
+"""While two bodies' relative pose is so near its median, they are rigidly together [m]."""
+
+SETTLED_RAD = float(np.radians(2.0))
+"""Likewise the angle [rad]."""
+
+LOOSER = (1.0, 2.0)
+"""Multiples of both that are tried: noisy sensors keep less still [1]."""
+
+SETTLED_SHARE = 0.8
+"""Noise may take so small a share of the frames in between out of that [1]."""
+
+GRASP_M = 0.025
+"""How far a living hand may wander on what it carries: skin, fingers and wrist give way [m]."""
+
+GRASP_RAD = float(np.radians(20.0))
+"""Likewise the angle [rad]."""
+
+CARRIED_M = 0.02
+"""A thing that is so far from where a contact begins and from where it ends is under way [m]."""
+
+
+@dataclass(frozen=True)
+class Hold:
+    """A hand and a thing that are rigidly together."""
+
+    side: str
+    thing: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """A held thing that is rigidly together with the performer's head."""
+
+    thing: str
+    part: str
+    first: int
+    last: int
+
+
+Hands = Mapping[str, tuple[str, RigidTransform]]
+"""By side: the sensor's name, and ``T_world_hand`` at every frame."""
+
+
+def holds_of(
+    hands: Hands, paths: Mapping[str, RigidTransform], touching: list[Touching]
+) -> tuple[Hold, ...]:
+    """The part of each contact in which hand and thing are together, in order of time.
+
+    Rigidly where that is so; else, where the hand carries the thing, within what a living hand's
+    grasp gives way.
+
+    Args:
+        hands: The hands.
+        paths: ``T_world_thing`` by name at every frame.
+        touching: The contacts that were observed.
+    """
+    out = []
+    for side, (sensor, hand) in hands.items():
+        for contact in touching:
+            if contact.body == sensor and contact.other in paths:
+                part = slice(contact.first, contact.last + 1)
+                thing = paths[contact.other][part]
+                span = _together(thing, hand[part])
+                if span:
+                    first, last = (contact.first + edge for edge in span)
+                    out.append(Hold(side, contact.other, first, last))
+    return tuple(sorted(out, key=lambda hold: (hold.first, hold.side)))
+
+
+def wanderings(
+    hands: Hands, paths: Mapping[str, RigidTransform], holds: tuple[Hold, ...]
+) -> list[str]:
+    """What is told of holds that are not rigid: performed again, they are."""
+    out = []
+    for hold in holds:
+        part = slice(hold.first, hold.last + 1)
+        off, turned = _apart(paths[hold.thing][part].inv() * hands[hold.side][1][part])
+        if off.max() > LOOSER[-1] * SETTLED_M or turned.max() > LOOSER[-1] * SETTLED_RAD:
+            out.append(
+                f"the recorded {hold.side} hand wanders by up to {1e3 * off.max():.0f} mm and "
+                f"{np.degrees(turned.max()):.0f} degrees on {hold.thing!r} while it holds it; "
+                "performed, it stays where it was in the median"
+            )
+    return out
+
+
+def meetings_of(
+    capture: Capture,
+    eyes: RigidTransform,
+    paths: Mapping[str, RigidTransform],
+    touching: list[Touching],
+) -> tuple[Meeting, ...]:
+    """When things are rigidly together with the head, in order of time."""
+    own = {thing.name for thing in capture.objects if thing.tag is TagType.SELF}
+    out = []
+    for contact in touching:
+        for thing, part in ((contact.body, contact.other), (contact.other, contact.body)):
+            if thing in paths and part in own:
+                span = slice(contact.first, contact.last + 1)
+                found = settled(eyes[span].inv() * paths[thing][span])
+                if found:
+                    first, last = (contact.first + edge for edge in found)
+                    out.append(Meeting(thing, part, first, last))
+    return tuple(sorted(out, key=lambda meeting: meeting.first))
+
+
+def settled(relative: RigidTransform) -> tuple[int, int] | None:
+    """First and last of the frames in which a relative pose is near its median, if most are."""
+    off, turned = _apart(relative)
+    for factor in LOOSER:
+        steady = (off < factor * SETTLED_M) & (turned < factor * SETTLED_RAD)
+        frames = np.flatnonzero(steady)
+        if len(frames) > 1 and steady[frames[0] : frames[-1] + 1].mean() >= SETTLED_SHARE:
+            return int(frames[0]), int(frames[-1])
+    return None
+
+
+def _together(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | None:
+    """When a hand and a thing that touch are together: rigidly, or while it is carried."""
+    rigid = settled(thing.inv() * hand)
+    under_way = np.flatnonzero(_under_way(thing))
+    if rigid and (not len(under_way) or (rigid[0] <= under_way[0] and under_way[-1] <= rigid[1])):
+        return rigid
+    return _carried(thing, hand) or rigid
+
+
+def _carried(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | None:
+    """When a hand grasps a thing that it carries; None if it carries it at no time.
+
+    The grasp is compared with its median while the thing is under way, and lasts as long as it
+    stays near that; it has to do so all the way.
+    """
+    under_way = np.flatnonzero(_under_way(thing))
+    if len(under_way) < 2:
+        return None
+    first, last = int(under_way[0]), int(under_way[-1])
+    relative = thing.inv() * hand
+    off, turned = _apart(relative, relative[first : last + 1])
+    grasped = (off < GRASP_M) & (turned < GRASP_RAD)
+    for begin, end in runs(grasped):
+        if begin <= first and last <= end:
+            return int(begin), int(end)
+    return None
+
+
+def wandering(thing: RigidTransform, hand: RigidTransform) -> tuple[float, float]:
+    """How far a hand wanders on a thing while that is under way, at worst [m, rad]."""
+    under_way = np.flatnonzero(_under_way(thing))
+    if len(under_way) < 2:
+        return 0.0, 0.0
+    part = slice(int(under_way[0]), int(under_way[-1]) + 1)
+    off, turned = _apart(thing[part].inv() * hand[part])
+    return float(off.max()), float(turned.max())
+
+
+def _under_way(thing: RigidTransform) -> Bool[np.ndarray, "frames"]:
+    spots = thing.translation
+    gone, left = (np.linalg.norm(spots - end, axis=1) for end in (spots[0], spots[-1]))
+    return np.asarray((gone > CARRIED_M) & (left > CARRIED_M))
+
+
+def _apart(
+    relative: RigidTransform, usual: RigidTransform | None = None
+) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
+    """How far a relative pose is from the median of some frames [m, rad]; of all, unless stated."""
+    usual = relative if usual is None else usual
+    middle = np.median(usual.translation, axis=0)
+    near = np.linalg.norm(usual.translation - middle, axis=1)
+    turn = usual.rotation[near <= np.median(near)].mean()
+    off = np.linalg.norm(relative.translation - middle, axis=1)
+    return off, np.asarray((relative.rotation * turn.inv()).magnitude())

@@ -1,0 +1,160 @@
+"""Things that a hand sets going are set going by other bodies, as hard or as far."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from virtual_bodies.striking import STRIKE_MPS, let_go, struck
+
+from capar.model.capture import Capture, Sensor
+from capar.pipelines.observation import observe
+from capar.pipelines.round_trips import body, observed_source, round_trips
+from capar.regeneration import Motion, PlanError, Quality, Source, regenerate
+from capar.regeneration.forces.flights import arm_mass
+from capar.regeneration.forces.force_kinds import ForceKind
+from capar.regeneration.scenes import raised, resized
+from capar.regeneration.styles import own_style
+from capar.views.tables import force_lines
+from extractors.forces.free_motion import GRAVITY_MPS2
+
+pytestmark = pytest.mark.long
+
+
+@cache
+def _source(name: str = "strike") -> Source:
+    return observed_source(struck() if name == "strike" else let_go(name))
+
+
+@cache
+def _done(agent: str, kind: ForceKind) -> tuple[Motion, Quality]:
+    source = _source()
+    style = replace(own_style(source), force=kind)
+    return regenerate(source, body(agent, source), None, style)
+
+
+def _alone(motion: Motion) -> np.ndarray:
+    """The crate's places from the blow on, from where it was [m]."""
+    (launch,) = motion.plan.source.launches
+    spots = motion.plan.things[launch.thing].translation[launch.frame :]
+    return np.asarray(spots - spots[0])
+
+
+def test_restitution_and_damping_of_a_blow_come_back_from_noisy_captures() -> None:
+    for seed in range(4):
+        (force,) = observe(struck(noise_m=0.0015, seed=seed)).forces
+        assert force.struck
+        assert force.restitution is not None
+        assert force.damping_per_s is not None
+        assert abs(force.restitution - 0.5) < 0.05, seed
+        np.testing.assert_allclose(force.damping_per_s, 3.0, atol=0.15)
+        np.testing.assert_allclose(force.velocity_mps, [0.0, STRIKE_MPS, 0.0], atol=0.03)
+
+
+def test_a_push_and_a_toss_are_let_go_and_have_no_restitution_with_the_hand() -> None:
+    (push,) = observe(let_go("slide")).forces
+    assert not push.struck
+    assert push.restitution is None
+    assert push.damping_per_s is not None
+    np.testing.assert_allclose(push.damping_per_s, 3.0, atol=0.1)
+    (toss,) = observe(let_go("carry")).forces
+    assert toss.bounce is not None
+    np.testing.assert_allclose(toss.bounce, 0.3, atol=0.05)
+
+
+def test_the_thesis_profile_tells_its_own_damping_beside_the_sound_one() -> None:
+    sound, thesis = (observe(struck(), rules=name) for name in ("extended", "thesis"))
+    assert "eq. 3.9" not in "".join(force_lines(sound))
+    assert "eq. 3.9" in "".join(force_lines(thesis))
+    assert thesis.forces[0].damping_per_s == sound.forces[0].damping_per_s
+
+
+@pytest.mark.parametrize("agent", ["same", "woman", "child"])
+def test_a_blow_is_the_same_action_on_every_body(agent: str) -> None:
+    (trip,) = round_trips(_source(), (agent,))
+    assert trip.quality is not None
+    assert trip.quality.passed, trip.quality.failed
+    assert trip.same_par
+    assert trip.same_contacts
+
+
+def test_similar_force_sends_the_crate_as_far_as_the_arm_is_heavy() -> None:
+    far = {}
+    source = _source()
+    for agent in ("same", "woman", "child"):
+        motion, _ = _done(agent, ForceKind.SIMILAR)
+        far[agent] = float(np.linalg.norm(_alone(motion)[-1]))
+        assert (np.diff(np.linalg.norm(_alone(motion), axis=1)) > -1e-9).all()
+    recorded = source.paths["crate"].translation
+    np.testing.assert_allclose(far["same"], np.linalg.norm(recorded[-1] - recorded[0]), atol=0.02)
+    masses = [arm_mass(body(agent, source), "right") for agent in ("same", "woman", "child")]
+    assert masses == sorted(masses, reverse=True)
+    assert far["same"] > far["woman"] > far["child"]
+
+
+@pytest.mark.parametrize("agent", ["woman", "child"])
+def test_the_same_motion_takes_a_faster_hand(agent: str) -> None:
+    motion, found = _done(agent, ForceKind.SAME)
+    assert found.passed, found.failed
+    recorded = _source().paths["crate"].translation
+    (launch,) = motion.plan.source.launches
+    np.testing.assert_allclose(_alone(motion)[-1], recorded[-1] - recorded[launch.frame], atol=0.01)
+    slower, _ = _done(agent, ForceKind.SIMILAR)
+
+    def pace(made: Motion) -> float:
+        palms = made.plan.human.sites(made.postures, ["right_palm"])["right_palm"][0]
+        steps = np.diff(palms[launch.frame - 3 : launch.frame + 1], axis=0)
+        return float(np.linalg.norm(steps, axis=1).max())
+
+    assert pace(motion) > 1.05 * pace(slower)
+
+
+@pytest.mark.parametrize("agent", ["same", "child"])
+def test_no_energy_comes_from_nowhere_after_the_blow(agent: str) -> None:
+    motion, _ = _done(agent, ForceKind.SIMILAR)
+    source = motion.plan.source
+    spots = _alone(motion)
+    speeds = np.linalg.norm(np.diff(spots, axis=0), axis=1) * source.rate_hz
+    energy = 0.5 * speeds**2 + GRAVITY_MPS2 * 0.5 * (spots[1:, 2] + spots[:-1, 2])
+    assert np.diff(energy).max() < 1e-3
+
+
+def test_from_a_narrower_way_to_the_edge_the_crate_falls_and_stays_on_the_floor() -> None:
+    source = _source()
+    scene = resized(raised(source.scene, "table", 0.05), "crate", 0.8)
+    table, crate = scene.thing("table"), scene.thing("crate")
+    right = replace(table, place=(table.place[0], crate.place[1] - 0.45, table.place[2]))
+    scene = replace(scene, things={**scene.things, "table": right})
+    motion, _ = regenerate(source, source.human, scene)
+    low = motion.plan.things["crate"].translation[-1][2] + crate.shape.bounds[0, 2]
+    assert abs(low) < 0.01
+    assert any("falls" in note for note in motion.plan.notes)
+
+
+@pytest.mark.parametrize("action", ["slide", "carry"])
+def test_a_push_and_a_toss_are_the_same_action_on_a_child(action: str) -> None:
+    (trip,) = round_trips(_source(action), ("child",))
+    assert trip.quality is not None
+    assert trip.quality.passed, trip.quality.failed
+    assert trip.same_par
+
+
+def _with_a_foot(capture: Capture) -> Capture:
+    """The same done by something that is called a foot."""
+    sensors = [s for s in capture.sensors if s.name != "right_hand"]
+    hand = capture.sensor("right_hand")
+    foot = Sensor("right_foot", "foot", "right", "right_leg", hand.stream, hand.shape)
+    return replace(capture, sensors=(*sensors, foot))
+
+
+def test_a_kick_is_refused_since_feet_keep_their_place() -> None:
+    with pytest.raises(PlanError, match=r"'right_foot' sets 'crate' going.*feet keep their place"):
+        observed_source(_with_a_foot(struck()))
+
+
+def test_a_thing_too_heavy_for_the_arm_is_not_struck_as_far() -> None:
+    source = _source()
+    style = replace(own_style(source), force=ForceKind.SAME)
+    scene = resized(source.scene, "crate", 1.4)
+    with pytest.raises(PlanError, match=r"would have to strike with .* --force similar would do"):
+        regenerate(source, body("child", source), scene, style)
