@@ -18,10 +18,14 @@ from extractors.readers.body_names.body_names import BY_WORDS, BodyName, body_na
 from extractors.readers.body_names.conventions import (
     ConventionError,
     conventions,
+    coverage,
     recognise,
 )
 from extractors.readers.bundle.capture_toml import files_of
 from extractors.readers.drafting.sides import sided
+
+LEAST_JOINTS = 0.6
+"""Bodies are the joints of a skeleton if a convention has so many of its places among them [1]."""
 
 FLOOR_M, THICK_M = 1.5, 0.3
 """A fixed thing that is as wide as this both ways, and no thicker, is a floor [m]."""
@@ -64,10 +68,15 @@ def whole_body(place: str | Path) -> Places | None:
 def _places_it(names: dict[str, BodyName], markers: set[str]) -> bool:
     """Whether enough names are of a body's markers, or of its joints by a convention.
 
-    Words alone do not tell joints from trackers that are strapped on.
+    Trackers that are strapped on are called by words that are in conventions too, such as
+    ``right_hand`` and ``right_knee``; but by few of each.
     """
-    known = {e.place for name, e in names.items() if name in markers or e.by != BY_WORDS}
-    return len(known) >= LEAST_EXACT
+    known = {each.place for name, each in names.items() if name in markers}
+    if len(known) >= LEAST_EXACT:
+        return True
+    joints = {each.place for name, each in names.items() if each.by != BY_WORDS}
+    shares = coverage(name for name in names if name not in markers)
+    return len(known | joints) >= LEAST_EXACT and max(shares.values()) >= LEAST_JOINTS
 
 
 def fit_body(place: str | Path, capture: Capture) -> Fit:

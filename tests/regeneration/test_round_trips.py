@@ -26,8 +26,14 @@ TRIPS = (
     ("push", "man", 1),
     ("push", "child", 2),
     ("pour", "man", 2),
-    ("pour", "child", 3),
-)
+    ("pour", "child", 5),
+    pytest.param(
+        "pour", "child", 3,
+        marks=pytest.mark.xfail(
+            strict=True, reason="the bowl is so near that the carry of 11 cm is no step of its own"
+        ),
+    ),
+)  # fmt: skip
 """Action, agent, and number of the scene; 0 is the recorded one."""
 
 

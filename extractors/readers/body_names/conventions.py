@@ -120,6 +120,15 @@ def convention(name: str) -> Convention:
     return conventions()[name]
 
 
+def coverage(names: Iterable[str]) -> dict[str, float]:
+    """By convention, the share of its places that some names are of [1]."""
+    known = list(names)
+    return {
+        each.name: len(set(each.named(known).values())) / len(set(each.points.values()))
+        for each in conventions().values()
+    }
+
+
 def recognise(names: Iterable[str]) -> Convention:
     """The convention that a recording's names are of: the one of which it has most places.
 
@@ -127,10 +136,7 @@ def recognise(names: Iterable[str]) -> Convention:
         ConventionError: It has too few of any.
     """
     known = list(names)
-    shares = {
-        each.name: len(set(each.named(known).values())) / len(set(each.points.values()))
-        for each in conventions().values()
-    }
+    shares = coverage(known)
     size = {name: len(convention(name).named(known)) for name in shares}
     fits = [name for name, share in shares.items() if share >= LEAST_SHARE]
     if not fits:
