@@ -27,8 +27,8 @@ def record(
     The recording is kept: after a crash or a kill the bundle is made from it.
     """
     from capar.model.errors import FileError
+    from extractors.devices.bundle_writer import write_bundle
     from extractors.devices.recording import read_live_recording
-    from extractors.devices.recording_bundle import write_bundle
 
     live = Path(source)
     if output.exists():

@@ -112,7 +112,7 @@ def regenerate(
         check_new_folder(output)
     kind, kept = style_kind(style), force_kind(force)
     if say is not None:
-        from capar.cli._requests import Where, perform_request
+        from capar.cli._spoken_requests import Where, perform_request
 
         if style_of:
             raise CaparError("--style-of is of one capture; leave it out, or --say")

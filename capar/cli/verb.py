@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from kb.lexicon.evidence import Seen
     from kb.lexicon.fitting import Fit
-    from kb.lexicon.verbs import VerbAnswer
+    from kb.lexicon.verb_report import VerbAnswer
     from kb.store.stores import Store
 
 app = typer.Typer()
@@ -54,8 +54,8 @@ def verb(
             base = rule_base("extended", rules, place)
             _print_fits(verbs_for(segment, words, store=store, rules=base)[:most], json=json)
         elif kinds:
-            from kb.lexicon.verbs import keys_of_primitives
-            from kb.lexicon.verbs import kinds as kinds_of
+            from kb.lexicon.verb_report import keys_of_primitives
+            from kb.lexicon.verb_report import kinds as kinds_of
 
             names = kinds_of(lemma, keys_of_primitives(words))
             _print_kinds(lemma, names, store, json=json)

@@ -13,7 +13,7 @@ from kb.lexicon.evidence import Case, Seen, seen_in
 from kb.lexicon.facts import lexical_facts, verbnet_members
 from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.loading import every_verbnet_member, verbnet_of
-from kb.lexicon.verbs import Standing, VerbAnswer, about, keys_of_primitives
+from kb.lexicon.verb_report import Standing, VerbAnswer, about, keys_of_primitives
 from kb.reports.assembling import Derived, assemble
 from kb.reports.linguistics import LinguisticReport
 

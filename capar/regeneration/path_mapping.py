@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.regeneration.coordinate_systems import CoordinateError, frame_between, replayed
+from capar.regeneration.replayed_reaches import CoordinateError, frame_between, replayed
 from capar.regeneration.style_kinds import Kind
 
 SHORT_M = 0.05

@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 from capar.model.capture import Role, TagType, recorded_at
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from extractors.devices.addresses import parse_address
+from extractors.devices.bundle_writer import Mount, frame_times, write_bundle
 from extractors.devices.flock import FlockTracker
 from extractors.devices.flock_rig import FlockRig
 from extractors.devices.flock_simulator import FlockSimulator
 from extractors.devices.motion_source import CapturedMotion, SmoothMotion
 from extractors.devices.recording import RecordingWriter, read_live_recording
-from extractors.devices.recording_bundle import Mount, frame_times, write_bundle
 from extractors.devices.tracker import Counts, Description, Event, Frame
 from extractors.readers.bundle.capture_toml import read_capture
 
