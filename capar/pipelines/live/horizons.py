@@ -29,7 +29,7 @@ class LiveHorizons:
     watch_s: float = 0.05
     """Between two measurements at least [s], where a thing moves whose first motion is awaited."""
 
-    announce_s: float = 0.4
+    announce_s: float = 0.5
     """After its end a segment is announced [s]: ends that are newer still move, as most of what the
     filter asks for has not been seen."""
 
