@@ -158,7 +158,7 @@ class LiveResult:
         measured = {
             (each.ee, each.index): own.measured for each, own in zip(ordered, details, strict=True)
         }
-        rate_hz = self._rate_mhz / 1000.0
+        rate_hz = 1.0 / float(np.median(np.diff(times)))
         guides = {} if self._rules.crossings_only else self._last.guides
         objects = self._last.bodies.objects
         return Observation(
@@ -168,7 +168,7 @@ class LiveResult:
             version=__version__,
             agent=self._rig.agent,
             duration_s=duration_s,
-            rate_hz=1.0 / float(np.median(np.diff(times))),
+            rate_hz=rate_hz,
             frames=len(times),
             objects=tuple(
                 self._objects.get(each.name) or observed_object(each)
