@@ -5,14 +5,21 @@ every format and mode, one line each; with it one run a driver, all side by side
 Printed are frames, the records sent and accepted, how many were wrong (no record that was sent, in
 order) and lost; the second decoder of the tests says what was sent. The script fails if a record is
 wrong, one is lost on a clean line, or under nine tenths of the undamaged are kept on a bad one.
+
+A pseudo-terminal holds a second of a full line, so a process that stands still for longer loses
+records that no driver could have read. Printed is how long it stood still at most; where other
+programs run, ``chrt -r 10 python benchmarks/devices.py`` keeps them from being the cause. A run
+keeps every record, of which the collector of garbage would go through millions: it is off.
 """
 
 import argparse
+import gc
 import json
 import os
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -40,6 +47,8 @@ from extractors.devices.tracker import Description, Frame, LiveTracker
 from extractors.devices.vrpn_simulator import VrpnSimulator
 
 KEPT = 0.9
+TURN_S = 0.01
+"""How often it is looked whether the process stands still [s]."""
 
 
 @dataclass(frozen=True)
@@ -94,8 +103,24 @@ def long() -> list[Case]:
 
 
 def run(case: Case, seconds: float) -> dict[str, Any]:
-    """The figures of a run."""
-    return RUNS[case.driver](case, seconds)
+    """The figures of a run, with the longest time in which the process stood still."""
+    stalls, ended = [0.0], threading.Event()
+
+    def watch() -> None:
+        while not ended.is_set():
+            before_s = time.monotonic()
+            time.sleep(TURN_S)
+            stalls.append(max(stalls.pop(), time.monotonic() - before_s - TURN_S))
+
+    gc.disable()
+    watching = threading.Thread(target=watch)
+    watching.start()
+    try:
+        found = RUNS[case.driver](case, seconds)
+    finally:
+        ended.set()
+        watching.join()
+    return {**found, "stood_still_s": stalls[0]}
 
 
 def received(tracker: LiveTracker, simulator: Any, case: Case, seconds: float) -> list[Frame]:
@@ -289,7 +314,8 @@ def told(case: Case, found: dict[str, Any], *, good: bool) -> str:
         f"{head} {found['hz']:.1f} of {found['asked_hz']:.1f} Hz, {found['frames']} frames, "
         f"{found['sent']} records sent, {found['intact']} intact, {found['accepted']} taken, "
         f"{found['wrong']} wrong; {found['counted_lost']} told as lost, "
-        f"{found['refused']} refused, reconnected {found['reconnections']}"
+        f"{found['refused']} refused, reconnected {found['reconnections']}; stood still for "
+        f"{found['stood_still_s']:.2f} s at most"
     )
 
 

@@ -2,17 +2,23 @@
 
 Run by hand: ``PYTHONPATH=tests python benchmarks/live_takes.py [TAKE ...]``.
 
-Each take is a simulated recording, played forth and back with other noise each time, observed frame
-by frame with its own calibration. The table shows how many segments are settled, how many of them
-the offline run tells otherwise, how many provisional ones change their name or move a border by
-over 0.1 s until they are settled, and how late segments are settled after their end, by recorded
-time: the processor's own time is in the last column, as seconds of recording per second.
+Each take is observed frame by frame with its own calibration. Simulated recordings are played forth
+and back three times with other noise each time; takes of a cook and of a person who carries things
+are played as they were recorded (they need ``CAPAR_DATA``), the latter with the twelve sensors of
+the thesis: trunk, head, neck, hands, elbows, knees, feet, and the thing.
+
+The table shows how many segments are settled, how many of them the offline run tells otherwise, how
+many provisional ones change their name or move a border by over 0.1 s until they are settled, how
+late segments are settled after their end, by recorded time and with the processor's time for it
+added, whether the final observation is the offline one byte for byte, and seconds of recording per
+second of processor time.
 """
 
 import argparse
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import motions
@@ -20,6 +26,7 @@ import numpy as np
 from windows import repeated
 
 from capar.model.capture import Capture
+from capar.model.json_form import to_json
 from capar.model.observation import Segment
 from capar.pipelines.live.events import SegmentEvent, Status
 from capar.pipelines.live.frames import replayed
@@ -29,7 +36,10 @@ from capar.pipelines.trials import trial_of
 from extractors.calibration import calibrate
 from extractors.measure import measure
 
-DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
+ROOT = Path(__file__).parents[1]
+DEMO = ROOT / "capar" / "demo" / "drink_from_mug"
+COOK = ROOT / "examples" / "bimacs_optitrack"
+CARRIER = ROOT / "examples" / "omomo_intermimic"
 MOVED_S = 0.1
 """A provisional border that moves by more counts [s]."""
 
@@ -40,8 +50,39 @@ CLIPS: dict[str, Clip] = {
     "both_hands": lambda: motions.pick_up_with_both_hands(motions.WOMAN).capture,
     "one_leg": lambda: motions.stand_on_one_leg(motions.WOMAN).capture,
 }
-NOISES_MM = (0.1, 0.2, 0.3, 0.4, 0.5)
-TAKES = {f"{name}_{noise:g}mm": (name, noise) for name in CLIPS for noise in NOISES_MM}
+NOISES_MM = {
+    "drink": (0.1, 0.2, 0.3, 0.4, 0.5),
+    "slide": (0.1, 0.5),
+    "both_hands": (0.1, 0.2, 0.4, 0.5),
+    "one_leg": (0.1, 0.5),
+}
+COOKED = (0, 3, 5, 7)
+CARRIED = ("sub2_largetable_008", "sub2_woodchair_003", "sub3_largebox_003")
+BIRDS = ("pelvis", "head", "neck", "wrist", "elbow", "knee", "ankle")
+"""What the names of the sensors end with that a rig of the thesis has, left and right."""
+
+
+def noisy(name: str, noise_mm: float) -> Capture:
+    """A simulated recording that goes on and on."""
+    return repeated(CLIPS[name](), 3, noise_m=noise_mm / 1000.0)
+
+
+def whole_body(take: str) -> Capture:
+    """A clip of somebody who carries something, by the sensors of the thesis."""
+    clip = trial_of(f"{CARRIER}:{take}")
+    sensors = tuple(each for each in clip.sensors if each.name.endswith(BIRDS))
+    return replace(clip, sensors=sensors)
+
+
+TAKES: dict[str, Clip] = {
+    **{
+        f"{name}_{noise_mm:g}mm": partial(noisy, name, noise_mm)
+        for name, noises_mm in NOISES_MM.items()
+        for noise_mm in noises_mm
+    },
+    **{f"cook_{take}": partial(trial_of, f"{COOK}:take{take}") for take in COOKED},
+    **{take: partial(whole_body, take) for take in CARRIED},
+}
 
 
 @dataclass(frozen=True)
@@ -55,6 +96,12 @@ class Agreement:
     renamed: int
     moved: int
     late_s: tuple[float, ...]
+    done_s: tuple[float, ...]
+    """The same with the processor's time for what settled them."""
+
+    same: bool
+    """Whether the final observation is that of the offline run, byte for byte."""
+
     spent_s: float
 
 
@@ -63,14 +110,22 @@ def agreement(capture: Capture) -> Agreement:
     known = calibrate(capture)
     whole = observe_measured(capture, measure(capture, known))
     offline = {_told(segment) for segment in whole.segments}
-    observer = LiveObserver(capture, known, keep_result=False)
+    observer = LiveObserver(capture, known)
     events: list[SegmentEvent] = []
-    start = time.process_time()
+    late_s: list[float] = []
+    done_s: list[float] = []
+    start_s = time.process_time()
     for frame in replayed(capture):
-        events += observer.push([frame])
-    late_s = tuple(event.late_s for event in events if event.status is Status.SETTLED)
-    events += observer.finish()[0]
-    spent_s = time.process_time() - start
+        begun_s = time.process_time()
+        told = observer.push([frame])
+        own_s = [event.late_s for event in told if event.status is Status.SETTLED]
+        late_s += own_s
+        done_s += [late + time.process_time() - begun_s for late in own_s]
+        events += told
+    at_the_end, result = observer.finish()
+    assert result is not None
+    events += at_the_end
+    spent_s = time.process_time() - start_s
     first: dict[tuple[str, int], Segment] = {}
     last: dict[tuple[str, int], Segment] = {}
     for event in events:
@@ -87,7 +142,9 @@ def agreement(capture: Capture) -> Agreement:
         len(pairs),
         sum(one.name != other.name for one, other in pairs),
         sum(_moves(one, other) for one, other in pairs),
-        late_s,
+        tuple(late_s),
+        tuple(done_s),
+        to_json(result) == to_json(whole),
         spent_s,
     )
 
@@ -101,29 +158,34 @@ def _moves(one: Segment, other: Segment) -> bool:
     return max(ends) > MOVED_S
 
 
+HEADS = ("segments", "differ", "provis.", "renamed", "moved")
+
+
 def _row(name: str, found: list[Agreement]) -> str:
-    late_s = [late for take in found for late in take.late_s]
     recorded_s = sum(take.recorded_s for take in found)
     counts = [
         sum(getattr(take, field) for take in found)
         for field in ("segments", "differ", "provisional", "renamed", "moved")
     ]
+    late_s, done_s = (
+        np.percentile([late for take in found for late in getattr(take, field)], 99)
+        for field in ("late_s", "done_s")
+    )
     factor = recorded_s / sum(take.spent_s for take in found)
-    told = f"{name:18}{recorded_s:9.1f}" + "".join(f"{count:12}" for count in counts)
-    return f"{told}{np.percentile(late_s, 99):12.2f}{factor:8.1f}"
+    told = f"{name:20}{recorded_s:9.1f}" + "".join(f"{count:9}" for count in counts)
+    same = f"{sum(take.same for take in found)}/{len(found)}"
+    return f"{told}{late_s:9.2f}{done_s:9.2f}{same:>8}{factor:8.1f}"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("takes", nargs="*", metavar="TAKE", help=", ".join(TAKES))
     takes = parser.parse_args().takes or list(TAKES)
-    heads = ("segments", "differ", "provisional", "renamed", "moved", "p99 [s]")
-    print(f"{'take':18}{'rec. [s]':>9}" + "".join(f"{head:>12}" for head in heads) + f"{'x RT':>8}")
+    heads = "".join(f"{head:>9}" for head in (*HEADS, "p99 [s]", "+ work"))
+    print(f"{'take':20}{'rec. [s]':>9}{heads}{'same':>8}{'x RT':>8}")
     found = []
     for take in takes:
-        name, noise_mm = TAKES[take]
-        capture = repeated(CLIPS[name](), 3, noise_m=noise_mm / 1000.0)
-        found.append(agreement(capture))
+        found.append(agreement(TAKES[take]()))
         print(_row(take, found[-1:]), flush=True)
     print(_row("all", found))
 

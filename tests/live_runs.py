@@ -21,6 +21,7 @@ from extractors.calibration import calibrate
 from extractors.measure import measure
 
 DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
+EXAMPLES = Path(__file__).parents[1] / "examples"
 
 CAPTURES: dict[str, Callable[[], Capture]] = {
     "demo": lambda: trial_of(DEMO),
@@ -28,6 +29,8 @@ CAPTURES: dict[str, Callable[[], Capture]] = {
     "both hands": lambda: motions.pick_up_with_both_hands(motions.WOMAN).capture,
     "one leg": lambda: motions.stand_on_one_leg(motions.WOMAN).capture,
     "sliding on and on": lambda: repeated(motions.slide_object(motions.WOMAN).capture, 5),
+    "whisk and bottle": lambda: trial_of(f"{EXAMPLES}/bimacs_optitrack:take0"),
+    "box carried": lambda: trial_of(f"{EXAMPLES}/omomo_intermimic/hands.toml:sub3_largebox_003"),
     "drinking on and on": lambda: repeated(trial_of(DEMO), 5),
 }
 

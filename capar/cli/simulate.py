@@ -2,6 +2,7 @@
 
 import json
 import time
+from shlex import quote
 from typing import Annotated
 
 import typer
@@ -47,6 +48,9 @@ def simulate(
     with simulator:
         address = f"{kind}:{simulator.place}?{options}{names}"
         typer.echo(json.dumps({"address": address}) if as_json else address)
+        if not as_json:
+            # The shell would take an address that is not quoted for several commands.
+            typer.echo(f"in another terminal: capar record {quote(address)} FOLDER", err=True)
         _wait(seconds)
 
 

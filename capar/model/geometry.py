@@ -13,6 +13,9 @@ if TYPE_CHECKING:  # it takes half a second to import, and who asks an Actionary
 UNIT_TOLERANCE = 0.01
 """How far a quaternion's norm may lie from one before it is an error [1]."""
 
+ROUNDING = 1e-15
+"""How far from one rounding leaves the norm of a quaternion that was scaled [1]."""
+
 
 def rotations(quaternions: Float[np.ndarray, "*frames 4"]) -> "Rotation":
     """The rotations that unit quaternions (w x y z) stand for."""
@@ -68,7 +71,7 @@ def continuous(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray,
 
 
 def unit(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames 4"]:
-    """The orientations scaled to norm one; NaN frames stay.
+    """The orientations scaled to norm one; NaN frames stay, and so do those that rounding left.
 
     Raises:
         CaptureError: A norm is further from one than ``UNIT_TOLERANCE``.
@@ -80,6 +83,8 @@ def unit(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "fram
             f"quaternion of norm {norms[bad[0]]:.4g} at frame {bad[0]} ({bad.size} in all); "
             "orientations are unit quaternions in the order w x y z"
         )
+    # So that what was scaled once is the same to the last bit when it is scaled again.
+    norms = np.where(np.abs(norms - 1.0) <= ROUNDING, 1.0, norms)
     return np.asarray(orientations / norms[:, None])
 
 

@@ -66,6 +66,9 @@ class FastrakSimulator(Simulator):
     def _remove(self) -> None:
         self._line.remove()
 
+    def _hold_lines(self, held_up_s: float) -> None:
+        self._line.hold(held_up_s)
+
     def _handles(self) -> list[int]:
         return [self._line.master] if self._line.master >= 0 else []
 

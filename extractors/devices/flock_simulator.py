@@ -89,6 +89,10 @@ class FlockSimulator(Simulator):
         for desk in self._desks:
             desk.line.remove()
 
+    def _hold_lines(self, held_up_s: float) -> None:
+        for desk in self._desks:
+            desk.line.hold(held_up_s)
+
     def _handles(self) -> list[int]:
         return [each.line.master for each in self._desks if each.line.master >= 0]
 

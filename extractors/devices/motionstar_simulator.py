@@ -93,6 +93,7 @@ class MotionStarSimulator(Simulator):
             if connection is not None:
                 connection.close()
         self._listening = self._datagrams = self._client = self._peer = None
+        self._sending = False
 
     def _handles(self) -> list[int]:
         every = (self._listening, self._datagrams, self._client)

@@ -128,6 +128,10 @@ class SimulatedLine:
         del self._queue[:written]
         self._sent_until_s += written * self.byte_s
 
+    def hold(self, held_up_s: float) -> None:
+        """Carry nothing for so long [s]."""
+        self._sent_until_s += held_up_s
+
     def forget(self) -> None:
         """Drop what is queued."""
         self._queue.clear()

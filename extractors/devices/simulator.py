@@ -11,6 +11,10 @@ from extractors.devices.motion_source import MotionSource, Poses
 IDLE_S = 0.02
 """Longest wait for anything [s]."""
 
+HELD_UP_S = 0.25
+"""A simulator that did not run for longer was held up by its computer [s]: its clock stood still,
+too. Else it would send at once what a line carries in all that time, and ports overrun by it."""
+
 
 class Simulator(ABC):
     """A simulated tracker in a thread of its own, as a context manager.
@@ -27,7 +31,7 @@ class Simulator(ABC):
         self._motion = motion
         self._rate_hz = rate_hz
         self._cycle = 0
-        self._start_s = self._next_s = time.monotonic()
+        self._start_s = self._next_s = self._ran_s = time.monotonic()
         self._lock = threading.Lock()
         self._running = False
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -41,7 +45,7 @@ class Simulator(ABC):
         """Plug it in, and measure."""
         self._plug()
         self._running = True
-        self._start_s = self._next_s = time.monotonic()
+        self._start_s = self._next_s = self._ran_s = time.monotonic()
         self._thread.start()
 
     def stop(self) -> None:
@@ -79,8 +83,17 @@ class Simulator(ABC):
                 time.sleep(IDLE_S)
                 ready = []
             with self._lock:
+                self._stand_still(time.monotonic())
                 self._attend(set(ready).intersection(self._handles()))
                 self._catch_up()
+
+    def _stand_still(self, now_s: float) -> None:
+        """Put clocks back by the time in which the simulator was held up."""
+        held_up_s, self._ran_s = now_s - self._ran_s, now_s
+        if held_up_s > HELD_UP_S:
+            self._start_s += held_up_s
+            self._next_s += held_up_s
+            self._hold_lines(held_up_s)
 
     def _catch_up(self) -> None:
         """Every measuring cycle that is due."""
@@ -98,6 +111,9 @@ class Simulator(ABC):
 
     def _remove(self) -> None:
         self._unplug()
+
+    def _hold_lines(self, held_up_s: float) -> None:  # noqa: B027  # networks have no speed
+        """Carry nothing for so long [s]."""
 
     @abstractmethod
     def _plug(self) -> None:

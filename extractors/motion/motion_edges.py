@@ -136,7 +136,8 @@ def _nudged(
         return None
     ends = frames[stands[0]], frames[stands[0] + window]
     first, last = int(min(ends)), int(max(ends))
-    return RestPose((first, last), *median_pose(poses.smooth, slice(first, last + 1)))
+    place = median_pose(poses.smooth, slice(first, last + 1))
+    return RestPose((first, last), *place, last + 1 - first)
 
 
 def growth(
@@ -181,7 +182,7 @@ def _onset(
     left = gains(rate_hz, thresholds)[0]
     way, smooth, noise = way_out(poses, partners, frames, seen, stay, near, left)
     # A place is the mean of the middle half of the poses there.
-    place = float(np.median(noise)) / np.sqrt(0.5 * (stay.interval[1] - stay.interval[0] + 1))
+    place = float(np.median(noise)) / np.sqrt(0.5 * stay.frames)
     begin = onset(
         way, smooth, seen, noise=noise, place=place, most=most, rest=rest, rate_hz=rate_hz
     )

@@ -31,6 +31,9 @@ class RestPose:
     orientation: Float[np.ndarray, "4"]
     """Unit quaternion w x y z."""
 
+    frames: int
+    """By how many frames the place is told [1]."""
+
     came: "RestPose | None" = None
     """The same rest at the place where it began; None where the object creeps."""
 
@@ -239,7 +242,7 @@ def slopes(
 def _stay(streams: tuple[Stream, Stream], seed: Interval, floor: Floor, begins: int) -> RestPose:
     stream, recorded = streams
     first, last = seed
-    stay = RestPose(seed, *median_pose(stream, slice(first, last + 1)))
+    stay = RestPose(seed, *median_pose(stream, slice(first, last + 1)), last + 1 - first)
     gone = partial(_gone, stream, stay, floor)
     middle = _middle(~gone(slice(first, last + 1)), seed)
     before, after = last_where(gone, middle - 1), first_where(gone, middle + 1, len(stream.times))
@@ -247,7 +250,7 @@ def _stay(streams: tuple[Stream, Stream], seed: Interval, floor: Floor, begins: 
     if before is not None and before >= first:
         return replace(stay, interval=(before + 1, end))
     soon = min(first + begins, last + 1)
-    came = RestPose(seed, *median_pose(recorded, slice(first, soon)))
+    came = RestPose(seed, *median_pose(recorded, slice(first, soon)), soon - first)
     before = last_where(partial(_gone, stream, came, floor), (first + soon) // 2 - 1)
     span = 0 if before is None else before + 1, end
     return replace(stay, interval=span, came=replace(came, interval=span))

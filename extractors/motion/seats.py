@@ -7,6 +7,7 @@ from jaxtyping import Float
 
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.motion.motion_edges import GROWN, hair, longest
+from extractors.signals.clock import frame_rate
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
 
@@ -53,8 +54,9 @@ def seat(
     near = hair(body.poses, thresholds)
     most = longest(body.poses, near, thresholds)
     least = near.position_m
-    begin = first + _settled(height[first : last + 1], height[:first][::-1], least, most)
-    end = last - _settled(height[first : last + 1][::-1], height[last + 1 :], least, most)
+    lies = max(1, round(thresholds.rest_begins_s * frame_rate(body.poses.filled.times)))
+    begin = first + _settled(height[first : last + 1], height[:first][::-1], least, most, lies)
+    end = last - _settled(height[first : last + 1][::-1], height[last + 1 :], least, most, lies)
     coming = max((m[1] for m in motions if m[0] <= first <= m[1]), default=first)
     going = min((m[0] for m in motions if m[0] <= last <= m[1]), default=last)
     return min(begin, coming), max(end, going)
@@ -65,8 +67,12 @@ def _settled(
     outside: Float[np.ndarray, "others"],
     least: float,
     most: int,
+    lies: int,
 ) -> int:
     """How many frames pass before it is down, from the first on, as far as it was not lost.
+
+    It is down where it first is for so many frames (``lies``) no more than a hair above its lowest,
+    or for as long as the contact lasts: the level is that of these frames, however long it lies.
 
     People stop smoothly: the height over what bears it shrinks with the cube of time (minimum jerk;
     Flash and Hogan 1985), so it comes down later than it passes a hair's width, by at most so many
@@ -80,6 +86,9 @@ def _settled(
     lowest = np.minimum.accumulate(height)
     higher = np.flatnonzero(height > lowest + least)
     end = int(higher[0]) if higher.size else len(height)
+    since = np.searchsorted(-lowest, -(lowest + least))
+    long = np.flatnonzero(np.arange(len(height)) - since >= lies - 1)
+    end = min(end, int(long[0]) + 1) if long.size else end
     down = np.flatnonzero(height[:end] <= lowest[end - 1] + least)[0]
     level = float(np.median(height[down:end]))
     passed = int(np.flatnonzero(height[:end] <= level + least)[0])

@@ -94,6 +94,43 @@ def test_who_connects_late_is_told_what_came_before_and_all_are_told_the_end() -
         assert list(early) == ["two"]
 
 
+@pytest.mark.parametrize(
+    "origin", ["http://localhost:8000", "https://127.0.0.1", "http://[::1]:3000", None]
+)
+def test_programs_and_pages_of_this_computer_may_listen(origin: str | None) -> None:
+    client = pytest.importorskip("websockets.sync.client")
+    socket = EventSocket(0)
+    socket.send("one")
+    try:
+        with client.connect(socket.address, origin=origin) as listening:
+            assert listening.recv(timeout=5) == "one"
+    finally:
+        socket.close()
+
+
+@pytest.mark.parametrize(
+    "origin",
+    [
+        "https://example.org",
+        "http://localhost.example.org",
+        "http://example.org/localhost",
+        "http://127.0.0.1.example.org:80",
+        "null",
+    ],
+)
+def test_a_page_of_another_site_is_refused_before_it_is_told_anything(origin: str) -> None:
+    client = pytest.importorskip("websockets.sync.client")
+    exceptions = pytest.importorskip("websockets.exceptions")
+    socket = EventSocket(0)
+    socket.send("one")
+    try:
+        with pytest.raises(exceptions.InvalidStatus) as refused:
+            client.connect(socket.address, origin=origin)
+        assert refused.value.response.status_code == 403
+    finally:
+        socket.close()
+
+
 def test_a_port_in_use_is_refused_with_what_else_to_name() -> None:
     pytest.importorskip("websockets")
     socket = EventSocket(0)

@@ -47,7 +47,7 @@ def poses(places: np.ndarray, seed: int, turns: np.ndarray = STILL, noise: float
 
 def told(thing: Poses, *partners: Poses) -> tuple[np.ndarray, np.ndarray]:
     """The way of a thing out of its place, in hairs, and its deviation."""
-    stay = RestPose((0, 59), thing.smooth.positions[:60].mean(axis=0), STILL[0])
+    stay = RestPose((0, 59), thing.smooth.positions[:60].mean(axis=0), STILL[0], 60)
     left = gains(RATE_HZ, LIMITS)[0]
     way, _, noise = way_out(thing, partners, FRAMES, SEEN, stay, hair(thing, LIMITS), left)
     return way, noise

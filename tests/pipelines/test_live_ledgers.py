@@ -10,14 +10,16 @@ from live_runs import rig_of
 from measured_bodies import pick_and_place
 
 from capar.model.errors import CaparError, CaptureError, DeviceError
-from capar.model.facts import Gap, Moving, Pause, Place, Resting, Touching
+from capar.model.facts import Gap, Moving, Observed, Pause, Place, Resting, Reverses, Touching
 from capar.pipelines.live.device_frames import DeviceFrames
 from capar.pipelines.live.fact_ledger import FactLedger
+from capar.pipelines.live.first_motion import FirstMotion
 from capar.pipelines.live.frames import FrameBuffer, Poses, body_names, replayed
 from capar.pipelines.live.horizons import LiveHorizons
 from capar.pipelines.live.lead_in import lead_in
 from capar.pipelines.live.rule_memory import RuleMemory
-from capar.pipelines.live.undecided import Handling, undecided
+from capar.pipelines.live.undecided import Handling, awaited, out_of_sight, undecided
+from extractors.calibration import calibrate
 from extractors.devices.tracker import Description, Frame
 from extractors.relations.running_sums import summed
 
@@ -62,6 +64,26 @@ def test_intervals_that_windows_cut_are_put_together_whole(
         frontier = now if now == FRAMES - 1 else max(now - margin, ledger.frontier)
         done += ledger.settle(stitched, frontier)
     assert sorted(map(str, done)) == sorted(map(str, {*whole, *named, *instants}))
+
+
+def test_where_a_motion_was_highest_is_taken_when_it_has_come_down_and_once() -> None:
+    ledger, done = FactLedger(), list[Observed]()
+    for now in range(20, 220, 10):
+        facts: list[Observed] = [Moving("box", 10, min(now, 150))] if now >= 10 else []
+        if now >= 130:  # only then has the box come down far enough
+            facts += [Reverses("box", 80), Place("box", 80, 0, 0, 9)]
+        done += ledger.settle(ledger.stitched(facts, 0), now - 10)
+    assert sorted(map(str, done)) == sorted(
+        ["moving(box,10,150)", "reverses(box,80)", "place(box,80,0,0,9)"]
+    )
+
+
+def test_the_beginning_of_what_goes_on_is_known() -> None:
+    ledger = FactLedger()
+    assert ledger.begin_of((Moving,)) is None
+    ledger.settle(ledger.stitched([Moving("box", 10, 90), Touching("hand", "box", 5, 90)], 0), 50)
+    assert ledger.begin_of((Moving,)) == 10
+    assert ledger.begin_of((Moving, Touching)) == 5
 
 
 def _cut(each: Touching, begin: int, now: int) -> Touching:
@@ -182,3 +204,47 @@ def test_who_joins_in_holding_a_thing_is_undecided_until_the_other_lets_go() -> 
 
     assert told(own, other) == {"left": 100}
     assert told(own, replace(other, last=120)) == {}
+
+
+def test_what_a_hand_does_with_a_thing_that_is_out_of_sight_is_undecided_for_a_while() -> None:
+    own, other = Touching("hand", "cup", 100, 150), Touching("left", "jug", 20, 120)
+
+    def handling(last: int, since: int) -> Handling:
+        lost = {"cup": since, "jug": since}
+        return Handling((own, other), (), {"cup"}, last=last, margin=15, longest=200, lost=lost)
+
+    assert out_of_sight(handling(160, 150)) == {"hand": 150}
+    assert undecided(handling(160, 150)) == {"hand": 150}
+    assert handling(160, 150).sure == 149
+    assert out_of_sight(handling(351, 150)) == {}
+    assert handling(351, 150).sure == 351
+    assert out_of_sight(handling(160, 155)) == {}
+
+
+def test_a_thing_whose_first_motion_decides_is_watched_until_it_is_beyond_its_floor() -> None:
+    rig = pick_and_place()
+    known = calibrate(rig)
+    cup, table = Touching("hand", "thing", 5, 9), Touching("hand", "table", 4, 9)
+    handling = Handling((cup, table), (), {"thing"}, last=9, margin=15, longest=200)
+    assert awaited(handling) == {"thing": 5}
+    buffer = FrameBuffer(rig_of(rig), 50)
+    frames = replayed(rig)[:10]
+    for frame in frames:
+        buffer.push(frame)
+    watched = FirstMotion(known, buffer.streams)
+    assert not watched.is_seen(frames[-1])
+    watched.await_(buffer.window(10), awaited(handling))
+    row = buffer.streams["object thing"]
+    floor_m = known.tag_object("thing").motion_floor_m
+    near, far = (_displaced(frames[-1], row, way * floor_m) for way in (0.9, 1.1))
+    assert not any(watched.is_seen(near) for _ in range(50))
+    seen = [watched.is_seen(far) for _ in range(10)]
+    least = 1 + round(0.05 / known.step_s)
+    assert seen == [False] * (least - 1) + [True] * (11 - least)
+    assert not watched.is_seen(near)
+
+
+def _displaced(frame: Poses, row: int, way_m: float) -> Poses:
+    positions = frame.positions.copy()
+    positions[row, 2] += way_m
+    return replace(frame, positions=positions)

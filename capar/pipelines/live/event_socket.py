@@ -1,6 +1,7 @@
 """Events over a websocket on loopback: one JSON object a message (extra ``live``: websockets)."""
 
 import queue
+import re
 import threading
 from collections import deque
 from typing import Any
@@ -9,6 +10,10 @@ from capar.model.errors import DeviceError
 
 HOST = "127.0.0.1"
 """Nobody else in the network may listen."""
+
+ORIGINS = (None, re.compile(r"https?://(localhost|127\.0\.0\.1|\[::1\])(:\d{1,5})?"))
+"""Who may listen: programs, which name no origin, and pages that this computer serves. A page of
+another site, open in a browser here, reaches loopback too; the browser says where it is from."""
 
 LATEST = 1000
 """So many events a program that connects late is still told [1]."""
@@ -23,8 +28,9 @@ LAST_S = 2.0
 class EventSocket:
     """A websocket server that tells every program that connects what is announced.
 
-    Who connects first gets the latest events before, then each one as it comes. When it closes,
-    programs are disconnected in the ordinary way, after the last event.
+    Pages of other sites are refused (``ORIGINS``). Who connects first gets the latest events
+    before, then each one as it comes. When it closes, programs are disconnected in the ordinary
+    way, after the last event.
 
     Args:
         port: The port [1]; 0 for any that is free.
@@ -41,7 +47,7 @@ class EventSocket:
         self._threads: set[threading.Thread] = set()
         self._closed = False
         try:
-            self._server: Any = serve(self._told, HOST, port)
+            self._server: Any = serve(self._told, HOST, port, origins=ORIGINS)
         except OSError as error:
             raise DeviceError(
                 f"no websocket at {HOST}:{port} ({error.strerror}); name another port, or 0 for "

@@ -5,13 +5,26 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, cast
 
 from capar.model.declarations import Span
-from capar.model.facts import Fact, Observed, ReleaseSpeed, Rides
+from capar.model.facts import (
+    DrawsBack,
+    Fact,
+    Moving,
+    Observed,
+    Phase,
+    ReleaseSpeed,
+    Reverses,
+    Rides,
+)
 
 Key = tuple[object, ...]
 """What an interval is of: its kind and its bodies, whenever it is."""
 
 AT_THE_END = (ReleaseSpeed, Rides)
 """Kinds that name a contact by its first frame and are measured up to its end."""
+
+OF_A_MOTION = (Reverses, DrawsBack, Phase)
+"""Kinds that are sought within a motion as a whole: that a thing has come down tells where it was
+highest. They are settled with the motion."""
 
 FRAMES = ("frame", "first", "last")
 
@@ -34,6 +47,12 @@ class FactLedger:
     def __init__(self) -> None:
         self.frontier = -1
         self._open: dict[Key, _Open] = {}
+        self._told: set[tuple[Key, int]] = set()
+        """The instants that were settled since the earliest motion began that goes on."""
+
+    def begin_of(self, kinds: tuple[type[Observed], ...]) -> int | None:
+        """The first frame of the intervals of some kinds that go on; None without any."""
+        return min((own.first for key, own in self._open.items() if key[0] in kinds), default=None)
 
     def stitched(self, facts: Iterable[Fact], begin: int) -> list[Observed]:
         """Facts of a window in frames of the recording, with intervals from their beginning.
@@ -44,13 +63,14 @@ class FactLedger:
             facts: Facts of the window, in its own frames.
             begin: The frame of the recording with which the window begins.
         """
+        everything = [_moved(fact, begin) for fact in facts if isinstance(fact, Observed)]
+        late = {fact.ends()[0] for fact in everything if self._is_late(fact)}
         seen = [
-            _moved(fact, begin)
-            for fact in facts
-            if isinstance(fact, Observed)
-            and not (
-                fact.declaration.span is Span.INSTANT and begin + fact.ends()[0] <= self.frontier
-            )
+            fact
+            for fact in everything
+            if fact.declaration.span is not Span.INSTANT
+            or fact.ends()[0] > self.frontier
+            or (fact.ends()[0] in late and (_key(fact), fact.ends()[0]) not in self._told)
         ]
         firsts = self._firsts(seen)
         own = {(_key(fact), fact.ends()[0]) for fact in seen if _is_interval(fact)}
@@ -59,9 +79,9 @@ class FactLedger:
         out: list[Observed] = []
         for fact in seen:
             span = fact.declaration.span
-            if span is Span.INSTANT and fact.ends()[0] > self.frontier:
+            if span is Span.INSTANT:
                 out.append(fact)
-            elif span is Span.INTERVAL and not self._has_ended(fact):
+            elif span is Span.INTERVAL and (not self._has_ended(fact) or self._is_late(fact)):
                 out.append(_begun(fact, firsts.get((_key(fact), fact.ends()[0]))))
             elif not isinstance(span, Span):
                 place = (_key_of_named(fact), fact.ends()[0])
@@ -86,10 +106,18 @@ class FactLedger:
         for fact in stitched:
             if not isinstance(fact.declaration.span, Span):
                 named.setdefault((_key_of_named(fact), fact.ends()[0]), []).append(fact)
+        moves = {
+            fact.object: fact.first
+            for fact in stitched
+            if isinstance(fact, Moving) and fact.first <= frontier < fact.last
+        }
         for fact in stitched:
             span, ends = fact.declaration.span, fact.ends()
+            if isinstance(fact, OF_A_MOTION) and ends[0] >= moves.get(fact.object, frontier + 1):
+                continue
             if span is Span.INSTANT and ends[0] <= frontier:
                 done.append(fact)
+                self._told.add((_key(fact), ends[0]))
             elif span is Span.INTERVAL:
                 place = (_key(fact), ends[0])
                 if ends[-1] <= frontier:
@@ -99,6 +127,8 @@ class FactLedger:
                 elif ends[0] <= frontier:
                     going[place[0]] = _Open(ends[0], tuple(named.get(place, ())))
         self._open, self.frontier = going, frontier
+        oldest = min(moves.values(), default=frontier + 1)
+        self._told = {told for told in self._told if told[1] >= oldest}
         return done
 
     def _firsts(self, seen: Iterable[Observed]) -> dict[tuple[Key, int], int]:
@@ -110,6 +140,13 @@ class FactLedger:
                 if known is not None:
                     out[_key(fact), fact.ends()[0]] = known.first
         return out
+
+    def _is_late(self, fact: Observed) -> bool:
+        """Whether it is of a motion that goes on, and is not settled though its frames are."""
+        if not isinstance(fact, OF_A_MOTION) or fact.ends()[-1] > self.frontier:
+            return False
+        motion = self._open.get((Moving, fact.object))
+        return motion is not None and fact.ends()[0] >= motion.first
 
     def _has_ended(self, fact: Observed) -> bool:
         return _is_interval(fact) and fact.ends()[-1] <= self.frontier

@@ -26,12 +26,23 @@ class LiveHorizons:
     """Short windows begin at multiples of this [s]: what is measured at their first frame is then
     the same several times in a row, and is known."""
 
+    watch_s: float = 0.05
+    """Between two measurements at least [s], where a thing moves whose first motion is awaited."""
+
+    announce_s: float = 0.5
+    """After its end a segment is announced [s]: ends that are newer still move, as most of what the
+    filter asks for has not been seen."""
+
     settle_s: float = 0.75
     """After its end a segment is settled [s]: more than half the filter (0.63 s), so that no later
     frame changes a smoothed pose in it, and longer than dropped and closed intervals (0.1 s)."""
 
     window_s: float = 4.0
-    """Least length of the short window [s]: a motion that began earlier is known from before."""
+    """Least length of the short window [s]."""
+
+    motion_s: float = 10.0
+    """It reaches back to the beginning of every motion that goes on, to so long ago at most [s]:
+    how a motion is parted is told from its beginning."""
 
     rest_s: float = 30.0
     """By how much of its rest the place of a resting body is told [s]: the median of a longer one

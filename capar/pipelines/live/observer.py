@@ -3,21 +3,24 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, TagType
-from capar.model.facts import Fact, Frames, Moving, Observed, RateMhz, Touching
+from capar.model.facts import Displaced, Fact, Frames, Moving, Observed, RateMhz, Touching
 from capar.model.observation import Observation
 from capar.pipelines.live.carried_poses import CarriedPoses
 from capar.pipelines.live.carried_sums import CarriedSums
 from capar.pipelines.live.events import SegmentEvent
 from capar.pipelines.live.fact_ledger import FactLedger
+from capar.pipelines.live.first_motion import FirstMotion
 from capar.pipelines.live.frames import FrameBuffer, Poses, Window
 from capar.pipelines.live.horizons import LiveHorizons, horizons_of
 from capar.pipelines.live.result import LiveResult
 from capar.pipelines.live.rule_memory import RuleMemory
 from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
 from capar.pipelines.live.sentences import Teller
-from capar.pipelines.live.undecided import Handling, undecided
+from capar.pipelines.live.undecided import Handling, awaited, out_of_sight, undecided
 from capar_rules.borders.deflicker import steady
 from capar_rules.borders.times import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
@@ -88,6 +91,8 @@ class LiveObserver:
         )
         self._teller = Teller(rig, self.rules) if sentences else None
         self._answers = EarlierAnswers()
+        self._first_motion = FirstMotion(calibration, self._buffer.streams)
+        self._stirs = False
         self._measured = 0
         self._frontier = -1
         self._forgotten = 0
@@ -122,6 +127,7 @@ class LiveObserver:
         for poses in frames:
             self._buffer.push(poses)
             self._settle_block()
+            self._stirs = self._stirs or self._first_motion.is_seen(poses)
             if self.frames - self._measured >= self._frames(self.horizons.window_s) // 2:
                 events += self._evaluate(last=False)
         if self._is_due():
@@ -131,7 +137,7 @@ class LiveObserver:
     def _is_due(self) -> bool:
         """Whether segments are to be sought again, or one that was found is to be settled."""
         since = self.frames - self._measured
-        if since >= self._frames(self.horizons.stride_s):
+        if since >= self._frames(self.horizons.watch_s if self._stirs else self.horizons.stride_s):
             return True
         late_s = self.horizons.settle_s + self.horizons.gathering_s
         waits = self._segments.next_end(self._frontier)
@@ -161,7 +167,7 @@ class LiveObserver:
 
     def _evaluate(self, *, last: bool) -> list[SegmentEvent]:
         """Measure the short window, and ask the rules over the last few segments."""
-        self._measured = self.frames
+        self._measured, self._stirs = self.frames, False
         window = self._window()
         if len(window.capture.times) < 4:
             return []
@@ -181,13 +187,18 @@ class LiveObserver:
         self._poses.advance(window, bodies, frontier)
         recent = self._facts.stitched(measurements.facts, window.first)
         inference, count = self._inferred(measurements, recent, window.last)
-        self._memory.add(self._facts.settle(recent, max(frontier, self._facts.frontier)))
+        handling = self._handling(recent, window)
+        sure = frontier if last else min(frontier, handling.sure)
+        self._memory.add(self._facts.settle(recent, max(sure, self._facts.frontier)))
         time_s = self._buffer.time_s(window.last)
+        self._first_motion.await_(window, awaited(handling))
         events, done = self._segments.take(
             inference,
             now=window.last,
+            ended=window.last - self._frames(self.horizons.announce_s),
             frontier=frontier,
-            undecided=self._undecided(recent, window.last),
+            undecided=handling.with_margin(undecided(handling)),
+            unseen=handling.with_margin(out_of_sight(handling)),
             rate_hz=self._rate_mhz / 1000.0,
             time_s=time_s,
         )
@@ -197,13 +208,20 @@ class LiveObserver:
             self._memory.forget(self._rules_begin(window), self._segments.ends(), self._frames(1.0))
         self.work = Work(len(window.capture.times), count, len(done))
         if self._result is not None:
-            self._result.segments(done, inference)
+            self._result.segments(done)
         return self._told(events, recent)
 
     def _window(self) -> Window:
-        """The short window: it begins at a multiple of the grain."""
-        grain = self._frames(self.horizons.grain_s)
-        begin = max(0, self.frames - 1 - self._frames(self.horizons.window_s)) // grain * grain
+        """The short window: it begins at a multiple of the grain, before every motion that goes on.
+
+        From the grain before it, so that the place that is left is known.
+        """
+        grain, newest = self._frames(self.horizons.grain_s), self.frames - 1
+        begin = newest - self._frames(self.horizons.window_s)
+        moves = self._facts.begin_of((Moving, Displaced))
+        if moves is not None:
+            begin = min(begin, max(moves - grain, newest - self._frames(self.horizons.motion_s)))
+        begin = max(0, begin) // grain * grain
         return self._buffer.window(self.frames - begin)
 
     def _told(self, events: list[SegmentEvent], recent: list[Observed]) -> list[SegmentEvent]:
@@ -232,22 +250,24 @@ class LiveObserver:
         chosen = steady(facts) if self.rules.steady else tuple(facts)
         return infer(chosen, profile=self.rules), len(chosen)
 
-    def _undecided(self, recent: list[Observed], last: int) -> dict[str, int]:
-        """Before when segments of end-effectors may settle, where later frames may decide."""
+    def _handling(self, recent: list[Observed], window: Window) -> Handling:
+        """What is touched, moves and is lost, where later frames may decide."""
         facts = (*self._memory, *recent)
         acting = {sensor.name for sensor in self._buffer.rig.acting}
-        margin = round(in_frames(times().merge_ms, self._rate_mhz / 1000.0))
-        open_since = undecided(
-            Handling(
-                [fact for fact in facts if isinstance(fact, Touching) and fact.body in acting],
-                [fact for fact in facts if isinstance(fact, Moving)],
-                {thing.name for thing in self._buffer.rig.objects if thing.tag is TagType.MOBILE},
-                last=last,
-                margin=margin,
-                longest=self._frames(self.horizons.handing_s),
-            )
+        lost = {
+            name: window.first + int(np.flatnonzero(~body.stream.lost)[-1])
+            for name, body in window.capture.bodies.items()
+            if body.stream.lost[-1] and not body.stream.lost.all()
+        }
+        return Handling(
+            [fact for fact in facts if isinstance(fact, Touching) and fact.body in acting],
+            [fact for fact in facts if isinstance(fact, Moving)],
+            {thing.name for thing in self._buffer.rig.objects if thing.tag is TagType.MOBILE},
+            last=window.last,
+            margin=round(in_frames(times().merge_ms, self._rate_mhz / 1000.0)),
+            longest=self._frames(self.horizons.handing_s),
+            lost=lost,
         )
-        return {ee: frame - margin for ee, frame in open_since.items()}
 
     def _rules_begin(self, window: Window) -> int:
         oldest = window.last - self._frames(self.horizons.rules_s)

@@ -1,7 +1,7 @@
 """The observation of a live recording, put together block by block as it is settled."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -11,7 +11,7 @@ from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Notice, notice
 from capar.model.errors import CaptureError
 from capar.model.facts import MEASURED, Fact, Frames, Observed, RateMhz
-from capar.model.observation import JointAction, Observation, ObservedLink, ObservedObject, Segment
+from capar.model.observation import Observation, ObservedObject, Segment
 from capar.model.sampled_track import SampledTrack
 from capar.pipelines.flicker import flicker_notices
 from capar.pipelines.live.carried_poses import CarriedPoses
@@ -25,7 +25,7 @@ from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import Profile
 from capar_rules.movers.movers import movers
 from capar_rules.pars.complex_pars import compose
-from capar_rules.pars.inference import Inference, Key
+from capar_rules.pars.inference import Key, infer
 from capar_rules.pars.naming_rules import naming_rules
 from capar_rules.pars.primitive_pars import ipars, upars
 from extractors.bodies.observed_objects import observed_object
@@ -41,6 +41,10 @@ class Inexact:
 
     clipped_segments: int = 0
     """Segments longer than the long window: path and style are those of their last part."""
+
+    settled_otherwise: int = 0
+    """Segments that are not among the settled ones: path and style are those of the settled segment
+    that shares most with each."""
 
 
 class LiveResult:
@@ -73,9 +77,6 @@ class LiveResult:
         self._settled: dict[Key, SettledSegment] = {}
         self._waiting: list[SettledSegment] = []
         self._details: dict[Key, SegmentDetails] = {}
-        self._joint: list[JointAction] = []
-        self._common: frozenset[Key] = frozenset()
-        self._violations: dict[str, None] = {}
         self._objects: dict[str, ObservedObject] = {}
         self._notices: dict[object, Notice] = {}
         self._tracks: dict[str, list[np.ndarray]] = {}
@@ -126,37 +127,13 @@ class LiveResult:
             self.inexact.clipped_segments += int(settled.segment.first < window.first)
             self._details[key] = segment_details(window, measurements, settled)
 
-    def segments(self, done: Sequence[SettledSegment], inference: Inference) -> None:
-        """Take the segments that an answer of the rules settles, and what several do jointly."""
+    def segments(self, done: Sequence[SettledSegment]) -> None:
+        """Take the segments that an answer of the rules settles."""
         for settled in done:
             key = settled.segment.ee, settled.segment.index
             if key not in self._settled:
                 self._waiting.append(settled)
             self._settled[key] = settled
-        by_place = {
-            (key[0], each.segment.first, each.segment.last): each.segment
-            for key, each in self._settled.items()
-        }
-        local = {
-            (segment.ee, segment.index): segment
-            for link in inference.links
-            for segment in link.segments
-        }
-        known: dict[Key, Segment] = {}
-        for key, segment in local.items():
-            same = by_place.get((segment.ee, segment.first, segment.last))
-            if same is not None:
-                known[key] = same
-        self._common = frozenset(
-            (known[key].ee, known[key].index) for key in inference.common if key in known
-        )
-        for joint in inference.joint:
-            keys = list(zip(joint.ees, joint.segments, strict=True))
-            if all(key in known for key in keys):
-                numbers = tuple(known[key].index for key in keys)
-                self._add_joint(replace(joint, segments=numbers))
-        for violation in inference.violations:
-            self._violations.setdefault(violation)
 
     def observation(self, window: Window) -> Observation:
         """The whole, once everything is settled.
@@ -172,14 +149,16 @@ class LiveResult:
             raise CaptureError("a live recording of fewer than two frames: nothing can be observed")
         times = np.concatenate(self._times)
         duration_s = float(times[-1])
-        inference = self._inference()
-        measured = {key: each.measured for key, each in self._details.items()}
         facts = self._all_facts(window.last)
         steadied = steady(facts) if self._rules.steady else tuple(facts)
+        inference = infer(steadied, profile=self._rules)
         moved = () if self._rules.crossings_only else movers(steadied)
         ordered = [segment for link in inference.links for segment in link.segments]
-        details = [self._details[each.ee, each.index].for_purpose(each.purpose) for each in ordered]
-        rate_hz = self._rate_mhz / 1000.0
+        details = [self._details_of(each).for_purpose(each.purpose) for each in ordered]
+        measured = {
+            (each.ee, each.index): own.measured for each, own in zip(ordered, details, strict=True)
+        }
+        rate_hz = 1.0 / float(np.median(np.diff(times)))
         guides = {} if self._rules.crossings_only else self._last.guides
         objects = self._last.bodies.objects
         return Observation(
@@ -189,7 +168,7 @@ class LiveResult:
             version=__version__,
             agent=self._rig.agent,
             duration_s=duration_s,
-            rate_hz=1.0 / float(np.median(np.diff(times))),
+            rate_hz=rate_hz,
             frames=len(times),
             objects=tuple(
                 self._objects.get(each.name) or observed_object(each)
@@ -209,7 +188,7 @@ class LiveResult:
                 *self._notices.values(),
                 *flicker_notices(steadied, rate_hz),
                 *unmoved_notices((*steadied, *moved), times),
-                *(notice("rule-violation", violation=each) for each in self._violations),
+                *(notice("rule-violation", violation=each) for each in inference.violations),
             ),
             joint=inference.joint,
             others=self._rig.others,
@@ -222,27 +201,17 @@ class LiveResult:
             tracks=tuple(self._sampled(times)),
         )
 
-    def _inference(self) -> Inference:
-        """What the rules said of every segment, as one answer."""
-        links = []
-        for sensor in self._rig.acting:
-            own = sorted(
-                (each.segment for each in self._settled.values() if each.segment.ee == sensor.name),
-                key=lambda each: each.index,
-            )
-            agent = self._rig.agent_of(sensor) if self._rig.others else ""
-            links.append(
-                ObservedLink(sensor.name, sensor.end_effector, sensor.side, tuple(own), agent)
-            )
-        links.sort(key=lambda each: (each.ee, each.kind, each.side))
-        return Inference(
-            tuple(links),
-            {key: each.conditions for key, each in self._settled.items()},
-            self._common,
-            frozenset(key for key, each in self._settled.items() if each.no_step),
-            tuple(self._violations),
-            tuple(sorted(self._joint, key=lambda each: (each.first, each.last, each.objects))),
-        )
+    def _details_of(self, segment: Segment) -> SegmentDetails:
+        """What was measured of a segment; of one that was settled otherwise, of most of it."""
+        own = [each.segment for each in self._settled.values() if each.segment.ee == segment.ee]
+        shared = {
+            known.index: min(known.last, segment.last) - max(known.first, segment.first)
+            for known in own
+        }
+        nearest = max(own, key=lambda known: shared[known.index])
+        same = nearest.first == segment.first and nearest.last == segment.last
+        self.inexact.settled_otherwise += int(not same)
+        return self._details[segment.ee, nearest.index]
 
     def _all_facts(self, last: int) -> list[Fact]:
         """Every settled fact, in the order in which facts are written."""
@@ -252,17 +221,6 @@ class LiveResult:
         for fact in (*always, *self._facts):
             groups.setdefault(type(fact), set()).add(fact)
         return [each for kind in MEASURED for each in sorted(groups.get(kind, ()))]
-
-    def _add_joint(self, joint: JointAction) -> None:
-        """Keep the widest form of a joint action."""
-        own = set(zip(joint.ees, joint.segments, strict=True))
-        for place, each in enumerate(self._joint):
-            known = set(zip(each.ees, each.segments, strict=True))
-            if own & known and each.objects[:1] == joint.objects[:1]:
-                if known < own:
-                    self._joint[place] = joint
-                return
-        self._joint.append(joint)
 
     def _keep_places(
         self, window: Window, measurements: Measurements, first: int, last: int

@@ -1,5 +1,6 @@
 """The settled facts that rules are still told of: few, however long a recording lasts."""
 
+from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -37,12 +38,13 @@ class RuleMemory:
             borders: Frames at which segments begin that go on; what ends near them is kept.
             margin: How many frames away is near.
         """
+        at = sorted(borders)
         kept: list[Observed] = []
         gone: list[Observed] = []
         for fact in self._facts:
             ends = fact.ends()
-            near = any(abs(end - border) <= margin for end in ends for border in borders)
-            (kept if near or ends[-1] >= begin - margin else gone).append(fact)
+            needed = ends[-1] >= begin - margin or any(_is_near(end, at, margin) for end in ends)
+            (kept if needed else gone).append(fact)
         self._facts = kept
         if gone:
             self._remember(gone)
@@ -73,3 +75,9 @@ class RuleMemory:
                 axes = (axis for place in posture for axis in (place.x, place.y, place.z))
                 cell = tuple(round(axis / SAME_PLACE_MM) for axis in axes)
                 self._postures.setdefault((fact.ee, *cell), (fact, *posture, *met))
+
+
+def _is_near(frame: int, borders: Sequence[int], margin: int) -> bool:
+    """Whether one of some frames in order is so near to a frame."""
+    following = bisect_left(borders, frame - margin)
+    return following < len(borders) and borders[following] <= frame + margin

@@ -35,6 +35,8 @@ class _Link:
 
     recent: deque[SettledSegment] = field(default_factory=deque)
     announced: dict[int, Segment] = field(default_factory=dict)
+    ends: tuple[int, ...] = ()
+    """The last frames of the segments that were found to have ended, and are not settled."""
 
 
 class SegmentLedger:
@@ -65,10 +67,8 @@ class SegmentLedger:
         return min(starts, default=now if self._links else 0)
 
     def next_end(self, after: int) -> int | None:
-        """The first frame later than one at which an announced segment ends; None without any."""
-        ends = (
-            segment.last for link in self._links.values() for segment in link.announced.values()
-        )
+        """The first frame later than one at which a segment ends that was found; None without."""
+        ends = (end for link in self._links.values() for end in link.ends)
         return min((end for end in ends if end > after), default=None)
 
     def take(
@@ -76,20 +76,24 @@ class SegmentLedger:
         inference: Inference,
         *,
         now: int,
+        ended: int,
         frontier: int,
         rate_hz: float,
         time_s: float,
         undecided: Mapping[str, int] = MappingProxyType({}),
+        unseen: Mapping[str, int] = MappingProxyType({}),
     ) -> tuple[list[SegmentEvent], list[SettledSegment]]:
         """What an answer says that was not said before, and which segments it settles.
 
         Args:
             inference: Segments in frames of the recording.
             now: The newest frame: segments that end there go on.
+            ended: Segments that end no later are announced, if they are not settled.
             frontier: Segments that end no later are settled; at the recording's end, ``now``.
             rate_hz: Frames a second [Hz].
             time_s: Time of the newest frame [s].
             undecided: Of a link, the frame from which on no segment ends that may be settled yet.
+            unseen: Of a link, the frame from which on none ends that may be announced.
         """
         events: list[SegmentEvent] = []
         done: list[SettledSegment] = []
@@ -111,8 +115,10 @@ class SegmentLedger:
                 events.append(SegmentEvent(Status.SETTLED, segment, time_s))
                 done.append(each)
                 self._settle(own, each)
-            ended = {each.index: each for _, each in found[settled:] if each.last < now}
-            events += _announced(own, ended, time_s)
+            own.ends = tuple(each.last for _, each in found[settled:] if each.last < now)
+            upto = min(ended, unseen.get(link.ee, now + 1) - 1)
+            told = {each.index: each for _, each in found[settled:] if each.last <= upto}
+            events += _announced(own, told, time_s)
         return events, done
 
     def _with_purpose(self, own: _Link, link: ObservedLink) -> SettledSegment | None:

@@ -1,8 +1,8 @@
 """From which frame on later frames may yet decide what an end-effector does."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from capar.model.facts import Moving, Touching
 
@@ -27,6 +27,19 @@ class Handling:
     longest: int
     """How many frames a decision is awaited at most."""
 
+    lost: Mapping[str, int] = field(default_factory=dict)
+    """Of each body that is not seen now, the last frame in which it was."""
+
+    @property
+    def sure(self) -> int:
+        """The last frame before which no contact ends, and no motion, for not being seen."""
+        oldest = self.last - self.longest
+        return min((since - 1 for since in self.lost.values() if since > oldest), default=self.last)
+
+    def with_margin(self, since: Mapping[str, int]) -> dict[str, int]:
+        """Frames so much earlier that no event of those at them is before."""
+        return {ee: frame - self.margin for ee, frame in since.items()}
+
 
 def undecided(handling: Handling) -> dict[str, int]:
     """The first frame of each end-effector about which something is still open."""
@@ -38,6 +51,31 @@ def undecided(handling: Handling) -> dict[str, int]:
                 own.first, *(touch.first for touch in besides), out.get(own.body, own.first)
             )
             out[own.body] = first
+    for body, since in out_of_sight(handling).items():
+        out[body] = min(since, out.get(body, since))
+    return out
+
+
+def awaited(handling: Handling) -> dict[str, int]:
+    """The things whose first motion decides, and the frame at which each is touched first."""
+    out: dict[str, int] = {}
+    for own in _going(handling):
+        if _besides(handling, own):
+            out[own.other] = min(own.first, out.get(own.other, own.first))
+    return out
+
+
+def out_of_sight(handling: Handling) -> dict[str, int]:
+    """End-effectors in contact with what was lost since, and the frame in which it was last seen.
+
+    If they touch when it is seen again, they have touched all the time.
+    """
+    out: dict[str, int] = {}
+    for touch in handling.touching:
+        for body in (touch.body, touch.other):
+            since = handling.lost.get(body, -1)
+            if touch.last >= since >= max(touch.first, handling.last - handling.longest):
+                out[touch.body] = min(since, out.get(touch.body, since))
     return out
 
 

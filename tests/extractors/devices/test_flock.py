@@ -95,6 +95,35 @@ def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_a
     assert flock.counts.lost_records >= 0.5 * damaged
 
 
+class HeldUp(FlockSimulator):
+    """A simulator whose computer stands still once, when it is told to."""
+
+    pause_s = 0.0
+
+    def _attend(self, ready: set[int]) -> None:
+        pause_s, self.pause_s = self.pause_s, 0.0
+        time.sleep(pause_s)
+        super()._attend(ready)
+
+
+def test_a_simulator_that_is_held_up_goes_on_where_it_was_and_floods_no_port() -> None:
+    log: list[Sent] = []
+    birds, rate_hz, pause_s = 12, 60.0, 0.8
+    rig, options = FlockRig(quiet_s=QUIET_S), f"birds={birds}&format=pos_quat&rate={rate_hz}"
+    with (
+        HeldUp(SmoothMotion(birds), rig, log=log) as simulator,
+        tracker(simulator, options) as flock,
+    ):
+        tracked.take(flock, 10)
+        before = len(log)
+        simulator.pause_s, start_s = pause_s, time.monotonic()
+        frames = tracked.collect(flock, pause_s + 0.5)
+        ran_s = time.monotonic() - start_s - pause_s
+    assert flock.counts.lost_records == 0
+    assert len(frames) > 0.3 * rate_hz
+    assert len(log) - before < 1.5 * birds * rate_hz * (ran_s + 0.2)
+
+
 def test_a_bird_with_a_line_of_its_own_is_read_beside_the_others() -> None:
     log: list[Sent] = []
     rig = FlockRig(line_a_bird=True, quiet_s=QUIET_S)
