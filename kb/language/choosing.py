@@ -4,11 +4,14 @@ from collections.abc import Callable, Sequence
 
 from kb.language.clause import Clause
 from kb.language.lexicalisation import MOVING, TRANSPORT
-from kb.language.thresholds import MOST_DEEDS
+from kb.language.thresholds import MINOR_SHARE, MOST_DEEDS
 
 
 def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """At most ``MOST_DEEDS`` of what was done, without what is only said again.
+
+    Where a hand does the same for longer the next time, that is told, too; alone if it takes so
+    much longer that the first was but its beginning.
 
     Where more was done, what only leads to the next deed is left out first (to bring a whisk to the
     bowl in which it stirs), then help, then motions without a goal, the shortest first, and of each
@@ -20,11 +23,17 @@ def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     told: list[Clause] = []
     repeated: list[Clause] = []
     for step in steps:
-        said = next((each for each in told if _says_the_same(each, step)), None)
+        said = next((each for each in told[::-1] if _says_the_same(each, step)), None)
         if said is None:
             told.append(step)
-        elif (said.ees, said.grip) != (step.ees, step.grip):
+        elif (said.ees, said.grip) == (step.ees, step.grip):
+            continue
+        elif _lasts_s(step) <= _lasts_s(said):
             repeated.append(step)
+        else:
+            if _lasts_s(said) < MINOR_SHARE * _lasts_s(step):
+                told.remove(said)
+            told.append(step)
     if len(steps) > MOST_DEEDS:
         told = [each for each in told if not _beside_what_recurs(each, repeated, told)]
     if len(told) > MOST_DEEDS:

@@ -71,7 +71,7 @@ def _story(
     if detail == "summary":
         changes = any(each.changes for part in told for each in part)
         told = [mattering(part) if changes else _counted(main_things(part)) for part in told]
-        steps = chosen(told_in_order(links, told))
+        steps = chosen([replace(each, pauses=0) for each in told_in_order(links, told)])
     else:
         steps = with_walks(told_in_order(links, told), links, seen, observation.objects, scene)
     if not timed:

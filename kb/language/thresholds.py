@@ -81,3 +81,7 @@ where that has touched it before or touches it again (``reach_mm``)."""
 
 MOST_DEEDS = 6
 """A summary names at most so many deeds."""
+
+MINOR_SHARE = 0.5
+"""What takes less than this share [1] of the time for which a hand later does the same is not told
+beside it in a summary."""
