@@ -4,13 +4,17 @@ import re
 
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.language import Instruction, Plan, Question, parse
+from kb.language.lexicalisation import TURNED, in_progress
 from kb.language.vocabulary import Vocabulary
 from kb.lexicon.english import past
 from kb.lexicon.tables import table
 
 WORDS = Vocabulary(primitive_words(primitive_files()))
-VERBS = {past(row["pattern"].split()[0]) for row in table("phrases")}
-"""Every verb that a telling may have, in the past."""
+VERBS = {
+    *(past(row["pattern"].split()[0]) for row in table("phrases")),
+    *(in_progress(pattern).split()[0] for pattern in TURNED),
+}
+"""Every verb that a telling may have, in the past, or of what goes on beside something else."""
 
 SPAN = re.compile(r"\((\d+\.\d\d)(?:–(\d+\.\d\d))? s\)")
 AFTERWARDS = ("Then ", "Next, ", "After that, ", "Once more, ")

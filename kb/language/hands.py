@@ -34,7 +34,7 @@ def by_fingers(
     moved = {step.objects[:1] for step in own if step.changes}
     things = {step.objects[:1] for part in fingers for step in part if _moves_it(step)}
     for thing in sorted(things - moved):
-        longest = max(fingers, key=lambda part: _moving_s(part, thing))  # noqa: B023
+        longest = max(fingers, key=lambda part: _moving_s(part, thing))
         theirs = (step for step in longest if step.objects[:1] == thing)
         own = (*(step for step in own if step.objects[:1] != thing), *theirs)
     return tuple(sorted(own, key=in_time))

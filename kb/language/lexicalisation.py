@@ -51,6 +51,9 @@ MOVING = frozenset({"MoveObj", "MoveObjTo"})
 SHIFTED = frozenset({"Slide", "Push", "Pull", "MoveObj"})
 """Names of what moves a thing a little as it is put somewhere."""
 
+PICKED_UP = "Lift"
+"""The name of what takes a thing off what it lay on."""
+
 TRANSPORT = frozenset({"Lift", "Raise", "Carry", "MoveObj", "MoveObjTo"})
 """Names of what brings a thing to where it is put."""
 

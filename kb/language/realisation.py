@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from capar.model.observation import ObservedLink, ObservedObject
@@ -33,7 +33,7 @@ class Realiser:
         self._spans = timed
         self._fixed = {each.name for each in objects if each.tag in FIXED}
         self._topic = ""
-        self._rivalled = False
+        self._rivals = set[str]()
         self._several: tuple[str, ...] = ()
         self._ees: tuple[str, ...] = ()
 
@@ -71,7 +71,7 @@ class Realiser:
         """
         if reached:
             parts = [part for each in reached for part in self._there_and_back(each)]
-            return joined([*parts, "touched nothing"])
+            return f"{joined(parts)} without touching anything"
         kinds: dict[str, list[str]] = {}
         for ee in moved:
             kinds.setdefault(self._kinds[ee], []).append(ee)
@@ -81,14 +81,15 @@ class Realiser:
             end_s = max(moved[ee][1] for ee in ees)
             span = f" ({start_s:.2f}–{end_s:.2f} s)" if self._timed else ""
             parts.append(f"moved {self._hands(tuple(ees))}{span}")
-        return joined([*parts, "touched nothing"])
+        return f"{joined(parts)} without touching anything" if parts else "touched nothing"
 
     def _there_and_back(self, reached: Reached) -> list[str]:
         hand, kind = self._hands((reached.ee,)), self._kinds[reached.ee]
         there = f" ({reached.start_s:.2f}–{reached.there_s:.2f} s)" if self._timed else ""
         back = f" ({reached.leaves_s:.2f}–{reached.end_s:.2f} s)" if self._timed else ""
         parts = [f"reached {reached.where} with {hand}{there}"]
-        return [*parts, f"took the {kind} back{back}"] if reached.back else parts
+        verb = f"lowered the {kind} again" if reached.down else f"withdrew the {kind}"
+        return [*parts, f"{verb}{back}"] if reached.back else parts
 
     def _of_agent(self, steps: Sequence[Clause]) -> str:
         parts: list[str] = []
@@ -136,7 +137,8 @@ class Realiser:
 
     def _begin(self, topic: str) -> None:
         """Begin to tell what one hand did, after something was spoken of."""
-        self._topic, self._several, self._rivalled = topic, (), False
+        self._topic, self._several = topic, ()
+        self._rivals = self._rivals if topic else set()
 
     def _meanwhile(self, step: Clause) -> str:
         """How the thing was turned during what was told last."""
@@ -170,17 +172,17 @@ class Realiser:
             pattern = _ALL_PLACES.sub("them", pattern)
         self._several = step.objects if _ALL_PLACES.search(pattern) else ()
         filled = pattern.replace("{ee}", self._moved_away(step))
-        self._rivalled = self._rivalled and not pattern.endswith(" there")
+        self._rivals -= set(_named(pattern, step.objects))
         for place, name in enumerate(step.objects, 1):
             filled = filled.replace(f"{{{place}}}", self._mention(name, place))
-        rivals = {name for place, name in enumerate(step.objects[1:], 2) if f"{{{place}}}" in pattern}
-        self._rivalled = not self._fixed.issuperset(rivals)
+        if "{" in pattern:
+            self._rivals = set(_named(pattern, step.objects[1:], first=2)) - self._fixed
         named = "{1}" in step.pattern or step.objects[:1] == (self._topic,)
         self._topic = step.objects[0] if named and not self._several else ""
         return filled
 
     def _mention(self, name: str, place: int) -> str:
-        known = place == 1 and name == self._topic and not self._rivalled
+        known = place == 1 and name == self._topic and not self._rivals
         return "it" if known else the(self._nouns.get(name, name))
 
     def _moved_away(self, step: Clause) -> str:
@@ -203,6 +205,19 @@ def _nouns(objects: Sequence[ObservedObject]) -> dict[str, str]:
     """
     kinds = Counter(each.kind for each in objects)
     return {each.name: each.kind for each in objects if "_" in each.kind and kinds[each.kind] == 1}
+
+
+def _named(pattern: str, objects: Sequence[str], *, first: int = 1) -> Iterator[str]:
+    """The objects that a pattern names, but for what goes along with the first.
+
+    Args:
+        pattern: A pattern.
+        objects: Some of its objects.
+        first: The place of the first of them.
+    """
+    for place, name in enumerate(objects, first):
+        if f"{{{place}}}" in pattern and f"{{1}} with {{{place}}}" not in pattern:
+            yield name
 
 
 def _shared_topic(steps: Sequence[Clause]) -> str:

@@ -42,7 +42,7 @@ def _steadied(told: Sequence[Clause]) -> list[Clause]:
 
 
 def _turned_on(told: Sequence[Clause]) -> list[Clause]:
-    """The clauses, with what is turned on after it was turned about as turned about all the time."""
+    """The clauses, with what is turned about and then turned on as turned about all the time."""
     out: list[Clause] = []
     for clause in told:
         last = out[-1] if out else None

@@ -68,8 +68,8 @@ SWAYING = 0.75
 """A hand that goes less far than this share of what the other goes [1] sways with the body."""
 
 APEX_M = 0.05
-"""A hand is where it reaches while it is no further than this [m] from its furthest: half its
-width."""
+"""A free hand has come back when it is no further than this [m] from where it stays: half its
+width. It is where it reaches while it is within ``STILL_M`` of its furthest."""
 
 ASIDE_SHARE = 0.5
 """A direction counts in words where a way goes along it by more than this share of the whole [1]:
