@@ -26,14 +26,14 @@ def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
         said = next((each for each in told[::-1] if _says_the_same(each, step)), None)
         if said is None:
             told.append(step)
+        elif (said.ees, said.grip) == (step.ees, step.grip):
             continue
-        one_grip = (said.ees, said.grip) == (step.ees, step.grip)
-        if _lasts_s(step) > _lasts_s(said):
-            if one_grip or _lasts_s(said) < MINOR_SHARE * _lasts_s(step):
+        elif _lasts_s(step) <= _lasts_s(said):
+            repeated.append(step)
+        else:
+            if _lasts_s(said) < MINOR_SHARE * _lasts_s(step):
                 told.remove(said)
             told.append(step)
-        elif not one_grip:
-            repeated.append(step)
     if len(steps) > MOST_DEEDS:
         told = [each for each in told if not _beside_what_recurs(each, repeated, told)]
     if len(told) > MOST_DEEDS:
