@@ -4,15 +4,23 @@ import re
 
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.language import Instruction, Plan, Question, parse
+from kb.language.lexicalisation import TURNED, in_progress
 from kb.language.vocabulary import Vocabulary
 from kb.lexicon.english import past
 from kb.lexicon.tables import table
 
 WORDS = Vocabulary(primitive_words(primitive_files()))
-VERBS = {past(row["pattern"].split()[0]) for row in table("phrases")}
-"""Every verb that a telling may have, in the past."""
+VERBS = {
+    *(past(row["pattern"].split()[0]) for row in table("phrases")),
+    past("withdraw"),
+    *(in_progress(pattern).split()[0] for pattern in TURNED),
+}
+"""Every verb that a telling may have, in the past, or of what goes on beside something else."""
 
 SPAN = re.compile(r"\((\d+\.\d\d)(?:–(\d+\.\d\d))? s\)")
+MEANWHILE = re.compile(r", turning [^,(]*\([^)]*\)")
+"""What went on beside the step before it."""
+
 AFTERWARDS = ("Then ", "Next, ", "After that, ", "Once more, ")
 
 
@@ -43,7 +51,8 @@ def against_time(text: str) -> list[str]:
 
     A sentence that begins with ``Then`` tells what began when all that was told had ended; one
     with ``Meanwhile`` what was done in the time of it; what stands after ``while`` began in the
-    time of what stands before.
+    time of what stands before. No step of a hand stands after one that ended later, but for what
+    is said to go on beside it.
     """
     wrong, end_s = [], 0.0
     for sentence in sentences(text):
@@ -54,6 +63,9 @@ def against_time(text: str) -> list[str]:
         if sentence.startswith("Meanwhile") and start_s >= end_s:
             wrong.append(sentence)
         main, _, beside = sentence.partition(" while ")
+        for stream in (main, beside) if " hand " not in beside.partition(" hand ")[2] else (main,):
+            ends = [last for _, last in spans(MEANWHILE.sub("", stream))]
+            wrong += [sentence] if ends != sorted(ends) else []
         until_s = max(last for _, last in spans(main))
         if any(not start_s <= first <= until_s for first, _ in spans(beside)):
             wrong.append(sentence)

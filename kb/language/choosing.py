@@ -3,12 +3,15 @@
 from collections.abc import Callable, Sequence
 
 from kb.language.clause import Clause
-from kb.language.lexicalisation import MOVING, TRANSPORT
-from kb.language.thresholds import MOST_DEEDS
+from kb.language.lexicalisation import MOVING, PICKED_UP, THIS_WAY, TRANSPORT
+from kb.language.thresholds import MINOR_SHARE, MOST_DEEDS
 
 
 def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """At most ``MOST_DEEDS`` of what was done, without what is only said again.
+
+    Where a hand does the same for longer the next time, that is told, too; alone if it takes so
+    much longer that the first was but its beginning.
 
     Where more was done, what only leads to the next deed is left out first (to bring a whisk to the
     bowl in which it stirs), then help, then motions without a goal, the shortest first, and of each
@@ -20,18 +23,24 @@ def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     told: list[Clause] = []
     repeated: list[Clause] = []
     for step in steps:
-        said = next((each for each in told if _says_the_same(each, step)), None)
+        said = next((each for each in told[::-1] if _says_the_same(each, step)), None)
         if said is None:
             told.append(step)
-        elif (said.ees, said.grip) != (step.ees, step.grip):
+        elif (said.ees, said.grip) == (step.ees, step.grip):
+            continue
+        elif _lasts_s(step) <= _lasts_s(said):
             repeated.append(step)
+        else:
+            if _lasts_s(said) < MINOR_SHARE * _lasts_s(step):
+                told.remove(said)
+            told.append(step)
     if len(steps) > MOST_DEEDS:
         told = [each for each in told if not _beside_what_recurs(each, repeated, told)]
     if len(told) > MOST_DEEDS:
         told = [each for at, each in enumerate(told) if not _leads_on(each, told[at + 1 :])]
         told = [each for at, each in enumerate(told) if not _on_the_way(each, told[at + 1 :])]
     told = _without_shortest(told, lambda step: step.helps)
-    told = _without_shortest(told, lambda step: _without_goal(step) and not _alone(step, told))
+    told = _without_shortest(told, lambda step: _minor(step) and not _alone(step, told))
     return tuple(_without_shortest(told, lambda step: True))
 
 
@@ -80,14 +89,19 @@ def _leads_on(step: Clause, later: Sequence[Clause]) -> bool:
 def _on_the_way(step: Clause, later: Sequence[Clause]) -> bool:
     """Whether a thing is lifted or carried that the hand puts somewhere later."""
     after = [each for each in later if each.ees == step.ees and each.grip == step.grip]
-    ends = any(not _without_goal(each) for each in after)
+    ends = any(not (_without_goal(each) or each.frees) for each in after)
     return ends and step.name in TRANSPORT
 
 
 def _without_goal(step: Clause) -> bool:
     """Whether a thing is moved, and nothing is said of where to."""
     moved = not MOVING.isdisjoint((step.name, *step.general))
-    return moved and step.pattern.partition(" ")[2] == "{1}"
+    return moved and (step.pattern == THIS_WAY or step.pattern.partition(" ")[2] == "{1}")
+
+
+def _minor(step: Clause) -> bool:
+    """Whether a thing is moved to no goal by a hand that had it before: it is not picked up."""
+    return _without_goal(step) and step.name != PICKED_UP
 
 
 def _alone(step: Clause, told: Sequence[Clause]) -> bool:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from kb.language.lexicalisation import HELPS, MOMENTARY, QUIET, STAYING
+from kb.language.lexicalisation import HELPS, MOMENTARY, QUIET, STAYING, TURNED
 
 
 @dataclass(frozen=True)
@@ -85,6 +85,11 @@ class Clause:
     def signature(self) -> tuple[object, ...]:
         """What makes two clauses say the same but for hands and times."""
         return self.pattern, self.objects, self.purpose, self.count, self.often, self.pauses
+
+    def within(self, other: "Clause") -> bool:
+        """Whether it is a turning of the same thing that is over before the other clause is."""
+        turns = self.pattern in TURNED and self.objects[:1] == other.objects[:1]
+        return turns and other.start_s <= self.start_s and self.end_s < other.end_s
 
     def overlap_s(self, other: "Clause") -> float:
         """For how long both go on [s]."""

@@ -13,7 +13,13 @@ from kb.language.clause import Clause
 from kb.language.clauses import clauses, main_things
 from kb.language.contacts import Scene
 from kb.language.free_motion import reaches
-from kb.language.hands import as_the_other_hand, spoken_links, told_in_order
+from kb.language.hands import (
+    as_the_other_hand,
+    by_fingers,
+    fingers_of,
+    spoken_links,
+    told_in_order,
+)
 from kb.language.holding import Holding
 from kb.language.lexicalisation import FREE, Phrasebook
 from kb.language.planning import sentences
@@ -65,7 +71,7 @@ def _story(
     if detail == "summary":
         changes = any(each.changes for part in told for each in part)
         told = [mattering(part) if changes else _counted(main_things(part)) for part in told]
-        steps = chosen(told_in_order(links, told))
+        steps = chosen([replace(each, pauses=0) for each in told_in_order(links, told)])
     else:
         steps = with_walks(told_in_order(links, told), links, seen, observation.objects, scene)
     if not timed:
@@ -94,6 +100,16 @@ def _deeds(
         return [], [as_segmented(each) for each in told]
     ways = [turned(each, turning) for each in as_the_other_hand(links, told)]
     seen = [with_turning(deeds(rest, scene), found) for rest, found in ways]
+    for place, link in enumerate(links):
+        ways = [
+            turned(tuple(replace(step, ees=(link.ee,)) for step in part), turning)
+            for part in (
+                clauses(observation, finger, book, scene, turning, None)
+                for finger in fingers_of(link, observation.links)
+            )
+        ]
+        found = [with_turning(deeds(rest, scene), turns) for rest, turns in ways]
+        seen[place] = by_fingers(seen[place], found)
     return seen, as_one_body(links, seen, observation.objects, scene)
 
 

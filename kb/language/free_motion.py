@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from capar.model.observation import Observation, ObservedLink
 from capar.model.sampled_track import SampledTrack
-from kb.language.thresholds import APEX_M, ASIDE_SHARE, REACHED_M, SWAYING
+from kb.language.thresholds import APEX_M, ASIDE_SHARE, REACHED_M, STILL_M, SWAYING
 
 HAND, HEAD = "hand", "head"
 
@@ -32,6 +32,9 @@ class Reached:
     end_s: float
     back: bool
     """Whether it comes back."""
+
+    down: bool
+    """Whether it comes back downward."""
 
 
 def reaches(
@@ -93,15 +96,19 @@ def _reached(
         apex = first + int(ways.argmax())
         above = track.positions[apex, 2] > head.positions[min(apex, len(head.positions) - 1), 2]
         where += " above the head" if above else ""
-    there = np.flatnonzero(ways > furthest_m - APEX_M)
+    there = np.flatnonzero(ways > furthest_m - STILL_M)
+    away = np.linalg.norm(places - places[-1], axis=1) > APEX_M
+    home = int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
+    returns = places[-1] - places[int(there[-1])]
     found = Reached(
         ee=ee,
         where=where,
         start_s=span[0],
         there_s=(first + int(there[0])) * track.step_s,
         leaves_s=(first + int(there[-1])) * track.step_s,
-        end_s=span[1],
+        end_s=(first + max(home, int(there[-1]))) * track.step_s,
         back=float(ways[-1]) < 0.5 * furthest_m,
+        down=-float(returns[2]) > ASIDE_SHARE * float(np.linalg.norm(returns)),
     )
     return found, furthest_m
 

@@ -6,19 +6,55 @@ from difflib import SequenceMatcher
 
 from capar.model.observation import ObservedLink
 from kb.language.clause import Clause, in_time
+from kb.language.lexicalisation import REACH
 from kb.language.thresholds import REST_S
 from kb.lexicon.tables import table
 
 
 def spoken_links(links: Sequence[ObservedLink]) -> tuple[ObservedLink, ...]:
     """The links that a telling names: a finger's is left out where its hand's is there."""
-    wholes = {row["part"]: row["whole"] for row in table("body_parts")}
     there = {(each.kind, each.side) for each in links}
-    return tuple(
-        each
-        for each in links
-        if (wholes.get(each.kind.rstrip("0123456789")), each.side) not in there
+    return tuple(each for each in links if _whole(each) not in there)
+
+
+def fingers_of(hand: ObservedLink, links: Sequence[ObservedLink]) -> tuple[ObservedLink, ...]:
+    """The fingers of a hand, which a telling names by the hand."""
+    return tuple(each for each in links if _whole(each) == (hand.kind, hand.side))
+
+
+def by_fingers(
+    own: tuple[Clause, ...], fingers: Sequence[tuple[Clause, ...]]
+) -> tuple[Clause, ...]:
+    """What a hand did; of a thing in which the palm had no part, what the finger did that had it.
+
+    Args:
+        own: What the hand did, as far as its own contacts and motion tell.
+        fingers: What each of its fingers did, as done by the hand.
+    """
+    moved = {step.objects[:1] for step in own if step.changes}
+    things = {step.objects[:1] for part in fingers for step in part if _moves_it(step)}
+    for thing in sorted(things - moved):
+        longest = max(fingers, key=lambda part: _moving_s(part, thing))
+        theirs = (step for step in longest if step.objects[:1] == thing)
+        own = (*(step for step in own if step.objects[:1] != thing), *theirs)
+    return tuple(sorted(own, key=in_time))
+
+
+def _moves_it(step: Clause) -> bool:
+    return step.changes and step.possessed
+
+
+def _moving_s(part: Sequence[Clause], thing: tuple[str, ...]) -> float:
+    """For how long something that has a thing moves it [s]."""
+    return sum(
+        step.end_s - step.start_s for step in part if _moves_it(step) and step.objects[:1] == thing
     )
+
+
+def _whole(link: ObservedLink) -> tuple[str | None, str]:
+    """The kind and side of the link of which it is a part; no kind for what is no finger."""
+    wholes = {row["part"]: row["whole"] for row in table("body_parts")}
+    return wholes.get(link.kind.rstrip("0123456789")), link.side
 
 
 def told_in_order(
@@ -30,7 +66,8 @@ def told_in_order(
     for first, second in _pairs(links):
         one = _one_word(told[first], told[second])
         common, left, right = _together(one, _one_word(told[second], one))
-        merged += common
+        both, left, right = _reached_together(common, left, right)
+        merged += common + both
         rest[first], rest[second] = left, right
     every = [*merged, *(each for clauses in rest for each in clauses)]
     return tuple(sorted(every, key=in_time))
@@ -98,6 +135,34 @@ def _together(
     left = [each for index, each in enumerate(first) if index not in used_first]
     right = [each for index, each in enumerate(second) if index not in used_second]
     return common, left, right
+
+
+def _reached_together(
+    common: Sequence[Clause], left: list[Clause], right: list[Clause]
+) -> tuple[list[Clause], list[Clause], list[Clause]]:
+    """Reaching for what both hands do next together, though one comes later, as one clause.
+
+    Returns:
+        Such clauses, and what is left of each hand's.
+    """
+    both: list[Clause] = []
+    for clause in (step for step in common if not step.frees):
+        pair = [_reach_before(clause, rest) for rest in (left, right)]
+        first, second = pair
+        if first is not None and second is not None and first.overlap_s(second) > 0.0:
+            both.append(_both(first, second))
+            left, right = (
+                [step for step in rest if step is not own]
+                for rest, own in zip((left, right), pair, strict=True)
+            )
+    return both, left, right
+
+
+def _reach_before(clause: Clause, rest: Sequence[Clause]) -> Clause | None:
+    """A hand's last own clause before one of both, if it reaches for the same thing."""
+    before = [step for step in rest if step.start_s < clause.start_s]
+    reaches = bool(before) and before[-1].pattern == REACH
+    return before[-1] if reaches and before[-1].objects[:1] == clause.objects[:1] else None
 
 
 def _one_word(first: Sequence[Clause], second: Sequence[Clause]) -> tuple[Clause, ...]:

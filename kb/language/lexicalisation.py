@@ -51,6 +51,9 @@ MOVING = frozenset({"MoveObj", "MoveObjTo"})
 SHIFTED = frozenset({"Slide", "Push", "Pull", "MoveObj"})
 """Names of what moves a thing a little as it is put somewhere."""
 
+PICKED_UP = "Lift"
+"""The name of what takes a thing off what it lay on."""
+
 TRANSPORT = frozenset({"Lift", "Raise", "Carry", "MoveObj", "MoveObjTo"})
 """Names of what brings a thing to where it is put."""
 
@@ -64,6 +67,9 @@ FREE = "move {ee}"
 RUNNING = "keep a hand on {1}"
 """The pattern of a hand that runs over a thing."""
 
+TURN = "turn {1}"
+"""The pattern of a thing that is turned."""
+
 THIS_WAY = "turn {1} about"
 """The pattern of a thing that is turned about in the hand."""
 
@@ -72,6 +78,9 @@ UPSIDE_DOWN, AROUND = "turn {1} upside down", "turn {1} around"
 
 UPRIGHT, BACK_UPRIGHT = "turn {1} upright", "turn {1} back upright"
 """Patterns of a thing that is set on its base; the second where the hand had turned it over."""
+
+TURNED = frozenset({UPSIDE_DOWN, AROUND, UPRIGHT, BACK_UPRIGHT})
+"""Patterns of how a thing is turned, which goes on beside what else is done to it."""
 
 REACH = "reach for {1}"
 """The pattern of a hand that goes to a thing."""
@@ -133,6 +142,12 @@ def built(verb: str, count: int, preposition: str) -> str:
     more = [f"and {{{number}}}" for number in range(3, count + 1)]
     parts = ["{1}"] * (count > 0) + [f"{preposition} {{2}}"] * (count > 1) + more
     return " ".join([verb, *parts])
+
+
+def in_progress(pattern: str) -> str:
+    """The pattern with its verb as what goes on meanwhile: ``turning {1} upside down``."""
+    verb, _, rest = pattern.partition(" ")
+    return f"{verb.removesuffix('e')}ing {rest}".strip()
 
 
 def moves_only(pattern: str) -> bool:

@@ -98,7 +98,7 @@ def _next_part(streams: Streams, lead: tuple[str, ...]) -> Part:
     """What the next sentence tells; it is taken from what is still to be told."""
     waiting = [key for key, rest in streams.items() if rest]
     ees = min(waiting, key=lambda key: in_time(streams[key][0]))
-    if lead in waiting and streams[lead][0].start_s < streams[ees][0].end_s:
+    if lead in waiting and _goes_first(streams[lead][0], streams[ees][0]):
         ees = lead
     own = streams[ees]
     size, count = _repeated(streams, ees, 0)
@@ -117,6 +117,12 @@ def _next_part(streams: Streams, lead: tuple[str, ...]) -> Part:
     ]
     steps = (*taken, *beside)
     return Part(steps, end_s=max(each.end_s for each in steps))
+
+
+def _goes_first(leading: Clause, earliest: Clause) -> bool:
+    """Whether what is to be told first was done beside the earliest deed, with another thing."""
+    meanwhile = leading.start_s < earliest.end_s
+    return meanwhile and leading.objects[:1] != earliest.objects[:1]
 
 
 def _repeated(streams: Streams, ees: tuple[str, ...], at: int) -> tuple[int, int]:
@@ -138,7 +144,7 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
     was told of the first, and when as much was done meanwhile as can stand beside it.
     """
     last, following = taken[-1], streams[ees][0]
-    if _leads_to(last, following):
+    if _leads_to(last, following) or any(following.within(each) for each in taken):
         return False
     if (last.start_s, last.end_s) == (following.start_s, following.end_s):
         return False

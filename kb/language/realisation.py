@@ -2,19 +2,22 @@
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from capar.model.observation import ObservedLink, ObservedObject
 from kb.language.clause import Clause
 from kb.language.free_motion import Reached
-from kb.language.lexicalisation import BIT_BY_BIT, BODILY, STIR, SUSTAINED, in_past
+from kb.language.lexicalisation import BIT_BY_BIT, BODILY, STIR, SUSTAINED, in_past, in_progress
 from kb.language.planning import Part
 from kb.language.vocabulary import SIDES
 from kb.lexicon.english import joined, noun, number, the, times
 
 _ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
 """Places of several objects that a verb has as one."""
+
+FIXED = frozenset({"fixed", "self"})
+"""Tags of what stays where it is, or is the agent's own: ``it`` after that is what was moved."""
 
 
 class Realiser:
@@ -28,7 +31,9 @@ class Realiser:
         self._names = {link.ee: _spoken(link) for link in links}
         self._timed = timed
         self._spans = timed
+        self._fixed = {each.name for each in objects if each.tag in FIXED}
         self._topic = ""
+        self._rivals = set[str]()
         self._several: tuple[str, ...] = ()
         self._ees: tuple[str, ...] = ()
 
@@ -66,7 +71,7 @@ class Realiser:
         """
         if reached:
             parts = [part for each in reached for part in self._there_and_back(each)]
-            return joined([*parts, "touched nothing"])
+            return f"{joined(parts)} without touching anything"
         kinds: dict[str, list[str]] = {}
         for ee in moved:
             kinds.setdefault(self._kinds[ee], []).append(ee)
@@ -76,19 +81,25 @@ class Realiser:
             end_s = max(moved[ee][1] for ee in ees)
             span = f" ({start_s:.2f}–{end_s:.2f} s)" if self._timed else ""
             parts.append(f"moved {self._hands(tuple(ees))}{span}")
-        return joined([*parts, "touched nothing"])
+        return f"{joined(parts)} without touching anything" if parts else "touched nothing"
 
     def _there_and_back(self, reached: Reached) -> list[str]:
         hand, kind = self._hands((reached.ee,)), self._kinds[reached.ee]
         there = f" ({reached.start_s:.2f}–{reached.there_s:.2f} s)" if self._timed else ""
         back = f" ({reached.leaves_s:.2f}–{reached.end_s:.2f} s)" if self._timed else ""
         parts = [f"reached {reached.where} with {hand}{there}"]
-        return [*parts, f"took the {kind} back{back}"] if reached.back else parts
+        verb = f"lowered the {kind} again" if reached.down else f"withdrew the {kind}"
+        return [*parts, f"{verb}{back}"] if reached.back else parts
 
     def _of_agent(self, steps: Sequence[Clause]) -> str:
-        parts = []
-        self._topic, self._several = "", ()
+        parts: list[str] = []
+        self._begin("")
+        last: Clause | None = None
         for step in steps:
+            if last is not None and step.within(last):
+                parts[-1] += self._meanwhile(step)
+                continue
+            last = step
             text = self._verb_phrase(step)
             bodily = step.pattern in BODILY
             told = step.ees == self._ees or "{ee}" in step.pattern or bodily
@@ -109,22 +120,37 @@ class Realiser:
 
     def _of_hand(self, steps: Sequence[Clause], topic: str) -> str:
         """The clauses with their hand as the subject, after something was spoken of."""
-        parts = []
-        self._topic, self._several = topic, ()
+        parts: list[str] = []
+        self._begin(topic)
+        last: Clause | None = None
         hand = self._hands(steps[0].ees)
         self._ees = ()
         for step in steps:
+            if last is not None and step.within(last):
+                parts[-1] += self._meanwhile(step)
+                continue
+            last = step
             own = replace(step, pattern="move away") if "{ee}" in step.pattern else step
             text = self._verb_phrase(own).replace("{with}", "")
             parts.append(f"{text}{self._end(step)}")
         return f"{hand} {joined(parts)}"
+
+    def _begin(self, topic: str) -> None:
+        """Begin to tell what one hand did, after something was spoken of."""
+        self._topic, self._several = topic, ()
+        self._rivals = self._rivals if topic else set()
+
+    def _meanwhile(self, step: Clause) -> str:
+        """How the thing was turned during what was told last."""
+        text = in_progress(step.pattern).replace("{1}", self._mention(step.objects[0], 1))
+        return f", {text}{self._end(step)}"
 
     def _end(self, step: Clause) -> str:
         often = f" {times(step.count)}" if step.count > 1 else ""
         often = f" {step.often}" if step.often else often
         if step.pauses and step.name not in SUSTAINED:
             often += f" {BIT_BY_BIT}"
-        elif step.pauses:
+        elif step.pauses and not self._spans:
             pauses = "a pause" if step.pauses == 1 else f"{number(step.pauses)} pauses"
             often += f"{',' if ' with {' in step.pattern else ''} with {pauses}"
         purpose = f"{often} to {_with_it(step.purpose)}" if step.purpose else often
@@ -146,14 +172,18 @@ class Realiser:
             pattern = _ALL_PLACES.sub("them", pattern)
         self._several = step.objects if _ALL_PLACES.search(pattern) else ()
         filled = pattern.replace("{ee}", self._moved_away(step))
+        self._rivals -= set(_named(pattern, step.objects))
         for place, name in enumerate(step.objects, 1):
             filled = filled.replace(f"{{{place}}}", self._mention(name, place))
+        if "{" in pattern:
+            self._rivals = set(_named(pattern, step.objects[1:], first=2)) - self._fixed
         named = "{1}" in step.pattern or step.objects[:1] == (self._topic,)
         self._topic = step.objects[0] if named and not self._several else ""
         return filled
 
     def _mention(self, name: str, place: int) -> str:
-        return "it" if place == 1 and name == self._topic else the(self._nouns.get(name, name))
+        known = place == 1 and name == self._topic and not self._rivals
+        return "it" if known else the(self._nouns.get(name, name))
 
     def _moved_away(self, step: Clause) -> str:
         if step.ees == self._ees and len(step.ees) == 1:
@@ -175,6 +205,19 @@ def _nouns(objects: Sequence[ObservedObject]) -> dict[str, str]:
     """
     kinds = Counter(each.kind for each in objects)
     return {each.name: each.kind for each in objects if "_" in each.kind and kinds[each.kind] == 1}
+
+
+def _named(pattern: str, objects: Sequence[str], *, first: int = 1) -> Iterator[str]:
+    """The objects that a pattern names, but for what goes along with the first.
+
+    Args:
+        pattern: A pattern.
+        objects: Some of its objects.
+        first: The place of the first of them.
+    """
+    for place, name in enumerate(objects, first):
+        if f"{{{place}}}" in pattern and f"{{1}} with {{{place}}}" not in pattern:
+            yield name
 
 
 def _shared_topic(steps: Sequence[Clause]) -> str:

@@ -6,7 +6,7 @@ from itertools import accumulate
 
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import MOVING, RUNNING, TIPPED
+from kb.language.lexicalisation import MOVING, RUNNING, THIS_WAY, TIPPED, TURN
 from kb.language.thresholds import REST_S, SCRAP_M, SCRAP_S, SETTLING_S, UNSEEN_S
 
 
@@ -14,7 +14,7 @@ def deeds(told: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
     """The clauses of one hand, with segments of one deed as one clause."""
     joined = _resumed(leading_up(_specialised(_resumed(told))))
     found = _resumed(leading_up(_reached(_without_scraps(joined, scene))))
-    return _gripped(_steadied(found))
+    return _gripped(_turned_on(_steadied(found)))
 
 
 def as_segmented(told: Sequence[Clause]) -> tuple[Clause, ...]:
@@ -36,6 +36,25 @@ def _steadied(told: Sequence[Clause]) -> list[Clause]:
         held = last is not None and last.pattern.startswith("hold {1}")
         if last is not None and held and clause.helps and last.objects[:1] == clause.objects[:1]:
             out[-1] = replace(clause, start_s=last.start_s)
+        else:
+            out.append(clause)
+    return out
+
+
+def _turned_on(told: Sequence[Clause]) -> list[Clause]:
+    """The clauses, with what is turned about and then turned on as turned about all the time."""
+    out: list[Clause] = []
+    for clause in told:
+        last = out[-1] if out else None
+        turns = clause.pattern == TURN and clause.changes and clause.possessed
+        if (
+            last is not None
+            and turns
+            and last.pattern == THIS_WAY
+            and last.objects == clause.objects
+            and clause.start_s - last.end_s < SETTLING_S
+        ):
+            out[-1] = replace(last, end_s=clause.end_s, rights=clause.rights)
         else:
             out.append(clause)
     return out

@@ -68,8 +68,8 @@ SWAYING = 0.75
 """A hand that goes less far than this share of what the other goes [1] sways with the body."""
 
 APEX_M = 0.05
-"""A hand is where it reaches while it is no further than this [m] from its furthest: half its
-width."""
+"""A free hand has come back when it is no further than this [m] from where it stays: half its
+width. It is where it reaches while it is within ``STILL_M`` of its furthest."""
 
 ASIDE_SHARE = 0.5
 """A direction counts in words where a way goes along it by more than this share of the whole [1]:
@@ -81,3 +81,7 @@ where that has touched it before or touches it again (``reach_mm``)."""
 
 MOST_DEEDS = 6
 """A summary names at most so many deeds."""
+
+MINOR_SHARE = 0.5
+"""What takes less than this share [1] of the time for which a hand later does the same is not told
+beside it in a summary."""

@@ -102,7 +102,7 @@ def test_what_was_never_tracked_is_said_to_be_lost_throughout_and_once(
 ) -> None:
     place = bundle(0, 10_000)
     told = run("describe", place)
-    assert told.startswith("Anna moved the right hand and touched nothing.")
+    assert told.startswith("Anna moved the right hand without touching anything.")
     line = "note [long-gap]: 'box' was lost throughout; no contact of it is known"
     assert [each for each in told.splitlines() if "lost" in each] == [line]
 

@@ -1,6 +1,11 @@
-"""A summary names few deeds, those that matter, in the order in which they began."""
+"""A summary names few deeds, those that matter, in the order in which they began.
 
-from hypothesis import given
+What is done again is told again only where it takes longer.
+"""
+
+from dataclasses import replace
+
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from kb.language.choosing import chosen
@@ -52,7 +57,33 @@ def test_a_summary_is_short_in_order_and_says_nothing_twice(steps: tuple[Clause,
     assert 0 < len(told) <= MOST_DEEDS
     assert set(told) <= set(steps)
     assert list(told) == sorted(told, key=in_time)
-    assert len({(each.pattern, each.objects) for each in told}) == len(told)
+    for at, step in enumerate(told):
+        same = [each for each in told[:at] if (each.pattern, each.objects) == said_of(step)]
+        assert all(lasts_s(each) < lasts_s(step) for each in same)
+
+
+@given(done())
+def test_what_took_longest_is_told(steps: tuple[Clause, ...]) -> None:
+    assume(len(steps) <= MOST_DEEDS)
+    told = [(each.ees, each.grip, said_of(each)) for each in chosen(steps)]
+    longest = max(steps, key=lasts_s)
+    assert (longest.ees, longest.grip, said_of(longest)) in told
+
+
+def test_the_same_for_much_longer_is_told_instead_and_for_longer_too() -> None:
+    short, longer = deed("Turn", 0.0, 1.0), deed("Turn", 5.0, 6.5, grip=1)
+    longest = deed("Turn", 9.0, 13.0, grip=2)
+    assert chosen((short, longer)) == (short, longer)
+    assert chosen((short, longest)) == (longest,)
+    assert chosen((longest, replace(short, start_s=20.0, end_s=21.0, grip=3))) == (longest,)
+
+
+def said_of(step: Clause) -> tuple[str, tuple[str, ...]]:
+    return step.pattern, step.objects
+
+
+def lasts_s(step: Clause) -> float:
+    return step.end_s - step.start_s
 
 
 def test_what_leads_to_a_deed_and_what_is_on_the_way_goes_first() -> None:

@@ -245,4 +245,4 @@ def test_several_things_touched_at_once_are_them() -> None:
 def test_a_hand_that_moves_and_touches_nothing_is_told() -> None:
     free = {ee: (Piece("PostureChange", 50, ()),) for ee in ("right_hand", "left_hand")}
     seen = observation("Wave", free, (MUG,), frames=51, rate_hz=100.0)
-    assert describe(seen) == "The agent moved both hands and touched nothing."
+    assert describe(seen) == "The agent moved both hands without touching anything."

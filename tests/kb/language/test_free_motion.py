@@ -60,8 +60,8 @@ def told(way: Sequence[float], facing: float = 0.0, *, back: bool = True) -> str
 def test_a_reach_has_its_direction(way: tuple[float, ...], words: str) -> None:
     text = told(way)
     assert text.startswith(f"The agent reached {words} with the right hand (0.50–")
-    assert "took the hand back" in text
-    assert text.endswith("and touched nothing.")
+    assert ("and lowered the hand again (" if way[2] > 0.0 else "and withdrew the hand (") in text
+    assert text.endswith(" s) without touching anything.")
 
 
 def test_a_hand_that_gets_above_the_head_is_told_to() -> None:
@@ -73,8 +73,8 @@ def test_a_hand_that_stays_there_does_not_come_back() -> None:
 
 
 def test_a_hand_that_hardly_goes_reaches_nowhere() -> None:
-    assert (
-        told((0.1, 0.0, 0.0)) == "The agent moved the right hand (0.50–2.50 s) and touched nothing."
+    assert told((0.1, 0.0, 0.0)) == (
+        "The agent moved the right hand (0.50–2.50 s) without touching anything."
     )
 
 

@@ -93,6 +93,11 @@ def test_what_is_not_to_and_fro_is_done_bit_by_bit_where_it_pauses() -> None:
     assert _handled("Turn", "Touch", "Turn") == " and turned it bit by bit."
 
 
+def test_a_summary_leaves_pauses_out() -> None:
+    summary = _handled("Shake", "Touch", "Shake", detail="summary")
+    assert summary == "The agent shook the mug with the right hand."
+
+
 @given(st.lists(st.sampled_from(MANY), min_size=1, max_size=12))
 def test_no_verb_is_left_untold(names: list[str]) -> None:
     told = _handled(*names) + _handled(*names, detail="summary")

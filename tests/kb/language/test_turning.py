@@ -5,6 +5,7 @@ from dataclasses import replace
 from hypothesis import given
 from hypothesis import strategies as st
 from observations import MUG, Piece, observation
+from tellings import steps_of
 
 from capar.model.facts import Posture, Travelled
 from capar.model.par import FeatureSet
@@ -63,6 +64,14 @@ def test_what_faces_another_way_is_turned_around_and_what_is_moved_aside_is_turn
 def test_what_is_lifted_and_turned_over_is_both() -> None:
     text = told("Lift", (0.0, 0.0), (3.0, 0.0))
     assert text.startswith("lifted the mug with the right hand (0.00–1.00 s) and turned it upside")
+
+
+def test_what_is_turned_over_while_it_is_lifted_is_told_beside_it() -> None:
+    text = told("Lift", (0.0, 0.0), (0.0, 0.0), (3.0, 0.0), (3.0, 0.0))
+    assert text == (
+        "lifted the mug with the right hand (0.00–3.00 s), turning it upside down (1.00–2.00 s)."
+    )
+    assert [step.call.action for step in steps_of(f"The agent {text}")] == ["Lift", "Turn"]
 
 
 def test_what_turns_much_and_ends_as_it_was_is_turned_about() -> None:
