@@ -130,6 +130,10 @@ class Derivations:
         for name in predicates:
             yield from map(str, self.named.get(name, ()))
 
+    def holds(self, atom: str) -> bool:
+        """Whether a rule derived an atom."""
+        return any(str(each) == atom for each in self.named.get(atom.partition("(")[0], ()))
+
     def why(self, atom: str) -> Grounds:
         """The derivation tree of an atom.
 

@@ -169,6 +169,8 @@ class Explainer:
         def tell(atom: str) -> list[str]:
             if atom.startswith("feature("):
                 return briefs.clauses(bit(top, atom, clock))
+            if not derived.holds(atom):
+                return []  # it was measured
             return briefs.first(self._reason(derived.why(atom), clock, {}))
 
         return contrasts(self.base, name, derived, clock, tell)

@@ -184,14 +184,18 @@ def features_in_words(known: Known, *told: str) -> bool:
 
 
 def _strings(known: Known, objects: Sequence[str], told: Sequence[str]) -> list[str]:
-    """The four strings of bits that lists of pairs and of things say of these objects."""
+    """The four strings of bits that lists of pairs and of things say of these objects.
+
+    Raises:
+        ValueError: They list something else.
+    """
     names = [each.replace("_", " ") for each in objects]
     hand = known.segment.ee.replace("_", " ")
     pairs = [f"{hand} with {each}" for each in names]
     pairs += [f"{names[0]} with {each}" for each in names[1:]]
     lists = [[] if each == "none" else each.split(", ") for each in told]
-    assert all(set(each) <= {*pairs} for each in lists[:2])
-    assert all(set(each) <= {*names} for each in lists[2:])
+    if not all({*each} <= {*pairs, *names} for each in lists):
+        raise ValueError(told)
     return [
         "".join(str(int(one in each)) for one in every)
         for each, every in zip(lists, (pairs, pairs, names, names), strict=True)
