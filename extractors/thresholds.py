@@ -2,8 +2,9 @@
 
 Not here, as they are limits of a method and no decision about motion: ``APPROACH_S`` in
 ``motion/impacts.py``, the span that the low-pass filter blurs, over which the speed of a blow is
-taken; and ``FEWEST_FRAMES`` in ``relations/grips.py``, the fewest samples in which two pauses
-can be found.
+taken, and ``LATE_S`` and ``SWING_S`` beside it, by how much that blur shifts it; ``ASIDE_S`` in
+``contact/passing.py``, over which a passing body's way is taken; and ``FEWEST_FRAMES`` in
+``relations/grips.py``, the fewest samples in which two pauses can be found.
 """
 
 from dataclasses import dataclass

@@ -10,7 +10,7 @@ from pyoxigraph import Literal, NamedNode, Quad
 from capar.model.declarations import Observed
 from capar.model.facts import ALL_FACT_KINDS, Fact
 from kb.encode.bodies import Bodies
-from kb.encode.facts import Scene, facts
+from kb.encode.facts import Scene, facts, rate_of
 from kb.encode.scene import UNNAMED
 from kb.encode.segments import BROADER
 from kb.lookup.facts import in_order
@@ -137,9 +137,9 @@ def _facts_of(store: Store, name: str) -> list[Quad]:
     graph = names.observation(name)
     out = Statements(graph)
     ((duration, frames),) = store.ask(_asked(_CLOCK, graph)).rows
-    frame_s = float(_text(duration)) / max(int(_text(frames)) - 1, 1)
-    scene = Scene(_bodies(store, out), _agents(store), frame_s)
     found = tuple(_old_facts(store, graph))
+    rate_hz = rate_of(found, frames=int(_text(frames)), duration_s=float(_text(duration)))
+    scene = Scene(_bodies(store, out), _agents(store), rate_hz)
     out.add(graph, (), {CAPAR.fact: facts(out, in_order(list(found)), scene)})
     return out.quads
 

@@ -1,5 +1,6 @@
 """A namespace that is closed: a misspelt term is an error."""
 
+from inspect import get_annotations
 from typing import Any
 
 from pyoxigraph import NamedNode
@@ -24,8 +25,14 @@ class Closed(type):
         """
         if name.startswith("__"):
             raise AttributeError(name)
-        if name not in cls.__annotations__:
-            raise UnknownNameError("term of the ontology", name, cls.__annotations__)
+        known = names(cls)
+        if name not in known:
+            raise UnknownNameError("term of the ontology", name, known)
         term = NamedNode(BASE + name)
         setattr(cls, name, term)
         return term
+
+
+def names(namespace: type) -> tuple[str, ...]:
+    """The names of a closed namespace, sorted: its own and those that it takes from others."""
+    return tuple(sorted(name for base in namespace.__mro__ for name in get_annotations(base)))

@@ -6,10 +6,11 @@ from functools import cache
 
 from pyoxigraph import NamedNode
 
-from ontology.closed import Closed
+from ontology.closed import names
+from ontology.fact_kinds import FactKinds
 
 
-class CAPAR(metaclass=Closed):
+class CAPAR(FactKinds):
     """Every term of the ontology's files, file by file."""
 
     # agents.ttl
@@ -244,54 +245,6 @@ class CAPAR(metaclass=Closed):
     InstantFact: NamedNode
     SampledFact: NamedNode
     SceneFact: NamedNode
-    FramesFact: NamedNode
-    RateFact: NamedNode
-    LinkFact: NamedNode
-    TagFact: NamedNode
-    Belonging: NamedNode
-    ForceTransfer: NamedNode
-    Intended: NamedNode
-    SolidObject: NamedNode
-    ShapelessObject: NamedNode
-    GuidedObject: NamedNode
-    ZeroCrossings: NamedNode
-    Places: NamedNode
-    TrunkPlaces: NamedNode
-    Ways: NamedNode
-    Postures: NamedNode
-    Distances: NamedNode
-    SweptAzimuths: NamedNode
-    Openings: NamedNode
-    Pause: NamedNode
-    Reversal: NamedNode
-    DrawingBack: NamedNode
-    Touching: NamedNode
-    Moving: NamedNode
-    LookingAt: NamedNode
-    Displacement: NamedNode
-    Resting: NamedNode
-    Phase: NamedNode
-    Swinging: NamedNode
-    LengthwiseSwinging: NamedNode
-    Leaning: NamedNode
-    Flying: NamedNode
-    Rolling: NamedNode
-    Travelling: NamedNode
-    Seat: NamedNode
-    WeightBearing: NamedNode
-    Arrangement: NamedNode
-    PlaceBetween: NamedNode
-    CoMotion: NamedNode
-    FlickerCorrection: NamedNode
-    MovedBy: NamedNode
-    Gap: NamedNode
-    ContactNormal: NamedNode
-    PressDirection: NamedNode
-    SightNormal: NamedNode
-    Riding: NamedNode
-    ClosingSpeed: NamedNode
-    ReleaseSpeed: NamedNode
-    Passage: NamedNode
     fact: NamedNode
     samples: NamedNode
     time: NamedNode
@@ -399,4 +352,4 @@ class CAPAR(metaclass=Closed):
 @cache
 def terms() -> tuple[str, ...]:
     """Names of every term, sorted."""
-    return tuple(sorted(CAPAR.__annotations__))
+    return names(CAPAR)

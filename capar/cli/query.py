@@ -76,6 +76,7 @@ def query(
     given = _given(parameters or [])
     raw = _raw(question)
     text = _text(question, raw, given)
+    _warn_of_unknown_terms(raw or "")
     from kb import Actionary
     from kb.queries.questions import check_known
     from kb.queries.questions import question as named
@@ -85,7 +86,23 @@ def query(
         answer = store.ask_within(text, seconds=time_limit)
         if raw is None and not answer.rows:
             check_known(store, named(question), given)
+            _tell_none(store, chosen)
     _print(answer, chosen)
+
+
+def _warn_of_unknown_terms(query: str) -> None:
+    from kb.store.sparql import unknown_terms
+
+    for sentence in unknown_terms(query):
+        typer.echo(f"warning: {sentence}", err=True)
+
+
+def _tell_none(store: "Store", chosen: str) -> None:
+    """Say that an empty answer is one, and of how many segments; not in other formats."""
+    from kb.queries.questions import counted_segments
+
+    if chosen == "table":
+        typer.echo(f"nothing found among {counted_segments(store)}", err=True)
 
 
 def _corrected(store: "Store") -> "Store":

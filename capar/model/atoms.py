@@ -101,6 +101,12 @@ def _kinds(cls: Any) -> tuple[type, ...]:
     return tuple(hints[each.name] for each in fields(cls))
 
 
+def signatures(facts: Iterable[Fact]) -> frozenset[tuple[str, int]]:
+    """The predicates of the facts, each with its number of arguments."""
+    kinds: set[Any] = {type(fact) for fact in facts}
+    return frozenset((kind.predicate, len(arguments(kind))) for kind in kinds)
+
+
 def program(facts: "tuple[Fact, ...]") -> str:
     """The facts as a logic program, one a line, in their order.
 

@@ -33,7 +33,7 @@ _INDENT = 3
 """Indentation of the entries of a comment; continuation lines are indented further."""
 
 
-ALL_FACT_KINDS = (
+STATED = (
     ("verb(Name, Verb)", "a rule file may state it: the English verb for the primitive"),
     ("sense(Name, Number)", "a rule file may state it: which of the verb's senses in WordNet"),
     ("levin(Name, Class)", "a rule file may state it: the verb class in Levin's book, as text"),
@@ -207,7 +207,7 @@ def glossary(rules: Profile) -> Glossary:
     words = [word for each in ordered for word in words_of_file(Path(each))]
     stated = [
         Word("any rule file", 0, text.partition("(")[0], tuple(split_arguments(text)), meaning)
-        for text, meaning in ALL_FACT_KINDS
+        for text, meaning in STATED
     ]
     explained = {each.signature for each in (*words, *stated)}
     internal = {

@@ -12,7 +12,6 @@ NUMBERED: Mapping[str, frozenset[str]] = {
     "within": frozenset({"touching"}),
     "moves_between": frozenset({"moving"}),
     "moves_during": frozenset({"touching", "moving"}),
-    "crossing_near": frozenset({"zero_crossing"}),
     "free_between": frozenset({"touching"}),
     "undisturbed": frozenset({"resting"}),
     "shares": frozenset({"touching"}),

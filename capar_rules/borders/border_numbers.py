@@ -24,7 +24,6 @@ from capar.model.facts import (
 from capar_rules.borders.motion_borders import Edge, as_borne, by_pair, edges, landings, true_ends
 from capar_rules.borders.shared_contacts import by_object, overlapping, shared
 from capar_rules.borders.spans import Stretches
-from capar_rules.borders.ticks import CrossingNear as CrossingNear
 from capar_rules.borders.ticks import FreeBetween as FreeBetween
 from capar_rules.borders.ticks import LastTick as LastTick
 from capar_rules.borders.ticks import Meanwhile as Meanwhile
@@ -160,7 +159,6 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
         pairs = overlapping(own, others_too)
         yield from shared(ee, ticks, pairs, rate_hz=scene.rate)
         yield from _within(ee, ticks, (), sorted({each for _, each in pairs}))
-    yield from _confirmed(ee, ticks, crossings, in_frames(times().confirming_ms, scene.rate))
 
 
 def _reach(own: Iterable[Touching], margin: int) -> dict[str, list[tuple[int, int]]]:
@@ -215,12 +213,3 @@ def _moves(ee: str, ticks: list[int], moves: dict[str, list[Moving]]) -> Iterabl
         if 0 <= gap < len(ticks) - 1
     }
     return (MovesBetween(ee, name, gap) for name, gap in sorted(found))
-
-
-def _confirmed(ee: str, ticks: list[int], crossings: list[int], reach: float) -> Iterable[Fact]:
-    for index, frame in enumerate(ticks):
-        place = bisect_left(crossings, frame)
-        near = crossings[max(place - 1, 0) : place + 1]
-        best = min(near, key=lambda at: (abs(at - frame), at), default=None)
-        if best is not None and abs(best - frame) <= reach:
-            yield CrossingNear(ee, index, best)

@@ -68,16 +68,6 @@ class FreeBetween(Fact):
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class CrossingNear(Fact):
-    """The zero crossing nearest to a tick, where one is near."""
-
-    predicate = "crossing_near"
-    ee: str
-    tick: int
-    frame: int
-
-
-@dataclass(frozen=True, slots=True, order=True)
 class Shares(Fact):
     """Another end-effector touched the object before this one did, or does so after it."""
 

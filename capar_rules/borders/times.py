@@ -16,7 +16,6 @@ class Times:
 
     merge_ms: int
     margin_ms: int
-    confirming_ms: int
     settled_ms: int
     flicker_ms: int
     flicker_window_ms: int

@@ -5,17 +5,23 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from hashlib import sha256
 from importlib import resources
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 
 import clingo
 
+from capar.model.atoms import signatures
 from capar.model.errors import RuleError
 from capar.model.facts import Fact, program
 from capar.model.names import NAME
+from capar_rules.engine.programs import RuleBase
 
 BLOCK_FACTS = 4096
 """How many facts are given to the solver as one text [1]."""
+
+OFTEN = 2
+"""How often rules are loaded whole, and all remarks of the solver heard, before they are reduced to
+what the facts can reach; reading them for that takes as long as five answers [1]."""
 
 Term = int | str | tuple["Term", ...]
 """A value of the rules: a number, a name or text, or a compound as (functor, arguments...)."""
@@ -51,7 +57,7 @@ def solve(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     Raises:
         RuleError: The solver has a remark of any kind, or there is no answer, or more than one.
     """
-    return _answer(_grounded(files, _texts(facts), "--models=2"))
+    return _answer(_grounded(tuple(files), facts, "--models=2"))
 
 
 def best(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
@@ -63,7 +69,7 @@ def best(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     Raises:
         RuleError: The solver has a remark of any kind, or there is no answer.
     """
-    control = _grounded(files, _texts(facts), "--opt-strategy=usc,stratify")
+    control = _grounded(tuple(files), facts, "--opt-strategy=usc,stratify")
     found: list[Answer] = []
     control.solve(on_model=lambda model: found.append(_shown(model)))
     if not found:
@@ -71,11 +77,8 @@ def best(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     return found[-1]
 
 
-def _texts(facts: str | Iterable[Fact]) -> Iterator[str]:
+def _texts(facts: Iterable[Fact]) -> Iterator[str]:
     """The facts as programs of so many at a time: one text of them all takes more than they do."""
-    if isinstance(facts, str):
-        yield facts
-        return
     waiting = iter(facts)
     while block := tuple(islice(waiting, BLOCK_FACTS)):
         yield program(block)
@@ -129,17 +132,21 @@ def _read(path: Path, changed_ns: int, size: int) -> tuple[bytes, tuple[Path, ..
 _CONTRADICTION = "the rules contradict each other over these facts: they have no answer"
 
 
-def _grounded(files: Iterable[Path], texts: Iterable[str], option: str) -> clingo.Control:
+def _grounded(files: Iterable[Path], facts: str | Iterable[Fact], option: str) -> clingo.Control:
     messages: list[str] = []
 
     def note(_: clingo.MessageCode, message: str) -> None:
         messages.append(message.strip())
 
+    loaded, texts = _program(tuple(files), facts)
     # Every rule file includes what it reads, so that a file is named twice is no fault.
     options = [option, "--warn=no-file-included"]
+    if not loaded:
+        # What rules without an instance would define is undefined where they are left out.
+        options.append("--warn=no-atom-undefined")
     control = clingo.Control(options, logger=note, message_limit=100)
     try:
-        for path in files:
+        for path in loaded:
             control.load(str(path))
         for text in texts:
             control.add("base", [], text)
@@ -149,6 +156,30 @@ def _grounded(files: Iterable[Path], texts: Iterable[str], option: str) -> cling
     if messages:
         raise RuleError("\n".join(messages))
     return control
+
+
+def _program(
+    files: tuple[Path, ...], facts: str | Iterable[Fact]
+) -> tuple[tuple[Path, ...], Iterator[str]]:
+    """Files to load, and texts to add: rules that are asked often are a text instead of files."""
+    if isinstance(facts, str):
+        return files, iter([facts])
+    facts = tuple(facts)
+    base = _rule_base(files, _state(files))
+    base.asked += 1
+    if base.asked <= OFTEN:
+        return files, _texts(facts)
+    return (), chain([base.program(signatures(facts))], _texts(facts))
+
+
+def _state(files: tuple[Path, ...]) -> tuple[bytes, ...]:
+    return tuple(_contents(files).values())
+
+
+@lru_cache(maxsize=16)
+def _rule_base(files: tuple[Path, ...], state: tuple[bytes, ...]) -> RuleBase:
+    """The rules of files while these hold what they do."""
+    return RuleBase(files)
 
 
 def _answer(control: clingo.Control) -> Answer:

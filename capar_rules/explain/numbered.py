@@ -17,8 +17,8 @@ WINDOW = "W_"
 NUMBERS = "window_number"
 """The predicate of the numbers themselves."""
 
-MEASURED = {(each.predicate, len(fields(each))) for each in ALL_FACT_KINDS}
-"""Predicates of measured facts, which a rule file may state too."""
+FACTS = {(each.predicate, len(fields(each))) for each in ALL_FACT_KINDS}
+"""Predicates of facts, which a rule file may state too: measured, corrected, what moves what."""
 
 _ATOM = re.compile(r"((?:not )*)(\w+)(?:\((.*)\))?", re.DOTALL)
 
@@ -29,7 +29,7 @@ class Numbering:
     def __init__(self, statements: Iterable[Statement]) -> None:
         rules = [each for each in statements if each.kind == "rule"]
         derived = {head.signature for each in rules if each.body for head in each.heads}
-        self.same = {head.signature for each in rules for head in each.heads} - derived - MEASURED
+        self.same = {head.signature for each in rules for head in each.heads} - derived - FACTS
         """Predicates that are stated in the rules alone, and are the same in every window."""
 
     def rule(self, statement: Statement) -> str:

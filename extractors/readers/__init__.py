@@ -1,1 +1,1 @@
-"""Every file format that motion is read from, one module each."""
+"""Captures read from files: bundles and their schema, formats, drafts, and names of joints."""

@@ -15,7 +15,7 @@ from pyoxigraph import Literal, NamedNode
 
 from capar.model.declarations import Observed, Span
 from capar.model.fact_intervals import FactIntervals
-from capar.model.facts import MovedBy
+from capar.model.facts import MovedBy, RateMhz
 from kb.encode.bodies import Bodies
 from kb.store import names
 from kb.store.statements import PropertyValues, Statements, Value
@@ -35,11 +35,11 @@ UNMOVED = "unknown"
 
 @dataclass(frozen=True)
 class Scene:
-    """What facts refer to: bodies, agents, and how long a frame lasts [s]."""
+    """What facts refer to: bodies, agents, and the rate, by which segments have their times too."""
 
     bodies: Bodies
     agents: Mapping[str, NamedNode]
-    frame_s: float
+    rate_hz: float
 
 
 @dataclass(frozen=True)
@@ -64,6 +64,12 @@ def _form(kind: Any) -> FactForm:
     cls, *predicates = (getattr(CAPAR, each) for each in declared.rdf)
     named = [each.name for each in fields(kind) if not declared.sampled or each.type is str]
     return FactForm(cls, dict(zip(named, predicates, strict=False)), declared.powers)
+
+
+def rate_of(stated: "tuple[Fact, ...]", *, frames: int, duration_s: float) -> float:
+    """The rate that the facts state [Hz], else that of so many frames in so long a time."""
+    stated_hz = (each.rate / 1000.0 for each in stated if isinstance(each, RateMhz))
+    return next(stated_hz, 0.0) or max(frames - 1, 1) / (duration_s or 1.0)
 
 
 def facts(out: Statements, stated: "tuple[Fact, ...]", scene: Scene) -> list[NamedNode]:
@@ -116,11 +122,11 @@ def _times(fact: Observed, scene: Scene, intervals: FactIntervals) -> PropertyVa
         return {}
     first, last = interval
     if fact.declaration.span is Span.INSTANT:
-        return {CAPAR.time: first * scene.frame_s}
+        return {CAPAR.time: first / scene.rate_hz}
     return {
         CAPAR.lastFrame: last,
-        CAPAR.start: first * scene.frame_s,
-        CAPAR.end: last * scene.frame_s,
+        CAPAR.start: first / scene.rate_hz,
+        CAPAR.end: last / scene.rate_hz,
     }
 
 

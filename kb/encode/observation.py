@@ -40,8 +40,10 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
     links = scene.links(out, observation, agents)
     objects = scene.objects(out, observation)
     bodies = Bodies(out, objects, links)
-    frame_s = observation.duration_s / max(observation.frames - 1, 1)
-    world = facts.Scene(bodies, agents, frame_s)
+    rate_hz = facts.rate_of(
+        observation.facts, frames=observation.frames, duration_s=observation.duration_s
+    )
+    world = facts.Scene(bodies, agents, rate_hz)
     called = name or observation.complex_par.name or observation.capture
     complex_pars.complex_par(out, observation, called)
     base = rules.rule_base(out, observation)

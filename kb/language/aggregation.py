@@ -4,28 +4,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import groupby
 
-from kb.language.clauses import Clause, in_time
-from kb.language.lexicalisation import JOINT
-from kb.language.repeating import grips, leading_up, more_of, repetition, whole
+from kb.language.clause import Clause, in_time
+from kb.language.lexicalisation import JOINT, THIS_WAY
+from kb.language.repeating import leading_up, more_of, repetition, whole
 
 MOST_VERBS = 4
 """The most verbs that share their object."""
 
 RECALLED = 2
 """After how many other clauses one that says the same is no longer said to be done again."""
-
-
-def summed(told: Sequence[Clause]) -> tuple[Clause, ...]:
-    """What one hand changed, in which each verb of much handling in a grip stands once.
-
-    Each has the number of times that it was done, and what was done as often is joined.
-    """
-    out: list[Clause] = []
-    for grip in grips(told):
-        out += _plain_runs(
-            [each for each in grip if each.changes or not each.known or each.helps], _summed_run
-        )
-    return tuple(out)
 
 
 def edited(steps: Sequence[Clause]) -> tuple[Clause, ...]:
@@ -120,22 +107,6 @@ def _sharing(group: Sequence[Clause]) -> list[Clause]:
     return [whole(group, pattern=f"{JOINT.join(map(_verb, group))} {{1}}")]
 
 
-def _summed_run(run: list[Clause]) -> list[Clause]:
-    """Many clauses of one thing as few that say each verb once, with how often it was done."""
-    if len(run) <= MOST_VERBS:
-        return list(run)
-    often: dict[str, int] = {}
-    for clause in run:
-        often[_verb(clause)] = often.get(_verb(clause), 0) + clause.count
-    alike: dict[int, list[str]] = {}
-    for verb, count in often.items():
-        alike.setdefault(count, []).append(verb)
-    return [
-        whole(run, count=count, pattern=f"{JOINT.join(verbs)} {{1}}")
-        for count, verbs in alike.items()
-    ]
-
-
 def _again(told: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses, with what a hand did shortly before said to be done again."""
     out: list[Clause] = []
@@ -150,4 +121,6 @@ def _again(told: Sequence[Clause]) -> tuple[Clause, ...]:
 def _same_deed(one: Clause, other: Clause) -> bool:
     if one.pattern == other.pattern:
         return one.objects == other.objects
+    if THIS_WAY in (one.pattern, other.pattern):
+        return False
     return more_of(one, other) or more_of(other, one)

@@ -1,133 +1,91 @@
 """Segments as clauses: what each says, of which objects, with which hand, to which end."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import zip_longest
 
 from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import Ipar, Motion
+from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import HELPS, MOMENTARY, QUIET, SOMEONE, STAYING, Phrasebook
-from kb.lexicon.english import joined, words_of
-from kb.lexicon.links import motion_senses
-from kb.lexicon.wordnet import wordnet
-
-
-@dataclass(frozen=True)
-class Clause:
-    """One thing that was done."""
-
-    pattern: str
-    """``put {1} on {2}``: places for objects, and ``{ee}`` for the hand."""
-
-    objects: tuple[str, ...]
-    ees: tuple[str, ...]
-    """The end-effectors that do it, sorted: one, or both hands."""
-
-    start_s: float
-    end_s: float
-    changes: bool
-    """Whether it changes the world: moves something, strikes it, or is the end itself."""
-
-    purpose: str = ""
-    """What it was done for, in words, where nothing else says it: ``pour``."""
-
-    known: bool = True
-    count: int = 1
-    """How often it was done on end."""
-
-    often: str = ""
-    """How often in other words: ``again``."""
-
-    pauses: int = 0
-    """How often it was interrupted for so long that people notice it."""
-
-    name: str = ""
-    """The primitive that it says."""
-
-    general: tuple[str, ...] = ()
-    """What the primitive specialises, nearest first."""
-
-    goes_on: bool = False
-    """Whether the end-effector touches the same at its end as at its beginning."""
-
-    possessed: bool = False
-    """Whether the end-effector possesses the first object."""
-
-    grip: int = 0
-    """How often the end-effector had come to a thing, or left one, when it was done."""
-
-    rights: bool = False
-    """Whether it ends as the first object is turned upright again."""
-
-    @property
-    def quiet(self) -> bool:
-        """Whether it describes the hand alone."""
-        return self.pattern in QUIET
-
-    @property
-    def comes(self) -> bool:
-        """Whether the end-effector comes to the first object in it."""
-        return not self.goes_on and not self.possessed and not self.frees
-
-    @property
-    def frees(self) -> bool:
-        """Whether the end-effector leaves the first object in it."""
-        return self.pattern in MOMENTARY or self.pattern.startswith("take {ee}")
-
-    @property
-    def holds(self) -> bool:
-        """Whether the end-effector only stays at the first object in it."""
-        stays = not STAYING.isdisjoint((self.name, *self.general))
-        return stays and self.goes_on and not (self.changes or self.purpose or self.quiet)
-
-    @property
-    def helps(self) -> bool:
-        """Whether it moves nothing and yet is a part of what was done."""
-        return self.pattern in HELPS
-
-    @property
-    def signature(self) -> tuple[object, ...]:
-        """What makes two clauses say the same but for hands and times."""
-        return self.pattern, self.objects, self.purpose, self.count, self.often, self.pauses
-
-    def overlap_s(self, other: "Clause") -> float:
-        """For how long both go on [s]."""
-        return min(self.end_s, other.end_s) - max(self.start_s, other.start_s)
-
-
-def in_time(clause: Clause) -> tuple[float, float, tuple[str, ...]]:
-    """The key by which clauses are sorted."""
-    return clause.start_s, clause.end_s, clause.ees
+from kb.language.holding import Handled, Holding
+from kb.language.lexicalisation import (
+    GIVEN,
+    HELPS,
+    MOMENTARY,
+    QUIET,
+    SOMEONE,
+    TO_THE_OTHER,
+    Phrasebook,
+)
+from kb.language.purposes import purposeful, with_purposes
+from kb.language.turning import Turning
+from kb.lexicon.english import joined
 
 
 def clauses(
-    observation: Observation, link: ObservedLink, book: Phrasebook, scene: Scene
+    observation: Observation,
+    link: ObservedLink,
+    book: Phrasebook,
+    scene: Scene,
+    turning: Turning,
+    holding: Holding | None,
 ) -> tuple[Clause, ...]:
-    """What one link did, in order; free motion that touches nothing is left out."""
+    """What one link did, in order; free motion that touches nothing is left out.
+
+    Args:
+        observation: What was understood of a capture.
+        link: One of its links.
+        book: How primitives are said.
+        scene: Its measured contacts.
+        turning: How its objects are turned.
+        holding: What its hands move, and when things change hands; None to tell segments alone.
+    """
     ipars = {(each.ee, each.start_s): each for each in observation.ipars}
     names = {each.name for each in observation.segments}
     carried = scene.carried_on(link)
-    found: list[tuple[Segment, Clause]] = []
+    found: list[Handled] = []
     held = False
     before: Segment | None = None
     for segment in link.segments:
         held = segment.possessed or (held and _same_dominant(before, segment))
-        if segment.objects and segment.index not in carried:
-            last = found[-1][0] if found else None
+        untold = segment.name == "Receive" and _given(segment, holding)
+        if segment.objects and not untold:
+            last = found[-1].segment if found else None
             ipar = ipars.get((segment.ee, segment.start_s))
-            cases = _cases(segment, last, scene, ipar, held=held)
+            cases = _cases(segment, last, scene, ipar, turning, held=held)
             clause = _clause(segment, before, book, cases, names)
             if SOMEONE in clause.pattern:
                 named = clause.pattern.replace(SOMEONE, scene.taker(segment) or SOMEONE)
                 clause = replace(clause, pattern=named)
-            found.append((segment, clause))
+            if holding is not None:
+                clause = _when_it_was(segment, clause, holding)
+            found.append(Handled(segment, clause))
         before = segment
+    if holding is not None:
+        found = holding.kept(link, found)
+    found = [each for each in found if each.clause.possessed or each.segment.index not in carried]
     found = [
-        (segment, _to_the_mouth(clause, later))
+        Handled(segment, _to_the_mouth(clause, later))
         for (segment, clause), later in zip_longest(found, (clause for _, clause in found[1:]))
     ]
-    return _with_purposes(found, names)
+    return with_purposes(found, names)
+
+
+def _given(segment: Segment, holding: Holding | None) -> bool:
+    """Whether it is told as the other hand's giving."""
+    return holding is not None and holding.received(segment)
+
+
+def _when_it_was(segment: Segment, clause: Clause, holding: Holding) -> Clause:
+    """The clause at the moment at which the thing leaves the hand, or while it changes hands."""
+    if clause.pattern not in MOMENTARY:
+        return clause
+    span = holding.passed(segment) if clause.pattern == GIVEN else None
+    if span is not None:
+        return replace(clause, pattern=TO_THE_OTHER, start_s=span.start_s, end_s=span.end_s)
+    left_s = holding.released_s(segment)
+    return replace(clause, start_s=left_s, end_s=left_s)
 
 
 def _to_the_mouth(clause: Clause, later: Clause | None) -> Clause:
@@ -159,7 +117,13 @@ def _same_dominant(before: Segment | None, segment: Segment) -> bool:
 
 
 def _cases(
-    segment: Segment, before: Segment | None, scene: Scene, ipar: Ipar | None, *, held: bool
+    segment: Segment,
+    before: Segment | None,
+    scene: Scene,
+    ipar: Ipar | None,
+    turning: Turning,
+    *,
+    held: bool,
 ) -> set[str]:
     motion = ipar.core.motion if ipar else Motion.NONE
     cases = {"held"} if held else set()
@@ -169,6 +133,8 @@ def _cases(
         cases.add("steadies")
     if motion in {Motion.ROTATION, Motion.BOTH}:
         cases.add("tilts" if motion is Motion.BOTH else "turns")
+    if segment.possessed and turning.this_way_and_that(segment):
+        cases.add("wrung")
     if len(segment.objects) < 2:
         return cases | {"alone"}
     thing, other = segment.objects[:2]
@@ -210,7 +176,7 @@ def _clause(
     if not segment.known:
         return _unknown(segment)
     pattern = book.pattern(segment.name, segment.general, cases, len(segment.objects))
-    pattern = _deed(segment, before, cases, names) or pattern
+    pattern = purposeful(segment, before, cases, names) or pattern
     objects = segment.objects
     if _touches_several(segment) and "{2}" not in pattern:
         objects = tuple(sorted(objects))
@@ -267,68 +233,3 @@ def _unknown(segment: Segment) -> Clause:
         changes=True,
         known=False,
     )
-
-
-def _deed(segment: Segment, before: Segment | None, cases: set[str], names: set[str]) -> str:
-    """The purpose itself, where a thing that was brought to its place for it is moved there.
-
-    At the agent's own body that needs no object (``drank``); else only verbs of two words, which
-    take up what is moved (``picked it up``), are certain to have it as their object.
-    """
-    stays = segment.features.rel_start == segment.features.rel_end
-    moves = "1" in segment.features.change_loc and segment.features.count > 1
-    prepared = (
-        before is not None
-        and before.purpose == segment.purpose
-        and before.objects == segment.objects
-    )
-    verb = _purpose_verb(segment.purpose, names)
-    if not (verb and stays and moves and prepared):
-        return ""
-    if "self" in cases:
-        return verb
-    head, _, particle = verb.partition(" ")
-    return f"{head} {{1}} {particle}" if particle else ""
-
-
-def _purpose_verb(purpose: str, names: set[str]) -> str:
-    """A user's purpose as a verb that WordNet knows; empty for any other.
-
-    A purpose that is the name of another step only says what comes next.
-    """
-    if not purpose or purpose in names:
-        return ""
-    words = words_of(purpose)
-    return words if wordnet().of_lemma(words) else ""
-
-
-def _with_purposes(found: Sequence[tuple[Segment, Clause]], names: set[str]) -> tuple[Clause, ...]:
-    """The clauses, with those purposes stated that no later clause of the link fulfils."""
-    out = []
-    for index, (segment, clause) in enumerate(found):
-        verb = _purpose_verb(segment.purpose, names)
-        after = [each for other, each in found[index:]]
-        follows = found[index + 1][0].purpose if index + 1 < len(found) else ""
-        manipulates = segment.features.rel_start.startswith("1") and clause.changes
-        if verb and manipulates and follows != segment.purpose and not _told(verb, after):
-            clause = replace(clause, purpose=verb)  # noqa: PLW2901 (the same clause, with its end)
-        out.append(clause)
-    return tuple(out)
-
-
-def _told(verb: str, after: Sequence[Clause]) -> bool:
-    """Whether one of the clauses says what the verb says."""
-    meant = _lemmas(verb)
-    return any(
-        each.pattern.startswith(lemma + " ") or each.pattern == lemma
-        for each in after
-        for lemma in meant
-    )
-
-
-def _lemmas(verb: str) -> set[str]:
-    """The verb, its first word, and the verbs that share its senses as a motion."""
-    same = {verb, verb.split(maxsplit=1)[0]}
-    for key in motion_senses(verb):
-        same.update(wordnet().of_key(key).lemmas)
-    return same

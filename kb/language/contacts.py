@@ -10,19 +10,8 @@ import numpy as np
 
 from capar.model.facts import Flies, Link, Moving, OfAgent, Swings, Touching
 from capar.model.observation import Observation, ObservedLink, Segment
+from kb.language.thresholds import RISEN_M, RUNNING_MPS, STEADY_S, STILL_M
 from kb.lexicon.english import the_agent
-
-STILL_M = 0.02
-"""What goes less far than this [m] stays where it is."""
-
-RUNNING_MPS = 0.15
-"""A hand that goes faster than this [m/s] over a thing that stays does not hold it."""
-
-RISEN_M = 0.1
-"""What is so far [m] above where it was has been lifted."""
-
-STEADY_S = 0.5
-"""A hand that stays at a thing for so long [s] while another works in it steadies it."""
 
 
 class Scene:
@@ -55,6 +44,21 @@ class Scene:
         if places is None:
             return None
         return float(np.linalg.norm(places[-1] - places[0]))
+
+    def strays_m(self, body: str, start_s: float, end_s: float) -> float | None:
+        """How far a body gets from where it was at first [m]; None where that was not kept."""
+        places = self._places(body, start_s, end_s)
+        if places is None:
+            return None
+        return float(np.linalg.norm(places - places[0], axis=1).max())
+
+    def nears(self, body: str, thing: str, start_s: float, end_s: float, by_m: float) -> bool:
+        """Whether a body is nearer to where a thing is at the end, by so much [m]."""
+        places, there = self._places(body, start_s, end_s), self._places(thing, end_s, end_s)
+        if places is None or there is None:
+            return False
+        ways = np.linalg.norm(places[[0, -1], :2] - there[-1, :2], axis=1)
+        return bool(ways[0] - ways[1] > by_m)
 
     def rises(self, segment: Segment) -> bool:
         """Whether the object is clearly higher when a segment ends."""

@@ -6,14 +6,20 @@ from typing import Literal
 
 from capar.model.capture import Agent
 from capar.model.observation import Observation, ObservedLink
-from kb.language.aggregation import edited, summed
-from kb.language.clauses import Clause, clauses, main_things
+from kb.language.aggregation import edited
+from kb.language.bodily import Told, as_one_body, with_walks
+from kb.language.choosing import chosen, longest, mattering
+from kb.language.clause import Clause
+from kb.language.clauses import clauses, main_things
 from kb.language.contacts import Scene
-from kb.language.hands import spoken_links, told_in_order
+from kb.language.free_motion import reaches
+from kb.language.hands import as_the_other_hand, spoken_links, told_in_order
+from kb.language.holding import Holding
 from kb.language.lexicalisation import FREE, Phrasebook
 from kb.language.planning import sentences
 from kb.language.realisation import Realiser
 from kb.language.repeating import as_segmented, deeds, whole
+from kb.language.turning import Turning, turned, with_turning
 from kb.lexicon.english import capital, the_agent
 from kb.lexicon.links import PrimitiveWords
 
@@ -55,25 +61,40 @@ def _story(
 ) -> str:
     """What one agent did."""
     links = spoken_links(observation.links)
-    told = [clauses(observation, link, book, scene) for link in links]
-    if observation.profile == TO_THE_LETTER:
-        told = [as_segmented(each) for each in told]
-    else:
-        told = [deeds(each, scene) for each in told]
+    seen, told = _deeds(observation, links, book, scene)
     if detail == "summary":
         changes = any(each.changes for part in told for each in part)
-        told = [summed(part) if changes else _counted(main_things(part)) for part in told]
-    steps = told_in_order(links, told)
+        told = [mattering(part) if changes else _counted(main_things(part)) for part in told]
+        steps = chosen(told_in_order(links, told))
+    else:
+        steps = with_walks(told_in_order(links, told), links, seen, observation.objects, scene)
     if not timed:
         steps = edited(steps)
     subject = the_agent(observation.agent.name, observation.agent.kind)
     realiser = Realiser(links, observation.objects, timed=timed)
     if not steps:
-        return f"{capital(subject)} {realiser.idle(_moved_freely(links, book))}."
+        moved = _moved_freely(links, book)
+        reached = () if observation.profile == TO_THE_LETTER else reaches(observation, moved)
+        return f"{capital(subject)} {realiser.idle(moved, reached)}."
     return " ".join(
-        capital(f"{part.opening}{subject} {realiser.sentence(part.steps, part.often, part.end_s)}.")
-        for part in sentences(steps)
+        capital(f"{part.opening}{subject} {realiser.sentence(part)}.")
+        for part in sentences(steps, lead=longest(steps) if detail == "summary" else ())
     )
+
+
+def _deeds(
+    observation: Observation, links: Sequence[ObservedLink], book: Phrasebook, scene: Scene
+) -> tuple[list[Told], list[Told]]:
+    """What each link did by itself, and as one body."""
+    to_the_letter = observation.profile == TO_THE_LETTER
+    holding = None if to_the_letter else Holding(observation)
+    turning = Turning(observation)
+    told = [clauses(observation, link, book, scene, turning, holding) for link in links]
+    if to_the_letter:
+        return [], [as_segmented(each) for each in told]
+    ways = [turned(each, turning) for each in as_the_other_hand(links, told)]
+    seen = [with_turning(deeds(rest, scene), found) for rest, found in ways]
+    return seen, as_one_body(links, seen, observation.objects, scene)
 
 
 def _of(observation: Observation, agent: Agent) -> Observation:

@@ -5,8 +5,8 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 
 from capar.model.observation import ObservedLink
-from kb.language.clauses import Clause, in_time
-from kb.language.repeating import REST_S
+from kb.language.clause import Clause, in_time
+from kb.language.thresholds import REST_S
 from kb.lexicon.tables import table
 
 
@@ -28,11 +28,42 @@ def told_in_order(
     rest = [list(each) for each in told]
     merged: list[Clause] = []
     for first, second in _pairs(links):
-        common, left, right = _together(told[first], told[second])
+        one = _one_word(told[first], told[second])
+        common, left, right = _together(one, _one_word(told[second], one))
         merged += common
         rest[first], rest[second] = left, right
     every = [*merged, *(each for clauses in rest for each in clauses)]
     return tuple(sorted(every, key=in_time))
+
+
+def as_the_other_hand(
+    links: Sequence[ObservedLink], told: Sequence[tuple[Clause, ...]]
+) -> list[tuple[Clause, ...]]:
+    """What each hand did, that of one without measured contact in words of the other hand's.
+
+    Both move one thing then, and what it does is told by the hand that was seen to have it.
+    """
+    out = [list(part) for part in told]
+    for first, second in _pairs(links):
+        for own, other in ((first, second), (second, first)):
+            out[own] = _in_words_of(out[own], told[other], links[own].ee)
+    return [tuple(part) for part in out]
+
+
+def _in_words_of(own: Sequence[Clause], other: Sequence[Clause], ee: str) -> list[Clause]:
+    out: list[Clause] = []
+    for clause in own:
+        theirs = [
+            replace(each, ees=(ee,))
+            for each in other
+            if clause.unseen
+            and each.changes
+            and not each.unseen
+            and each.objects[:1] == clause.objects[:1]
+            and each.overlap_s(clause) > 0.5 * (each.end_s - each.start_s)
+        ]
+        out += theirs or [clause]
+    return out
 
 
 def _pairs(links: Sequence[ObservedLink]) -> list[tuple[int, int]]:
@@ -55,7 +86,8 @@ def _together(
         [each.signature for each in second],
         autojunk=False,
     )
-    common, used_first, used_second = [], set[int](), set[int]()
+    common: list[Clause] = []
+    used_first, used_second = set[int](), set[int]()
     for block in matcher.get_matching_blocks():
         for step in range(block.size):
             a, b = first[block.a + step], second[block.b + step]
@@ -68,6 +100,23 @@ def _together(
     return common, left, right
 
 
+def _one_word(first: Sequence[Clause], second: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The first's clauses in the second's words, where both move one thing at once.
+
+    It goes one way, whatever either hand does to it; the more general word is true of both.
+    """
+    out = []
+    for clause in first:
+        found = next((each for each in second if _moves_with(clause, each)), None)
+        out.append(replace(clause, pattern=found.pattern, name=found.name) if found else clause)
+    return tuple(out)
+
+
+def _moves_with(clause: Clause, other: Clause) -> bool:
+    same = clause.objects == other.objects and clause.changes and other.changes
+    return same and other.name in clause.general and _at_once(clause, other)
+
+
 def _at_once(first: Clause, second: Clause) -> bool:
     """Whether both begin and end together, but for a time that people do not notice."""
     begin = abs(first.start_s - second.start_s) < REST_S
@@ -77,9 +126,12 @@ def _at_once(first: Clause, second: Clause) -> bool:
 
 
 def _both(first: Clause, second: Clause) -> Clause:
+    """One clause of two; what is done in a moment is done when both have done it."""
+    end_s = max(first.end_s, second.end_s)
+    momentary = first.start_s == first.end_s and second.start_s == second.end_s
     return replace(
         first,
         ees=tuple(sorted((*first.ees, *second.ees))),
-        start_s=min(first.start_s, second.start_s),
-        end_s=max(first.end_s, second.end_s),
+        start_s=end_s if momentary else min(first.start_s, second.start_s),
+        end_s=end_s,
     )

@@ -9,7 +9,7 @@ from kb.lexicon.tables import table
 Cases = Collection[str]
 """What holds of a segment: held, there, tool, on, back, self, alone, turns, tilts, rises, steadies.
 
-``running``: the hand goes over a thing that stays.
+``running``: the hand goes over a thing that stays; ``wrung``: it is turned this way and that.
 """
 
 USUAL_PREPOSITION = "with"
@@ -21,7 +21,13 @@ JOINT = "|"
 QUIET = frozenset({"reach for {1}", "let go of {1}", "take {ee} away"})
 """Patterns that describe the hand alone: what moves meanwhile is not moved by what they say."""
 
-MOMENTARY = frozenset({"let go of {1}", "hand {1} over", "hand {1} to someone"})
+GIVEN = "hand {1} over"
+"""The pattern of a thing that another hand takes."""
+
+TO_THE_OTHER = "hand {1} over to the other hand"
+"""The same, where that is the other hand of the agent."""
+
+MOMENTARY = frozenset({"let go of {1}", GIVEN, TO_THE_OTHER, "hand {1} to someone"})
 """Patterns of what is done in a moment: the rest of the segment is the hand's way back."""
 
 TIPPED = frozenset({"pour from {1}", "pour from {1} into {2}"})
@@ -30,8 +36,23 @@ TIPPED = frozenset({"pour from {1}", "pour from {1} into {2}"})
 HELPS = frozenset({"steady {1}"})
 """Patterns of what moves nothing and yet is a part of what was done."""
 
+BIT_BY_BIT = "bit by bit"
+"""How something else is done that pauses interrupt."""
+
+SUSTAINED = frozenset({"Stir", "Wipe", "Cut", "Shake", "Pour"})
+"""Names of what goes on to and fro, or until a vessel is upright: a pause in it is a pause.
+
+What else has pauses is done bit by bit.
+"""
+
 MOVING = frozenset({"MoveObj", "MoveObjTo"})
 """Names, and kinds of names, of a thing that is moved."""
+
+SHIFTED = frozenset({"Slide", "Push", "Pull", "MoveObj"})
+"""Names of what moves a thing a little as it is put somewhere."""
+
+TRANSPORT = frozenset({"Lift", "Raise", "Carry", "MoveObj", "MoveObjTo"})
+"""Names of what brings a thing to where it is put."""
 
 STAYING = frozenset({"Touch", "TouchWith"})
 """Names, and kinds of names, of a hand that only stays at a thing."""
@@ -39,6 +60,36 @@ STAYING = frozenset({"Touch", "TouchWith"})
 FREE = "move {ee}"
 """The pattern of what a hand does that is of no object."""
 
+
+RUNNING = "keep a hand on {1}"
+"""The pattern of a hand that runs over a thing."""
+
+THIS_WAY = "turn {1} about"
+"""The pattern of a thing that is turned about in the hand."""
+
+UPSIDE_DOWN, AROUND = "turn {1} upside down", "turn {1} around"
+"""Patterns of a thing that is turned over, or made to face another way."""
+
+UPRIGHT, BACK_UPRIGHT = "turn {1} upright", "turn {1} back upright"
+"""Patterns of a thing that is set on its base; the second where the hand had turned it over."""
+
+REACH = "reach for {1}"
+"""The pattern of a hand that goes to a thing."""
+
+STIR = "stir in {2} with {1}"
+"""The pattern of an instrument that goes without saying where it was just spoken of."""
+
+WALK, STEP = "walk", "take a step"
+"""What the whole body does, with no word of the feet."""
+
+WALK_UP = "walk up to {1}"
+"""The same, to the thing that a hand takes next."""
+
+BODILY = frozenset({WALK, STEP, WALK_UP})
+"""Patterns that name no end-effector."""
+
+ON_FOOT = frozenset({"Step", "Stand", "Walk", "StandOnOneLeg", "RestFoot"})
+"""Names of what feet do on the ground."""
 
 SOMEONE = "someone"
 """In a pattern, another agent: said so where it is not known who."""
@@ -82,6 +133,11 @@ def built(verb: str, count: int, preposition: str) -> str:
     more = [f"and {{{number}}}" for number in range(3, count + 1)]
     parts = ["{1}"] * (count > 0) + [f"{preposition} {{2}}"] * (count > 1) + more
     return " ".join([verb, *parts])
+
+
+def moves_only(pattern: str) -> bool:
+    """Whether it says no more than that the object is moved."""
+    return pattern in {"move {1}", "move {1} about", "turn {1}"}
 
 
 def in_past(pattern: str) -> str:

@@ -6,9 +6,10 @@ of what the sentence tells was done during that. What stands beside the first ha
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from kb.language.clauses import Clause, in_time
+from kb.language.clause import Clause, in_time
+from kb.language.lexicalisation import REACH
 from kb.language.repeating import repetition
 from kb.lexicon.english import times
 
@@ -21,7 +22,7 @@ FEW = 2
 LONGEST_BESIDE = 4
 """The most clauses of another hand that stand beside them."""
 
-ENOUGH_OF_ONE = 3
+ENOUGH_OF_ONE = 2
 """After so many clauses, what is done with another thing begins another sentence."""
 
 OPENINGS = ("Then ", "Next, ", "After that, ")
@@ -49,10 +50,17 @@ class Part:
     """When the last of its clauses, or of their repetitions, ends."""
 
     opening: str = ""
+    more: bool = False
+    """Whether the next sentence tells what is counted here once more."""
 
 
-def sentences(steps: Sequence[Clause]) -> list[Part]:
-    """The clauses by sentence, each sentence with how it begins."""
+def sentences(steps: Sequence[Clause], *, lead: tuple[str, ...] = ()) -> list[Part]:
+    """The clauses by sentence, each sentence with how it begins.
+
+    Args:
+        steps: What was done.
+        lead: End-effectors whose deeds are told before those that others did meanwhile.
+    """
     streams: Streams = {}
     for clause in sorted(steps, key=in_time):
         streams.setdefault(clause.ees, []).append(clause)
@@ -60,8 +68,10 @@ def sentences(steps: Sequence[Clause]) -> list[Part]:
     afterwards = 0
     end_s = float("-inf")
     while any(streams.values()):
-        part = _next_part(streams)
+        part = _next_part(streams, lead)
         opening = _opening(part, out, end_s, OPENINGS[afterwards % len(OPENINGS)])
+        if opening == ONCE_MORE:
+            out[-1] = replace(out[-1], more=True)
         afterwards = afterwards + 1 if opening in OPENINGS else 0
         out.append(Part(part.steps, part.often, part.end_s, opening))
         end_s = max(end_s, part.end_s)
@@ -84,10 +94,12 @@ def _said(steps: Sequence[Clause]) -> list[tuple[object, ...]]:
     return [(each.signature, each.ees) for each in steps]
 
 
-def _next_part(streams: Streams) -> Part:
+def _next_part(streams: Streams, lead: tuple[str, ...]) -> Part:
     """What the next sentence tells; it is taken from what is still to be told."""
     waiting = [key for key, rest in streams.items() if rest]
     ees = min(waiting, key=lambda key: in_time(streams[key][0]))
+    if lead in waiting and streams[lead][0].start_s < streams[ees][0].end_s:
+        ees = lead
     own = streams[ees]
     size, count = _repeated(streams, ees, 0)
     if count > 1:
@@ -126,15 +138,15 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
     was told of the first, and when as much was done meanwhile as can stand beside it.
     """
     last, following = taken[-1], streams[ees][0]
+    if _leads_to(last, following):
+        return False
     if (last.start_s, last.end_s) == (following.start_s, following.end_s):
         return False
-    if last.frees or _turns_away(taken, following):
+    long = len(taken) >= LONGEST and not _soon_over(streams[ees])
+    if last.frees or _turns_away(taken, following) or long:
         return True
-    if len(taken) >= LONGEST and not _soon_over(streams[ees]):
-        return True
-    if _repeated(streams, ees, 0)[1] > 1 or _waits(following, streams):
-        return True
-    if _changes_hands(last, following, streams):
+    recurs = _repeated(streams, ees, 0)[1] > 1
+    if recurs or _waits(following, streams) or _changes_hands(last, following, streams):
         return True
     waiting = [
         each
@@ -143,7 +155,7 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
         for each in rest
         if each.end_s <= following.start_s
     ]
-    return len(waiting) > LONGEST_BESIDE
+    return len(waiting) > LONGEST_BESIDE and not following.frees
 
 
 def _soon_over(rest: Sequence[Clause]) -> bool:
@@ -190,8 +202,16 @@ def _beside(taken: Sequence[Clause], rest: list[Clause], streams: Streams) -> li
             size += 1
         else:
             size = _up_to_another_thing(rest, size)
+    while 0 < size < len(rest) and _leads_to(rest[size - 1], rest[size]):
+        size -= 1
     found, rest[:] = rest[:size], rest[size:]
     return found
+
+
+def _leads_to(clause: Clause, following: Clause) -> bool:
+    """Whether a hand reaches for what it has next: one is not told without the other."""
+    reaches = clause.pattern == REACH and not following.comes
+    return reaches and clause.objects[:1] == following.objects[:1]
 
 
 def _during(clause: Clause, taken: Sequence[Clause]) -> bool:

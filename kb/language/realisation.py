@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from capar.model.observation import ObservedLink, ObservedObject
-from kb.language.clauses import Clause
-from kb.language.lexicalisation import in_past
+from kb.language.clause import Clause
+from kb.language.free_motion import Reached
+from kb.language.lexicalisation import BIT_BY_BIT, BODILY, STIR, SUSTAINED, in_past
+from kb.language.planning import Part
 from kb.language.vocabulary import SIDES
 from kb.lexicon.english import joined, noun, number, the, times
 
@@ -30,8 +32,9 @@ class Realiser:
         self._several: tuple[str, ...] = ()
         self._ees: tuple[str, ...] = ()
 
-    def sentence(self, steps: Sequence[Clause], often: str, until_s: float) -> str:
-        """The clauses as the rest of a sentence whose subject is the agent."""
+    def sentence(self, part: Part) -> str:
+        """What a sentence tells, as the rest of one whose subject is the agent."""
+        steps, often = part.steps, part.often
         self._spans = self._timed and not often
         streams: dict[tuple[str, ...], list[Clause]] = {}
         for step in steps:
@@ -49,15 +52,21 @@ class Realiser:
             text = f"{text}{comma} while {joined(meanwhile)}"
         if not often:
             return text
-        span = f" ({steps[0].start_s:.2f}–{until_s:.2f} s)" if self._timed else ""
-        return f"{text}, {often} in all{span}"
+        span = f" ({steps[0].start_s:.2f}–{part.end_s:.2f} s)" if self._timed else ""
+        return f"{text}, {often}{'' if part.more else ' in all'}{span}"
 
-    def idle(self, moved: Mapping[str, tuple[float, float]]) -> str:
+    def idle(
+        self, moved: Mapping[str, tuple[float, float]], reached: Sequence[Reached] = ()
+    ) -> str:
         """That nothing was touched, and what was moved, as the rest of a sentence.
 
         Args:
             moved: From when to when each end-effector moved [s].
+            reached: Where hands reached, if that is known.
         """
+        if reached:
+            parts = [part for each in reached for part in self._there_and_back(each)]
+            return joined([*parts, "touched nothing"])
         kinds: dict[str, list[str]] = {}
         for ee in moved:
             kinds.setdefault(self._kinds[ee], []).append(ee)
@@ -66,21 +75,29 @@ class Realiser:
             start_s = min(moved[ee][0] for ee in ees)
             end_s = max(moved[ee][1] for ee in ees)
             span = f" ({start_s:.2f}–{end_s:.2f} s)" if self._timed else ""
-            parts.append(f"{self._hands(tuple(ees))}{span}")
-        return f"moved {joined(parts)} and touched nothing" if parts else "touched nothing"
+            parts.append(f"moved {self._hands(tuple(ees))}{span}")
+        return joined([*parts, "touched nothing"])
+
+    def _there_and_back(self, reached: Reached) -> list[str]:
+        hand, kind = self._hands((reached.ee,)), self._kinds[reached.ee]
+        there = f" ({reached.start_s:.2f}–{reached.there_s:.2f} s)" if self._timed else ""
+        back = f" ({reached.leaves_s:.2f}–{reached.end_s:.2f} s)" if self._timed else ""
+        parts = [f"reached {reached.where} with {hand}{there}"]
+        return [*parts, f"took the {kind} back{back}"] if reached.back else parts
 
     def _of_agent(self, steps: Sequence[Clause]) -> str:
         parts = []
         self._topic, self._several = "", ()
         for step in steps:
             text = self._verb_phrase(step)
-            told = step.ees == self._ees or "{ee}" in step.pattern
+            bodily = step.pattern in BODILY
+            told = step.ees == self._ees or "{ee}" in step.pattern or bodily
             hand = "" if told else self._with_hands(step)
             if "{with}" in text:
                 text = text.replace("{with}", f"{hand} " if hand else "")
             elif hand:
                 text = f"{text} {hand}"
-            self._ees = step.ees
+            self._ees = self._ees if bodily else step.ees
             parts.append(f"{text}{self._end(step)}")
         return joined(parts)
 
@@ -105,7 +122,9 @@ class Realiser:
     def _end(self, step: Clause) -> str:
         often = f" {times(step.count)}" if step.count > 1 else ""
         often = f" {step.often}" if step.often else often
-        if step.pauses:
+        if step.pauses and step.name not in SUSTAINED:
+            often += f" {BIT_BY_BIT}"
+        elif step.pauses:
             pauses = "a pause" if step.pauses == 1 else f"{number(step.pauses)} pauses"
             often += f"{',' if ' with {' in step.pattern else ''} with {pauses}"
         purpose = f"{often} to {_with_it(step.purpose)}" if step.purpose else often
@@ -117,6 +136,8 @@ class Realiser:
 
     def _verb_phrase(self, step: Clause) -> str:
         pattern = in_past(step.pattern)
+        if step.pattern == STIR and step.objects[0] == self._topic:
+            pattern = pattern.removesuffix(" with {1}")
         if step.pattern == "let go of {1}" and step.objects[0] == self._topic:
             pattern = in_past("let go")
         if pattern.endswith(" there") and step.objects[0] != self._topic:

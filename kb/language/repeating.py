@@ -2,23 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import accumulate, groupby
+from itertools import accumulate
 
-from kb.language.clauses import Clause
+from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import MOVING, TIPPED
-
-REST_S = 0.4
-"""A rest of so long [s] parts what is done; a shorter one is not noticed."""
-
-SCRAP_S = 0.5
-"""What takes less than this [s] within a grip, and goes not far, is no deed of its own."""
-
-UNSEEN_S = 0.2
-"""What takes less than this [s] is no deed wherever it goes."""
-
-SCRAP_M = 0.1
-"""So far [m] a scrap goes at most: about a hand's width."""
+from kb.language.lexicalisation import MOVING, RUNNING, TIPPED
+from kb.language.thresholds import REST_S, SCRAP_M, SCRAP_S, SETTLING_S, UNSEEN_S
 
 
 def deeds(told: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
@@ -148,7 +137,9 @@ def _goes_on_with(last: Clause, clause: Clause) -> bool:
 
 def _without_scraps(told: Sequence[Clause], scene: Scene) -> list[Clause]:
     """The clauses, with each scrap of a motion in what it belongs to, and no short hold."""
-    waiting = [each for at, each in enumerate(told) if not _short_hold(told, at)]
+    waiting = [
+        each for at, each in enumerate(told) if not (_short_hold(told, at) or _only_there(told, at))
+    ]
     out: list[Clause] = []
     while waiting:
         clause = waiting.pop(0)
@@ -164,29 +155,55 @@ def _without_scraps(told: Sequence[Clause], scene: Scene) -> list[Clause]:
     return out
 
 
+def _only_there(told: Sequence[Clause], at: int) -> bool:
+    """Whether a hand that does more with a thing only is at it, or stays at what it put down."""
+    clause = told[at]
+    beside = [*told[max(at - 1, 0) : at], *told[at + 1 : at + 2]]
+    same = [each for each in beside if each.objects[:1] == clause.objects[:1]]
+    if clause.pattern == RUNNING:
+        return any(each.changes for each in same)
+    brief = clause.end_s - clause.start_s < SETTLING_S
+    leaves = at + 1 < len(told) and told[at + 1].pattern == "let go of {1}"
+    return clause.holds and brief and leaves and len(same) > 1 and same[0].changes
+
+
 def _short_hold(told: Sequence[Clause], at: int) -> bool:
     """Whether it holds for a moment what it moves before or afterwards."""
     clause = told[at]
-    if clause.end_s - clause.start_s >= SCRAP_S or not _pauses(clause, clause):
+    if not _pauses(clause, clause):
         return False
     beside = [*told[max(at - 1, 0) : at], *told[at + 1 : at + 2]]
-    return any(each.changes and _one_grip(each, clause) for each in beside)
+    changing = sum(each.changes and _one_grip(each, clause) for each in beside)
+    lasts_s = clause.end_s - clause.start_s
+    return lasts_s < (SETTLING_S if changing == 2 else SCRAP_S) and changing > 0
 
 
 def _scrap(clause: Clause, following: Clause | None, scene: Scene) -> bool:
     """Whether it is a short motion in the grip that goes hardly anywhere, or with the next."""
+    if _unseen(clause):
+        return True
     moves = not MOVING.isdisjoint((clause.name, *clause.general))
     if not (moves and clause.changes and clause.possessed and clause.goes_on and clause.known):
         return False
     moved = clause.pattern.split()[1:2] == ["{1}"]
-    if clause.purpose or clause.end_s - clause.start_s >= SCRAP_S or not moved:
+    brief = clause.end_s - clause.start_s < SCRAP_S
+    only_moved = clause.pattern == "move {1}"
+    if clause.purpose or not moved or not (brief or only_moved):
         return False
-    if following is not None and _takes_up(clause, following):
-        unseen = clause.end_s - clause.start_s < UNSEEN_S
-        if unseen or not following.goes_on:
-            return True
-    way = scene.way_m(clause.objects[0], clause.start_s, clause.end_s)
-    return way is not None and way < SCRAP_M
+    if brief and only_moved:
+        return True
+    if following is not None and _takes_up(clause, following) and not following.goes_on:
+        return True
+    way = scene.strays_m if only_moved else scene.way_m
+    gone_m = way(clause.objects[0], clause.start_s, clause.end_s)
+    return gone_m is not None and gone_m < SCRAP_M
+
+
+def _unseen(clause: Clause) -> bool:
+    """Whether what the hand does with a thing that it goes on having is over before it is seen."""
+    keeps = clause.possessed and (clause.goes_on or clause.name == "MoveObjTo")
+    told = clause.purpose or not clause.known
+    return keeps and clause.changes and not told and clause.end_s - clause.start_s < UNSEEN_S
 
 
 def _takes_up(scrap: Clause, following: Clause) -> bool:
@@ -232,11 +249,6 @@ def whole(run: Sequence[Clause], *, count: int = 1, pattern: str = "") -> Clause
         count=count,
         pauses=0,
     )
-
-
-def grips(told: Sequence[Clause]) -> list[list[Clause]]:
-    """The clauses of one hand, cut where it comes to a thing or leaves it."""
-    return [list(part) for _, part in groupby(told, key=lambda each: each.grip)]
 
 
 def repetition(steps: Sequence[Clause], at: int, *, longest: int) -> tuple[int, int]:

@@ -52,6 +52,10 @@ BEARERS = {
 """What each parameter that is a text names, and the pattern of those that bear such a name."""
 
 
+OF_LEXICON = frozenset({"lemma", "levin"})
+"""The parameters that only a loaded lexicon can answer."""
+
+
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """Something that a question is asked of."""
@@ -167,6 +171,11 @@ def check_known(store: "Store", asked: Question, given: Mapping[str, object]) ->
             continue
         kind, pattern = BEARERS[parameter.name]
         known = _texts(store, pattern)
+        if not known and parameter.name in OF_LEXICON:
+            raise CaparError(
+                f"{store.place}: no {kind} is known, as no lexicon is loaded; "
+                "`capar lexicon load` puts WordNet's verbs and Levin's classes in"
+            )
         if value not in known:
             raise UnknownNameError(kind, value, known, where=store.place)
     if {"capture", "time"} <= given.keys():
@@ -177,6 +186,19 @@ def check_known(store: "Store", asked: Question, given: Mapping[str, object]) ->
             raise CaparError(
                 f"{store.place}: {name.value} lasts from 0 to {end:.3f} s; {time:g} s lies outside"
             )
+
+
+def counted_segments(store: "Store") -> str:
+    """How many segments are stored, of how many observations."""
+    query = """
+SELECT (COUNT(DISTINCT ?segment) AS ?segments) (COUNT(DISTINCT ?of) AS ?observations)
+{ ?of capar:segment ?segment }"""
+    ((segments, observations),) = store.ask(sparql.complete(query)).rows
+    return f"{_number(segments)} segments of {_number(observations)} observations"
+
+
+def _number(term: object) -> str:
+    return term.value if isinstance(term, Literal) else "0"
 
 
 def _texts(store: "Store", pattern: str) -> set[str]:

@@ -3,10 +3,11 @@
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from difflib import get_close_matches
 from itertools import dropwhile, pairwise
 
 from kb.errors import QueryError
-from ontology import BASE, PREFIXES
+from ontology import BASE, PREFIXES, terms
 
 _TOKEN = re.compile(
     r"""
@@ -67,6 +68,25 @@ def is_meant(text: str) -> bool:
         return not pieces
     first, after = pieces[:2]
     return first.text.lower() in _FIRST and after.kind in {"space", "iri", "variable"}
+
+
+def unknown_terms(query: str) -> list[str]:
+    """A sentence for each word of a query that is written like one of the ontology and is none."""
+    known = {*terms(), *FUNCTIONS, *ARITIES}
+    words = (
+        piece.text.removeprefix("capar:")
+        if piece.kind == "name"
+        else piece.text[len(BASE) + 1 : -1]
+        for piece in tokens(query)
+        if piece.text.startswith(("capar:", f"<{BASE}"))
+    )
+    return [_unknown(name, known) for name in dict.fromkeys(words) if name and name not in known]
+
+
+def _unknown(name: str, known: set[str]) -> str:
+    near = get_close_matches(name, sorted(known), n=3)
+    hint = f" Did you mean {' or '.join(f'capar:{word}' for word in near)}?" if near else ""
+    return f"the ontology has no capar:{name}, so nothing is found by it.{hint}"
 
 
 def names_graphs(query: str) -> bool:

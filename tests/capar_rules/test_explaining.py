@@ -30,6 +30,7 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "strikes_with", 2, ""): "no story has a tool; tests/kb/language/test_instruments.py has",
     ("", "pushes_with", 2, ""): "no story has a tool",
     ("", "sends_off", 2, ""): "no story strikes away what a hand does not hold; the scenes do",
+    ("", "wrung", 2, ""): "no story has a thing turned about in the hand; shake.cases has",
     ("", "awaited", 1, ""): "no story has hands that meet; the scenes of hands have",
     ("", "uncounted", 4, ""): "no story has a contact that ends within the border it is read at",
     ("", "event", 6, "turns"): "no named segment of a story begins or ends where the hand turns",
@@ -38,7 +39,7 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
 """Templates of what holds that no explanation tells, and why."""
 
 OF_AUTHORS = (
-    ("lasts_ms", 2), ("contact_ms", 4), ("rest_ms", 2), ("recurs", 4), ("touched_times", 3),
+    ("contact_ms", 4), ("rest_ms", 2), ("recurs", 4), ("touched_times", 3),
     ("next_segment", 2), ("next_step", 2), ("soon_after", 2), ("by_other_hand", 2),
     ("swing_count", 2), ("met_mm_s", 4), ("left_mm_s", 3), ("mean_mm_s", 3), ("borne_at", 4),
     ("contains_at", 4), ("hangs_at", 4), ("touches_with", 4), ("heads_for", 3),

@@ -4,8 +4,19 @@ from pathlib import Path
 
 import pytest
 
-from capar.model.facts import Fact, Frames, Touching, ZeroCrossing
+from capar.model.facts import (
+    Fact,
+    Frames,
+    Link,
+    Moving,
+    RateMhz,
+    Tag,
+    Touching,
+    ZeroCrossing,
+)
 from capar_rules.engine import solver
+from capar_rules.engine.profiles import profile
+from capar_rules.pars.inference import infer
 
 RULES = """
 #show seen/1.
@@ -24,3 +35,49 @@ def test_an_answer_does_not_depend_on_how_many_facts_are_given_at_once(
     facts += [ZeroCrossing("hand", frame) for frame in range(100)]
     answer = solver.solve([rules], facts)
     assert [frame for (frame,) in answer.of("seen")] == list(range(20, 40))
+
+
+REACHED = """
+#defined touching/4.
+#defined zero_crossing/2.
+#show named/1.
+near(A, B) :- touching(A, B, _, _).
+seated(A) :- near(A, chair), zero_crossing(A, _).
+named(A) :- near(A, _), not seated(A).
+named(none) :- not near(_, _).
+named(nobody_sits) :- #count { A : seated(A) } = 0.
+:- seated(A), not near(A, _).
+"""
+TOUCHES = [Touching("hand", "mug", 20, 39), Touching("man", "chair", 0, 99)]
+CROSSINGS = [ZeroCrossing("man", 12)]
+
+
+@pytest.mark.parametrize("facts", [TOUCHES, CROSSINGS, TOUCHES + CROSSINGS, [Frames(0, 99)]])
+def test_rules_that_are_asked_often_answer_as_they_did_at_first(
+    facts: list[Fact], tmp_path: Path
+) -> None:
+    rules = tmp_path / "rules.lp"
+    rules.write_text(REACHED)
+    first = solver.solve([rules], facts)
+    later = [solver.solve([rules], facts) for _ in range(solver.OFTEN + 1)]
+    assert later == [first] * len(later)
+
+
+def test_rules_that_change_are_read_anew_however_often_they_were_asked(tmp_path: Path) -> None:
+    rules = tmp_path / "rules.lp"
+    rules.write_text(REACHED)
+    for _ in range(solver.OFTEN + 2):
+        before = solver.solve([rules], TOUCHES)
+    rules.write_text(REACHED.replace("nobody_sits", "no_one_is_seated"))
+    after = solver.solve([rules], TOUCHES)
+    assert before.of("named") != after.of("named")
+    assert ("no_one_is_seated",) in after.of("named")
+
+
+def test_the_shipped_rules_answer_the_same_whole_and_reduced_to_what_facts_reach() -> None:
+    rules = profile()
+    facts: list[Fact] = [Frames(0, 300), RateMhz(100_000), Link("hand", "hand", "right")]
+    facts += [Tag("mug", "mobile"), Touching("hand", "mug", 100, 200), Moving("mug", 120, 180)]
+    found = [infer(facts, profile=rules) for _ in range(solver.OFTEN + 2)]
+    assert found == [found[0]] * len(found)
+    assert found[0].links[0].segments[0].name == "Reach"

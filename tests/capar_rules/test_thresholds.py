@@ -72,7 +72,6 @@ def test_borders_that_could_merge_may_not_be_cut_apart() -> None:
         Times(
             merge_ms=250,
             margin_ms=1000,
-            confirming_ms=100,
             settled_ms=200,
             flicker_ms=150,
             flicker_window_ms=10000,

@@ -114,7 +114,7 @@ def test_a_variable_that_joins_nothing_is_noted_and_an_anonymous_one_is_not(tmp_
     assert [each for each in fine if each.code == "single-variable"] == []
 
 
-ALL_FACT_KINDS = {
+MISTAKES = {
     'primitive("nip it; good").': "bad-name",
     'primitive( "nip" ).': "bad-name",
     "primitive(nip).": "missing-quotes",
@@ -127,15 +127,15 @@ ALL_FACT_KINDS = {
 
 @pytest.fixture(scope="module")
 def found_in_names(tmp_path_factory) -> dict[str, tuple[Finding, ...]]:
-    texts = (f"%* Nip: a slip. *%\n{each}\n" for each in ALL_FACT_KINDS)
+    texts = (f"%* Nip: a slip. *%\n{each}\n" for each in MISTAKES)
     found = checked(tmp_path_factory.mktemp("names"), *texts)
-    return dict(zip(ALL_FACT_KINDS, found, strict=True))
+    return dict(zip(MISTAKES, found, strict=True))
 
 
-@pytest.mark.parametrize("stated", ALL_FACT_KINDS)
+@pytest.mark.parametrize("stated", MISTAKES)
 def test_names_that_cannot_be_and_what_nothing_fits_are_told(found_in_names, stated):
     found = {(each.code, each.level) for each in found_in_names[stated]}
-    assert (ALL_FACT_KINDS[stated], ERROR) in found
+    assert (MISTAKES[stated], ERROR) in found
 
 
 def test_what_others_specialise_needs_no_rule_of_its_own(tmp_path):

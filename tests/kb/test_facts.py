@@ -21,6 +21,7 @@ from capar.model.facts import (
     MovedBy,
     OfAgent,
     Place,
+    RateMhz,
     Touching,
 )
 from capar.model.observation import Observation
@@ -97,13 +98,26 @@ def test_facts_have_frames_and_seconds_and_refer_to_bodies(drunk: Observation) -
             capar:firstFrame ?first ; capar:start ?start ; capar:end ?end .
           ?thing a capar:TagObject ; capar:name ?other }"""
     ).plain()
-    step = drunk.duration_s / (drunk.frames - 1)
+    (rate_hz,) = (fact.rate / 1000.0 for fact in drunk.facts if isinstance(fact, RateMhz))
     expected = {
-        (each.body, each.other, each.first, each.first * step, each.last * step)
+        (each.body, each.other, each.first, each.first / rate_hz, each.last / rate_hz)
         for each in drunk.facts
         if isinstance(each, Touching)
     }
     assert {tuple(row.values()) for row in rows} == expected
+
+
+def test_a_frame_has_the_same_seconds_in_facts_and_in_segments(drunk: Observation) -> None:
+    actionary = Actionary.in_memory()
+    actionary.add(drunk)
+    rows = actionary.query(
+        """SELECT ?frame ?time ?seconds WHERE {
+          ?s a capar:Segment ; capar:firstFrame ?frame ; capar:start ?time .
+          ?t a capar:Touching ; capar:firstFrame ?frame ; capar:start ?seconds }"""
+    ).plain()
+    times = [(row["time"], row["seconds"]) for row in rows]
+    assert times
+    assert all(time == seconds for time, seconds in times)
 
 
 def test_no_text_packs_several_names_or_numbers_into_one(drunk: Observation) -> None:

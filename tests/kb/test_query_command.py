@@ -146,3 +146,29 @@ def test_an_import_without_a_format_says_how_to_give_one(
     done = ask("import", file, "--actionary", str(tmp_path / "new"))
     assert done.returncode == 2 and "add --format" in done.stderr
     assert not (tmp_path / "new").exists()
+
+
+def test_a_word_that_the_ontology_lacks_is_warned_of_with_the_nearest(ask: Ask) -> None:
+    done = ask(
+        "query", "SELECT ?x { ?x capar:nmae ?y ; a <https://w3id.org/capar/ontology#Segmnet> }"
+    )
+    assert done.returncode == 0
+    assert "warning: the ontology has no capar:nmae" in done.stderr
+    assert "capar:name" in done.stderr and "capar:Segment" in done.stderr
+    known = ask(
+        "query", 'SELECT (capar:element("1 2", 0) AS ?x) { ?s a capar:Segment # capar:nmae\n }'
+    )
+    assert "warning" not in known.stderr
+
+
+def test_an_empty_answer_says_among_how_many_segments_nothing_was_found(ask: Ask) -> None:
+    done = ask("query", "corrections")
+    assert done.stdout.splitlines()[1:] == []
+    assert "nothing found among 8 segments of 2 observations" in done.stderr
+    assert ask("query", "corrections", "--json").stderr == ""
+
+
+def test_a_verb_is_not_asked_of_an_actionary_without_a_lexicon(ask: Ask) -> None:
+    done = ask("query", "verb", "lemma=raise")
+    assert done.returncode == 2
+    assert "no lexicon is loaded; `capar lexicon load`" in done.stderr

@@ -12,6 +12,7 @@ import kb
 import ontology
 from capar.model.errors import UnknownNameError
 from capar.model.observation import Border
+from kb.encode import fact_terms
 from kb.encode.segments import BORDER_KINDS
 from kb.store.shacl_validation import rules
 from ontology import BASE, CAPAR, terms
@@ -21,7 +22,7 @@ from ontology.vocabularies import PREFIXES, RDF, RDFS
 LABEL = NamedNode(RDFS + "label")
 DEFINITION = NamedNode(PREFIXES["skos"] + "definition")
 TYPE = NamedNode(RDF + "type")
-ALL_FACT_KINDS = [each for file in term_files() for each in read(file)]
+STATEMENTS = [each for file in term_files() for each in read(file)]
 HERE = Path(ontology.__file__).parent
 README = (HERE / "README.md").read_text("utf-8")
 
@@ -30,7 +31,7 @@ def typed() -> set[str]:
     """Names of the terms that a file says are something."""
     return {
         each.subject.value.removeprefix(BASE)
-        for each in ALL_FACT_KINDS
+        for each in STATEMENTS
         if each.predicate == TYPE
         and isinstance(each.subject, NamedNode)
         and each.subject.value.startswith(BASE)
@@ -41,10 +42,15 @@ def test_the_closed_namespace_equals_the_files() -> None:
     assert set(terms()) == typed()
 
 
+def test_the_terms_of_kinds_of_facts_are_those_that_their_classes_declare() -> None:
+    assert (HERE / fact_terms.TURTLE).read_text("utf-8") == fact_terms.turtle()
+    assert (HERE / fact_terms.NAMES).read_text("utf-8") == fact_terms.module()
+
+
 def test_every_term_that_a_file_uses_is_stated() -> None:
     used = {
         node.value.removeprefix(BASE)
-        for each in ALL_FACT_KINDS
+        for each in STATEMENTS
         for node in (each.subject, each.predicate, each.object)
         if isinstance(node, NamedNode) and node.value.startswith(BASE)
     }
@@ -54,7 +60,7 @@ def test_every_term_that_a_file_uses_is_stated() -> None:
 @pytest.mark.parametrize("predicate", [LABEL, DEFINITION], ids=["label", "definition"])
 def test_every_term_and_every_kind_has_one_of_each(predicate: NamedNode) -> None:
     counts: dict[str, int] = {}
-    for each in ALL_FACT_KINDS:
+    for each in STATEMENTS:
         if each.predicate == predicate and isinstance(each.object, Literal):
             assert each.object.value.strip()
             counts[str(each.subject)] = counts.get(str(each.subject), 0) + 1
@@ -78,7 +84,7 @@ def attributes_of_capar(path: Path) -> set[str]:
 def test_code_uses_no_term_that_the_ontology_lacks() -> None:
     for package in (kb, ontology):
         for path in Path(str(package.__file__)).parent.rglob("*.py"):
-            assert attributes_of_capar(path) - {"__annotations__"} <= set(terms()), path
+            assert attributes_of_capar(path) <= set(terms()), path
 
 
 def test_queries_use_no_term_that_the_ontology_lacks() -> None:
@@ -114,10 +120,10 @@ def test_every_figure_of_the_thesis_has_rows() -> None:
 
 
 def test_what_may_happen_at_a_border_is_the_same_in_files_shapes_code_and_model() -> None:
-    kinds_of_border = {each.subject for each in ALL_FACT_KINDS if each.object == CAPAR.BorderKind}
+    kinds_of_border = {each.subject for each in STATEMENTS if each.object == CAPAR.BorderKind}
     named = {
         each.object.value: each.subject
-        for each in ALL_FACT_KINDS
+        for each in STATEMENTS
         if each.predicate == CAPAR.name
         and each.subject in kinds_of_border
         and isinstance(each.object, Literal)
@@ -132,7 +138,7 @@ def test_what_may_happen_at_a_border_is_the_same_in_files_shapes_code_and_model(
 def test_the_kinds_form_a_hierarchy_under_one_root() -> None:
     pairs = [
         (str(each.subject), str(each.object))
-        for each in ALL_FACT_KINDS
+        for each in STATEMENTS
         if each.predicate == CAPAR.broaderKind
     ]
     above = closure(pairs)

@@ -197,6 +197,31 @@ def turned_round(known: Known, what: str, at: str) -> bool:
                 and speed[frame] < speed[frame + side] + 0.02)  # fmt: skip
 
 
+def stroked(known: Known, what: str, count: str) -> bool:
+    """What the hand holds turns back so often along the line of most of its motion."""
+    thing = known.segment.objects[0]
+    place = known.stream(thing).positions[known.segment.first : known.segment.last + 1]
+    offsets = place - place.mean(axis=0)
+    along = offsets @ np.linalg.svd(offsets, full_matrices=False)[2][0]
+    found = _turning_points(along)
+    return what == known.segment.ee.replace("_", " ") and abs(found - int(count)) <= 2
+
+
+def lasted(known: Known, at: str) -> bool:
+    """The segment does, from its first frame to its last."""
+    return abs((known.segment.last - known.segment.first) / known.rate - float(at)) < 0.011
+
+
+def wrung(known: Known, what: str) -> bool:
+    """Its turning adds up to half a turn, and its way to no more than 15 cm for each radian."""
+    frames = range(known.segment.first, known.segment.last + 1)
+    turns = known.turns(what, frames)
+    turned = float((turns[1:] * turns[:-1].inv()).magnitude().sum())
+    place = known.stream(what).positions[frames[0] : frames[-1] + 1]
+    way = float(np.linalg.norm(np.diff(place, axis=0), axis=1).sum())
+    return turned > 0.9 * np.pi and way < 0.17 * turned
+
+
 def to_and_fro(known: Known, what: str, first: int, last: int) -> bool:
     """It turns back at least four times along an axis, a centimetre or more each time."""
     place = known.stream(what).positions[first : last + 1]
@@ -338,6 +363,16 @@ FORMS = (
     (rf"the {NAME} began to move at {TIME}", left_rest),
     (rf"the {NAME} turned back at {TIME}", turned_back),
     (rf"the {NAME} reversed its direction at {TIME}", turned_round),
+    (
+        rf"what the {NAME} held turned back (\d+) times, in strokes of a finger's width and more",
+        stroked,
+    ),
+    (r"it lasted (\d+\.\d\d) s", lasted),
+    (
+        rf"the {NAME} turned by more than half a turn in all, "
+        r"and went no further than the wrist takes it",
+        wrung,
+    ),
     (r"the object flew until it was touched", flew_until_touched),
     (r"it flew on when it was let go", flew_on),
 )

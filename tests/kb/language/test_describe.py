@@ -1,15 +1,10 @@
 """Descriptions read as a person would write them: golden texts, each read by us."""
 
 import re
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import groupby
-from typing import Literal
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from motions import (
     TALL_MAN,
     WOMAN,
@@ -26,17 +21,15 @@ from motions import (
     touch_from_rest,
     touch_with,
 )
-from observations import MUG, RATE_HZ, TABLE, Piece, observation, with_unknown
+from observations import MUG, TABLE, Piece, observation, with_unknown
 from observations import drink_from_mug as observed_drinking
 from observations import pick_up_with_both_hands as observed_picking_up
-from tellings import steps_of
 
-from capar.model.facts import Moving, Touching
+from capar.model.facts import Touching
 from capar.model.observation import Border
 from capar.model.par import FeatureSet
 from capar.pipelines.observation import observe
 from kb.language.describe import describe
-from kb.lexicon.english import past
 from kb.lexicon.links import PrimitiveWords
 
 ACTIONS = {
@@ -65,7 +58,7 @@ ACTIONS = {
         "pulled the stamp along the table with the right hand.",
     ),
     move_obj_to: (
-        "moved the stamp to the table with the right hand and held it there.",
+        "brought the stamp to the table with the right hand and held it there.",
         "lowered the stamp with the right hand.",
     ),
     resume_posture: (
@@ -74,7 +67,7 @@ ACTIONS = {
     ),
     touch: ("touched the table with the right hand.",) * 2,
     touch_with: (
-        "moved the stamp to the box with the right hand and held it there.",
+        "brought the stamp to the box with the right hand and held it there.",
         "lowered the stamp with the right hand and held it there.",
     ),
 }
@@ -142,7 +135,7 @@ def test_what_is_held_tipped_is_poured_from_all_the_time(righted: bool, often: s
     )
     told = describe(replace(made, links=(replace(link, segments=segments),)))
     assert told == (
-        "The agent reached for the bottle with the right hand, moved it to the bowl, and poured "
+        "The agent reached for the bottle with the right hand, brought it to the bowl, and poured "
         f"from it into the bowl{often}."
     )
 
@@ -199,20 +192,8 @@ def _two_hands() -> str:
 
 def test_two_hands_that_do_different_things_are_told_side_by_side() -> None:
     assert _two_hands() == (
-        "The agent reached for the mug with the right hand, moved it to the bowl, and let go, "
+        "The agent reached for the mug with the right hand, brought it to the bowl, and let go, "
         "while the left hand reached for the bowl and touched it."
-    )
-
-
-def test_what_is_repeated_is_told_once_with_how_often() -> None:
-    cycle = ("Reach", "Touch", "ResumePosture")
-    pieces = tuple(
-        Piece(cycle[index % 3], (index + 1) * 40, ("mug",)) for index in range(3 * len(cycle))
-    )
-    seen = observation("Thrice", {"right_hand": pieces}, (MUG,), frames=361, rate_hz=RATE_HZ)
-    assert describe(seen) == (
-        "The agent reached for the mug with the right hand, touched it, and took the hand away, "
-        "three times in all."
     )
 
 
@@ -246,83 +227,6 @@ def test_a_users_primitive_is_told_by_its_own_verb_or_by_what_it_specialises() -
     assert describe(seen) == f"{start}moved it."
 
 
-MANY = ("Lift", "Raise", "Lower", "Tilt", "Shake", "Turn")
-
-
-def _handled(*names: str, detail: Literal["steps", "summary"] = "steps") -> str:
-    """What is told of a mug that is reached for and then handled so."""
-    own = FeatureSet("1", "1", "1", "hand", "0")
-    features = dict.fromkeys((*MANY, "MoveObj"), own)
-    pieces = [Piece("Reach", 50, ("mug",))]
-    for index, name in enumerate(names, 2):
-        pieces.append(Piece(name, 50 * index, ("mug",), features=features.get(name)))
-    facts = (Moving("mug", 60, 50 * len(names) + 50),)
-    seen = observation(
-        "Handling",
-        {"right_hand": tuple(pieces)},
-        (MUG,),
-        facts=facts,
-        frames=50 * len(names) + 51,
-        rate_hz=100.0,
-    )
-    right_hand = seen.links[0]
-    own_grip = tuple(replace(each, possessed=each.index > 0) for each in right_hand.segments)
-    seen = replace(seen, links=(replace(right_hand, segments=own_grip),))
-    told = describe(seen, detail=detail)
-    return told.removeprefix("The agent reached for the mug with the right hand")
-
-
-def test_verbs_of_one_thing_share_it() -> None:
-    assert _handled("Lift", "Raise", "Lower") == " and lifted, raised, and lowered it."
-    assert _handled("Lift", "Raise") == ", lifted it, and raised it."
-
-
-def test_what_is_done_again_is_said_to_be() -> None:
-    assert _handled("Raise", "Lower", "Raise") == ", raised it, lowered it, and raised it again."
-
-
-def test_a_deed_that_was_only_paused_is_one_with_its_pauses() -> None:
-    assert _handled("Shake", "Touch", "Shake") == " and shook it with a pause."
-    paused = _handled("Shake", "Touch", "Shake", "Touch", "Shake")
-    assert paused == " and shook it with two pauses."
-
-
-def test_a_motion_that_goes_on_is_one_deed_however_many_segments_it_has() -> None:
-    assert _handled("Shake", "Shake", "Shake") == " and shook it."
-    assert _handled("Shake", "Shake", detail="summary") == (
-        "The agent shook the mug with the right hand."
-    )
-
-
-def test_a_block_that_recurs_is_counted() -> None:
-    assert _handled("Tilt", "Lower", "Tilt", "Lower") == " and tilted and lowered it twice."
-    told = _handled("Tilt", "Tilt", "Lower", "Tilt", "Tilt", "Lower")
-    assert told == " and tilted and lowered it twice."
-
-
-def test_a_summary_of_much_handling_counts_each_verb_by_itself() -> None:
-    told = _handled("Raise", "Lower", "Raise", "Tilt", "Raise", "Lower", detail="summary")
-    assert told == (
-        "The agent raised the mug with the right hand three times, lowered it twice, and tilted it."
-    )
-
-
-@given(st.lists(st.sampled_from(MANY), min_size=1, max_size=12))
-def test_no_verb_is_left_untold(names: list[str]) -> None:
-    told = _handled(*names) + _handled(*names, detail="summary")
-    for name in names:
-        assert past(name.lower()) in told
-
-
-@given(st.lists(st.sampled_from(MANY), min_size=1, max_size=12))
-def test_what_is_counted_is_how_often_it_was_done_anew(names: list[str]) -> None:
-    anew = Counter(name for name, _ in groupby(names))
-    told = Counter[str]()
-    for step in steps_of(_handled(*names, detail="summary")):
-        told[step.call.action] += max(step.circumstances.count, 1)
-    assert told == anew
-
-
 def test_several_things_touched_at_once_are_them() -> None:
     reached = FeatureSet("000", "110", "00", "hand", "00")
     touched = FeatureSet("110", "110", "00", "hand", "00")
@@ -336,14 +240,6 @@ def test_several_things_touched_at_once_are_them() -> None:
     assert describe(seen) == (
         "The agent reached for the bowl and the mug with the right hand and touched them."
     )
-
-
-def test_what_is_done_often_and_changes_nothing_is_counted_in_a_summary() -> None:
-    cycle = ("Reach", "Touch", "ResumePosture")
-    pieces = tuple(Piece(cycle[index % 3], (index + 1) * 40, ("mug",)) for index in range(9))
-    seen = observation("Thrice", {"right_hand": pieces}, (MUG,), frames=361, rate_hz=RATE_HZ)
-    told = describe(seen, detail="summary")
-    assert told == "The agent touched the mug with the right hand three times."
 
 
 def test_a_hand_that_moves_and_touches_nothing_is_told() -> None:

@@ -17,7 +17,7 @@ from capar.pipelines.observation import observe
 from capar.views.readings import question_lines, reading_lines
 from kb.actionary import Actionary
 from kb.language import Question, parse
-from kb.language.lexicalisation import in_past
+from kb.language.lexicalisation import ON_FOOT, in_past
 from kb.lexicon.tables import table
 
 HERE = Path(__file__).parent
@@ -88,7 +88,7 @@ def test_a_description_is_read_with_every_verb_that_it_has(path: Path) -> None:
         steps = steps_of(text)
         assert len(steps) == len(verbs_of(text))
         assert all(step.known and step.call.action for step in steps)
-        hands = [step.ee for step in steps if "hand" in text]
+        hands = [step.ee for step in steps if "hand" in text and step.call.action not in ON_FOOT]
         assert all(hands), "each step has the hand that was named last"
 
 

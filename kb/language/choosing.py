@@ -1,0 +1,95 @@
+"""What a summary tells: the few deeds that matter, each once, in the order in which they began."""
+
+from collections.abc import Callable, Sequence
+
+from kb.language.clause import Clause
+from kb.language.lexicalisation import MOVING, TRANSPORT
+from kb.language.thresholds import MOST_DEEDS
+
+
+def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
+    """At most ``MOST_DEEDS`` of what was done, without what is only said again.
+
+    Where more was done, what only leads to the next deed is left out first (to bring a whisk to the
+    bowl in which it stirs), then help, then motions without a goal, the shortest first, and of each
+    time that a hand had a thing one deed stays; and then whatever took least time.
+
+    Args:
+        steps: What was done, in order of time.
+    """
+    told: list[Clause] = []
+    repeated: list[Clause] = []
+    for step in steps:
+        said = next((each for each in told if _says_the_same(each, step)), None)
+        if said is None:
+            told.append(step)
+        elif (said.ees, said.grip) != (step.ees, step.grip):
+            repeated.append(step)
+    if len(steps) > MOST_DEEDS:
+        told = [each for each in told if not _beside_what_recurs(each, repeated, told)]
+    if len(told) > MOST_DEEDS:
+        told = [each for at, each in enumerate(told) if not _leads_on(each, told[at + 1 :])]
+        told = [each for at, each in enumerate(told) if not _on_the_way(each, told[at + 1 :])]
+    told = _without_shortest(told, lambda step: step.helps)
+    told = _without_shortest(told, lambda step: _without_goal(step) and not _alone(step, told))
+    return tuple(_without_shortest(told, lambda step: True))
+
+
+def mattering(told: Sequence[Clause]) -> tuple[Clause, ...]:
+    """What one hand changed, or helped to change, and what no rule names."""
+    return tuple(each for each in told if each.changes or not each.known or each.helps)
+
+
+def longest(steps: Sequence[Clause]) -> tuple[str, ...]:
+    """The end-effectors of what took longest: a summary begins with it where it can."""
+    return max(steps, key=_lasts_s).ees if steps else ()
+
+
+def _without_shortest(told: list[Clause], minor: Callable[[Clause], bool]) -> list[Clause]:
+    """The clauses, without as many of the minor ones as are too many."""
+    while len(told) > MOST_DEEDS and any(minor(step) for step in told):
+        told.remove(min(filter(minor, told), key=_lasts_s))
+    return told
+
+
+def _lasts_s(step: Clause) -> float:
+    return step.end_s - step.start_s
+
+
+def _says_the_same(one: Clause, other: Clause) -> bool:
+    same = (one.pattern, one.objects, one.purpose) == (other.pattern, other.objects, other.purpose)
+    return same and set(other.ees) <= set(one.ees)
+
+
+def _beside_what_recurs(step: Clause, repeated: Sequence[Clause], told: Sequence[Clause]) -> bool:
+    """Whether a hand that had a thing mainly did what it had done before, and this beside it."""
+    same = [each for each in repeated if (each.ees, each.grip) == (step.ees, step.grip)]
+    beside = [each for each in told if (each.ees, each.grip) == (step.ees, step.grip)]
+    main_s = max((_lasts_s(each) for each in same), default=0.0)
+    minor = len(step.objects) == 1 and not step.frees
+    return minor and main_s > max(map(_lasts_s, beside))
+
+
+def _leads_on(step: Clause, later: Sequence[Clause]) -> bool:
+    """Whether the hand works next with the same things at the place to which it brings one."""
+    after = [each for each in later if each.ees == step.ees and each.grip == step.grip]
+    worked = bool(after) and after[0].objects[:2] == step.objects[:2] and after[0].goes_on
+    return worked and len(step.objects) > 1
+
+
+def _on_the_way(step: Clause, later: Sequence[Clause]) -> bool:
+    """Whether a thing is lifted or carried that the hand puts somewhere later."""
+    after = [each for each in later if each.ees == step.ees and each.grip == step.grip]
+    ends = any(not _without_goal(each) for each in after)
+    return ends and step.name in TRANSPORT
+
+
+def _without_goal(step: Clause) -> bool:
+    """Whether a thing is moved, and nothing is said of where to."""
+    moved = not MOVING.isdisjoint((step.name, *step.general))
+    return moved and step.pattern.partition(" ")[2] == "{1}"
+
+
+def _alone(step: Clause, told: Sequence[Clause]) -> bool:
+    """Whether it is all that is told of a time in which a hand had a thing."""
+    return sum((each.ees, each.grip) == (step.ees, step.grip) for each in told) == 1

@@ -1,0 +1,121 @@
+"""Where a free hand reaches that touches nothing: up, forward and down, to the left, and back.
+
+Directions are the person's own, as both hands hang or rest when the recording begins.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.model.observation import Observation, ObservedLink
+from capar.model.sampled_track import SampledTrack
+from kb.language.thresholds import APEX_M, ASIDE_SHARE, REACHED_M, SWAYING
+
+HAND, HEAD = "hand", "head"
+
+
+@dataclass(frozen=True)
+class Reached:
+    """One hand's way to a place in the air, and back."""
+
+    ee: str
+    where: str
+    """In words: ``forward and up``."""
+
+    start_s: float
+    there_s: float
+    """When it is as far as it gets."""
+
+    leaves_s: float
+    end_s: float
+    back: bool
+    """Whether it comes back."""
+
+
+def reaches(
+    observation: Observation, moved: Mapping[str, tuple[float, float]]
+) -> tuple[Reached, ...]:
+    """Where hands reach from rest that move freely; empty where that cannot be told.
+
+    Args:
+        observation: What was understood of a capture.
+        moved: From when to when each end-effector moved [s].
+    """
+    tracks = {each.body: each for each in observation.tracks if each.step_s > 0.0}
+    hands = [link for link in observation.links if link.kind == HAND and link.ee in tracks]
+    ahead = _ahead(hands, tracks)
+    head = next((tracks[body] for body in tracks if body == HEAD), None)
+    free = [
+        link.ee
+        for link in hands
+        if link.ee in moved and moved[link.ee][0] > link.segments[0].start_s
+    ]
+    ways = (_reached(ee, tracks[ee], moved[ee], ahead, head) for ee in free)
+    found = [each for each in ways if each is not None]
+    furthest_m = max((way for _, way in found), default=0.0)
+    return tuple(each for each, way in found if way >= SWAYING * furthest_m)
+
+
+def _ahead(
+    hands: Sequence[ObservedLink], tracks: Mapping[str, SampledTrack]
+) -> Float[np.ndarray, "3"] | None:
+    """The level direction in which the person looks at first; None without both hands."""
+    sides = {link.side: tracks[link.ee].positions[0] for link in hands}
+    if not {"left", "right"} <= set(sides):
+        return None
+    right = (sides["right"] - sides["left"]) * (1.0, 1.0, 0.0)
+    length = float(np.linalg.norm(right))
+    if not length > 0.0:
+        return None
+    return np.cross((0.0, 0.0, 1.0), right / length)
+
+
+def _reached(
+    ee: str,
+    track: SampledTrack,
+    span: tuple[float, float],
+    ahead: Float[np.ndarray, "3"] | None,
+    head: SampledTrack | None,
+) -> tuple[Reached, float] | None:
+    """Where one hand gets that moves in that time, and how far [m]; None where it gets nowhere."""
+    first, last = (round(each / track.step_s) for each in span)
+    places = track.positions[first : last + 1]
+    if len(places) < 2 or np.isnan(places).any():
+        return None
+    ways = np.linalg.norm(places - places[0], axis=1)
+    furthest_m = float(ways.max())
+    where = _direction(places[int(ways.argmax())] - places[0], ahead)
+    if furthest_m < REACHED_M or not where:
+        return None
+    if head is not None:
+        apex = first + int(ways.argmax())
+        above = track.positions[apex, 2] > head.positions[min(apex, len(head.positions) - 1), 2]
+        where += " above the head" if above else ""
+    there = np.flatnonzero(ways > furthest_m - APEX_M)
+    found = Reached(
+        ee=ee,
+        where=where,
+        start_s=span[0],
+        there_s=(first + int(there[0])) * track.step_s,
+        leaves_s=(first + int(there[-1])) * track.step_s,
+        end_s=span[1],
+        back=float(ways[-1]) < 0.5 * furthest_m,
+    )
+    return found, furthest_m
+
+
+def _direction(way: Float[np.ndarray, "3"], ahead: Float[np.ndarray, "3"] | None) -> str:
+    """A way in words of the person; empty where it goes aside and it is not known where that is."""
+    unit = way / np.linalg.norm(way)
+    words = []
+    if ahead is not None:
+        on, left = float(unit @ ahead), float(unit @ np.cross((0.0, 0.0, 1.0), ahead))
+        name, share = ("forward", on) if on > 0.0 else ("back", -on)
+        if abs(left) > share:
+            name, share = ("to the left", left) if left > 0.0 else ("to the right", -left)
+        words += [name] if share > ASIDE_SHARE else []
+    if abs(unit[2]) > ASIDE_SHARE:
+        words.append("up" if unit[2] > 0.0 else "down")
+    return " and ".join(words)

@@ -1,0 +1,83 @@
+"""The numbers by which wording decides, each with its unit and its reason.
+
+None of them names, splits or drops a segment: they choose among ways to tell segments that the
+rules have named.
+"""
+
+REST_S = 0.4
+"""A rest of so long [s] parts what is done; the rules have the same for segments (``rest_ms``)."""
+
+SCRAP_S = 0.5
+"""What takes less than this [s] within a grip, and goes not far, is no deed of its own: a simple
+movement of the arm takes about so long."""
+
+UNSEEN_S = 0.2
+"""What takes less than this [s] is no deed wherever it goes: an onlooker takes so long to react."""
+
+SCRAP_M = 0.1
+"""So far [m] a scrap goes at most: about a hand's width."""
+
+STILL_M = 0.02
+"""What goes less far than this [m] stays where it is: the tolerance of contacts."""
+
+RUNNING_MPS = 0.15
+"""A hand that goes faster than this [m/s] over a thing that stays does not hold it: it would have
+gone past a hand's width within a second."""
+
+RISEN_M = 0.1
+"""What is so far [m] above where it was has been lifted: a hand's width."""
+
+STEADY_S = 0.5
+"""A hand that stays at a thing for so long [s] while another works in it steadies it."""
+
+SETTLING_S = 1.0
+"""A hand that stays for less than this [s] at what it has just put down is about to let go."""
+
+UPRIGHT_RAD = 0.79
+"""What leans less than this [rad] stands upright: 45 degrees."""
+
+OVER_RAD = 2.36
+"""What leans more than this [rad] is upside down: 135 degrees."""
+
+AROUND_RAD = 2.09
+"""What is turned about the vertical by more than this [rad] faces another way: 120 degrees."""
+
+TURNED_RAD = 0.35
+"""What is turned by more than this [rad] is seen to be: 20 degrees, as in the rules
+(``turn_mrad``)."""
+
+SOMEWHAT_RAD = 0.7
+"""What is only moved, and turned about the vertical by more than this [rad], is turned: 40 degrees,
+twice what happens in carrying."""
+
+TO_AND_FRO_RAD = 3.14
+"""What turns by more than this [rad] along its way, and ends turned by less than half of that, is
+turned this way and that: half a turn. What turns by twice as much is, however it ends."""
+
+STEP_M = 0.2
+"""A foot that comes down less far than this [m] from where it left has not walked: less than the
+length of a foot."""
+
+STRIDE_S = 1.0
+"""Who stands for longer than this [s] between two steps has stopped walking (``halt_ms``)."""
+
+REACHED_M = 0.2
+"""A free hand that goes less far than this [m] does not reach anywhere: about its own length."""
+
+SWAYING = 0.75
+"""A hand that goes less far than this share of what the other goes [1] sways with the body."""
+
+APEX_M = 0.05
+"""A hand is where it reaches while it is no further than this [m] from its furthest: half its
+width."""
+
+ASIDE_SHARE = 0.5
+"""A direction counts in words where a way goes along it by more than this share of the whole [1]:
+within 60 degrees."""
+
+BESIDE_MM = 80
+"""What moves as one with a hand that is no further than this [mm] from touching it is in the hand,
+where that has touched it before or touches it again (``reach_mm``)."""
+
+MOST_DEEDS = 6
+"""A summary names at most so many deeds."""

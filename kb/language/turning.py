@@ -1,0 +1,209 @@
+"""How things are turned while a hand has them: upside down, upright again, around, to and fro.
+
+Wording only, from measured postures (lean, turn about the vertical) and ways; rules name segments.
+"""
+
+from bisect import bisect_right
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from capar.model.facts import Posture, Travelled
+from capar.model.observation import Observation, Segment
+from kb.language.clause import Clause
+from kb.language.lexicalisation import (
+    AROUND,
+    BACK_UPRIGHT,
+    SHIFTED,
+    THIS_WAY,
+    UPRIGHT,
+    UPSIDE_DOWN,
+    moves_only,
+)
+from kb.language.thresholds import (
+    AROUND_RAD,
+    OVER_RAD,
+    REST_S,
+    SCRAP_S,
+    SETTLING_S,
+    SOMEWHAT_RAD,
+    TO_AND_FRO_RAD,
+    TURNED_RAD,
+    UPRIGHT_RAD,
+)
+
+
+@dataclass(frozen=True)
+class Attitude:
+    """How a thing stands at a time."""
+
+    time_s: float
+    lean: float
+    """How far it leans from upright [rad]."""
+
+    spin: float
+    """How far it is turned about the vertical [rad]."""
+
+
+class Turning:
+    """Postures of an observation's objects by time."""
+
+    def __init__(self, observation: Observation) -> None:
+        self._step_s = observation.duration_s / max(observation.frames - 1, 1)
+        self._postures: dict[str, list[Attitude]] = defaultdict(list)
+        self._turns: dict[str, dict[int, int]] = defaultdict(dict)
+        for fact in sorted(each for each in observation.facts if isinstance(each, Posture)):
+            found = Attitude(fact.frame * self._step_s, fact.lean / 1000.0, fact.spin / 1000.0)
+            self._postures[fact.body].append(found)
+        for way in observation.facts:
+            if isinstance(way, Travelled):
+                self._turns[way.body][way.frame] = way.turn
+
+    def this_way_and_that(self, segment: Segment) -> bool:
+        """Whether what a hand has turns much in a segment, and ends turned by much less."""
+        turns = self._turns[segment.objects[0]]
+        if segment.first not in turns or segment.last not in turns:
+            return False
+        turned = (turns[segment.last] - turns[segment.first]) / 1000.0
+        seen = self._between(segment.objects[0], segment.start_s, segment.end_s)
+        if not seen or turned < TO_AND_FRO_RAD:
+            return False
+        net = abs(seen[-1].lean - seen[0].lean) + abs(seen[-1].spin - seen[0].spin)
+        return net < 0.5 * turned or turned > 2.0 * TO_AND_FRO_RAD
+
+    def seen_to_turn(self, clause: Clause) -> bool:
+        """Whether it is turned about the vertical while it is moved, and stands upright."""
+        seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
+        if not seen or max(seen[0].lean, seen[-1].lean) > UPRIGHT_RAD:
+            return False
+        return abs(seen[-1].spin - seen[0].spin) > SOMEWHAT_RAD
+
+    def told(self, grip: Sequence[Clause]) -> Iterator[Clause]:
+        """Clauses of how a thing is turned over or around while a hand moves it.
+
+        Args:
+            grip: What the hand does to it on end.
+        """
+        thing, start_s, end_s = grip[0].objects[0], grip[0].start_s, grip[-1].end_s
+        seen = self._between(thing, start_s, end_s)
+        if len(seen) < 2:
+            return
+        over = seen[0].lean > OVER_RAD
+        leant = not over and seen[0].lean > UPRIGHT_RAD
+        since, turned_over = seen[0], False
+        for before, after in pairwise(seen):
+            if not over and not leant and before.lean <= UPRIGHT_RAD:
+                since = before
+            if not over and after.lean > OVER_RAD:
+                yield _turned(grip, UPSIDE_DOWN, since, after)
+                over, leant, since, turned_over = True, False, after, True
+            elif over and after.lean > OVER_RAD:
+                since = after
+            elif (over or leant) and after.lean < UPRIGHT_RAD:
+                yield _turned(grip, BACK_UPRIGHT if turned_over else UPRIGHT, since, after)
+                over, leant, since = False, False, after
+        if (
+            max(each.lean for each in seen) < OVER_RAD
+            and abs(seen[-1].spin - seen[0].spin) > AROUND_RAD
+        ):
+            yield _turned(grip, AROUND, *_course(seen))
+
+    def _between(self, thing: str, start_s: float, end_s: float) -> list[Attitude]:
+        """Its postures from the last one before the start to the one nearest to the end."""
+        found, slack_s = self._postures[thing], 0.5 * self._step_s
+        begin = bisect_right(found, start_s + slack_s, key=_time) - 1
+        end = bisect_right(found, end_s + slack_s, key=_time)
+        late = found[end : end + 1]
+        if late and end and late[0].time_s - end_s < min(end_s - found[end - 1].time_s, REST_S):
+            end += 1
+        return found[max(begin, 0) : end]
+
+
+def _time(attitude: Attitude) -> float:
+    return attitude.time_s
+
+
+def _course(seen: Sequence[Attitude]) -> tuple[Attitude, Attitude]:
+    """From where it still is turned as at first to where it is turned as at last."""
+    moved = [abs(each.spin - seen[0].spin) > TURNED_RAD for each in seen]
+    rest = [abs(each.spin - seen[-1].spin) > TURNED_RAD for each in seen]
+    last = len(seen) - 1 - rest[::-1].index(True)
+    return seen[max(moved.index(True) - 1, 0)], seen[min(last + 1, len(seen) - 1)]
+
+
+def _turned(grip: Sequence[Clause], pattern: str, since: Attitude, until: Attitude) -> Clause:
+    return replace(
+        grip[0],
+        pattern=pattern,
+        objects=grip[0].objects[:1],
+        start_s=since.time_s,
+        end_s=until.time_s,
+        changes=True,
+        name="Turn",
+        general=("MoveObj",),
+        goes_on=True,
+        possessed=True,
+        rights=False,
+    )
+
+
+def turned(told: Sequence[Clause], turning: Turning) -> tuple[list[Clause], list[Clause]]:
+    """How what one hand has is turned over or around, beside its other clauses.
+
+    A clause that says no more than that the thing is moved meanwhile is left out of those.
+
+    Returns:
+        The other clauses, and those of turning; both in order of time.
+    """
+    rest: list[Clause] = []
+    found: list[Clause] = []
+    at = 0
+    while at < len(told):
+        size = 1
+        while at + size < len(told) and _goes_on(told[at + size - 1], told[at + size]):
+            size += 1
+        grip = told[at : at + size]
+        at += size
+        moved = [each for each in grip if each.changes]
+        wrung = any(each.pattern == THIS_WAY for each in grip)
+        ways = list(turning.told(moved)) if moved and grip[0].possessed and not wrung else []
+        rest += (step for step in (_turn(each, ways, turning) for each in grip) if step)
+        found += ways
+    return rest, found
+
+
+def _turn(clause: Clause, ways: Sequence[Clause], turning: Turning) -> Clause | None:
+    """A clause of a thing that is moved, as one of turning it; None where that is told already."""
+    if not (moves_only(clause.pattern) and clause.possessed and clause.changes):
+        return clause
+    if any(clause.overlap_s(way) > 0.0 for way in ways):
+        return None
+    turns = turning.seen_to_turn(clause)
+    return replace(clause, pattern="turn {1}", name="Turn") if turns else clause
+
+
+def with_turning(told: Sequence[Clause], ways: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses of one hand with those of turning, each in the grip to which it belongs."""
+    out = [step for step in told if not any(_scrap_beside(step, way) for way in ways)]
+    for way in ways:
+        same = [step for step in told if step.objects[:1] == way.objects]
+        grip = max(same, key=way.overlap_s).grip if same else way.grip
+        out.append(replace(way, grip=grip))
+    return tuple(sorted(out, key=_start))
+
+
+def _scrap_beside(step: Clause, way: Clause) -> bool:
+    """Whether it is a short shift of a thing that was just turned: the end of putting it there."""
+    brief = step.possessed and step.end_s - step.start_s < SCRAP_S
+    soon = 0.0 <= step.start_s - way.end_s < SETTLING_S
+    return brief and soon and step.name in SHIFTED and step.objects[:1] == way.objects
+
+
+def _start(clause: Clause) -> float:
+    return clause.start_s
+
+
+def _goes_on(one: Clause, other: Clause) -> bool:
+    """Whether the hand still has the same thing."""
+    return one.possessed and other.possessed and one.objects[:1] == other.objects[:1]

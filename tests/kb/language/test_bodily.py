@@ -1,0 +1,84 @@
+"""A body walks, and works with its hands: feet, elbows and shoulders are not told one by one."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from observations import MUG, TABLE, Piece, observation
+
+from capar.model.facts import Touching
+from capar.model.observation import Observation
+from capar.model.par import FeatureSet
+from capar.model.sampled_track import sampled_track
+from kb.language.describe import describe
+
+OWN = FeatureSet("1", "1", "1", "hand", "0")
+FLOOR = replace(TABLE, name="floor", kind="floor")
+WALKED = {
+    "right_foot": (("Step", 50), ("Stand", 120), ("Step", 170), ("Stand", 400)),
+    "left_foot": (("Stand", 60), ("Step", 110), ("Stand", 400)),
+}
+WORKED = (("Reach", 200), ("Lift", 300), ("ResumePosture", 400))
+
+
+def seen(links: Mapping[str, tuple[tuple[str, int], ...]], way_m: float) -> Observation:
+    """What parts of a body did within four seconds, whose feet go so far with each step."""
+    pieces = {
+        ee: tuple(
+            Piece(
+                name,
+                end,
+                ("floor" if ee.endswith("foot") else "mug",),
+                features=OWN if name == "Lift" else None,
+            )
+            for name, end in parts
+        )
+        for ee, parts in links.items()
+    }
+    touch = Touching("right_hand", "mug", 200, 300)
+    made = observation("Body", pieces, (MUG, FLOOR), facts=(touch,), frames=401, rate_hz=100.0)
+    own = tuple(
+        replace(
+            link,
+            segments=tuple(replace(each, possessed=each.name == "Lift") for each in link.segments),
+        )
+        for link in made.links
+    )
+    tracks = []
+    for ee, parts in links.items():
+        gone, now = np.zeros((401, 3)), 0
+        for name, end in parts:
+            if name == "Step":
+                gone[now:, 0] += np.interp(np.arange(now, 401), (now, end), (0.0, way_m))
+            now = end
+        tracks.append(sampled_track(ee, 0.01, gone))
+    return replace(made, links=own, tracks=tuple(tracks))
+
+
+def test_steps_before_a_thing_is_taken_are_walking() -> None:
+    told = describe(seen({"right_hand": WORKED, **WALKED}, 0.6), timed=True)
+    assert told == (
+        "The agent walked (0.00–1.70 s), reached for the mug with the right hand (1.70–2.00 s), "
+        "lifted it (2.00–3.00 s), and let go (3.00 s)."
+    )
+
+
+def test_who_comes_nearer_to_the_thing_walks_up_to_it() -> None:
+    made = seen({"right_hand": WORKED, **WALKED}, 0.6)
+    ahead = sampled_track("mug", 0.01, np.tile((1.5, 0.0, 0.8), (401, 1)))
+    told = describe(replace(made, tracks=(*made.tracks, ahead)))
+    assert told.startswith("The agent walked up to the mug, reached for it with the right hand,")
+
+
+def test_steps_on_the_spot_are_not_told_beside_what_hands_do() -> None:
+    told = describe(seen({"right_hand": WORKED, **WALKED}, 0.05))
+    assert told == "The agent reached for the mug with the right hand, lifted it, and let go."
+
+
+def test_feet_alone_walk() -> None:
+    assert describe(seen(WALKED, 0.6), timed=True) == "The agent walked (0.00–1.70 s)."
+
+
+def test_an_elbow_that_goes_along_with_the_hand_is_not_told() -> None:
+    told = describe(seen({"right_hand": WORKED, "right_elbow": WORKED}, 0.0))
+    assert told == "The agent reached for the mug with the right hand, lifted it, and let go."

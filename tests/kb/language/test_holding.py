@@ -1,0 +1,97 @@
+"""A hand has what it moves, also where no contact was measured; a thing changes hands once."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from observations import MUG, Piece, observation
+
+from capar.model.facts import Fact, MovedBy, Moving, Touching
+from capar.model.observation import Observation
+from capar.model.par import FeatureSet
+from kb.language.describe import describe
+
+OWN = FeatureSet("1", "1", "1", "hand", "0")
+HAS = {"Lift", "Lower", "Turn", "Touch", "Carry"}
+CHAIR = replace(MUG, name="chair", kind="chair")
+
+
+def seen(links: Mapping[str, tuple[Piece, ...]], *facts: Fact) -> Observation:
+    """What hands did to a chair within four seconds, at 100 Hz."""
+    made = observation("Chair", links, (CHAIR,), facts=facts, frames=401, rate_hz=100.0)
+    own = tuple(
+        replace(
+            link,
+            segments=tuple(replace(each, possessed=each.name in HAS) for each in link.segments),
+        )
+        for link in made.links
+    )
+    return replace(made, links=own)
+
+
+def piece(name: str, end: int) -> Piece:
+    """A segment about the chair."""
+    return Piece(name, end, ("chair",), features=OWN if name in HAS - {"Touch"} else None)
+
+
+LOST = tuple(
+    piece(name, end)
+    for name, end in (
+        ("Reach", 50), ("Lift", 150), ("ResumePosture", 180), ("Reach", 250), ("Lower", 330),
+        ("ResumePosture", 400),
+    )
+)  # fmt: skip
+CONTACTS = (Touching("right_hand", "chair", 50, 150), Touching("right_hand", "chair", 250, 345))
+
+
+def test_a_contact_that_drops_out_while_the_hand_carries_the_thing_is_not_told() -> None:
+    carried = MovedBy("chair", "right_hand", "carried", 60, 325)
+    told = describe(seen({"right_hand": LOST}, *CONTACTS, Moving("chair", 60, 325), carried))
+    assert told == (
+        "The agent reached for the chair with the right hand, lifted, moved, and lowered it, and "
+        "let go."
+    )
+
+
+def test_what_a_hand_lets_go_and_takes_again_is_told() -> None:
+    still = (Moving("chair", 60, 140), MovedBy("chair", "right_hand", "carried", 60, 140))
+    told = describe(seen({"right_hand": LOST}, *CONTACTS, *still))
+    assert told == (
+        "The agent reached for the chair with the right hand, lifted it, and let go. Then the "
+        "agent reached for the chair, lowered it, and let go."
+    )
+
+
+def test_letting_go_is_when_contact_ends() -> None:
+    told = describe(seen({"right_hand": LOST}, *CONTACTS), timed=True)
+    assert told.endswith("and let go (3.45 s).")
+
+
+def test_a_blow_with_which_a_hand_begins_to_move_a_thing_is_no_blow() -> None:
+    pieces = (piece("Hit", 100), piece("Reach", 300), piece("ResumePosture", 400))
+    touches = (Touching("right_hand", "chair", 100, 110), Touching("right_hand", "chair", 290, 300))
+    moves = (Moving("chair", 130, 280), MovedBy("chair", "right_hand", "carried", 140, 280))
+    told = describe(seen({"right_hand": pieces}, *touches, *moves))
+    assert told == "The agent reached for the chair with the right hand, moved it, and let go."
+    assert describe(seen({"right_hand": pieces}, *touches)).startswith("The agent hit the chair")
+
+
+def test_a_thing_that_changes_hands_is_handed_over_once_while_both_have_it() -> None:
+    right = (piece("Reach", 50), piece("Lift", 150), piece("Give", 300), piece("Touch", 310))
+    left = (piece("Receive", 180), piece("Turn", 400))
+    touches = (Touching("right_hand", "chair", 50, 220), Touching("left_hand", "chair", 180, 400))
+    told = describe(seen({"right_hand": right[:3], "left_hand": left}, *touches), timed=True)
+    assert "handed it over to the other hand (1.80–2.20 s)" in told
+    assert "received" not in told
+
+
+def test_a_hand_that_goes_along_beside_a_thing_does_what_the_other_is_seen_to_do() -> None:
+    left = (piece("Reach", 50), piece("Lift", 150), piece("Carry", 250), piece("Lower", 340))
+    right = (piece("Reach", 50), piece("Lift", 150), piece("ResumePosture", 400))
+    touches = (Touching("right_hand", "chair", 50, 150), Touching("left_hand", "chair", 50, 350))
+    moves = (Moving("chair", 60, 340), MovedBy("chair", "right_hand", "carried", 60, 340))
+    gone = piece("ResumePosture", 400)
+    told = describe(seen({"right_hand": right, "left_hand": (*left, gone)}, *touches, *moves))
+    assert told == (
+        "The agent reached for the chair with both hands, lifted, carried, and lowered it, and let "
+        "go."
+    )

@@ -1,0 +1,83 @@
+"""What is turned over, set upright or made to face another way is told to be."""
+
+from dataclasses import replace
+
+from hypothesis import given
+from hypothesis import strategies as st
+from observations import MUG, Piece, observation
+
+from capar.model.facts import Posture, Travelled
+from capar.model.par import FeatureSet
+from kb.language.describe import describe
+from kb.language.thresholds import AROUND_RAD, OVER_RAD, UPRIGHT_RAD
+
+OWN = FeatureSet("1", "1", "1", "hand", "0")
+
+
+def told(name: str, *postures: tuple[float, float], turned: float = 0.0) -> str:
+    """What is told of a mug that a hand moves, by how it leans and is turned [rad] each second."""
+    frames = 100 * (len(postures) - 1)
+    pieces = (Piece(name, frames, ("mug",), features=OWN),)
+    facts = [
+        Posture("mug", 100 * at, round(1000 * lean), round(1000 * spin))
+        for at, (lean, spin) in enumerate(postures)
+    ]
+    ways = [Travelled("mug", 0, 0, 0), Travelled("mug", frames, 300, round(1000 * turned))]
+    made = observation(
+        "Turned",
+        {"right_hand": pieces},
+        (MUG,),
+        facts=(*facts, *ways),
+        frames=frames + 1,
+        rate_hz=100.0,
+    )
+    (link,) = made.links
+    own = tuple(replace(each, possessed=True) for each in link.segments)
+    text = describe(replace(made, links=(replace(link, segments=own),)), timed=True)
+    return text.removeprefix("The agent ")
+
+
+def test_what_ends_over_is_turned_upside_down() -> None:
+    assert told("MoveObj", (0.0, 0.0), (1.5, 0.0), (3.0, 0.0), (3.1, 0.0)) == (
+        "turned the mug upside down with the right hand (0.00–2.00 s)."
+    )
+
+
+def test_what_stands_again_is_turned_upright() -> None:
+    assert told("MoveObj", (0.0, 0.0), (3.0, 0.0), (3.0, 0.0), (0.1, 0.0)) == (
+        "turned the mug upside down with the right hand (0.00–1.00 s) and turned it back upright "
+        "(2.00–3.00 s)."
+    )
+
+
+def test_what_lay_is_turned_upright() -> None:
+    assert told("MoveObj", (1.5, 0.0), (0.9, 0.0), (0.1, 0.0)).startswith("turned the mug upright")
+
+
+def test_what_faces_another_way_is_turned_around_and_what_is_moved_aside_is_turned() -> None:
+    assert "turned the mug around" in told("MoveObj", (0.0, 0.0), (0.0, 1.5), (0.0, 3.0))
+    assert told("MoveObj", (0.0, 0.0), (0.0, 1.0)).startswith("turned the mug with")
+    assert told("MoveObj", (0.0, 0.0), (0.0, 0.2)).startswith("moved the mug with")
+
+
+def test_what_is_lifted_and_turned_over_is_both() -> None:
+    text = told("Lift", (0.0, 0.0), (3.0, 0.0))
+    assert text.startswith("lifted the mug with the right hand (0.00–1.00 s) and turned it upside")
+
+
+def test_what_turns_much_and_ends_as_it_was_is_turned_about() -> None:
+    assert told("Turn", (0.0, 0.0), (0.5, 0.4), turned=4.0).startswith("turned the mug about")
+    assert told("Turn", (0.0, 0.0), (0.0, 1.0), turned=1.1).startswith("turned the mug with")
+
+
+@given(st.lists(st.tuples(st.floats(0.0, 3.1), st.floats(-3.0, 3.0)), min_size=2, max_size=8))
+def test_words_of_turning_agree_with_the_postures(postures: list[tuple[float, float]]) -> None:
+    text = told("Lift", *postures)
+    leans = [round(lean, 3) for lean, _ in postures]
+    over = [lean > OVER_RAD for lean in leans]
+    assert over[0] or ("upside down" in text) == any(over)
+    if "upright" in text:
+        assert max(leans) > UPRIGHT_RAD > min(leans)
+    if "around" in text:
+        assert not any(over)
+        assert abs(postures[-1][1] - postures[0][1]) > AROUND_RAD - 0.001
