@@ -122,8 +122,17 @@ def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
 
 def measured_of(observation: Observation, measurements: Measurements) -> Measured:
     """What explanations say of bodies beside the facts: ways, names and distances of touch."""
-    distances = touching_distances(measurements)
-    return Measured(ways(measurements), names=body_names(observation), touch_m=distances)
+    return Measured(
+        ways(measurements),
+        names=body_names(observation),
+        touch_m=touching_distances(measurements),
+        stand_ins=frozenset(
+            body
+            for each in observation.notices
+            if each.code == "stand-in-shape"
+            for body in each.bodies
+        ),
+    )
 
 
 def ways(measurements: Measurements) -> Ways:

@@ -36,6 +36,9 @@ class Measured:
     touch_m: Mapping[tuple[str, str], float] = field(default_factory=dict)
     """The distance up to which two bodies touch, by their names in either order [m]."""
 
+    stand_ins: frozenset[str] = frozenset()
+    """The bodies whose shape stands in for the true one."""
+
     tracked: bool = True
     """Whether there is an object that could be touched."""
 
@@ -76,6 +79,9 @@ class Clock:
 
     listed: Mapping[str, Sequence[str]] = field(default_factory=dict)
     """The objects of each segment in the order of its features, by the segment's term."""
+
+    met: Mapping[tuple[str, str, str], Sequence[str]] = field(default_factory=dict)
+    """What a body touches at a side of a segment, by segment, side and body."""
 
     own: str = ""
     """The term of the segment that is explained."""

@@ -12,6 +12,7 @@ from capar_rules.explain.rule_forms import VARIABLE, Form
 Bound = Mapping[str, str]
 """What the variables of a rule stand for."""
 
+_VALUED = re.compile(r'"(?:[^"\\]|\\.)*"|\b_*[A-Z]\w*')
 _COMPOUND = re.compile(r"(\w*)(\(.*\))", re.DOTALL)
 
 
@@ -115,9 +116,9 @@ class Atoms:
 
 def valued(text: str, bound: Bound) -> str:
     """A text with what its variables stand for."""
-    return re.sub(
-        r'"(?:[^"\\]|\\.)*"|\b_*[A-Z]\w*', lambda found: bound.get(found[0], found[0]), text
-    )
+    if text in bound:
+        return bound[text]
+    return _VALUED.sub(lambda found: bound.get(found[0], found[0]), text)
 
 
 def _plain(literal: Literal) -> bool:
@@ -148,6 +149,7 @@ def _joined(bound: dict[str, str], joins: Sequence[tuple[str, str]]) -> dict[str
     return bound
 
 
+@lru_cache(maxsize=1 << 14)
 def _ground(text: str) -> bool:
     return not any(
         VARIABLE.fullmatch(each) for each in re.findall(r'"[^"]*"|\w+', text) if each != "_"

@@ -1,6 +1,6 @@
 """Which neighbouring names a segment comes nearest to, and which condition decided."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -9,6 +9,7 @@ from capar_rules.engine.syntax import Literal, split_arguments
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.condition_matching import Atoms, Match, valued
 from capar_rules.explain.derivations import Derivations
+from capar_rules.explain.formatting import UNBOUND
 from capar_rules.explain.neighbours import (
     FEATURE,
     Neighbour,
@@ -24,9 +25,6 @@ MOST_FAILING = 2
 
 MOST_NAMES = 3
 """So many names are told at most of which the same condition decided."""
-
-UNBOUND = "\0"
-"""Stands for what a variable has no value for; no sentence may contain it."""
 
 MOST_TOLD = 2
 """So many conditions are told at most."""
@@ -44,14 +42,17 @@ class Contrast:
     clause: str
     """What kept the segment from them."""
 
+    again: str
+    """The same in other words, for where the clause was told already; empty if there are none."""
+
     rule: str
     """File and line of a rule of the first name that would have needed it otherwise."""
 
-    @property
-    def sentence(self) -> str:
-        """Why the segment has none of the names."""
+    def sentence(self, told: Collection[str] = ()) -> str:
+        """Why the segment has none of the names, given the clauses that were told before."""
         *before, last = self.names
-        return f"{', '.join(before)}{' or ' * bool(before)}{last}, because {self.clause}"
+        clause = self.again or self.clause if self.clause in told else self.clause
+        return f"{', '.join(before)}{' or ' * bool(before)}{last}, because {clause}"
 
 
 @dataclass(frozen=True)
@@ -118,18 +119,24 @@ def _nearest(found: Sequence[_Found]) -> Iterator[Contrast]:
 def _of_neighbour(
     base: RuleBase, other: Neighbour, atoms: Atoms, clock: Clock, tell: Tell
 ) -> Iterator[_Found]:
-    for form in other.forms:
-        match = atoms.nearest(form, clock.own, most=MOST_FAILING, may_fail=base.sentences.tellable)
-        if match is None or not match.failing:
+    matches = [
+        (form, atoms.nearest(form, clock.own, most=MOST_FAILING, may_fail=base.sentences.tellable))
+        for form in other.forms
+    ]
+    if any(match is not None and not match.failing for _, match in matches):
+        return  # it fits, and another name comes before it
+    for form, match in matches:
+        if match is None:
             continue
         clauses = [_clause(base, each, match, atoms, clock, tell) for each in match.failing]
         if not all(clauses):
             continue
-        told = next((each for each in clauses if any(map(str.isdigit, each))), clauses[0])
+        place = next((at for at, each in enumerate(clauses) if any(map(str.isdigit, each))), 0)
+        again = _lacking(base, match.failing[place], match, clock, "again")
         read = {each.atoms[0].signature for each in match.failing}
         featured, direct = bool(read & {FITS, FEATURE}), FEATURE in read
-        place = form.rule.place
-        contrast = Contrast((other.name,), told, f"{Path(place.file).name}:{place.line}")
+        where = f"{Path(form.rule.place.file).name}:{form.rule.place.line}"
+        contrast = Contrast((other.name,), clauses[place], again, where)
         order = len(match.failing), other.steps, *other.distance(form)
         yield _Found(featured, direct, order, contrast)
 
@@ -141,7 +148,7 @@ def _clause(
     if literal.kind != "atom":
         return ""
     atom = valued(literal.atoms[0].text, match.bound)
-    predicate, arguments = atom.partition("(")[0], split_arguments(atom)
+    arguments = split_arguments(atom)
     if literal.sign:
         holding = atoms.matching(literal, match.bound)
         return _joined(tell(holding)) if holding else ""
@@ -149,8 +156,16 @@ def _clause(
         return _feature(arguments, atoms, tell)
     if literal.atoms[0].signature == FITS:
         return _row(base, arguments, atoms, tell)
-    known = [UNBOUND if VARIABLE.fullmatch(each) else each.strip('"') for each in arguments]
-    told = base.sentences.tell(predicate, known, clock, mood="lacks")
+    return _lacking(base, literal, match, clock, "lacks")
+
+
+def _lacking(base: RuleBase, literal: Literal, match: Match, clock: Clock, mood: str) -> str:
+    """What a template says of a condition that fails; empty if none does, or not all is known."""
+    atom = valued(literal.atoms[0].text, match.bound)
+    known = [
+        UNBOUND if VARIABLE.fullmatch(each) else each.strip('"') for each in split_arguments(atom)
+    ]
+    told = base.sentences.tell(literal.atoms[0].signature[0], known, clock, mood=mood)
     return "" if UNBOUND in told else told
 
 

@@ -4,7 +4,7 @@ from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from capar.model.errors import RuleError
@@ -166,6 +166,7 @@ class Explainer:
         """The neighbouring names that the segment comes nearest to."""
         briefs = Briefs(self.base.sentences, clock)
 
+        @cache
         def tell(atom: str) -> list[str]:
             if atom.startswith("feature("):
                 return briefs.clauses(bit(top, atom, clock))
@@ -205,8 +206,11 @@ class Explainer:
         listed: dict[str, list[str]] = defaultdict(list)
         for term, _, name in sorted(derived.holding("object_at"), key=lambda row: int(row[1])):
             listed[term].append(name)
+        met: dict[tuple[str, str, str], list[str]] = defaultdict(list)
+        for term, side, body, other, _ in derived.holding("meets"):
+            met[term, side, body].append(other)
         windows = self.windows
-        return Clock(windows.rate, windows.frames, ends, self.measured, objects, listed, own)
+        return Clock(windows.rate, windows.frames, ends, self.measured, objects, listed, met, own)
 
     def _reason(self, grounds: Grounds, clock: Clock, done: dict[str, Reason]) -> Reason:
         if grounds.atom in done:

@@ -15,8 +15,14 @@ SHORTER_S = 0.1
 OF_SEGMENTS = ("segment", "motion", "distance", "ended", "drift")
 """Formats of a segment, or of a side of it, that tell of the body that stands first."""
 
-OF_BODIES = ("way", "course", "spread", "lean", "turn", "place", "until", "none", "little", "still")
+SHIFTS = {"course": quantities.course, "place": quantities.place, "slope": quantities.slope}
+"""Formats of a displacement."""
+
+OF_BODIES = ("way", *SHIFTS, "spread", "lean", "turn", "until", "none", "little", "still")
 """Formats of a body, that tell of the segment beside it, or else of the one that is explained."""
+
+UNBOUND = "\0"
+"""Stands for what is not known; no sentence may contain it."""
 
 
 class Argument:
@@ -49,11 +55,19 @@ class Argument:
             return self.clock.about(self.text)
         if form == "hand":
             return self.clock.called(self._hand)
+        if form == "met":
+            return self._met()
         return self._of_span(form) if form in OF_SEGMENTS else None
 
     @property
     def _hand(self) -> str:
         return self.text.removeprefix("seg(").split(",")[0]
+
+    def _met(self) -> str:
+        """What the segment's object touches at the side of the segment that stands second."""
+        thing = self.clock.objects.get(self.text, "")
+        found = self.clock.met.get((self.text, self.beside[1], thing), ())
+        return " and ".join(f"the {self.clock.called(each)}" for each in found) or UNBOUND
 
     def _features(self, form: str) -> str:
         """The bodies for which a string of features has a one."""
@@ -94,7 +108,7 @@ class Argument:
         span = self._span_beside(form)
         if span is None:
             return ""
-        if form in ("course", "place", "lean", "turn"):
+        if form in (*SHIFTS, "lean", "turn"):
             return self._between(form, body, span)
         moving = self.clock.motion(body, span)
         if form == "until":
@@ -115,12 +129,12 @@ class Argument:
     def _between(self, form: str, body: str, span: tuple[int, int]) -> str:
         """How place or posture at the end differ from those at the start."""
         known = self.clock.measured
-        if form in ("course", "place"):
+        if form in SHIFTS:
             start, end = (known.places.get((body, frame)) for frame in span)
             if start is None or end is None:
                 return "elsewhere"
             shift = [after - before for before, after in zip(start, end, strict=True)]
-            return quantities.course(*shift) if form == "course" else quantities.place(*shift)
+            return SHIFTS[form](*shift)
         first, last = (known.postures.get((body, frame)) for frame in span)
         if first is None or last is None:
             return "by an unknown angle"

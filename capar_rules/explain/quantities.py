@@ -75,6 +75,19 @@ def course(x_mm: int, y_mm: int, z_mm: int) -> str:
     return " and ".join(parts) or "where it began"
 
 
+def slope(x_mm: int, y_mm: int, z_mm: int) -> str:
+    """Whether a displacement leads more up, down or aside, to stand after ``went``."""
+    aside = math.hypot(x_mm, y_mm)
+    if abs(z_mm) < LEVEL_MM:
+        return "to the side, and neither up nor down"
+    sense = "up" if z_mm > 0 else "down"
+    if aside < LEVEL_MM:
+        return f"straight {sense}"
+    if abs(z_mm) >= aside:
+        return f"{sense} more than to the side"
+    return f"more to the side than {sense}"
+
+
 def degrees(milliradians: int) -> str:
     """An angle in whole degrees."""
     return f"{math.degrees(abs(milliradians) / 1000.0):.0f}°"

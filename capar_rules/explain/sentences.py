@@ -1,6 +1,7 @@
 """Sentences for atoms, from the templates that rule files carry in comments ``%! name/2: text``."""
 
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -8,7 +9,7 @@ from capar_rules.engine.syntax import Literal, Statement
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.formatting import Argument
 
-_MOODS = "had not|had|not|mended|brief not|brief|lacks|despite"
+_MOODS = "had not|had|not|mended|brief not|brief|lacks|again|despite"
 _TEMPLATE = re.compile(rf"%!(!?)\s*(?:({_MOODS}) )?(\w+)/(\d+)(?: (\w+))?:\s*(.+)")
 
 
@@ -26,7 +27,7 @@ Key = tuple[str, str, int, str]
 
 Moods: "" (it holds), "not", "had" and "had not" (counterfactual), "mended" (taken to hold though
 some frames are doubted), "brief" and "brief not" (in a summary), "lacks" (what holds
-instead), "despite" (what holds and must not).
+instead), "again" (the same where that was told already), "despite" (what holds and must not).
 """
 
 
@@ -42,6 +43,10 @@ class Sentences:
                     leading, mood, name, arity, kind, text = found.groups()
                     key = mood or "", name, int(arity), kind or ""
                     self.templates[key] = Template(text, bool(leading))
+        self._moods: dict[tuple[str, int], set[str]] = defaultdict(set)
+        """The moods in which there is a template, by predicate and arity."""
+        for mood, name, arity, _ in self.templates:
+            self._moods[name, arity].add(mood)
 
     def template(
         self, predicate: str, arguments: Sequence[str], *, mood: str = ""
@@ -63,13 +68,13 @@ class Sentences:
         if literal.kind != "atom":
             return False
         name, arity = literal.atoms[0].signature
-        lacked = any(key[:3] == ("lacks", name, arity) for key in self.templates)
+        lacked = "lacks" in self._moods.get((name, arity), ())
         return bool(literal.sign) or lacked or name in ("feature", "fits")
 
     def describes(self, name: str, arity: int, *, as_lacking: bool) -> bool:
         """Whether a sentence says that such an atom holds, or, of one that fails, what does."""
-        unlike = ("brief", "brief not", "despite", *(() if as_lacking else ("lacks",)))
-        return any(key[1:3] == (name, arity) and key[0] not in unlike for key in self.templates)
+        unlike = ("brief", "brief not", "again", "despite", *(() if as_lacking else ("lacks",)))
+        return bool(self._moods.get((name, arity), set()).difference(unlike))
 
     def tell(
         self, predicate: str, arguments: Sequence[str], clock: Clock, *, mood: str = ""

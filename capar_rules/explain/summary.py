@@ -74,20 +74,33 @@ class Briefs:
     def touching(self, nodes: Iterable[Reason]) -> str:
         """Up to which distance bodies are counted as touching that are told to touch."""
         found: dict[int, list[str]] = {}
+        bodies: list[str] = []
         for each in nodes:
             predicate, arguments = _parsed(each.atom)
             if predicate in ("contact_at", "no_contact"):
                 one, other = arguments[1:3] if predicate == "contact_at" else arguments[2:4]
                 reach = self.clock.measured.touch_m.get((one, other))
+                bodies += [one, other]
                 if reach:
                     pair = f"{self.clock.called(one)} and {self.clock.called(other)}"
                     found.setdefault(round(1000.0 * reach), []).append(pair)
-        if len(found) < 2:
-            return "".join(f" Contact is counted within {each} mm." for each in found)
         told = [
-            f"{reach} mm ({_listed(list(dict.fromkeys(pairs)))})" for reach, pairs in found.items()
+            f"{reach} mm" + f" ({_listed(list(dict.fromkeys(pairs)))})" * (len(found) > 1)
+            for reach, pairs in found.items()
         ]
-        return f" Contact is counted within {_listed(told)}."
+        counted = f" Contact is counted within {_listed(told)}." if told else ""
+        return counted + self._stand_ins(bodies)
+
+    def _stand_ins(self, bodies: Iterable[str]) -> str:
+        """That contacts are uncertain of bodies whose true shape is not known."""
+        measured = self.clock.measured
+        rough = [each for each in dict.fromkeys(bodies) if each in measured.stand_ins]
+        if not rough:
+            return ""
+        called = _listed([f"the {self.clock.called(each)}" for each in rough])
+        if len(rough) > 1:
+            return f" The shapes of {called} are stand-ins: when they touch is known only roughly."
+        return f" The shape of {called} is a stand-in: when it touches is known only roughly."
 
 
 def summary(
@@ -102,9 +115,11 @@ def summary(
     Where none is near, what is said is why it has no more general name.
     """
     nodes = leading(reason)
-    told = f"{name}, because {_by_subject(briefs.clauses(nodes), _subjects(nodes, briefs))}."
+    clauses = briefs.clauses(nodes)
+    told = f"{name}, because {_by_subject(clauses, _subjects(nodes, briefs))}."
     for number, contrast in enumerate(against):
-        told += f"{'; n' if number else ' N'}ot {contrast.sentence}"
+        told += f"{'; n' if number else ' N'}ot {contrast.sentence(clauses)}"
+        clauses.append(contrast.clause)
     own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
     if generals and own and not against:
         because = _by_subject(own, _subjects(nodes, briefs))
