@@ -47,10 +47,13 @@ class Atoms:
         if any(not _plain(each) for each in form.body):
             return None
         failable = {id(each) for each in form.body if may_fail(each)}
+        hopeless = [each for each in form.body if self._hopeless(each)]
+        if len(hopeless) > most or any(id(each) not in failable for each in hopeless):
+            return None
         joins = [each.partition("=")[::2] for each in form.joins]
         start = dict(_unified(split_arguments(form.rule.heads[0].text)[0], segment, {}) or {})
         found = None
-        for allowed in range(most + 1):
+        for allowed in range(len(hopeless), most + 1):
             found = next(self._matches(form.body, start, joins, failable, allowed), None)
             if found is not None:
                 break
@@ -58,6 +61,10 @@ class Atoms:
             return None
         failing, bound = found
         return Match(failing, bound)
+
+    def _hopeless(self, literal: Literal) -> bool:
+        """Whether no atom of a condition's predicate holds, so that it fails in every match."""
+        return _binds(literal) and not self.rows.get(literal.atoms[0].signature)
 
     def matching(self, literal: Literal, bound: Bound) -> str:
         """An atom that a condition, taken without its negation, is met by; empty if none is."""
@@ -158,7 +165,7 @@ def _ground(text: str) -> bool:
 
 def _unified(pattern: str, text: str, bound: Bound) -> dict[str, str] | None:
     """The bindings under which a pattern is a text; None if there are none."""
-    if VARIABLE.fullmatch(pattern):
+    if _is_variable(pattern):
         known = bound.get(pattern, text)
         return {**bound, pattern: text} if known == text else None
     if pattern in ("_", text):
@@ -180,8 +187,20 @@ def _all_unified(
         return None
     way: dict[str, str] | None = dict(bound)
     for one, other in zip(patterns, texts, strict=True):
-        way = None if way is None else _unified(one, other, way)
+        if one in ("_", other):
+            continue
+        if not _is_variable(one):
+            way = _unified(one, other, way)
+            if way is None:
+                return None
+        elif way.setdefault(one, other) != other:
+            return None
     return way
+
+
+@lru_cache(maxsize=1 << 14)
+def _is_variable(text: str) -> bool:
+    return VARIABLE.fullmatch(text) is not None
 
 
 @lru_cache(maxsize=1 << 14)
