@@ -6,14 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
+from capar.model.body_names import body_names
+from capar.model.calibration import Found
 from capar.model.capture import Capture
 from capar.model.observation import Observation, Segment
 from capar.model.segment_address import SegmentAddress, find_segment
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from capar_rules.explain.clock import Measured, Ways
 from capar_rules.explain.explanation import Explainer, Explanation
-from capar_rules.explain.sentences import Distances
+from capar_rules.explain.quantities import Way
 from capar_rules.explain.why_not import Alternative
 from capar_rules.explain.why_not import why_not as alternatives
 from extractors.measure import Measurements, measure
@@ -37,9 +40,8 @@ def explained(capture: Capture, *, rules: Profile) -> Explained:
     """
     measurements = measure(capture)
     observation = observe_measured(capture, measurements, rules=rules)
-    explainer = Explainer(
-        observation.facts, profile=rules, distances_m=distances(capture, measurements)
-    )
+    measured = measured_of(observation, measurements)
+    explainer = Explainer(observation.facts, profile=rules, measured=measured)
     return Explained(observation, explainer)
 
 
@@ -118,18 +120,42 @@ def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def distances(capture: Capture, measurements: Measurements) -> Distances:
-    """How far an object's origin comes between two frames [m]: straight, and along its path.
+def measured_of(observation: Observation, measurements: Measurements) -> Measured:
+    """What explanations say of bodies beside the facts: ways, names and distances of touch."""
+    return Measured(
+        ways(measurements),
+        names=body_names(observation),
+        touch_m=touching_distances(measurements),
+        stand_ins=frozenset(
+            body
+            for each in observation.notices
+            if each.code == "stand-in-shape"
+            for body in each.bodies
+        ),
+    )
 
-    Steps between lost frames are left out of the path.
-    """
 
-    def moved(name: str, first: int, last: int) -> tuple[float, float]:
+def ways(measurements: Measurements) -> Ways:
+    """How a body's origin moves between two frames; steps between lost frames are left out."""
+
+    def moved(name: str, first: int, last: int) -> Way:
         track = measurements.bodies.named(name).poses.smooth.positions[first : last + 1]
         steps = np.linalg.norm(np.diff(track, axis=0), axis=1)
-        return float(np.linalg.norm(track[-1] - track[0])), float(np.nansum(steps))
+        away = np.linalg.norm(track - np.nanmedian(track, axis=0), axis=1)
+        straight = float(np.linalg.norm(track[-1] - track[0]))
+        return Way(straight, float(np.nansum(steps)), float(np.nanmax(away)))
 
     return moved
+
+
+def touching_distances(measurements: Measurements) -> dict[tuple[str, str], float]:
+    """The distance up to which two bodies are counted as touching, in either order [m]."""
+    return {
+        names: pair.touch_m
+        for pair in measurements.calibration.pairs
+        if pair.found is not Found.NEVER
+        for names in ((pair.first, pair.second), (pair.second, pair.first))
+    }
 
 
 def segment_named(observation: Observation, text: str) -> Segment:

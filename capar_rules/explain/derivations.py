@@ -77,7 +77,7 @@ class Recorder:
             control.ground([("base", [])])
         except RuntimeError as error:
             raise RuleError(f"the rules cannot be explained: {messages or error}") from None
-        found = [Derivations(self.recorded) for _ in windows]
+        found = [Derivations(self.recorded, facts) for facts in windows]
         for symbol in _shown(control):
             window, *arguments = symbol.arguments
             found[window.number].note(symbol.name, arguments)
@@ -97,8 +97,9 @@ def _numbered(windows: Sequence[Sequence[Fact]]) -> Iterator[clingo.Symbol]:
 class Derivations:
     """The recorded rule instances of one window's answer; trees are built on demand."""
 
-    def __init__(self, recorded: Sequence[Statement]) -> None:
+    def __init__(self, recorded: Sequence[Statement], facts: Sequence[Fact] = ()) -> None:
         self.recorded = recorded
+        self.facts = facts
         self.instances: dict[clingo.Symbol, list[tuple[int, clingo.Symbol]]] = defaultdict(list)
         self.parts: dict[tuple[int, clingo.Symbol], list[clingo.Symbol]] = defaultdict(list)
         self.more: dict[clingo.Symbol, list[clingo.Symbol]] = defaultdict(list)
@@ -123,6 +124,15 @@ class Derivations:
         return [
             tuple(map(_plain, each.arguments)) for each in sorted(self.named.get(predicate, ()))
         ]
+
+    def atoms(self, predicates: Iterable[str]) -> Iterator[str]:
+        """Every derived atom of some predicates."""
+        for name in predicates:
+            yield from map(str, self.named.get(name, ()))
+
+    def holds(self, atom: str) -> bool:
+        """Whether a rule derived an atom."""
+        return any(str(each) == atom for each in self.named.get(atom.partition("(")[0], ()))
 
     def why(self, atom: str) -> Grounds:
         """The derivation tree of an atom.

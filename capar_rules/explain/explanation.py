@@ -8,19 +8,22 @@ from functools import cache, lru_cache
 from pathlib import Path
 
 from capar.model.errors import RuleError
-from capar.model.facts import Fact, Moving
+from capar.model.facts import Fact
 from capar.model.observation import Segment
 from capar.model.par import UNKNOWN
 from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
-from capar_rules.engine.solver import rule_file
-from capar_rules.engine.syntax import Place, Statement, parse, parse_text
+from capar_rules.engine.syntax import Place, Statement, parse_text
+from capar_rules.explain.clock import Clock, Measured, measured_by
+from capar_rules.explain.contrasts import Contrast, contrasts
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.instants import corrected, frames_of
 from capar_rules.explain.near_misses import more_specific, near_misses, preceding
+from capar_rules.explain.neighbours import conditions_of_neighbours, generals_of
 from capar_rules.explain.reason import Reason as Reason
-from capar_rules.explain.sentences import Clock, Distances, Sentences
-from capar_rules.explain.summary import summary
+from capar_rules.explain.rule_base import RuleBase as RuleBase
+from capar_rules.explain.rule_base import rule_base as rule_base
+from capar_rules.explain.summary import Briefs, bit, summary
 from capar_rules.explain.windows import Windows
 
 ALWAYS = (("segment", 3), ("also", 2))
@@ -45,14 +48,6 @@ class Explanation:
     reason: Reason
 
 
-@dataclass(frozen=True, eq=False)
-class RuleBase:
-    """The rules of a profile with the sentence templates of their comments."""
-
-    sentences: Sentences
-    statements: tuple[Statement, ...]
-
-
 @lru_cache(maxsize=KEPT)
 def recorder(base: RuleBase, names: frozenset[str]) -> Recorder:
     """The recorder of why segments have names, or, for ``Unknown`` alone, why they have none.
@@ -63,7 +58,8 @@ def recorder(base: RuleBase, names: frozenset[str]) -> Recorder:
         return Recorder(base.statements, targets=(("parted_at", 2), ("nearest", 2), *ALWAYS))
     others = [each for each in base.statements if not _names(each) and not _overrules(each)]
     naming = [rule for name in sorted(names) for rule in _rules_of_name(base, name)]
-    return Recorder([*others, *naming], targets=(("named", 2), *ALWAYS))
+    asked = (node for name in sorted(names) for node in conditions_of_neighbours(base, name))
+    return Recorder([*others, *naming], targets=(("named", 2), *ALWAYS, *asked))
 
 
 @lru_cache(maxsize=4 * KEPT)
@@ -91,17 +87,6 @@ def _naming(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
         yield from parse_text(f'overruled(Segment,"{name}") :- {fit}.')
 
 
-def rule_base(profile: Profile) -> RuleBase:
-    """The rules of a profile, parsed once."""
-    return _rule_base(profile.files, profile.fingerprint)
-
-
-@cache
-def _rule_base(files: tuple[Path, ...], fingerprint: str) -> RuleBase:
-    statements = parse((*files, rule_file("explain/explaining.lp")))
-    return RuleBase(Sentences(statements), statements)
-
-
 class Explainer:
     """Explains the segments of a capture, each at a cost independent of the capture's length."""
 
@@ -110,23 +95,18 @@ class Explainer:
         facts: Sequence[Fact],
         *,
         profile: Profile,
-        distances_m: Distances | None = None,
+        measured: Measured | None = None,
     ) -> None:
         """Index the facts of a capture.
 
         Args:
             facts: What the extractors measured.
             profile: The rules to explain by.
-            distances_m: How far an object moved between two frames [m], straight and along its
-                path; None to leave it out.
+            measured: What else was measured of bodies; by default what the facts say.
         """
         self.base = rule_base(profile)
         self.windows = Windows(facts, number_borders(facts, crossings_only=profile.crossings_only))
-        self.distances_m = distances_m
-        self.moving: dict[str, list[tuple[int, int]]] = defaultdict(list)
-        for each in facts:
-            if isinstance(each, Moving):
-                self.moving[each.object].append((each.first, each.last))
+        self.measured = measured_by(facts, measured or Measured())
         self.corrected = corrected(facts)
         self.worlds: dict[Segment, str] = {}
         """The program of counterfactual worlds of each segment that was asked about."""
@@ -172,9 +152,29 @@ class Explainer:
         roots = list(_roots(derived, f"seg({segment.ee},{ticks[0]})", ticks, segment))
         if not roots:
             return None
-        clock = self.clock(derived)
-        grounds = [derived.why(each) for each in roots]
-        return _explanation(segment, [self._reason(each, clock, {}) for each in grounds])
+        clock = self.clock(derived, f"seg({segment.ee},{ticks[0]})")
+        done: dict[str, Reason] = {}
+        reasons = [self._reason(derived.why(each), clock, done) for each in roots]
+        against = self._against(segment.name, derived, reasons[0], clock) if segment.known else ()
+        briefs = Briefs(self.base.sentences, clock)
+        generals = generals_of(self.base, segment.name)
+        return _explanation(segment, reasons, briefs, against, generals)
+
+    def _against(
+        self, name: str, derived: Derivations, top: Reason, clock: Clock
+    ) -> tuple[Contrast, ...]:
+        """The neighbouring names that the segment comes nearest to."""
+        briefs = Briefs(self.base.sentences, clock)
+
+        @cache
+        def tell(atom: str) -> list[str]:
+            if atom.startswith("feature("):
+                return briefs.clauses(bit(top, atom, clock))
+            if not derived.holds(atom):
+                return []  # it was measured
+            return briefs.first(self._reason(derived.why(atom), clock, {}))
+
+        return contrasts(self.base, name, derived, clock, tell)
 
     def ticks(self, segment: Segment) -> tuple[int, int]:
         """The numbers of the frames between which a segment lies.
@@ -197,12 +197,20 @@ class Explainer:
             yield self.windows.around(ee, *ticks, widen=widen)
         yield self.windows.whole()
 
-    def clock(self, derived: Derivations) -> Clock:
+    def clock(self, derived: Derivations, own: str = "") -> Clock:
         """When the ticks and segments of an answer are."""
         ends = {}
         for term, first, last in derived.holding("segment"):
             ends[term[4:].split(",")[0], int(first)] = int(last)
-        return Clock(self.windows.rate, self.windows.frames, ends, self.distances_m, self.moving)
+        objects = {row[0]: row[1] for row in derived.holding("dominant")}
+        listed: dict[str, list[str]] = defaultdict(list)
+        for term, _, name in sorted(derived.holding("object_at"), key=lambda row: int(row[1])):
+            listed[term].append(name)
+        met: dict[tuple[str, str, str], list[str]] = defaultdict(list)
+        for term, side, body, other, _ in derived.holding("meets"):
+            met[term, side, body].append(other)
+        windows = self.windows
+        return Clock(windows.rate, windows.frames, ends, self.measured, objects, listed, met, own)
 
     def _reason(self, grounds: Grounds, clock: Clock, done: dict[str, Reason]) -> Reason:
         if grounds.atom in done:
@@ -262,12 +270,18 @@ def _roots(
                 )
 
 
-def _explanation(segment: Segment, reasons: Sequence[Reason]) -> Explanation:
+def _explanation(
+    segment: Segment,
+    reasons: Sequence[Reason],
+    briefs: Briefs,
+    against: Sequence[Contrast],
+    generals: Sequence[str],
+) -> Explanation:
     top = reasons[0]
     if len(reasons) > 1:
         below = (*top.because, *reasons[1:])
         top = Reason(top.sentence, top.atom, top.rule, top.frames, top.leading, below)
-    told = summary(segment.name, top)
+    told = summary(segment.name, top, briefs, against, generals)
     return Explanation(
         segment.ee, segment.index, segment.name, segment.start_s, segment.end_s, told, top
     )

@@ -8,7 +8,7 @@ from dataclasses import fields
 from capar.model.facts import ALL_FACT_KINDS, Fact, FlickerCorrection, Observed
 from capar_rules.borders.border_numbers import Tick
 from capar_rules.borders.deflicker import Key, relation_of
-from capar_rules.explain.sentences import Clock
+from capar_rules.explain.clock import Clock
 
 _KINDS: tuple[type[Fact], ...] = (*ALL_FACT_KINDS, Tick)
 _FIELDS = {

@@ -35,7 +35,7 @@ def near_misses(statements: Sequence[Statement], name: str) -> Iterator[Statemen
 
 def more_specific(statements: Iterable[Statement], name: str) -> frozenset[str]:
     """The primitives that specialise one, directly or by others."""
-    pairs = _pairs(statements, SPECIALISES)
+    pairs = names_in_pairs(statements, SPECIALISES)
     found = {name}
     while wider := {one for one, general in pairs if general in found} - found:
         found |= wider
@@ -44,10 +44,10 @@ def more_specific(statements: Iterable[Statement], name: str) -> frozenset[str]:
 
 def preceding(statements: Iterable[Statement], name: str) -> frozenset[str]:
     """The primitives that precede one."""
-    return frozenset(one for one, other in _pairs(statements, PRECEDES) if other == name)
+    return frozenset(one for one, other in names_in_pairs(statements, PRECEDES) if other == name)
 
 
-def _pairs(statements: Iterable[Statement], predicate: Signature) -> list[tuple[str, str]]:
+def names_in_pairs(statements: Iterable[Statement], predicate: Signature) -> list[tuple[str, str]]:
     """The names in the facts of a predicate."""
     found = []
     for rule in statements:

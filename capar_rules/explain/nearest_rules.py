@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 
@@ -10,29 +10,22 @@ from capar.model.errors import RuleError
 from capar.model.facts import Fact, program
 from capar.model.observation import Segment
 from capar_rules.engine.search import worlds
-from capar_rules.engine.slicing import FITS, named_node, nodes, nodes_read, towards
-from capar_rules.engine.syntax import Literal, Statement, parse_text, split_arguments
+from capar_rules.engine.slicing import FITS, named_node, nodes_read, towards
+from capar_rules.engine.syntax import Literal, Statement, split_arguments
+from capar_rules.explain.clock import Clock
 from capar_rules.explain.counterfactuals import SCENE, measured
 from capar_rules.explain.explanation import Explainer
-from capar_rules.explain.sentences import Clock, Sentences
+from capar_rules.explain.rule_forms import TOKEN, Form, forms_of, rules_of
+from capar_rules.explain.sentences import Sentences
 
 MOST_FAILING = 4
 """Greatest weight of conditions that may fail; a rule with more is not near."""
-
-MOST_FORMS = 24
-"""Greatest number of forms that one rule is unfolded into."""
-
-DEEPEST = 4
-"""Greatest number of times that a condition without a sentence is replaced by its definition."""
 
 MOST_RELAXED = 2000
 """Greatest number of relaxed rules of one form that are tried with as many conditions left out."""
 
 ANYTHING = "something"
 """What a sentence says of a variable that the conditions that hold give no value."""
-
-_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\b_*[A-Z]\w*')
-_SIDES = ("start", "end", "change", "force")
 
 
 @dataclass(frozen=True)
@@ -53,18 +46,6 @@ class NearRule:
             return f"{self.rule} holds, but a name that comes before {self.name} fits too."
         count = f"{len(self.failing)} condition{'s' * (len(self.failing) > 1)}"
         return f"{self.rule} lacks {count}: it would hold {' and '.join(self.failing)}."
-
-
-@dataclass(frozen=True)
-class _Form:
-    """A rule for the name after unfolding."""
-
-    rule: Statement
-    body: tuple[Literal, ...]
-    """Conditions that are counted."""
-
-    joins: tuple[str, ...] = ()
-    """Equalities that join the variables of definitions with those of the rule."""
 
 
 def nearest_rules(explainer: Explainer, segment: Segment, name: str) -> tuple[NearRule, ...]:
@@ -88,7 +69,7 @@ def nearest_rules(explainer: Explainer, segment: Segment, name: str) -> tuple[Ne
     base, ticks = explainer.base, explainer.ticks(segment)
     term = f"seg({segment.ee},{ticks[0]})"
     forms = {
-        rule: _forms(rule, base.statements, base.sentences)
+        rule: forms_of(rule, base.statements, base.sentences)
         for rule in rules_of(base.statements, name)
     }
     every = [form for found in forms.values() for form in found]
@@ -115,89 +96,8 @@ def nearest_rules(explainer: Explainer, segment: Segment, name: str) -> tuple[Ne
     return tuple(sorted(nearest, key=lambda each: (len(each.failing), each.rule)))
 
 
-def rules_of(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
-    """The rules by which segments fit one name; a row of the feature table is one of them."""
-    for each in statements:
-        for head in each.heads:
-            if head.signature == FITS and nodes(head) == [named_node(name)]:
-                yield each
-            if head.signature == ("feature_row", 6) and not each.body:
-                row, kind, *bits = split_arguments(head.text)
-                if row == f'"{name}"':
-                    yield replace(_row_rule(row, kind, bits), place=each.place)
-
-
-def _row_rule(row: str, kind: str, bits: Sequence[str]) -> Statement:
-    """The row of the feature table as a rule with a condition for each of its four strings."""
-    asked = [f"feature(Segment,{side},{text})" for side, text in zip(_SIDES, bits, strict=True)]
-    asked += [f"kind(Segment,{kind})"] * (kind != "any")
-    return parse_text(f"fits(Segment,{row}) :- {'; '.join(asked)}.")[0]
-
-
-def _forms(
-    rule: Statement, statements: Sequence[Statement], sentences: Sentences
-) -> Sequence[_Form]:
-    """The rule with each condition that no sentence describes replaced by what defines it."""
-    finished: list[_Form] = []
-    waiting = [(_Form(rule, rule.body), 0)]
-    while waiting and len(finished) + len(waiting) <= MOST_FORMS:
-        form, depth = waiting.pop()
-        at = next((each for each in form.body if _unfolds(each, statements, sentences)), None)
-        if at is None or depth == DEEPEST:
-            finished.append(form)
-            continue
-        for number, definition in enumerate(_definitions(at, statements)):
-            waiting.append((_unfolded(form, at, definition, f"{depth}_{number}"), depth + 1))
-    return finished + [form for form, _ in waiting]
-
-
-def _unfolds(literal: Literal, statements: Sequence[Statement], sentences: Sentences) -> bool:
-    if literal.kind != "atom" or literal.sign or ";" in literal.text:
-        return False
-    name, arity = literal.atoms[0].signature
-    if any(key[1:3] == (name, arity) for key in sentences.templates):
-        return False
-    return bool(_definitions(literal, statements))
-
-
-def _definitions(literal: Literal, statements: Sequence[Statement]) -> list[Statement]:
-    """The rules that define a condition; none if one of them cannot take its place."""
-    asked = literal.atoms[0].signature
-    found = [each for each in statements if any(one.signature == asked for one in each.heads)]
-    plain = all(
-        each.head_kind == "atom"
-        and len(each.heads) == 1
-        and each.body
-        and all(one.kind in ("atom", "comparison") for one in each.body)
-        for each in found
-    )
-    return found if plain else []
-
-
-def _unfolded(form: _Form, at: Literal, definition: Statement, mark: str) -> _Form:
-    """The form with a condition replaced by the body of a rule that defines it."""
-
-    def own(text: str) -> str:
-        return _TOKEN.sub(lambda one: one[0] if one[0][0] == '"' else f"{one[0]}_{mark}", text)
-
-    heads = split_arguments(own(definition.heads[0].text))
-    asked = split_arguments(at.text)
-    joins = [f"{one}={other}" for one, other in zip(asked, heads, strict=True) if one != "_"]
-    body = [
-        replace(
-            each,
-            text=own(each.text),
-            atoms=tuple(replace(one, text=own(one.text)) for one in each.atoms),
-        )
-        for each in definition.body
-    ]
-    place = form.body.index(at)
-    rest = (*form.body[:place], *body, *form.body[place + 1 :])
-    return _Form(form.rule, rest, (*form.joins, *joins))
-
-
 def _holding(
-    statements: Sequence[Statement], forms: Iterable[_Form], own: str, facts: Sequence[Fact]
+    statements: Sequence[Statement], forms: Iterable[Form], own: str, facts: Sequence[Fact]
 ) -> tuple[str, ...]:
     """All atoms on which the forms and the segment's own name depend, in a window of facts."""
     asked = {
@@ -213,7 +113,7 @@ def _holding(
 
 
 def _failing(
-    forms: Sequence[_Form], atoms: Sequence[str], term: str
+    forms: Sequence[Form], atoms: Sequence[str], term: str
 ) -> tuple[tuple[Literal, ...], dict[str, str]] | None:
     """The fewest conditions to leave out of one of the forms so that it holds of the segment."""
     read = {atom.signature[0] for form in forms for each in form.body for atom in each.atoms}
@@ -231,7 +131,7 @@ def _failing(
     return None
 
 
-def _unmet(form: _Form, joins: Sequence[str], facts: Sequence[str]) -> frozenset[Literal]:
+def _unmet(form: Form, joins: Sequence[str], facts: Sequence[str]) -> frozenset[Literal]:
     """The conditions that hold of nothing in the segment, each by itself: they always fail."""
     positive = [each for each in form.body if _binds(each)]
     lines = []
@@ -248,7 +148,7 @@ def _unmet(form: _Form, joins: Sequence[str], facts: Sequence[str]) -> frozenset
 
 
 def _relaxed(
-    form: _Form,
+    form: Form,
     joins: Sequence[str],
     unmet: frozenset[Literal],
     weight: int,
@@ -334,14 +234,14 @@ def _free(literal: Literal) -> set[str]:
 
 
 def _variables(text: str) -> set[str]:
-    return {each for each in _TOKEN.findall(text) if not each.startswith('"')}
+    return {each for each in TOKEN.findall(text) if not each.startswith('"')}
 
 
 def _clause(literal: Literal, values: dict[str, str], sentences: Sentences, clock: Clock) -> str:
     """What would have to be otherwise for a condition to hold, after ``it would``."""
 
     def valued(text: str) -> str:
-        return _TOKEN.sub(lambda one: values.get(one[0], one[0]), text)
+        return TOKEN.sub(lambda one: values.get(one[0], one[0]), text)
 
     if literal.kind != "atom":
         return f"had {valued(literal.text)} held"

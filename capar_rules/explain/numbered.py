@@ -11,7 +11,7 @@ from dataclasses import fields
 from capar.model.facts import ALL_FACT_KINDS
 from capar_rules.engine.syntax import Atom, Literal, Signature, Statement
 
-WINDOW = "NumberOfWindow"
+WINDOW = "W_"
 """A variable that no rule uses."""
 
 NUMBERS = "window_number"

@@ -1,15 +1,17 @@
-"""The summary of an explanation in one sentence: the name's own conditions first."""
+"""The summary of an explanation: the name's conditions, and what decided against neighbours."""
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 from capar_rules.engine.syntax import split_arguments
+from capar_rules.explain.clock import Clock
+from capar_rules.explain.contact_pairs import merged_contacts
+from capar_rules.explain.contrasts import Contrast
 from capar_rules.explain.reason import Reason
+from capar_rules.explain.sentences import Sentences
 
 BESIDE = ("joins_in(", "looks(", "kept_from(")
 """Prefixes of atoms that accompany a name and are no reason for it."""
-
-_TIME = re.compile(r"\d+\.\d\d s")
 
 FEATURES = "features("
 """Prefix of atoms that primitives share; a primitive's own conditions precede them."""
@@ -20,39 +22,164 @@ BORDERS = ("segment(", "border(", "member(")
 APART = ("no_contact", "uncounted")
 """Predicates of no contact that counts at a border; where that border lies is no reason."""
 
-
-def summary(name: str, reason: Reason) -> str:
-    """Why a segment has a name, in one sentence."""
-    return f"{name}, because {_listed(_leading(reason))}."
+COURSES = ("rises", "comes_down", "travels", "stays_near")
+"""Predicates that tell how a body moved, so that its motion need not be told again."""
 
 
-def _leading(reason: Reason) -> list[str]:
-    """The leading sentences, each once; sentences that differ only in their time are merged."""
-    places: dict[str, list[str]] = {}
-    for each in _deciding(reason):
-        if each.leading:
-            text, at, time = each.sentence.rpartition(" at ")
-            timed = bool(at and _TIME.fullmatch(time))
-            times = places.setdefault(text if timed else each.sentence, [])
-            if timed and time not in times:
-                times.append(time)
-    return [
-        f"{text} at {' and '.join(sorted(times, key=_seconds))}" if times else text
-        for text, times in places.items()
-    ]
+OWN = 3
+"""Rank of what is no feature, but a name's own condition."""
 
 
-def _deciding(reason: Reason) -> list[Reason]:
+@dataclass(frozen=True)
+class Briefs:
+    """What a summary says of atoms."""
+
+    sentences: Sentences
+    clock: Clock
+
+    def of(self, reason: Reason) -> str:
+        """The clause for a node; its sentence if there is no shorter one."""
+        absent = reason.atom.startswith("not ")
+        predicate, arguments = _parsed(reason.atom.removeprefix("not "))
+        plain = self.sentences.tell(predicate, arguments, self.clock, mood="not" * absent)
+        if plain != reason.sentence:
+            return reason.sentence  # part of it is doubted
+        if predicate == "rests" and self.clock.side(arguments[0], int(arguments[1])) == "end":
+            return self.sentences.tell("rests_afterwards", arguments, self.clock, mood="brief")
+        mood = "brief not" if absent else "brief"
+        return self.sentences.tell(predicate, arguments, self.clock, mood=mood) or plain
+
+    def first(self, reason: Reason) -> list[str]:
+        """What the first node says, at or below one, that has something to say in a summary."""
+        for each in _resting_on([reason], set()):
+            predicate, arguments = _parsed(each.atom)
+            told = self.sentences.tell(predicate, arguments, self.clock, mood="despite")
+            if told or (each.leading and _rank(each)):
+                return [told or self.of(each)]
+        return []
+
+    def clauses(self, nodes: Sequence[Reason]) -> list[str]:
+        """What is said of nodes, each once; contacts of two bodies at both borders are one."""
+        pairs = merged_contacts(nodes, self.clock)
+        told: list[str] = []
+        courses = any(each.atom.startswith(COURSES) for each in nodes)
+        for each in nodes:
+            pair = pairs.get(each.atom)
+            if pair is not None:
+                told.append(self.sentences.tell(*pair, self.clock, mood="brief"))
+            elif not (courses and each.atom.startswith("moved(")):
+                told.append(self.of(each))
+        return _at_both([each for each in dict.fromkeys(told) if each])
+
+    def touching(self, nodes: Iterable[Reason]) -> str:
+        """Up to which distance bodies are counted as touching that are told to touch."""
+        found: dict[int, list[str]] = {}
+        bodies: list[str] = []
+        for each in nodes:
+            predicate, arguments = _parsed(each.atom)
+            if predicate in ("contact_at", "no_contact"):
+                one, other = arguments[1:3] if predicate == "contact_at" else arguments[2:4]
+                reach = self.clock.measured.touch_m.get((one, other))
+                bodies += [one, other]
+                if reach:
+                    pair = f"{self.clock.called(one)} and {self.clock.called(other)}"
+                    found.setdefault(round(1000.0 * reach), []).append(pair)
+        told = [
+            f"{reach} mm" + f" ({_listed(list(dict.fromkeys(pairs)))})" * (len(found) > 1)
+            for reach, pairs in found.items()
+        ]
+        counted = f" Contact is counted within {_listed(told)}." if told else ""
+        return counted + self._stand_ins(bodies)
+
+    def _stand_ins(self, bodies: Iterable[str]) -> str:
+        """That contacts are uncertain of bodies whose true shape is not known."""
+        measured = self.clock.measured
+        rough = [each for each in dict.fromkeys(bodies) if each in measured.stand_ins]
+        if not rough:
+            return ""
+        called = _listed([f"the {self.clock.called(each)}" for each in rough])
+        if len(rough) > 1:
+            return f" The shapes of {called} are stand-ins: when they touch is known only roughly."
+        return f" The shape of {called} is a stand-in: when it touches is known only roughly."
+
+
+def summary(
+    name: str,
+    reason: Reason,
+    briefs: Briefs,
+    against: Sequence[Contrast],
+    generals: Sequence[str] = (),
+) -> str:
+    """Why a segment has a name, and not that of its nearest neighbours.
+
+    Where none is near, what is said is why it has no more general name.
+    """
+    nodes = leading(reason)
+    clauses = briefs.clauses(nodes)
+    told = f"{name}, because {_by_subject(clauses, _subjects(nodes, briefs))}."
+    for number, contrast in enumerate(against):
+        told += f"{'; n' if number else ' N'}ot {contrast.sentence(clauses)}"
+        clauses.append(contrast.clause)
+    own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
+    if generals and own and not against:
+        because = _by_subject(own, _subjects(nodes, briefs))
+        told += f" Not just {_listed(generals, 'or')}, because {because}"
+    told += "." * (not told.endswith("."))
+    return told + briefs.touching(nodes)
+
+
+def leading(reason: Reason) -> list[Reason]:
     """The nodes from which the name follows: first its own conditions, then its features."""
     passed = set[int]()
     own = list(_resting_on([reason], passed))
     shared = [each for each in own if each.atom.startswith(FEATURES)]
     features = [each for top in shared for each in _resting_on(top.because, passed)]
     features += [each for each in own if _rank(each) == 0]
-    return [*(each for each in own if _rank(each)), *sorted(features, key=_order)]
+    every = [*(each for each in own if _rank(each)), *sorted(features, key=_rank)]
+    return [each for each in every if each.leading]
 
 
-def _resting_on(tops: "Iterable[Reason]", passed: set[int]) -> Iterator[Reason]:
+def bit(top: Reason, feature: str, clock: Clock) -> list[Reason]:
+    """The leading nodes that one place of a feature string is about, by ``feature(_,Side,Place)``.
+
+    First come the end-effector with each object, then the first object with each other one.
+    """
+    segment, side, text = split_arguments(feature)
+    hand, place = segment[4:].split(",")[0], int(text)
+    atoms = [each.atom for each in top.walk()]
+    objects = {int(row[1]): row[2] for row in _rows(atoms, "object_at(") if row[0] == segment}
+    dominant = [row[1] for row in _rows(atoms, "dominant(") if row[0] == segment]
+    others = [row[1] for row in _rows(atoms, "subordinate(") if row[0] == segment]
+    if len(others) < 2:  # of several, object_at says which is which
+        objects |= dict(enumerate([*dominant[:1], *others]))
+    if side == "change":
+        wanted = [
+            f"moved({objects.get(place)},{segment})",
+            f"stays({objects.get(place)},{segment})",
+        ]
+        return [each for each in top.walk() if each.atom in wanted]
+    pair = hand, objects.get(place, "")
+    if place >= len(objects):
+        pair = objects.get(0, ""), objects.get(place - len(objects) + 1, "")
+    return [each for each in top.walk() if _is_about(each.atom, pair, side, clock)]
+
+
+def _rows(atoms: Iterable[str], prefix: str) -> list[list[str]]:
+    return [split_arguments(each) for each in atoms if each.startswith(prefix)]
+
+
+def _is_about(atom: str, pair: tuple[str, str], side: str, clock: Clock) -> bool:
+    """Whether an atom says that two bodies touch, or do not, at a side of the segment."""
+    arguments = split_arguments(atom) if "(" in atom else []
+    if atom.startswith(("no_contact(", "uncounted(")):
+        return arguments[1] == side and tuple(arguments[2:4]) == pair
+    if atom.startswith("contact_at("):
+        at = clock.side(arguments[0], int(arguments[4]))
+        return at == side and tuple(arguments[1:3]) == pair
+    return False
+
+
+def _resting_on(tops: Iterable[Reason], passed: set[int]) -> Iterator[Reason]:
     """Nodes from the top, each once, as far down as the features."""
     waiting = list(reversed(list(tops)))
     while waiting:
@@ -84,21 +211,54 @@ def _rank(reason: Reason) -> int:
     if predicate in APART:
         segment, _, body = split_arguments(reason.atom)[:3]
         return 0 if segment.startswith(f"seg({body},") else 2
-    return {"moved": 1, "stays": 1}.get(predicate, 3)
+    return {"moved": 1, "stays": 1}.get(predicate, OWN)
 
 
-def _order(reason: Reason) -> tuple[int, float]:
-    """The rank, and among contacts the time: what was so at the start comes first."""
-    rank = _rank(reason)
-    time = _TIME.search(reason.sentence) if rank in (0, 2) else None
-    return rank, _seconds(time[0]) if time else 0.0
+def _subjects(nodes: Iterable[Reason], briefs: Briefs) -> list[str]:
+    """How clauses about the bodies that nodes name begin, the longest first."""
+    bodies = {each for node in nodes for each in _parsed(node.atom)[1]}
+    hand = briefs.clock.own[4:].split(",")[0]
+    called = {f"the {briefs.clock.called(each)} " for each in {*bodies, hand}}
+    return sorted(called, key=lambda each: (-len(each), each))
 
 
-def _seconds(time: str) -> float:
-    return float(time.removesuffix(" s"))
+def _by_subject(clauses: Sequence[str], subjects: Sequence[str]) -> str:
+    """The clauses in one sentence, those about one body together."""
+    groups: dict[str, list[str]] = {}
+    for clause in clauses:
+        subject = next((each for each in subjects if clause.startswith(each)), "")
+        groups.setdefault(subject or clause, []).append(clause.removeprefix(subject))
+    told = [
+        subject + _listed(said) if subject in subjects else subject
+        for subject, said in groups.items()
+    ]
+    if any(" and " in each or "," in each for each in told) and len(told) > 1:
+        return f"{'; '.join(told[:-1])}; and {told[-1]}"
+    return _listed(told)
 
 
-def _listed(parts: Sequence[str]) -> str:
+_START, _END = " at the start", " at the end"
+
+
+def _at_both(clauses: Sequence[str]) -> list[str]:
+    """The clauses, of which two that differ only in the side are one."""
+    ends = {each.removesuffix(_END) for each in clauses if each.endswith(_END)}
+    starts = {each.removesuffix(_START) for each in clauses if each.endswith(_START)}
+    both = ends & starts
+    return [
+        each + " and at the end" if each.removesuffix(_START) in both else each
+        for each in clauses
+        if each.removesuffix(_END) not in both
+    ]
+
+
+def _parsed(atom: str) -> tuple[str, list[str]]:
+    arguments = split_arguments(atom) if "(" in atom else []
+    return atom.partition("(")[0], [each.strip('"') for each in arguments]
+
+
+def _listed(parts: Sequence[str], word: str = "and") -> str:
     if len(parts) < 2:
         return "".join(parts) or "the rules say so"
-    return f"{', '.join(parts[:-1])}, and {parts[-1]}"
+    comma = "," * (len(parts) > 2 or any("," in each for each in parts))
+    return f"{', '.join(parts[:-1])}{comma} {word} {parts[-1]}"

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from capar.model.errors import RuleError, UnknownNameError
 from capar.model.observation import Segment
 from capar_rules.engine.search import Atom, optima
+from capar_rules.explain.clock import Clock
 from capar_rules.explain.counterfactuals import measured, worlds_of
 from capar_rules.explain.explanation import Explainer
-from capar_rules.explain.sentences import Clock
 from capar_rules.lint.text_checks import known
 
 BEYOND = "Contacts, possession and motion as they were do not settle what it is called."

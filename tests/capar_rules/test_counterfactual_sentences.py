@@ -7,9 +7,9 @@ import pytest
 
 from capar_rules.engine.profiles import profile
 from capar_rules.engine.syntax import split_arguments
+from capar_rules.explain.clock import Clock
 from capar_rules.explain.counterfactuals import counted
 from capar_rules.explain.explanation import rule_base
-from capar_rules.explain.sentences import Clock
 from capar_rules.lint.audit import words_of
 
 BASE = rule_base(profile())

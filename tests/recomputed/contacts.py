@@ -89,7 +89,7 @@ FORMS = (
     (rf"contact of the {NAME} with the {NAME} was measured from {TIME} to {TIME}", measured),
     (rf"the {NAME} began to touch the {NAME} at {TIME}", begins),
     (
-        rf"the {NAME} possessed the {NAME}, as it moved in the contact that began at {TIME}",
+        rf"the {NAME} had hold of the {NAME}, which moved in the contact that began at {TIME}",
         possessed,
     ),
     (rf"the {NAME} moved in the contact with the {NAME} that began at {TIME}", moved_in_contact),
@@ -97,5 +97,5 @@ FORMS = (
         rf"the possessed object rested on the {NAME}, which it did before the hand came",
         rested_on,
     ),
-    (rf"the {NAME} was no mere support", no_support),
+    (rf"the {NAME} was not just what the possessed object had rested on all along", no_support),
 )

@@ -154,6 +154,10 @@ def came_back(known: Known, what: str) -> bool:
     return bool(any(np.linalg.norm(place[border] - place[frame]) < 0.12 for frame in stays))
 
 
+def came_elsewhere(known: Known, what: str) -> bool:
+    return not came_back(known, what)
+
+
 def came_to_rest(known: Known, what: str, at: str) -> bool:
     return _turned_from_rest(known, what, known.frame(at), 1)
 
@@ -324,7 +328,7 @@ FORMS = (
         went,
     ),
     (
-        rf"the {NAME} stayed where it was(?:, but for (\d+) mm that do not count as motion,)? "
+        rf"the {NAME} stayed where it was(?:, but for (\d+) mm, too little to count as motion,)? "
         rf"between {TIME} and {TIME}",
         drifted,
     ),
@@ -355,9 +359,10 @@ FORMS = (
     ),
     (rf"the {NAME} came to rest at {TIME}", came_to_rest),
     (rf"it ended where the {NAME} had rested before", came_back),
+    (rf"it did not end where the {NAME} had rested before", came_elsewhere),
     (rf"the {NAME} began to move at {TIME}", left_rest),
     (rf"the {NAME} turned back at {TIME}", turned_back),
-    (rf"the {NAME} turned round at {TIME}", turned_round),
+    (rf"the {NAME} reversed its direction at {TIME}", turned_round),
     (
         rf"what the {NAME} held turned back (\d+) times, in strokes of a finger's width and more",
         stroked,

@@ -1,7 +1,7 @@
 """Sentences about features and names: relations from contacts, names as authors wrote them."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields
 from functools import cache
 from importlib import resources
@@ -113,7 +113,16 @@ def accompanied(known: Known, hand: str) -> bool:
 
 
 def _core_of(known: Known, hand: str, *strings: str) -> bool:
-    return accompanied(known, hand) and core(known, *strings)
+    if not accompanied(known, hand):
+        return False
+    first, *others = known.segment.objects
+    if not any("something else" in each for each in strings):
+        return core(known, *_strings(known, (first,), strings))
+    named = [[each.replace("something else", one) for each in strings] for one in others]
+    return any(
+        core(known, *_strings(known, (first, one), each))
+        for one, each in zip(others, named, strict=True)
+    )
 
 
 def _features_of(known: Known, objects: tuple[str, ...], *strings: str) -> bool:
@@ -166,12 +175,39 @@ def _forced(known: Known, what: str, forced: bool) -> bool:
     return not (begins and known.capture.force_transfer)
 
 
-def row(known: Known, what: str, *strings: str) -> bool:
-    """The table has that row, and so have the contacts and motions of what was named by it."""
-    named = known.segment.name != UNKNOWN
-    return strings in table(known)[what] and (
-        not named or features(known, *strings) or core(known, *strings)
-    )
+LIST = r"([\w ,]+)"
+
+
+def features_in_words(known: Known, *told: str) -> bool:
+    """The pairs and things that are listed, and no others, touch, move and are hit."""
+    return features(known, *_strings(known, known.segment.objects, told))
+
+
+def _strings(known: Known, objects: Sequence[str], told: Sequence[str]) -> list[str]:
+    """The four strings of bits that lists of pairs and of things say of these objects.
+
+    Raises:
+        ValueError: They list something else.
+    """
+    names = [each.replace("_", " ") for each in objects]
+    hand = known.segment.ee.replace("_", " ")
+    pairs = [f"{hand} with {each}" for each in names]
+    pairs += [f"{names[0]} with {each}" for each in names[1:]]
+    lists = [[] if each == "none" else each.split(", ") for each in told]
+    if not all({*each} <= {*pairs, *names} for each in lists):
+        raise ValueError(told)
+    return [
+        "".join(str(int(one in each)) for one in every)
+        for each, every in zip(lists, (pairs, pairs, names, names), strict=True)
+    ]
+
+
+def defined(known: Known, what: str) -> bool:
+    """Contacts and motions are those of a row that the table has of the name."""
+    if known.segment.name == UNKNOWN:
+        return what in table(known)
+    rows = table(known)[what]
+    return any(features(known, *each) or core(known, *each) for each in rows)
 
 
 def written(known: Known, what: str) -> bool:
@@ -307,23 +343,22 @@ def nearest(known: Known, what: str) -> bool:
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"the segment lies between {TIME} and {TIME}", borders),
     (
-        r"the relations are ?(\d*) at the start and ?(\d*) at the end, "
-        r"change of location is ?(\d*), force is ?(\d*)",
-        features,
+        rf"contacts at the start: {LIST}; at the end: {LIST}; moved: {LIST}; hit: {LIST}",
+        features_in_words,
     ),
     (
-        rf"leaving aside what else is in the {NAME}, the relations are (\d+) at the start and "
-        r"(\d+) at the end, change of location is (\d+), force is (\d+)",
+        rf"leaving aside what else is in the {NAME}, contacts at the start: {LIST}; at the end: "
+        rf"{LIST}; moved: {LIST}; hit: {LIST}",
         _core_of,
     ),
     (rf"more than one thing was in the {NAME}", accompanied),
-    (r"(\w+) is known by the features (\d+), (\d+), (\d+) and (\d+)", row),
+    (r"that is what defines (\w+)", defined),
     (r"it is (\w+)", written),
     (r"it fits (\w+)", fits),
     (r"nothing that fits is more specific than (\w+)", overruled_by_none),
-    (r"but for one thing it would be (\w+)", kept_from),
-    (rf"the {NAME} is its dominant object", listed),
-    (rf"the {NAME} is its subordinate object", subordinate),
+    (r"it would be (\w+) but for this", kept_from),
+    (rf"the segment is about the {NAME}", listed),
+    (rf"the {NAME} is the other object of the segment", subordinate),
     (r"both segments (begin|end) with the same change of the object", changes_alike),
     (r"it agrees with no known primitive from level (\d) of the decision tree on", parted),
     (r"up to there it agrees with (\w+)", nearest),

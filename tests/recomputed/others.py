@@ -106,7 +106,8 @@ def force_passes(known: Known) -> bool:
 
 
 def tagged(known: Known, what: str, kind: str) -> bool:
-    return known.capture.tag_object(name(what)).tag == kind
+    tags = {"movable": "mobile", "part of a body": "self"}
+    return known.capture.tag_object(name(what)).tag == tags.get(kind, kind)
 
 
 def not_borne(known: Known, what: str, bearer: str) -> bool:
@@ -301,7 +302,7 @@ FORMS = (
         touched_nothing,
     ),
     (rf"the {NAME} moved", not_resting),
-    (rf"the {NAME} was not borne by the {NAME}", not_borne),
+    (rf"the {NAME} did not ride on the {NAME}", not_borne),
     (
         rf"the {NAME} was borne by the {NAME} and went along with it, "
         rf"in the contact that began at {TIME}",
@@ -330,5 +331,6 @@ FORMS = (
     (rf"the {NAME} and the {NAME} are of different agents", different),
     (rf"it is one action with what the {NAME} does to the same object", joined),
     (r"force passes to objects in this trial, as its user says", force_passes),
-    (rf"the {NAME} is (mobile|fixed|self)", tagged),
+    (rf"the {NAME} is a (movable) thing", tagged),
+    (rf"the {NAME} is (fixed|part of a body)", tagged),
 )

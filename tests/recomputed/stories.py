@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Capture, Role, Sensor, TagType
 from capar.model.facts import Fact, Link, Moving, Resting, Touching
-from capar.pipelines.explanation import Explained, distances
+from capar.pipelines.explanation import Explained, measured_of
 from capar.pipelines.observation import observe_measured
 from capar_rules.engine.profiles import profile
 from capar_rules.explain.explanation import Explainer, Explanation
@@ -58,9 +58,8 @@ def told(name: str) -> Told:
     if story.change:
         facts = story.change(facts, trial.capture.rate_hz)
     observation = observe_measured(trial.capture, replace(measurements, facts=facts), rules=rules)
-    explainer = Explainer(
-        observation.facts, profile=rules, distances_m=distances(trial.capture, measurements)
-    )
+    measured = measured_of(observation, measurements)
+    explainer = Explainer(observation.facts, profile=rules, measured=measured)
     seen = Explained(observation, explainer)
     steps = story.steps or trial.truth.steps[story.rules]
     return Told(

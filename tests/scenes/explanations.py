@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from recomputed import Known, form
 
 from capar.model.observation import Segment
-from capar.pipelines.explanation import Explained, distances
+from capar.pipelines.explanation import Explained, measured_of
 from capar.pipelines.observation import observe_measured
 from capar_rules.engine.profiles import Profile, profile
 from capar_rules.explain.explanation import Explainer
@@ -51,9 +51,8 @@ def checked(scene: Scene, chance: random.Random, rules: Profile, *, name: str = 
     capture, expectation = scene(100.0, 0.0, 0.0, 0)
     measurements = measure(capture)
     observation = observe_measured(capture, measurements, rules=rules)
-    explainer = Explainer(
-        observation.facts, profile=rules, distances_m=distances(capture, measurements)
-    )
+    measured = measured_of(observation, measurements)
+    explainer = Explainer(observation.facts, profile=rules, measured=measured)
     steps = {unit.ee: [step.name for step in unit.steps] for unit in expectation.units}
     segment = chance.choice([each for each in observation.segments if name in ("", each.name)])
     seen = Explained(observation, explainer)

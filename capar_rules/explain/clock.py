@@ -1,0 +1,133 @@
+"""When the ticks and segments of an answer are, and what was measured there, for sentences."""
+
+import re
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from capar.model.facts import Fact, Moving, Place, Posture, Tag, Touching
+from capar_rules.explain.quantities import Way
+
+_SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
+
+Ways = Callable[[str, int, int], Way]
+"""How a body moved between two frames."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What was measured of bodies, for sentences."""
+
+    ways: Ways | None = None
+    """How bodies moved; None where that is not known."""
+
+    moving: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
+    """First and last frames of the measured motions, by object."""
+
+    places: Mapping[tuple[str, int], tuple[int, int, int]] = field(default_factory=dict)
+    """Where bodies were, by name and frame [mm]."""
+
+    postures: Mapping[tuple[str, int], tuple[int, int]] = field(default_factory=dict)
+    """How far they leant and had turned about the vertical, by name and frame [1/1000 rad]."""
+
+    names: Mapping[str, str] = field(default_factory=dict)
+    """What bodies are called, where it is not their name."""
+
+    touch_m: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    """The distance up to which two bodies touch, by their names in either order [m]."""
+
+    stand_ins: frozenset[str] = frozenset()
+    """The bodies whose shape stands in for the true one."""
+
+    tracked: bool = True
+    """Whether there is an object that could be touched."""
+
+
+def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
+    """What is known of bodies, with what facts say of their motions, places and postures."""
+    moving: dict[str, list[tuple[int, int]]] = defaultdict(list)
+    places, postures, touched = {}, {}, False
+    for fact in facts:
+        match fact:
+            case Moving():
+                moving[fact.object].append((fact.first, fact.last))
+            case Place():
+                places[fact.body, fact.frame] = fact.x, fact.y, fact.z
+            case Posture():
+                postures[fact.body, fact.frame] = fact.lean, fact.spin
+            case Touching() | Tag(type="mobile"):
+                touched = True
+            case _:
+                pass
+    return replace(known, moving=moving, places=places, postures=postures, tracked=touched)
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Times of ticks and segments for sentences."""
+
+    rate_hz: float
+    frames: Mapping[str, Sequence[int]]
+    """Frames of the ticks, by end-effector."""
+
+    ends: Mapping[tuple[str, int], int] = field(default_factory=dict)
+    """The tick where the segment ends that begins at a tick."""
+
+    measured: Measured = field(default_factory=Measured)
+    objects: Mapping[str, str] = field(default_factory=dict)
+    """The object that each segment is about, by the segment's term."""
+
+    listed: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    """The objects of each segment in the order of its features, by the segment's term."""
+
+    met: Mapping[tuple[str, str, str], Sequence[str]] = field(default_factory=dict)
+    """What a body touches at a side of a segment, by segment, side and body."""
+
+    own: str = ""
+    """The term of the segment that is explained."""
+
+    def called(self, name: str) -> str:
+        """A body as sentences call it."""
+        return self.measured.names.get(name, name.replace("_", " "))
+
+    def at(self, frame: int) -> str:
+        """A frame as a time."""
+        return f"{frame / self.rate_hz:.2f} s"
+
+    def border(self, segment: str, side: str) -> str:
+        """When a segment starts or ends."""
+        span = self.span(segment)
+        return f"its {side}" if span is None else self.at(span[side == "end"])
+
+    def about(self, segment: str) -> str:
+        """The object that a segment is about."""
+        return self.called(self.objects.get(segment, "object"))
+
+    def motion(self, name: str, span: tuple[int, int]) -> tuple[int, int]:
+        """From when to when an object was measured to move within a span; the span if never."""
+        parts = [
+            (max(first, span[0]), min(last, span[1]))
+            for first, last in self.measured.moving.get(name, ())
+        ]
+        parts = [each for each in parts if each[0] < each[1]]
+        return (min(parts)[0], max(last for _, last in parts)) if parts else span
+
+    def span(self, segment: str) -> tuple[int, int] | None:
+        """First and last frame of the segment that a term names."""
+        found = _SEGMENT.fullmatch(segment)
+        if found is None:
+            return None
+        ee, first = found[1], int(found[2])
+        last = self.ends.get((ee, first))
+        return None if last is None else (self.frames[ee][first], self.frames[ee][last])
+
+    def side(self, ee: str, tick: int) -> str:
+        """Whether a tick is the start or the end of the explained segment, or before its start."""
+        found = _SEGMENT.fullmatch(self.own)
+        if found is None or found[1] != ee:
+            return ""
+        if int(found[2]) == tick:
+            return "start"
+        if tick < int(found[2]):
+            return "before"
+        return "end" if self.ends.get((ee, int(found[2]))) == tick else ""

@@ -1,0 +1,167 @@
+"""The arguments of atoms as sentences have them: names, times and distances."""
+
+from collections.abc import Sequence
+
+from capar_rules.explain import quantities
+from capar_rules.explain.clock import Clock
+from capar_rules.explain.quantities import LEAST_M, Way
+
+DRIFT_M = 0.005
+"""Of a body that stays, shorter distances are left out of sentences [m]."""
+
+SHORTER_S = 0.1
+"""A motion that ends or begins by so much inside its segment is told with that time [s]."""
+
+OF_SEGMENTS = ("segment", "motion", "distance", "ended", "drift")
+"""Formats of a segment, or of a side of it, that tell of the body that stands first."""
+
+SHIFTS = {"course": quantities.course, "place": quantities.place, "slope": quantities.slope}
+"""Formats of a displacement."""
+
+OF_BODIES = ("way", *SHIFTS, "spread", "lean", "turn", "until", "none", "little", "still")
+"""Formats of a body, that tell of the segment beside it, or else of the one that is explained."""
+
+UNBOUND = "\0"
+"""Stands for what is not known; no sentence may contain it."""
+
+
+class Argument:
+    """An argument, formatted as a name, a time or a distance."""
+
+    def __init__(self, text: str, beside: Sequence[str], clock: Clock) -> None:
+        self.text, self.beside, self.clock = text, beside, clock
+
+    def __format__(self, form: str) -> str:
+        if form == "frame":
+            return self.clock.at(int(self.text))
+        if form == "milli":
+            return f"{int(self.text) / 1000.0:.2f}"
+        if form == "tick":
+            return self.clock.at(self.clock.frames[self.beside[0]][int(self.text)])
+        if form in ("pairs", "things"):
+            return self._features(form)
+        if form in OF_BODIES:
+            return self._of_body(form)
+        told = self._of_segment(form)
+        return self.clock.called(self.text) if told is None else told
+
+    def _of_segment(self, form: str) -> str | None:
+        """The text for the segment that this argument, or else the first one, names."""
+        if form in ("start", "end"):
+            return self.clock.border(self.text, form)
+        if form == "border":
+            return self.clock.border(self.beside[0], self.text)
+        if form == "object":
+            return self.clock.about(self.text)
+        if form == "hand":
+            return self.clock.called(self._hand)
+        if form == "met":
+            return self._met()
+        return self._of_span(form) if form in OF_SEGMENTS else None
+
+    @property
+    def _hand(self) -> str:
+        return self.text.removeprefix("seg(").split(",")[0]
+
+    def _met(self) -> str:
+        """What the segment's object touches at the side of the segment that stands second."""
+        thing = self.clock.objects.get(self.text, "")
+        found = self.clock.met.get((self.text, self.beside[1], thing), ())
+        return " and ".join(f"the {self.clock.called(each)}" for each in found) or UNBOUND
+
+    def _features(self, form: str) -> str:
+        """The bodies for which a string of features has a one."""
+        segment = self.beside[0]
+        count = len(self.text) if form == "things" else (len(self.text) + 1) // 2
+        listed = list(self.clock.listed.get(segment, ()))
+        known = listed[:1] if len(listed) != count else listed
+        names = [self.clock.called(each) for each in known]
+        names += ["something else"] * (count - len(names))
+        told = names
+        if form == "pairs":
+            hand = self.clock.called(segment.removeprefix("seg(").split(",")[0])
+            told = [f"{hand} with {each}" for each in names]
+            told += [f"{names[0]} with {each}" for each in names[1:]]
+        found = [each for each, bit in zip(told, self.text, strict=False) if bit == "1"]
+        return ", ".join(found) or "none"
+
+    def _of_span(self, form: str) -> str:
+        span = self.clock.span(self.text)
+        if span is None:
+            return "its start and its end" * (form in ("segment", "motion"))
+        if form in ("motion", "distance", "ended"):
+            span = self.clock.motion(self.beside[0], span)
+        if form in ("segment", "motion"):
+            return f"{self.clock.at(span[0])} and {self.clock.at(span[1])}"
+        moved = self._moved(self.beside[0], span)
+        return "" if moved is None else _told(form, moved)
+
+    def _moved(self, body: str, span: tuple[int, int]) -> Way | None:
+        ways = self.clock.measured.ways
+        return None if ways is None else ways(body, *span)
+
+    def _of_body(self, form: str) -> str:
+        """What was measured of the body that this argument, or the segment in it, names."""
+        if form == "none":
+            return "none of the tracked objects" if self.clock.measured.tracked else "nothing"
+        body = self._hand if self.text.startswith("seg(") else self.text
+        span = self._span_beside(form)
+        if span is None:
+            return ""
+        if form in (*SHIFTS, "lean", "turn"):
+            return self._between(form, body, span)
+        moving = self.clock.motion(body, span)
+        if form == "until":
+            late = span[1] - moving[1] > SHORTER_S * self.clock.rate_hz
+            return f" until {self.clock.at(moving[1])}" if late else ""
+        moved = self._moved(body, moving if form == "way" else span)
+        return "" if moved is None else _brief(form, moved)
+
+    def _span_beside(self, form: str) -> tuple[int, int] | None:
+        """The span of the segment, or, for ``still``, of the two ticks, beside this argument."""
+        if form == "still":
+            first, last = (int(each) for each in self.beside[1:3])
+            frames = self.clock.frames[self.beside[0]]
+            return frames[first], frames[last]
+        terms = [*self.beside, self.clock.own]
+        return next((found for each in terms if (found := self.clock.span(each))), None)
+
+    def _between(self, form: str, body: str, span: tuple[int, int]) -> str:
+        """How place or posture at the end differ from those at the start."""
+        known = self.clock.measured
+        if form in SHIFTS:
+            start, end = (known.places.get((body, frame)) for frame in span)
+            if start is None or end is None:
+                return "elsewhere"
+            shift = [after - before for before, after in zip(start, end, strict=True)]
+            return SHIFTS[form](*shift)
+        first, last = (known.postures.get((body, frame)) for frame in span)
+        if first is None or last is None:
+            return "by an unknown angle"
+        if form == "turn":
+            return quantities.degrees(last[1] - first[1])
+        return (
+            f"{quantities.degrees(first[0])} from upright at the start and "
+            f"{quantities.degrees(last[0])} at the end"
+        )
+
+
+def _brief(form: str, moved: Way) -> str:
+    if form == "way":
+        return quantities.way(moved)
+    if form == "little":
+        shifted = f"{1e3 * moved.straight_m:.0f} mm, too little to count as motion"
+        return f" (it shifted by {shifted})" if moved.straight_m >= DRIFT_M else ""
+    return quantities.spread(moved.spread_m)
+
+
+def _told(form: str, moved: Way) -> str:
+    if form == "drift":
+        little = f", but for {1e3 * moved.straight_m:.0f} mm, too little to count as motion,"
+        return little if moved.straight_m >= DRIFT_M else ""
+    if moved.winding:
+        if form == "distance":
+            return f" along {moved.path_m:.2f} m of path"
+        return f", and ended {moved.straight_m:.2f} m from where it began"
+    far = form == "distance" and moved.straight_m >= LEAST_M
+    return f" {moved.straight_m:.2f} m" if far else ""

@@ -1,0 +1,229 @@
+"""What a summary says with a number, recomputed from streams and measured facts."""
+
+import math
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from capar.model.body_names import body_names
+from capar.model.facts import Moving, Posture
+from recomputed.doors import NUMBER, slid, swung
+from recomputed.known import NAME, TIME, Known, covers, near
+from recomputed.motion import lasted, stroked
+
+LENGTH = r"(\d+ mm|\d+ cm|\d+\.\d m)"
+DEGREES = r"(\d+)°"
+UNITS = {"mm": (0.001, 0.0005), "cm": (0.01, 0.005), "m": (1.0, 0.05)}
+"""Of each unit: metres, and half of the last place that is told [m]."""
+
+SMOOTHED_M = 0.006
+"""By so much a smoothed place differs from the recorded one [m]."""
+
+SHORT_M = 0.01
+"""A body that ends nearer than this to where it began is told to end there [m]."""
+
+VERBS = "touched|moved|ended|leant|turned|stayed|kept|did|was|had|came|went|then|lay|dipped|started"
+
+
+@dataclass(frozen=True)
+class Fragment:
+    """A part of a summary that tells numbers of one body."""
+
+    body: str
+    text: str
+    check: Callable[..., bool]
+    told: tuple[str, ...]
+
+    def holds(self, known: Known) -> bool:
+        return self.check(known, self.body, *self.told)
+
+
+def fragments(known: Known, text: str) -> Iterator[Fragment]:
+    """The parts of a text that tell numbers; what is left of it has none.
+
+    Raises:
+        AssertionError: A number is told in a form that nothing recomputes.
+    """
+    called = {each: each for each in (known.segment.ee, *_bodies(known))}
+    called |= body_names(known.seen.observation)
+    names = {words.replace("_", " "): each for each, words in called.items()}
+    every = "|".join(sorted(map(re.escape, names), key=len, reverse=True))
+    subjects = [
+        (found.start(), names[found[1]])
+        for found in re.finditer(rf"\bthe ({every}) (?:{VERBS})\b", text)
+    ]
+    for pattern, check in FORMS:
+        for found in re.finditer(pattern, text):
+            body = next((one for at, one in reversed(subjects) if at < found.start()), "")
+            yield Fragment(body, found[0], check, found.groups(default=""))
+        text = re.sub(pattern, lambda found: "#" * len(found[0]), text)
+    assert not re.search(r"\d", text), f"nothing recomputes a number of {text!r}"
+
+
+def _bodies(known: Known) -> list[str]:
+    return [each.name for each in (*known.capture.objects, *known.capture.sensors)]
+
+
+def _is(metres: float, told: str, *, slack_m: float = SMOOTHED_M) -> bool:
+    number, unit = told.split(" ")
+    scale, half = UNITS[unit]
+    return abs(metres - float(number) * scale) <= half + slack_m
+
+
+def _motion(known: Known, body: str) -> tuple[int, int]:
+    """From when to when it was measured to move in the segment; the segment if it never was."""
+    first, last = known.segment.first, known.segment.last
+    spans = [
+        (max(each.first, first), min(each.last, last))
+        for each in known.seen.observation.facts
+        if isinstance(each, Moving) and each.object == body
+    ]
+    inside = [each for each in spans if each[0] < each[1]]
+    ends = (min(start for start, _ in inside), max(end for _, end in inside)) if inside else None
+    return ends or (first, last)
+
+
+def _displaced(known: Known, body: str, span: tuple[int, int]) -> np.ndarray:
+    """The way of the body's origin."""
+    place = known.stream(body).positions
+    return np.asarray(place[span[1]] - place[span[0]])
+
+
+def _shifted(known: Known, body: str) -> np.ndarray:
+    """The way of the body's middle from the start of the segment to its end."""
+    first, last = known.segment.first, known.segment.last
+    return known.middle(body, last) - known.middle(body, first)
+
+
+def _length(way: np.ndarray) -> float:
+    return float(np.linalg.norm(way))
+
+
+def moved(known: Known, body: str, far: str) -> bool:
+    """It ends so far from where its motion began, a step of a blow apart."""
+    span = _motion(known, body)
+    place = known.stream(body).positions
+    blur = max(_length(place[at] - place[at - 1]) for at in (span[0] + 1, span[1]))
+    return _is(_length(_displaced(known, body, span)), far, slack_m=SMOOTHED_M + blur)
+
+
+def wound(known: Known, body: str, path: str, far: str) -> bool:
+    """Its steps sum to the path, and it ends so far from where its motion began."""
+    span = _motion(known, body)
+    track = known.stream(body).positions[span[0] : span[1] + 1]
+    steps = float(np.linalg.norm(np.diff(track, axis=0), axis=1).sum())
+    way = _length(_displaced(known, body, span))
+    ended = _is(way, far) if far else way < SHORT_M + SMOOTHED_M
+    return ended and _is(steps, path, slack_m=0.03)
+
+
+def ended_away(known: Known, body: str, far: str) -> bool:
+    return _is(_length(_shifted(known, body)), far)
+
+
+def ended(known: Known, body: str, rise: str, sense: str, aside: str) -> bool:
+    """At the segment's end it is so much higher and so far aside."""
+    way = _shifted(known, body)
+    height = float(way[2]) * (-1.0 if sense == "lower" else 1.0)
+    level = _is(height, rise) if rise else abs(height) <= 2 * SMOOTHED_M
+    beside = math.hypot(way[0], way[1])
+    return level and (_is(beside, aside) if aside else beside <= 2 * SMOOTHED_M)
+
+
+def until(known: Known, body: str, at: str) -> bool:
+    """Its motion ends then, before the segment does."""
+    last = _motion(known, body)[1]
+    return near(last, known.at(at)) and last < known.segment.last
+
+
+def _postures(known: Known, body: str) -> list[Posture]:
+    found = {each.frame: each for each in known.of(Posture) if each.body == body}
+    return [found[at] for at in (known.segment.first, known.segment.last)]
+
+
+def leant(known: Known, body: str, *told: str) -> bool:
+    angles = [math.degrees(each.lean / 1000.0) for each in _postures(known, body)]
+    return all(abs(one - float(other)) <= 0.6 for one, other in zip(angles, told, strict=True))
+
+
+def spun(known: Known, body: str, told: str) -> bool:
+    before, after = (each.spin for each in _postures(known, body))
+    return abs(abs(math.degrees((after - before) / 1000.0)) - float(told)) <= 0.6
+
+
+def shifted(known: Known, body: str, far: str) -> bool:
+    """It ends so far from where it was, though it does not count as moved."""
+    way = _displaced(known, body, (known.segment.first, known.segment.last))
+    return _is(_length(way), far, slack_m=0.003)
+
+
+def kept_within(known: Known, body: str, far: str, first: str = "", last: str = "") -> bool:
+    """It is never further from the middle of where it is."""
+    begin = known.frame(first) if first else known.segment.first
+    end = known.frame(last) if last else known.segment.last
+    track = known.stream(body).positions[begin : end + 1]
+    away = np.linalg.norm(track - np.median(track, axis=0), axis=1)
+    return _is(float(away.max()), far)
+
+
+def starts(known: Known, _: str, at: str) -> bool:
+    return near(known.segment.first, known.at(at))
+
+
+def ends(known: Known, _: str, at: str) -> bool:
+    return near(known.segment.last, known.at(at))
+
+
+def precedes(known: Known, _: str, at: str) -> bool:
+    """It is before the segment, by no more than a border that events share."""
+    return 0 < known.segment.first - known.at(at) <= 2 * known.reach
+
+
+def touched_at(known: Known, body: str, other: str, at: str) -> bool:
+    """A contact of the two holds then."""
+    return any(covers(each, known.at(at)) for each in known.touching(body, other))
+
+
+def counts_within(known: Known, _: str, told: str) -> bool:
+    """Some pair that the end-effector or an object of the segment is in touches within that."""
+    calibration = known.seen.observation.calibration
+    assert calibration is not None
+    about = {known.segment.ee, *known.segment.objects}
+    return any(
+        round(1000.0 * pair.touch_m) == int(told.removesuffix(" mm"))
+        for pair in calibration.pairs
+        if about & {pair.first, pair.second}
+    )
+
+
+def turned_back_so_often(known: Known, _: str, count: str) -> bool:
+    return stroked(known, known.segment.ee.replace("_", " "), count)
+
+
+FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
+    (rf"moved along a path of {LENGTH} and ended (?:{LENGTH} from )?where it began", wound),
+    (rf"moved {LENGTH}", moved),
+    (rf"ended {LENGTH} from where it began", ended_away),
+    (rf"ended {LENGTH} (higher|lower)(?: and {LENGTH} to the side)?", ended),
+    (rf"ended (at the same height)() and {LENGTH} to the side",
+     lambda known, body, _, sense, aside: ended(known, body, "", sense, aside)),
+    (rf"ended ()(){LENGTH} to the side", ended),
+    (rf"until {TIME}", until),
+    (rf"slid on its rail from {NUMBER} m to {NUMBER} m open", slid),
+    (rf"turned on its hinge from {NUMBER} rad to {NUMBER} rad open", swung),
+    (r"turned back (\d+) times, in strokes of a finger's width and more", turned_back_so_often),
+    (rf"it lasted {TIME}", lambda known, _, told: lasted(known, told)),
+    (rf"leant {DEGREES} from upright at the start and {DEGREES} at the end", leant),
+    (rf"turned by (?:only )?{DEGREES} about the vertical", spun),
+    (rf"it shifted by {LENGTH}, too little to count as motion", shifted),
+    (rf"kept still \(within {LENGTH}\) and touched [\w ]+ from {TIME} to {TIME}", kept_within),
+    (rf"touched the {NAME} at {TIME}", touched_at),
+    (rf"stayed within {LENGTH} of one place", kept_within),
+    (rf"at the start \({TIME}\)", starts),
+    (rf"at the end \({TIME}\)", ends),
+    (rf"until just before \({TIME}\)", precedes),
+    (r"(\d+ mm)(?= \(|\.|, | and )", counts_within),
+)  # fmt: skip
+"""Each form in which a summary tells numbers, and how it is recomputed; the first precede."""
