@@ -17,6 +17,7 @@ from kb.language.hands import (
     as_the_other_hand,
     by_fingers,
     fingers_of,
+    mostly_together,
     spoken_links,
     told_in_order,
 )
@@ -71,7 +72,8 @@ def _story(
     if detail == "summary":
         changes = any(each.changes for part in told for each in part)
         told = [mattering(part) if changes else _counted(main_things(part)) for part in told]
-        steps = chosen([replace(each, pauses=0) for each in told_in_order(links, told)])
+        plain = [replace(each, pauses=0) for each in told_in_order(links, told)]
+        steps = chosen(mostly_together(links, plain))
     else:
         steps = with_walks(told_in_order(links, told), links, seen, observation.objects, scene)
     if not timed:

@@ -1,13 +1,13 @@
 """What two hands did as one telling: together where they do the same, else in order of time."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 
 from capar.model.observation import ObservedLink
 from kb.language.clause import Clause, in_time
 from kb.language.lexicalisation import REACH
-from kb.language.thresholds import REST_S
+from kb.language.thresholds import MOSTLY, REST_S
 from kb.lexicon.tables import table
 
 
@@ -71,6 +71,31 @@ def told_in_order(
         rest[first], rest[second] = left, right
     every = [*merged, *(each for clauses in rest for each in clauses)]
     return tuple(sorted(every, key=in_time))
+
+
+def mostly_together(links: Sequence[ObservedLink], steps: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses; what two hands do alike for most of the time of either is one, while both do."""
+    pairs = {frozenset({links[first].ee, links[second].ee}) for first, second in _pairs(links)}
+    out: list[Clause] = []
+    for step in steps:
+        partner = next((each for each in out if _mostly_with(each, step, pairs)), None)
+        if partner is None:
+            out.append(step)
+        else:
+            out[out.index(partner)] = replace(
+                _both(partner, step),
+                start_s=max(partner.start_s, step.start_s),
+                end_s=min(partner.end_s, step.end_s),
+            )
+    return tuple(sorted(out, key=in_time))
+
+
+def _mostly_with(one: Clause, other: Clause, pairs: Collection[frozenset[str]]) -> bool:
+    """Whether two hands of one agent change the same thing alike for most of the time of either."""
+    hands = len(one.ees) == len(other.ees) == 1 and frozenset((*one.ees, *other.ees)) in pairs
+    alike = one.signature == other.signature and one.changes
+    longer_s = max(one.end_s - one.start_s, other.end_s - other.start_s)
+    return hands and alike and one.overlap_s(other) > MOSTLY * longer_s
 
 
 def as_the_other_hand(

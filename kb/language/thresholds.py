@@ -85,3 +85,7 @@ MOST_DEEDS = 6
 MINOR_SHARE = 0.5
 """What takes less than this share [1] of the time for which a hand later does the same is not told
 beside it in a summary."""
+
+MOSTLY = 0.5
+"""What two hands do together for more than this share [1] of the time is told of both in a summary.
+"""

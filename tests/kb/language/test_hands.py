@@ -1,7 +1,9 @@
 """What both hands do together is told of both, also where of one of them only a finger touches."""
 
 from dataclasses import replace
+from typing import Literal
 
+import pytest
 from observations import MUG, Piece, observation
 
 from capar.model.par import FeatureSet
@@ -22,7 +24,7 @@ def done(reached: int, *, carried: bool = True) -> tuple[Piece, ...]:
     )
 
 
-def told(**links: tuple[Piece, ...]) -> str:
+def told(detail: Literal["steps", "summary"] = "steps", **links: tuple[Piece, ...]) -> str:
     """What is told of a chair that links handle within four seconds."""
     made = observation("Chair", links, (CHAIR,), frames=401, rate_hz=100.0)
     own = tuple(
@@ -34,7 +36,7 @@ def told(**links: tuple[Piece, ...]) -> str:
         )
         for link in made.links
     )
-    return describe(replace(made, links=own))
+    return describe(replace(made, links=own), detail=detail)
 
 
 REST = (Piece("Rest", 400, ()),)
@@ -65,3 +67,13 @@ def test_hands_that_reach_one_after_the_other_for_what_both_lift_reach_together(
 def test_hands_of_which_one_only_reaches_are_told_apart() -> None:
     text = told(left_hand=done(150), right_hand=done(60, carried=False))
     assert "both hands" not in text
+
+
+@pytest.mark.parametrize(("taken", "hands"), [(150, "both hands"), (300, "the left hand")])
+def test_a_summary_tells_of_both_hands_what_they_do_together_for_most_of_the_time(
+    taken: int, hands: str
+) -> None:
+    left = (Piece("Lift", 400, ("chair",), features=OWN),)
+    right = (Piece("Reach", taken, ("chair",)), *left)
+    text = told(detail="summary", left_hand=left, right_hand=right)
+    assert text.startswith(f"The agent lifted the chair with {hands}")
