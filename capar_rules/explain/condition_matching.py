@@ -185,14 +185,15 @@ def _all_unified(
     """The bindings under which each pattern is the text at its place."""
     if len(patterns) != len(texts):
         return None
-    way: dict[str, str] | None = dict(bound)
+    way = dict(bound)
     for one, other in zip(patterns, texts, strict=True):
         if one in ("_", other):
             continue
         if not _is_variable(one):
-            way = _unified(one, other, way)
-            if way is None:
+            further = _unified(one, other, way)
+            if further is None:
                 return None
+            way = further
         elif way.setdefault(one, other) != other:
             return None
     return way

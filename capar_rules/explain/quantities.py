@@ -6,6 +6,9 @@ from dataclasses import dataclass
 LEAST_M = 0.01
 """Shorter ways are told as less than that [m]."""
 
+TURNING_M = 0.002
+"""A body that moves, and whose origin has a shorter path, turns [m]."""
+
 LONGER, LONGER_M = 1.5, 0.05
 """By this factor and by so much [m] a path is longer than the straight way, to be told too."""
 
@@ -45,6 +48,8 @@ def way(moved: Way) -> str:
     """How far a body moved, to stand after ``moved``."""
     if moved.winding:
         return f"along a path of {length(moved.path_m)} and ended {_from_start(moved.straight_m)}"
+    if moved.path_m < TURNING_M:
+        return "by turning"
     return length(moved.straight_m)
 
 
