@@ -28,9 +28,6 @@ LEAST_S = 0.1
 STILL_M = 1e-4
 """A point of gaze that moves no farther than this between two frames stays [m]."""
 
-MARGIN_M = 0.005
-"""A point this near to a thing's box is on the thing [m]."""
-
 NO_THING = ""
 
 
@@ -100,8 +97,7 @@ def _within(made: Performance, name: str) -> Bool[np.ndarray, "frames"]:
     """Where the point looked at lies in a thing's own box."""
     path, bounds = made.things[name], made.scene.thing(name).shape.bounds
     local = path.rotation.inv().apply(made.gazes - path.translation)
-    low, high = bounds[0] - MARGIN_M, bounds[1] + MARGIN_M
-    return np.asarray(((local >= low) & (local <= high)).all(axis=1))
+    return np.asarray(((local >= bounds[0]) & (local <= bounds[1])).all(axis=1))
 
 
 def _missed(made: Performance) -> np.ndarray:
