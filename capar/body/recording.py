@@ -73,7 +73,7 @@ def record(
     seed: int,
     tracker: Tracker | None = None,
     sensors: tuple[str, ...] = ("right_hand", "left_hand", "head"),
-    eye_tracker: bool = False,
+    eye_tracker: bool = True,
     agent: Agent | None = None,
 ) -> Capture:
     """The capture of a performance.
@@ -84,7 +84,8 @@ def record(
         seed: Of noise, places of sensors and losses.
         tracker: Its faults; a MotionStar's where None.
         sensors: Places of those that are worn.
-        eye_tracker: Whether the head's stream looks where the eyes look; else where the face does.
+        eye_tracker: Whether a head that is worn is recorded with where its eyes look (a sensor
+            ``eyes``); else only the face is known.
         agent: Who performed; sex and all measures of the body where None.
 
     Raises:
@@ -94,10 +95,10 @@ def record(
     mounts = strap_on(made.human, sensors, tracker, rng)
     streams = sense(made.human, made.times, made.motion, mounts, tracker, rng)
     worn = [_sensor(made, mounts[place], streams[place]) for place in sensors]
-    if eye_tracker:
-        worn = [each if each.name != "head" else _eyes(made, each, tracker, rng) for each in worn]
     things = [_thing(made, each, tracker, rng) for each in made.scene.things]
     heads = [_head(made, each) for each in worn if each.name == "head"]
+    if eye_tracker and heads:  # drawn last, so that the others' noise does not depend on it
+        worn.append(_eyes(made, tracker, rng))
     measures = {k: round(v, 4) for k, v in made.human.measures.values.items()}
     kind = "child" if made.human.measures.adult_share < 0.5 else made.human.measures.adult
     return Capture(
@@ -167,12 +168,12 @@ def _sensor(made: Performance, mount: Mount, stream: Stream) -> Sensor:
     )
 
 
-def _eyes(made: Performance, head: Sensor, tracker: Tracker, rng: np.random.Generator) -> Sensor:
-    """The head's sensor as an eye tracker has it: origin between the eyes, x along the sight."""
+def _eyes(made: Performance, tracker: Tracker, rng: np.random.Generator) -> Sensor:
+    """What an eye tracker on the head records: origin between the eyes, x along the sight."""
     spots, ways = lines_of_sight(made.human, made.motion)
     pose = RigidTransform.from_components(spots, _looking(ways))
     stream = recorded(made.times, pose, tracker, rng)
-    return Sensor("eyes", "head", "none", "neck", stream, None, Role.ATTENDS)
+    return Sensor("eyes", "eyes", "none", "neck", stream, None, Role.ATTENDS)
 
 
 def _looking(ways: Float[np.ndarray, "frames 3"]) -> Rotation:

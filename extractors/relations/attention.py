@@ -1,4 +1,9 @@
-"""What the performer looks at: the nearest tag object on the line of sight (thesis 3.5)."""
+"""What the performer looks at: the nearest tag object on the line of sight (thesis 3.5).
+
+The line of sight is that of the eyes where an eye tracker knows them, else that of the face: it is
+``gaze`` of the head's sensor. Eyes take 10 to 20 degrees of a look at what lies on a table, so the
+line of the face alone passes above small things.
+"""
 
 from dataclasses import dataclass
 
@@ -16,6 +21,9 @@ from extractors.thresholds import Thresholds
 HEAD = "head"
 """The general type of an end-effector that carries the eyes, whether it attends or acts."""
 
+EYES = "eyes"
+"""The general type of an eye tracker: its line of sight is that of its agent's head."""
+
 NOTHING = -1
 """Stands for an object where none is looked at."""
 
@@ -24,12 +32,28 @@ BEHIND_M = 1e-6
 
 
 def seeing(capture: Capture) -> tuple[Sensor, ...]:
-    """Every sensor with a line of sight: heads, and what attends and is no trunk."""
+    """Every sensor with a line of sight: heads, and what attends and is no trunk.
+
+    Eyes are left out beside a head of the same agent, which then looks with them.
+    """
     attending = {sensor.name for sensor in capture.attending if sensor.end_effector not in TRUNK}
+    lent = {eyes.name for head in capture.sensors for eyes in _eyes_of(capture, head)}
     return tuple(
         sensor
         for sensor in capture.sensors
-        if sensor.name in attending or sensor.end_effector == HEAD
+        if (sensor.name in attending or sensor.end_effector == HEAD) and sensor.name not in lent
+    )
+
+
+def _eyes_of(capture: Capture, head: Sensor) -> tuple[Sensor, ...]:
+    """The eye trackers that a head's agent wears; none for what is no head."""
+    if head.end_effector != HEAD:
+        return ()
+    agent = capture.agent_of(head)
+    return tuple(
+        sensor
+        for sensor in capture.sensors
+        if sensor.end_effector == EYES and capture.agent_of(sensor) == agent
     )
 
 
@@ -58,6 +82,8 @@ def attention(
 ) -> Attention:
     """The line of sight of an attending sensor, against boxes first and then surfaces.
 
+    A head looks with its agent's eyes at every frame at which an eye tracker sees them.
+
     Args:
         capture: The trial, whose tag objects with a shape can be seen.
         sensor: The sensor, with the eye [m] and the gaze in its own frame. It does not see the
@@ -66,6 +92,11 @@ def attention(
         thresholds: Least durations of a look and of its interruptions.
     """
     origins, rays = sight(sensor, bodies.sensors[sensor.name].poses)
+    for eyes in _eyes_of(capture, sensor):
+        poses = bodies.sensors[eyes.name].poses
+        known = ~poses.lost
+        spots, ways = sight(eyes, poses)
+        origins[known], rays[known] = spots[known], ways[known]
     names = sorted(body.name for body in capture.objects if body.shape and body.name != sensor.name)
     seen = np.full(len(origins), NOTHING)
     nearest = np.full(len(origins), np.inf)

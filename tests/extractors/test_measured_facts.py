@@ -250,3 +250,36 @@ def test_a_fixed_table_with_a_shaky_tracker_stands_still() -> None:
     assert (settled.positions == settled.positions[0]).all()
     assert np.abs(settled.positions[0] - [0.5, 0.0, 0.0]).max() < 0.001
     assert np.abs(settled.orientations[0] - UP).max() < 0.002
+
+
+def _eyed(*, lost_to: int = 0) -> Capture:
+    """A head that faces one box, and eyes that see another one to its left."""
+    head = Sensor("head", "head", "none", "neck", still((0, 0, 0), 200), None, Role.ATTENDS)
+    left = [np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]
+    spots = np.zeros((200, 3))
+    spots[:lost_to] = np.nan
+    sight = stream(spots, orientations=np.tile(left, (200, 1)))
+    eyes = Sensor("eyes", "eyes", "none", "neck", sight, None, Role.ATTENDS)
+    hand = Sensor("hand", "hand", "right", "arm", still((0, 0, 9), 200))
+    objects = (
+        TagObject("faced", TagType.FIXED, still((1.0, 0, 0), 200), box(0.2, 0.2, 0.2)),
+        TagObject("seen", TagType.FIXED, still((0, 1.0, 0), 200), box(0.2, 0.2, 0.2)),
+    )
+    return Capture("eyed", (hand, head, eyes), objects)
+
+
+def test_a_head_looks_where_its_eyes_are_tracked_to_look() -> None:
+    looks = [each for each in measure(_eyed()).facts if isinstance(each, LookingAt)]
+    assert looks == [LookingAt("head", "seen", 0, 199)]
+
+
+def test_where_the_eyes_are_lost_the_face_looks() -> None:
+    looks = [each for each in measure(_eyed(lost_to=80)).facts if isinstance(each, LookingAt)]
+    assert looks == [LookingAt("head", "faced", 0, 79), LookingAt("head", "seen", 80, 199)]
+
+
+def test_eyes_without_a_head_look_themselves() -> None:
+    capture = _eyed()
+    alone = replace(capture, sensors=tuple(s for s in capture.sensors if s.name != "head"))
+    looks = [each for each in measure(alone).facts if isinstance(each, LookingAt)]
+    assert looks == [LookingAt("eyes", "seen", 0, 199)]

@@ -129,7 +129,7 @@ def _sensor(
         raise entry.error("gaze", "gaze of no length.", "It is a direction in the sensor's frame.")
     kind = entry.end_effector
     chain = chain_of(kind)
-    role = entry.role or ("attends" if kind == "head" else "acts")
+    role = entry.role or ("attends" if kind in {"head", "eyes"} else "acts")
     return Sensor(
         name=entry.name,
         end_effector=kind,

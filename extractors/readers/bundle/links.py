@@ -1,6 +1,6 @@
 """The kinematic chain that an end-effector ends, where nobody says so."""
 
-LINKS = {"hand": "arm", "foot": "leg", "head": "neck"}
+LINKS = {"hand": "arm", "foot": "leg", "head": "neck", "eyes": "neck"}
 """The chain by the end-effectors that rules know."""
 
 
