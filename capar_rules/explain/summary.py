@@ -59,7 +59,11 @@ class Briefs:
         return []
 
     def clauses(self, nodes: Sequence[Reason]) -> list[str]:
-        """What is said of nodes, each once; contacts of two bodies at both borders are one."""
+        """What is said of nodes, each once; contacts of two bodies at both borders are one.
+
+        What holds of another segment is left to the tree: its start and end are not this one's.
+        """
+        nodes = [each for each in nodes if not self._of_another(each)]
         pairs = merged_contacts(nodes, self.clock)
         told: list[str] = []
         courses = any(each.atom.startswith(COURSES) for each in nodes)
@@ -70,6 +74,12 @@ class Briefs:
             elif not (courses and each.atom.startswith("moved(")):
                 told.append(self.of(each))
         return _at_both([each for each in dict.fromkeys(told) if each])
+
+    def _of_another(self, reason: Reason) -> bool:
+        arguments = _parsed(reason.atom.removeprefix("not "))[1]
+        return (
+            bool(arguments) and arguments[0].startswith("seg(") and arguments[0] != self.clock.own
+        )
 
     def touching(self, nodes: Iterable[Reason]) -> str:
         """Up to which distance bodies are counted as touching that are told to touch."""
