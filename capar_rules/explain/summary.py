@@ -122,16 +122,19 @@ def summary(
 ) -> str:
     """Why a segment has a name, and not that of its nearest neighbours.
 
-    Where none is near, what is said is why it has no more general name.
+    Where none is near, what is said apart is why it has no more general name.
     """
     nodes = leading(reason)
     clauses = briefs.clauses(nodes)
-    told = f"{name}, because {_by_subject(clauses, _subjects(nodes, briefs))}."
+    own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
+    shared = [each for each in clauses if each not in own]
+    apart = bool(generals and own and not against)
+    first = _by_subject(shared if apart and shared else clauses, _subjects(nodes, briefs))
+    told = f"{name}, because {first}."
     for number, contrast in enumerate(against):
         told += f"{'; n' if number else ' N'}ot {contrast.sentence(clauses)}"
         clauses.append(contrast.clause)
-    own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
-    if generals and own and not against:
+    if apart:
         because = _by_subject(own, _subjects(nodes, briefs))
         told += f" Not just {_listed(generals, 'or')}, because {because}"
     told += "." * (not told.endswith("."))
