@@ -59,7 +59,11 @@ class Briefs:
         return []
 
     def clauses(self, nodes: Sequence[Reason]) -> list[str]:
-        """What is said of nodes, each once; contacts of two bodies at both borders are one."""
+        """What is said of nodes, each once; contacts of two bodies at both borders are one.
+
+        What holds of another segment is left to the tree: its start and end are not this one's.
+        """
+        nodes = [each for each in nodes if not self._of_another(each)]
         pairs = merged_contacts(nodes, self.clock)
         told: list[str] = []
         courses = any(each.atom.startswith(COURSES) for each in nodes)
@@ -70,6 +74,12 @@ class Briefs:
             elif not (courses and each.atom.startswith("moved(")):
                 told.append(self.of(each))
         return _at_both([each for each in dict.fromkeys(told) if each])
+
+    def _of_another(self, reason: Reason) -> bool:
+        arguments = _parsed(reason.atom.removeprefix("not "))[1]
+        return (
+            bool(arguments) and arguments[0].startswith("seg(") and arguments[0] != self.clock.own
+        )
 
     def touching(self, nodes: Iterable[Reason]) -> str:
         """Up to which distance bodies are counted as touching that are told to touch."""
@@ -112,16 +122,19 @@ def summary(
 ) -> str:
     """Why a segment has a name, and not that of its nearest neighbours.
 
-    Where none is near, what is said is why it has no more general name.
+    Where none is near, what is said apart is why it has no more general name.
     """
     nodes = leading(reason)
     clauses = briefs.clauses(nodes)
-    told = f"{name}, because {_by_subject(clauses, _subjects(nodes, briefs))}."
+    own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
+    shared = [each for each in clauses if each not in own]
+    apart = bool(generals and own and not against)
+    first = _by_subject(shared if apart and shared else clauses, _subjects(nodes, briefs))
+    told = f"{name}, because {first}."
     for number, contrast in enumerate(against):
         told += f"{'; n' if number else ' N'}ot {contrast.sentence(clauses)}"
         clauses.append(contrast.clause)
-    own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
-    if generals and own and not against:
+    if apart:
         because = _by_subject(own, _subjects(nodes, briefs))
         told += f" Not just {_listed(generals, 'or')}, because {because}"
     told += "." * (not told.endswith("."))
