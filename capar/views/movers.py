@@ -20,8 +20,14 @@ WORDS: Mapping[str, str] = {
 """How each kind of mover is told, of the mover's name."""
 
 
+WITHOUT_MOVER = frozenset({"set_going", "unknown"})
+"""Kinds of motion in which nothing moves the thing."""
+
 ALL_BUT = 95.0
-"""A mover of this share of a motion is told alone [%]."""
+"""What has this share of a motion is told of all of it [%]."""
+
+MOST_TOLD = 3
+"""The most movers of one thing that are named, those with the greatest shares [1]."""
 
 
 def mover_lines(
@@ -54,27 +60,70 @@ def mover_lines(
 def _line(
     thing: str, movers: Mapping[int, Collection[tuple[str, str]]], names: Mapping[str, str]
 ) -> str:
-    """What moves a thing, with shares of the time it moves that sum to 100 %."""
-    shares = Counter(_together(found, names) for found in movers.values()).most_common()
-    told = [(how, 100.0 * count / len(movers)) for how, count in shares]
+    """What moves a thing: one plain statement, or each mover with its share of the time."""
     thing = names.get(thing, spoken(thing))
-    if told[0][1] >= ALL_BUT:
-        return f"The {thing} was {told[0][0]}."
-    (first, share), *others = told
-    parts = [f"{first} for {share:.0f} % of the time it moved"]
-    parts += [f"{how} for {share:.0f} %" for how, share in others]
-    return f"The {thing} was {joined(parts)}."
+    ways = Counter(_together(found, names) for found in movers.values()).most_common(1)
+    (together, count) = ways[0]
+    if 100.0 * count >= ALL_BUT * len(movers):
+        return f"The {thing} was {together}."
+    shares = Counter(mover for found in movers.values() for mover in _movers(found))
+    if not shares:
+        return f"The {thing} was {' or '.join(_without_mover(movers.values()))}."
+    verb = "carried" if _only_carried(movers.values()) else "moved"
+    most = sorted(shares.items(), key=lambda share: (-share[1], share[0]))[:MOST_TOLD]
+    told = [
+        f"by the {names.get(mover, spoken(mover))}{_how_long(count, len(movers))}"
+        for mover, count in most
+    ]
+    others = len(shares) - len(told)
+    told += [f"by {others} other{'s' * (others > 1)}"] if others else []
+    return f"The {thing} was {verb} {joined(told)}{_remainder(movers.values())}."
+
+
+def _movers(found: Collection[tuple[str, str]]) -> set[str]:
+    return {mover for how, mover in found if how not in WITHOUT_MOVER}
+
+
+def _only_carried(frames: Collection[Collection[tuple[str, str]]]) -> bool:
+    hows = {how for found in frames for how, _ in found}
+    return hows - WITHOUT_MOVER == {"carried"}
+
+
+def _without_mover(frames: Collection[Collection[tuple[str, str]]]) -> list[str]:
+    hows = {how for found in frames for how, _ in found if how in WITHOUT_MOVER}
+    return [WORDS[how] for how in sorted(hows)]
+
+
+def _remainder(frames: Collection[Collection[tuple[str, str]]]) -> str:
+    """What is told of the time in which nothing moves it."""
+    alone = [found for found in frames if not _movers(found)]
+    share = round(100.0 * len(alone) / len(frames))
+    return (
+        f"; for {share} % of the time it was {' or '.join(_without_mover(alone))}" if share else ""
+    )
+
+
+def _how_long(count: int, total: int) -> str:
+    share = 100.0 * count / total
+    return " throughout" if share >= ALL_BUT else f" for {share:.0f} % of the time it moved"
 
 
 def _together(movers: Collection[tuple[str, str]], names: Mapping[str, str]) -> str:
     """What several movers do at once, those that do the same together."""
     found: dict[str, list[str]] = defaultdict(list)
     for how, mover in sorted(movers):
-        found[how].append(names.get(mover, spoken(mover)))
-    return joined([WORDS[how].format(joined(who, before="the ")) for how, who in found.items()])
+        found[how].append(f"the {names.get(mover, spoken(mover))}")
+    return joined([WORDS[how].format(_few(who)) for how, who in found.items()])
 
 
-def joined(parts: Sequence[str], *, before: str = "") -> str:
-    """Parts as a list in words, each with a word before it."""
-    *most, last = (f"{before}{each}" for each in parts)
+def _few(who: Sequence[str]) -> str:
+    """A few names, and how many others there are."""
+    if len(who) <= MOST_TOLD + 1:
+        return joined(who)
+    return f"{', '.join(who[:MOST_TOLD])} and {len(who) - MOST_TOLD} others"
+
+
+def joined(parts: Sequence[str]) -> str:
+    """Parts as a list in words."""
+    *most, last = parts
     return f"{', '.join(most)}{' and ' * bool(most)}{last}"
