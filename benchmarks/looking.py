@@ -35,11 +35,9 @@ def main() -> None:
         for who in AGENTS:
             made = performed(action, who)
             for eyes, found in every.items():
-                capture = record(
-                    made, name=action, seed=3, tracker=PERFECT, eye_tracker=eyes
-                )
+                capture = record(made, name=action, seed=3, tracker=PERFECT, eye_tracker=eyes)
                 here = list(fixations(made, capture))
-                found += here
+                found.extend(here)
                 label = "eyes" if eyes else "face"
                 print(f"{action:8} {who:6} {label}  {line(here)}", flush=True)
     for eyes, found in every.items():

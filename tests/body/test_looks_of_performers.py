@@ -9,10 +9,11 @@ from capar.body.recording import record
 from capar.body.scripted_actions import action_capture, performed
 from capar.body.sensing import PERFECT
 
+pytestmark = pytest.mark.long
+
 ACTIONS = ("touch", "carry", "pour")
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("who", AGENTS)
 @pytest.mark.parametrize("action", ACTIONS)
 def test_what_is_looked_at_is_told_while_the_gaze_stays_on_it(action: str, who: str) -> None:

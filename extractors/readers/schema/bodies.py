@@ -124,7 +124,7 @@ class SensorEntry(Tracked):
     ] = None
     role: Annotated[
         Literal["acts", "attends"] | None,
-        key("``acts`` makes segments, ``attends`` gives gaze; heads and eyes attend, all else acts."),
+        key("``acts`` makes segments, ``attends`` gives gaze; head and eyes attend, else acts."),
     ] = None
     gaze: Annotated[Vector, key("Direction of sight in the sensor's frame.")] = [1.0, 0.0, 0.0]
     eye: Annotated[Vector, key("Where sight starts in the sensor's frame.", unit="m")] = [0.0] * 3
