@@ -116,7 +116,7 @@ class SensorEntry(Tracked):
 
     name: Annotated[Name, key("A name of its own: lower case, digits and _.")]
     end_effector: Annotated[
-        str, key("What the segment is, a noun without side: hand, foot, head, knee ...")
+        str, key("What the segment is, a noun without side: hand, foot, head, eyes, knee ...")
     ]
     side: Annotated[Literal["right", "left", "none"], key("Its side.")] = "none"
     link: Annotated[
