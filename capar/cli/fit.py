@@ -40,7 +40,10 @@ def fit(
         Path | None, typer.Option(help="Write the body as a MuJoCo model; --npz has its qpos.")
     ] = None,
 ) -> None:
-    """Fit a human body to the joints, markers or sensors of CAPTURE and say what is left."""
+    """Fit a human body to the joints, markers or sensors of CAPTURE and say what is left.
+
+    To sensors it is fitted again, with limb lengths from the motion, where that is needed.
+    """
     from capar.body.whole_bodies import fit_body
     from extractors.readers.bundle.capture_toml import read_capture
 

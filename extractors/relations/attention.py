@@ -1,8 +1,8 @@
 """What the performer looks at: the nearest tag object on the line of sight (thesis 3.5).
 
 The line of sight is that of the eyes where an eye tracker knows them, else that of the face: it is
-``gaze`` of the head's sensor. Eyes take 10 to 20 degrees of a look at what lies on a table, so the
-line of the face alone passes above small things.
+``gaze`` of the head's sensor. In looks at what lies on a table the eyes turn up to 19 degrees from
+the face, whose line then passes above small things (figures in ``capar/body/README.md``).
 """
 
 from dataclasses import dataclass

@@ -9,19 +9,20 @@ from capar.body.recording import record
 from capar.body.scripted_actions import action_capture, performed
 from capar.body.sensing import PERFECT
 
+pytestmark = pytest.mark.long
+
 ACTIONS = ("touch", "carry", "pour")
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("who", AGENTS)
 @pytest.mark.parametrize("action", ACTIONS)
 def test_what_is_looked_at_is_told_while_the_gaze_stays_on_it(action: str, who: str) -> None:
     found = fixations(performed(action, who), action_capture(action, who))
-    things = [each for each in found if each.thing]
+    things = [fixation for fixation in found if fixation.thing]
     assert things
-    assert all(each.told == 1.0 for each in things)
+    assert all(fixation.told == 1.0 for fixation in things)
     assert share_told(found, of_things=False) > 0.9
-    assert max(each.missed_rad for each in found) < np.radians(0.5)
+    assert max(fixation.missed_rad for fixation in found) < np.radians(0.5)
 
 
 def test_a_face_alone_passes_above_a_mug_that_the_eyes_look_at() -> None:
@@ -29,6 +30,6 @@ def test_a_face_alone_passes_above_a_mug_that_the_eyes_look_at() -> None:
     capture = record(made, name="sip", seed=3, tracker=PERFECT, eye_tracker=False)
     face = fixations(made, capture)
     eyes = fixations(made, action_capture("sip"))
-    assert [each.thing for each in face] == [each.thing for each in eyes]
+    assert [fixation.thing for fixation in face] == [fixation.thing for fixation in eyes]
     assert share_told(face, of_things=True) < 0.5 < share_told(eyes, of_things=True)
-    assert [each.name for each in capture.sensors] == ["right_hand", "left_hand", "head"]
+    assert [sensor.name for sensor in capture.sensors] == ["right_hand", "left_hand", "head"]

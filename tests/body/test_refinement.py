@@ -13,10 +13,11 @@ from virtual_bodies.trials import (
     virtual_trial,
 )
 
+from capar.body.capture_fitting import fit_refined, worst_m
 from capar.body.fitting import Fit, fit
 from capar.body.human import Human
 from capar.body.mounting import Calibration, calibrate
-from capar.body.refinement import Refinement, RefinementError, refine
+from capar.body.refinement import NOISE_M, Refinement, RefinementError, refine
 
 pytestmark = pytest.mark.long
 
@@ -65,6 +66,25 @@ def test_arms_measured_3_percent_wrong_do_no_harm_either() -> None:
     better = refine(fit(body, trial.streams, found), trial.streams, found, samples=40)
     made = fit(Human.of(better.measures), trial.streams, better.calibration)
     assert rms(palm_errors_m(trial, made)) < 0.010
+
+
+@pytest.mark.parametrize("arms", [0.97, 1.03])
+def test_arms_that_are_3_percent_wrong_are_refined_unasked(arms: float) -> None:
+    trial = virtual_trial(seed=2)
+    body = Human.of(guessed(trial.human.measures, arms=arms))
+    found = calibrate(body, trial.streams)
+    first, given = fit(body, trial.streams, found), fit_refined(body, trial.streams, found)
+    assert worst_m(given) < worst_m(first)
+    assert rms(palm_errors_m(trial, given)) < min(0.010, rms(palm_errors_m(trial, first)))
+
+
+def test_a_body_that_fits_keeps_its_measures() -> None:
+    trial = virtual_trial()
+    body = Human.of(measured(trial.human.measures))
+    found = calibrate(body, trial.streams, placed=(np.zeros(3), 0.0))
+    given = fit_refined(body, trial.streams, found)
+    assert worst_m(given) <= NOISE_M
+    assert given.human.measures.values == body.measures.values
 
 
 def test_too_short_a_motion_is_refused() -> None:

@@ -269,17 +269,17 @@ def _eyed(*, lost_to: int = 0) -> Capture:
 
 
 def test_a_head_looks_where_its_eyes_are_tracked_to_look() -> None:
-    looks = [each for each in measure(_eyed()).facts if isinstance(each, LookingAt)]
+    looks = [fact for fact in measure(_eyed()).facts if isinstance(fact, LookingAt)]
     assert looks == [LookingAt("head", "seen", 0, 199)]
 
 
 def test_where_the_eyes_are_lost_the_face_looks() -> None:
-    looks = [each for each in measure(_eyed(lost_to=80)).facts if isinstance(each, LookingAt)]
+    looks = [fact for fact in measure(_eyed(lost_to=80)).facts if isinstance(fact, LookingAt)]
     assert looks == [LookingAt("head", "faced", 0, 79), LookingAt("head", "seen", 80, 199)]
 
 
 def test_eyes_without_a_head_look_themselves() -> None:
     capture = _eyed()
     alone = replace(capture, sensors=tuple(s for s in capture.sensors if s.name != "head"))
-    looks = [each for each in measure(alone).facts if isinstance(each, LookingAt)]
+    looks = [fact for fact in measure(alone).facts if isinstance(fact, LookingAt)]
     assert looks == [LookingAt("eyes", "seen", 0, 199)]

@@ -55,7 +55,7 @@ def fixations(made: Performance, capture: Capture) -> tuple[Fixation, ...]:
     """
     if len(capture.times) != len(made.times):
         raise ValueError("the capture is not one of this performance")
-    facts = [each for each in measure(capture).facts if isinstance(each, LookingAt)]
+    facts = [fact for fact in measure(capture).facts if isinstance(fact, LookingAt)]
     told = {name: _told(facts, name, len(made.times)) for name in made.scene.things}
     missed = _missed(made)
     still = np.linalg.norm(np.diff(made.gazes, axis=0), axis=1) <= STILL_M
@@ -75,14 +75,14 @@ def fixations(made: Performance, capture: Capture) -> tuple[Fixation, ...]:
                 part = slice(first, last + 1)
                 right = float(told[name][part].mean())
                 out.append(Fixation(name, first, last, right, float(missed[part].max())))
-    return tuple(sorted(out, key=lambda each: each.first))
+    return tuple(sorted(out, key=lambda fixation: fixation.first))
 
 
 def share_told(found: Iterable[Fixation], *, of_things: bool) -> float:
     """The share of all frames of fixations, on things or on none, that is told right [1]."""
-    some = [each for each in found if bool(each.thing) is of_things]
-    frames = [each.last - each.first + 1 for each in some]
-    return float(np.average([each.told for each in some], weights=frames))
+    some = [fixation for fixation in found if bool(fixation.thing) is of_things]
+    frames = [fixation.last - fixation.first + 1 for fixation in some]
+    return float(np.average([fixation.told for fixation in some], weights=frames))
 
 
 def _told(facts: list[LookingAt], name: str, frames: int) -> Bool[np.ndarray, "frames"]:

@@ -116,7 +116,7 @@ class SensorEntry(Tracked):
 
     name: Annotated[Name, key("A name of its own: lower case, digits and _.")]
     end_effector: Annotated[
-        str, key("What the segment is, a noun without side: hand, foot, head, knee ...")
+        str, key("What the segment is, a noun without side: hand, foot, head, eyes, knee ...")
     ]
     side: Annotated[Literal["right", "left", "none"], key("Its side.")] = "none"
     link: Annotated[
@@ -124,9 +124,7 @@ class SensorEntry(Tracked):
     ] = None
     role: Annotated[
         Literal["acts", "attends"] | None,
-        key(
-            "``acts`` makes segments, ``attends`` gives gaze; heads and eyes attend, all else acts."
-        ),
+        key("``acts`` makes segments, ``attends`` gives gaze; head and eyes attend, else acts."),
     ] = None
     gaze: Annotated[Vector, key("Direction of sight in the sensor's frame.")] = [1.0, 0.0, 0.0]
     eye: Annotated[Vector, key("Where sight starts in the sensor's frame.", unit="m")] = [0.0] * 3
