@@ -2,15 +2,13 @@
 
 from collections.abc import Sequence
 
+from capar_rules.borders.times import in_frames, times
 from capar_rules.explain import quantities
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.quantities import LEAST_M, Way
 
 DRIFT_M = 0.005
 """Of a body that stays, shorter distances are left out of sentences [m]."""
-
-SHORTER_S = 0.1
-"""A motion that ends or begins by so much inside its segment is told with that time [s]."""
 
 OF_SEGMENTS = ("segment", "motion", "distance", "ended", "drift")
 """Formats of a segment, or of a side of it, that tell of the body that stands first."""
@@ -112,7 +110,7 @@ class Argument:
             return self._between(form, body, span)
         moving = self.clock.motion(body, span)
         if form == "until":
-            late = span[1] - moving[1] > SHORTER_S * self.clock.rate_hz
+            late = span[1] - moving[1] > in_frames(times().merge_ms, self.clock.rate_hz)
             return f" until {self.clock.at(moving[1])}" if late else ""
         moved = self._moved(body, moving if form == "way" else span)
         return "" if moved is None else _brief(form, moved)

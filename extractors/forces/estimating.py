@@ -40,6 +40,9 @@ LANDS_MPS = 0.15
 EARLY_S = 0.04
 """How far from the frame of contact a blow may be in truth [s]."""
 
+BEGINNINGS = (0.0, -0.5, 0.5)
+"""Where the search for the time of a blow begins, as shares of how far that may be off [1]."""
+
 DAMPING, BOUNCE = 2.0, 0.4
 """Where the fit begins [1/s], [1]."""
 
@@ -107,7 +110,7 @@ def fit_free_motion(
     motion = course.motion(late, bounce)
     off = np.linalg.norm(motion.positions - path, axis=1)
     return Fit(
-        start_s=begin.start_s,
+        start_s=float(begin.start_s),
         position=begin.place,
         velocity=begin.velocity,
         damping=late if _slid_s(motion, clock) >= SLIDES_S else None,
@@ -230,12 +233,16 @@ def _slide(
         past = np.maximum(clock - clock[0] - start, 0.0)[:, None]
         return np.asarray((place + speed * -np.expm1(-damping * past) / damping - path).ravel())
 
-    guess = np.array([0.0, 0.0, 0.0, DAMPING, DAMPING, 0.0, 0.0])
     reach = EARLY_S / 0.01
     low = np.array([-reach, -3.0, -3.0, 1e-6, 1e-6, -5.0, -5.0])
     high = np.array([reach, 3.0, 3.0, LATE_DAMPING, LATE_DAMPING, 5.0, 5.0])
-    found = least_squares(residuals, guess, bounds=(low, high), x_scale=np.maximum(guess, 0.1))
-    start, place, speed, damping = values(found.x)
+    # Before the blow nothing depends on its time, so that a search can stop short of the best one.
+    guesses = [
+        np.array([share * reach, 0.0, 0.0, DAMPING, DAMPING, 0.0, 0.0]) for share in BEGINNINGS
+    ]
+    scale = np.maximum(guesses[0], 0.1)
+    fits = [least_squares(residuals, guess, bounds=(low, high), x_scale=scale) for guess in guesses]
+    start, place, speed, damping = values(min(fits, key=lambda fit: float(fit.cost)).x)
     begin = _Begin(float(clock[0]) + start, np.array([*place, level]), np.array([*speed, 0.0]))
     long = clock[-1] - begin.start_s >= SLIDES_S
     return begin, (float(damping[0]), float(damping[1])) if long else None

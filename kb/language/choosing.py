@@ -22,18 +22,20 @@ def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """
     told: list[Clause] = []
     repeated: list[Clause] = []
+    longest_s: dict[Clause, float] = {}
     for step in steps:
         said = next((each for each in told[::-1] if _says_the_same(each, step)), None)
         if said is None:
             told.append(step)
         elif (said.ees, said.grip) == (step.ees, step.grip):
-            continue
-        elif _lasts_s(step) <= _lasts_s(said):
+            longest_s[said] = max(longest_s[said], _lasts_s(step))
+        elif _lasts_s(step) <= longest_s[said]:
             repeated.append(step)
         else:
-            if _lasts_s(said) < MINOR_SHARE * _lasts_s(step):
+            if longest_s[said] < MINOR_SHARE * _lasts_s(step):
                 told.remove(said)
             told.append(step)
+        longest_s.setdefault(step, _lasts_s(step))
     if len(steps) > MOST_DEEDS:
         told = [each for each in told if not _beside_what_recurs(each, repeated, told)]
     if len(told) > MOST_DEEDS:

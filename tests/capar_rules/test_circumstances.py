@@ -12,7 +12,7 @@ from recomputed.known import Known
 from recomputed.others import touched_nothing
 
 from capar.model.capture import Capture
-from capar.pipelines.explanation import Explained, distances
+from capar.pipelines.explanation import Explained, measured_of
 from capar.pipelines.observation import observe_measured
 from capar_rules.engine.profiles import Profile, profile
 from capar_rules.explain.explanation import Explainer
@@ -41,9 +41,8 @@ def told(capture: Capture, rules: Profile) -> Iterator[tuple[Known, str]]:
     """Each sentence of each segment, with what it can be recomputed from."""
     measurements = measure(capture)
     observation = observe_measured(capture, measurements, rules=rules)
-    explainer = Explainer(
-        observation.facts, profile=rules, distances_m=distances(capture, measurements)
-    )
+    measured = measured_of(observation, measurements)
+    explainer = Explainer(observation.facts, profile=rules, measured=measured)
     for segment in observation.segments:
         known = Known(Explained(observation, explainer), measurements.facts, segment, capture, {})
         for reason in explainer.explain(segment).reason.with_sentences().walk():
