@@ -10,7 +10,10 @@ app = typer.Typer()
 
 @app.command()
 def perform(
-    action: Annotated[str, typer.Argument(help="drink, sip, touch, slide, carry or pick_up.")],
+    action: Annotated[
+        str,
+        typer.Argument(help="drink, sip, touch, slide, carry, pick_up, turn, push or pour."),
+    ],
     output: Annotated[Path, typer.Option("--output", "-o", help="A new folder for the capture.")],
     agent: Annotated[str, typer.Option(help="Who performs: man, woman or child.")] = "man",
     rate: Annotated[float, typer.Option(help="Frames a second.", min=10.0, max=480.0)] = 60.0,

@@ -10,14 +10,13 @@ from capar.model.facts import Touching
 from capar.model.forces import ForceStyle, Vector
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
-from extractors.forces.estimating import (
+from extractors.forces.blow_velocities import (
     VELOCITY_S,
-    Fit,
-    fit_free_motion,
     restitution,
     thesis_damping,
     velocities_about,
 )
+from extractors.forces.estimating import Fit, fit_free_motion
 from extractors.forces.free_motion import Phase, Surface
 from extractors.motion.impacts import recorded_middles
 
