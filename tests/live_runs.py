@@ -30,7 +30,9 @@ CAPTURES: dict[str, Callable[[], Capture]] = {
     "one leg": lambda: motions.stand_on_one_leg(motions.WOMAN).capture,
     "sliding on and on": lambda: repeated(motions.slide_object(motions.WOMAN).capture, 5),
     "whisk and bottle": lambda: trial_of(f"{EXAMPLES}/bimacs_optitrack:take0"),
-    "box carried": lambda: trial_of(f"{EXAMPLES}/omomo_intermimic/hands.toml:sub3_largebox_003"),
+    "box carried": lambda: trial_of(
+        f"{EXAMPLES}/omomo_intermimic/largebox_hands.toml:sub3_largebox_003"
+    ),
     "drinking on and on": lambda: repeated(trial_of(DEMO), 5),
 }
 

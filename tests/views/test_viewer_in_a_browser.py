@@ -103,7 +103,7 @@ def test_playing_runs_on_and_stops(page: Page, markers: dict[str, np.ndarray]) -
     page.click("#play")
     assert page.evaluate('document.getElementById("play").textContent') == "Play"
     stopped, pelvis = clock(page), place(page, "body_pelvis")
-    assert 0.3 < stopped < 1.9
+    assert 0.3 <= stopped < 1.9  # the page shows hundredths
     feet_are_at_their_markers(page, markers)
     time.sleep(0.3)
     assert clock(page) == stopped
