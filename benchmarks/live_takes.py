@@ -70,7 +70,7 @@ def noisy(name: str, noise_mm: float) -> Capture:
 def whole_body(take: str) -> Capture:
     """A clip of somebody who carries something, by the sensors of the thesis."""
     clip = trial_of(f"{CARRIER}:{take}")
-    sensors = tuple(each for each in clip.sensors if each.name.endswith(BIRDS))
+    sensors = tuple(sensor for sensor in clip.sensors if sensor.name.endswith(BIRDS))
     return replace(clip, sensors=sensors)
 
 

@@ -201,4 +201,4 @@ if __name__ == "__main__":
         folder = Path(arguments[at + 1])
         del arguments[at : at + 2]
     wanted = int(arguments[0]) if arguments else 60
-    report([float(each) for each in arguments[1:]] or RATIOS, wanted, folder)
+    report([float(ratio) for ratio in arguments[1:]] or RATIOS, wanted, folder)

@@ -48,7 +48,8 @@ SETTLING = 60
 """Iterations for the first frame."""
 
 FAR_BEHIND_M = 0.02
-"""A sensor that the body is further behind than this after its steps is caught up with [m]."""
+"""Where a sensor is still farther from its place on the body than this after the usual steps, more
+are taken [m]."""
 
 CATCHING_UP = 20
 """Steps of that kind at most."""
@@ -97,7 +98,7 @@ class Follower:
         """
         self.configuration.update(rest)
         level, stays = np.array([1.0, 1.0, 0.0]), float(self._stays())
-        foot, pelvis = (np.multiply(stays * each, level) for each in ON_SPOT_COST)
+        foot, pelvis = (np.multiply(stays * cost, level) for cost in ON_SPOT_COST)
         foot[2] = STANDING_COST[0]
         standing = [mink.FrameTask("pelvis", "body", pelvis, UPRIGHT_COST * level)]
         for side in ("right", "left"):
@@ -110,7 +111,7 @@ class Follower:
 
     def _stays(self) -> bool:
         """Whether the body stands on one spot, by the middle of its sensors."""
-        middle = np.mean([each.positions[:, :2] for each in self.targets.values()], axis=0)
+        middle = np.mean([target.positions[:, :2] for target in self.targets.values()], axis=0)
         return bool(np.linalg.norm(np.ptp(middle, axis=0)) < ON_SPOT_M)
 
     def _sees_trunk(self) -> bool:
@@ -148,7 +149,7 @@ class Follower:
     def _behind_m(self) -> float:
         """How far the farthest of the sensors seen is from where it should be [m]."""
         errors = [task.compute_error(self.configuration)[:3] for task in self._seen()]
-        return max((float(np.linalg.norm(each)) for each in errors), default=0.0)
+        return max((float(np.linalg.norm(error)) for error in errors), default=0.0)
 
     def _seen(self) -> list[mink.FrameTask]:
         """Tasks of sensors that are not lost."""
@@ -168,7 +169,7 @@ class Follower:
     def blind(self, frame: int) -> Float[np.ndarray, "dofs"]:
         """How little each hinge is seen at a frame: 1 between a lost sensor and the next seen."""
         model, out = self.human.model, np.zeros(self.human.model.nv)
-        weights = {places()[place]: each.weights[frame] for place, each in self.targets.items()}
+        weights = {places()[place]: target.weights[frame] for place, target in self.targets.items()}
         for segment, weight in weights.items():
             body = model.body(segment).id
             while weight < 1.0 and body > model.body("pelvis").id:

@@ -43,6 +43,17 @@ Rules = Annotated[
     ),
 ]
 
+Assume = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
+        "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'; "
+        "[assumed_size] OBJECT = [X, Y].",
+        show_default=False,
+    ),
+]
+
 Beside = Annotated[
     str | None,
     typer.Option(

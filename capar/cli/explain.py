@@ -158,7 +158,7 @@ def _print_why_not(
     others: bool,
 ) -> None:
     """The nearest rule, the smallest changes of what was measured, and then the other rules."""
-    lacking = [each for each in near if each.failing]
+    lacking = [rule for rule in near if rule.failing]
     if lacking:
         typer.echo(f"Nearest rule: {lacking[0].sentence}")
     for each in found:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._options import Place, Rules
+from capar.cli._options import Assume, Place, Rules
 
 app = typer.Typer()
 
@@ -78,16 +78,7 @@ def regenerate(
             show_default=False,
         ),
     ] = None,
-    assume: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
-            "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'; "
-            "[assumed_size] OBJECT = [X, Y].",
-            show_default=False,
-        ),
-    ] = None,
+    assume: Assume = None,
     actionary: Place = None,
     rules: Rules = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,

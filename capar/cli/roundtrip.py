@@ -1,9 +1,10 @@
 """The command that observes, performs on other bodies, and observes again."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from capar.cli._options import Assume
 
 if TYPE_CHECKING:
     from capar.pipelines.round_trips import Trip
@@ -26,16 +27,7 @@ def roundtrip(
         int, typer.Option(min=0, help="How many scenes to draw; 0 performs in the recorded one.")
     ] = 0,
     seed: Annotated[int, typer.Option(min=0, help="Of the drawn scenes.")] = 0,
-    assume: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
-            "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'; "
-            "[assumed_size] OBJECT = [X, Y].",
-            show_default=False,
-        ),
-    ] = None,
+    assume: Assume = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
     """Observe CAPTURE, perform it on other bodies, observe that, and compare."""

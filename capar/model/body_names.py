@@ -24,21 +24,21 @@ def body_names(observation: Observation) -> dict[str, str]:
     An object is called by its kind if that has several words and no other object is of it; a finger
     by the hand that it is of, and by the joint where several joints of it are told apart.
     """
-    kinds = Counter(each.kind for each in observation.objects)
+    kinds = Counter(thing.kind for thing in observation.objects)
     names = {}
     for thing in observation.objects:
         alone = "_" in thing.kind and kinds[thing.kind] == 1
         words = (thing.kind if alone else thing.name).replace("_", " ")
         if alone or thing.assumed:
             names[thing.name] = f"assumed {words}" if thing.assumed else words
-    fingers = {each.ee: told for each in observation.links if (told := _finger(each))}
+    fingers = {link.ee: told for link in observation.links if (told := _finger(link))}
     count = Counter(fingers.values())
     for link in observation.links:
         finger = fingers.get(link.ee)
         if finger:
             alone = count[finger] == 1
             names[link.ee] = finger if alone else f"{_joint(link.kind)} joint of the {finger}"
-    return {each: told for each, told in names.items() if told}
+    return {name: told for name, told in names.items() if told}
 
 
 def _finger(link: ObservedLink) -> str:

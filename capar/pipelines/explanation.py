@@ -128,9 +128,9 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
         touch_m=touching_distances(measurements),
         stand_ins=frozenset(
             body
-            for each in observation.notices
-            if each.code == "stand-in-shape"
-            for body in each.bodies
+            for notice in observation.notices
+            if notice.code == "stand-in-shape"
+            for body in notice.bodies
         ),
     )
 

@@ -78,7 +78,7 @@ class Quality:
 
     def gate(self, name: str) -> Gate:
         """The gate of that name."""
-        return next(each for each in self.gates if each.name == name)
+        return next(gate for gate in self.gates if gate.name == name)
 
 
 def quality(motion: Motion) -> Quality:
@@ -154,9 +154,9 @@ def _head_error(motion: Motion) -> tuple[float, int, str]:
     spots, _ = plan.human.sites(motion.postures, ["between_eyes"])["between_eyes"]
     for meeting in plan.source.meetings:
         frame = (meeting.first + meeting.last) // 2
-        for each in (meeting.first, frame, meeting.last):
-            off = float(np.linalg.norm(spots[each] - plan.head.translation[frame]))
-            worst = max(worst, (off, each, f"{meeting.thing}, {meeting.part}"))
+        for at in (meeting.first, frame, meeting.last):
+            off = float(np.linalg.norm(spots[at] - plan.head.translation[frame]))
+            worst = max(worst, (off, at, f"{meeting.thing}, {meeting.part}"))
     return worst
 
 
@@ -286,7 +286,7 @@ def _model(plan: Plan, side: str) -> RigidTransform:
 
     Nor is there one where a hand strikes faster or slower so that the thing moves as it did.
     """
-    led = {each.side for each in plan.source.launches if plan.style.force is ForceKind.SAME}
+    led = {launch.side for launch in plan.source.launches if plan.style.force is ForceKind.SAME}
     planned = plan.style.kind is Kind.EVEN or side in led
     return plan.hands[side] if planned else plan.style.hands[side]
 

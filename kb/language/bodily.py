@@ -143,9 +143,10 @@ def with_walks(
             up_to = any(
                 scene.nears(foot, thing, walk.start_s, walk.end_s, STEP_M) for foot in walk.ees
             )
+            walked = replace(walk, ees=first.ees)
             if up_to and walk.pattern == WALK:
-                walk = replace(walk, pattern=WALK_UP, objects=(thing,))  # noqa: PLW2901
-            out.append(replace(walk, ees=first.ees))
+                walked = replace(walked, pattern=WALK_UP, objects=(thing,))
+            out.append(walked)
         elif walk.start_s >= end_s:
             out.append(replace(walk, ees=max(manual, key=_end_s).ees))
     return tuple(sorted(out, key=in_time))

@@ -48,12 +48,11 @@ def with_purposes(found: Sequence[tuple[Segment, Clause]], names: set[str]) -> t
     out = []
     for index, (segment, clause) in enumerate(found):
         verb = _purpose_verb(segment.purpose, names)
-        after = [each for other, each in found[index:]]
+        after = [later for _, later in found[index:]]
         follows = found[index + 1][0].purpose if index + 1 < len(found) else ""
         manipulates = segment.features.rel_start.startswith("1") and clause.changes
-        if verb and manipulates and follows != segment.purpose and not _told(verb, after):
-            clause = replace(clause, purpose=verb)  # noqa: PLW2901 (the same clause, with its end)
-        out.append(clause)
+        unsaid = verb and manipulates and follows != segment.purpose and not _told(verb, after)
+        out.append(replace(clause, purpose=verb) if unsaid else clause)
     return tuple(out)
 
 

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from capar.body.capture_fitting import fit_capture, worn
 from capar.body.fitting import FitError
 from capar.body.human import Human
 from capar.body.mounting import places
-from capar.body.performing import perform
+from capar.body.performing import Performance, perform
 from capar.body.recording import record, truth_of
 from capar.body.scripts import SIDES, touch
 from capar.body.things import Thing, box, scene, table
@@ -23,9 +24,12 @@ from capar.cli import app
 from capar.model import geometry
 from capar.model.capture import Capture, Sensor
 
+Performed: TypeAlias = tuple[Performance, Capture]
+"""What a virtual body did, and what was recorded of it."""
+
 
 @pytest.fixture(scope="module")
-def performed() -> tuple[object, Capture]:
+def performed() -> Performed:
     """A man touches a crate, all eleven sensors on."""
     human = Human.of(ready_made("man"))
     crate = Thing("crate", box(0.15, 0.20, 0.15), (0.42, 0.10, 0.91))
@@ -33,7 +37,7 @@ def performed() -> tuple[object, Capture]:
     return made, record(made, name="touches", seed=2, sensors=tuple(places()))
 
 
-def test_a_performers_capture_is_fitted_back_to_its_motion(performed) -> None:  # type: ignore[no-untyped-def]
+def test_a_performers_capture_is_fitted_back_to_its_motion(performed: Performed) -> None:
     made, capture = performed
     assert set(worn(capture)) == set(places())
     ease = {f"{s}_{n}": float(np.radians(a)) for n, a in RELAXED.items() for s in SIDES}
@@ -48,7 +52,7 @@ def test_a_performers_capture_is_fitted_back_to_its_motion(performed) -> None:  
         assert rms(found.residuals_m[place]) < 0.02
 
 
-def test_the_command_says_what_is_left(performed, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_the_command_says_what_is_left(performed: Performed, tmp_path: Path) -> None:
     made, capture = performed
     write_bundle(capture, truth_of(made), tmp_path / "touches")
     told = CliRunner().invoke(app, ["fit", str(tmp_path / "touches")])
@@ -61,14 +65,16 @@ def test_the_command_says_what_is_left(performed, tmp_path: Path) -> None:  # ty
     assert answer["seconds"] > 0.0
 
 
-def test_sensors_on_no_place_of_the_body_are_refused(performed) -> None:  # type: ignore[no-untyped-def]
+def test_sensors_on_no_place_of_the_body_are_refused(performed: Performed) -> None:
     _, capture = performed
     stray = Sensor("wand", "wand", "none", "wand", capture.sensors[0].stream)
     with pytest.raises(FitError, match=r"none of the sensors \(wand\) is on a known place"):
         fit_capture(Capture("stray", (stray,), ()))
 
 
-def test_a_trunk_that_only_hands_and_head_tell_of_leans_no_further_than_it_did(performed) -> None:  # type: ignore[no-untyped-def]
+def test_a_trunk_that_only_hands_and_head_tell_of_leans_no_further_than_it_did(
+    performed: Performed,
+) -> None:
     made, _ = performed
     three = record(made, name="three", seed=3, sensors=("right_hand", "left_hand", "head"))
     found = fit_capture(three)
