@@ -12,7 +12,8 @@ from kb.lexicon.tables import table
 WORDS = Vocabulary(primitive_words(primitive_files()))
 VERBS = {
     *(past(row["pattern"].split()[0]) for row in table("phrases")),
-    past("withdraw"),
+    past("crouch"),
+    past("stand"),
     *(in_progress(pattern).split()[0] for pattern in TURNED),
 }
 """Every verb that a telling may have, in the past, or of what goes on beside something else."""

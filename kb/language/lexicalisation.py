@@ -9,7 +9,7 @@ from kb.lexicon.tables import table
 Cases = Collection[str]
 """What holds of a segment: held, there, tool, on, back, self, alone, turns, tilts, rises, steadies.
 
-``running``: the hand goes over a thing that stays; ``wrung``: it is turned this way and that.
+``off``: it leaves the other at its edge; ``running``: the hand goes over a thing that stays; ``wrung``: it is turned this way and that.
 """
 
 USUAL_PREPOSITION = "with"
@@ -24,10 +24,10 @@ QUIET = frozenset({"reach for {1}", "let go of {1}", "take {ee} away"})
 GIVEN = "hand {1} over"
 """The pattern of a thing that another hand takes."""
 
-TO_THE_OTHER = "hand {1} over to the other hand"
-"""The same, where that is the other hand of the agent."""
+TO_A_SIDE = {side: f"hand {{1}} over to the {side} hand" for side in ("left", "right", "other")}
+"""The same, where that is the other hand of the agent, by the side of it."""
 
-MOMENTARY = frozenset({"let go of {1}", GIVEN, TO_THE_OTHER, "hand {1} to someone"})
+MOMENTARY = frozenset({"let go of {1}", GIVEN, *TO_A_SIDE.values(), "hand {1} to someone"})
 """Patterns of what is done in a moment: the rest of the segment is the hand's way back."""
 
 TIPPED = frozenset({"pour from {1}", "pour from {1} into {2}"})
@@ -64,6 +64,15 @@ FREE = "move {ee}"
 """The pattern of what a hand does that is of no object."""
 
 
+LOWER = "lower {1}"
+"""The pattern of a thing that goes down, wherever to."""
+
+DOWN = "put {1} down"
+"""The pattern of a thing that stands somewhere then."""
+
+GROUNDS = frozenset({"floor", "ground"})
+"""Kinds of what people walk on: that a thing is put on it says nothing of where."""
+
 RUNNING = "keep a hand on {1}"
 """The pattern of a hand that runs over a thing."""
 
@@ -94,7 +103,10 @@ WALK, STEP = "walk", "take a step"
 WALK_UP = "walk up to {1}"
 """The same, to the thing that a hand takes next."""
 
-BODILY = frozenset({WALK, STEP, WALK_UP})
+CROUCH, STAND_UP = "crouch", "stand up"
+"""Patterns of a body that goes down with bent knees, and comes up again."""
+
+BODILY = frozenset({WALK, STEP, WALK_UP, CROUCH, STAND_UP})
 """Patterns that name no end-effector."""
 
 ON_FOOT = frozenset({"Step", "Stand", "Walk", "StandOnOneLeg", "RestFoot"})
