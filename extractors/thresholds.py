@@ -151,7 +151,7 @@ class Thresholds(FootThresholds):
 
     enclosed_share: float = 0.5
     """From the middle of a hollow, the body's own surface is seen in more than this share of all
-    directions [1]: of a cup in nine tenths, of a shallow bowl in six, of a bent thing in a third."""
+    directions [1]: of a cup in seven tenths, of a bowl in six, of a banana in two."""
 
     swing_turns: int = 4
     """Fewest turning points of motion to and fro [1]: two whole periods less one half."""

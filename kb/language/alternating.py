@@ -25,7 +25,11 @@ def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     turning = [step for step in steps if step.pattern in {TURN, THIS_WAY} and step.changes]
     turns = [list(part) for _, part in groupby(turning, key=lambda step: step.ees)]
     things = {step.objects[:1] for step in steps if step.objects}
-    if len(turns) < FEWEST_TURNS or len(things) != 1 or _lasts_s(turning) < MOSTLY * _lasts_s(steps):
+    if (
+        len(turns) < FEWEST_TURNS
+        or len(things) != 1
+        or _lasts_s(turning) < MOSTLY * _lasts_s(steps)
+    ):
         return tuple(steps)
     first, last = turning[0], max(turning, key=lambda step: step.end_s)
     rises = sum(any(map(_rises, _beside(part, steps))) for part in turns)

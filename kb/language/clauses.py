@@ -143,21 +143,17 @@ def _cases(
     if len(segment.objects) < 2:
         return cases | {"alone"}
     thing, other = segment.objects[:2]
-    if ("with", other, thing) in segment.prepositions:
-        cases.add("tool")
-    if before is not None and before.objects[:2] == (thing, other):
-        cases.add("there")
-    if scene.is_self(other):
-        cases.add("self")
-    if scene.rises(segment):
-        cases.add("rises")
-    if scene.rests_on(thing, other) and _stands_on(segment, thing, other):
-        cases.add("on")
-    if scene.goes_off(segment, thing, other):
-        cases.add("off")
-    if scene.was_there(segment, thing, other):
-        cases.add("back")
-    return cases
+    hold = {
+        "tool": ("with", other, thing) in segment.prepositions,
+        "there": before is not None and before.objects[:2] == (thing, other),
+        "self": scene.is_self(other),
+        "rises": scene.rises(segment),
+        "on": scene.rests_on(thing, other) and _stands_on(segment, thing, other),
+        "movable": scene.is_movable(other),
+        "off": scene.goes_off(segment, thing, other),
+        "back": scene.was_there(segment, thing, other),
+    }
+    return cases | {name for name, holds in hold.items() if holds}
 
 
 def _stays(segment: Segment) -> bool:

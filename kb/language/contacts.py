@@ -14,7 +14,6 @@ from capar.model.observation import Observation, ObservedLink, Segment
 from kb.language.thresholds import LEVEL_M, RISEN_M, RUNNING_MPS, STEADY_S, STILL_M, UNSEEN_S
 from kb.lexicon.english import the_agent
 
-
 HEAD = "head"
 """The body above which a thing is held overhead."""
 
@@ -29,11 +28,9 @@ class Scene:
         self._step_s = observation.duration_s / max(observation.frames - 1, 1)
         self._hands = [each for each in touching if each.body in effectors]
         self._pairs = [each for each in touching if each.body not in effectors]
-        self._aside = [
-            fact
-            for fact in observation.facts
-            if isinstance(fact, Lies) and fact.how in {"beside", "below"}
-        ]
+        lies = [fact for fact in observation.facts if isinstance(fact, Lies)]
+        self._aside = [fact for fact in lies if fact.how in {"beside", "below"}]
+        self._over = [fact for fact in lies if fact.how in {"above", "inside"}]
         self._moving = [fact for fact in observation.facts if isinstance(fact, Moving)]
         flights = [(each.object, each) for each in observation.facts if isinstance(each, Flies)]
         swings = [(each.body, each) for each in observation.facts if isinstance(each, Swings)]
@@ -105,6 +102,14 @@ class Scene:
         ways = np.linalg.norm(places[[0, -1], :2] - there[-1, :2], axis=1)
         return bool(ways[0] - ways[1] > by_m)
 
+    def gathers(self, goal: str, things: Sequence[str]) -> bool:
+        """Whether all things are over a place in the end, and none was at first."""
+        over = [each for each in self._over if each.other == goal]
+        last = max((each.last for each in self._over), default=0)
+        there = {each.body for each in over if each.last == last}
+        before = {each.body for each in over if each.first == 0}
+        return there >= set(things) and before.isdisjoint(things)
+
     def rises(self, segment: Segment) -> bool:
         """Whether the object is clearly higher when a segment ends."""
         places = self._places(segment.objects[0], segment.start_s, segment.end_s)
@@ -121,8 +126,7 @@ class Scene:
         return spread < STILL_M and path / (segment.end_s - segment.start_s) > RUNNING_MPS
 
     def steadies_since_s(self, segment: Segment) -> float | None:
-        """Since when another hand works in a thing at which the hand stays [s]; None if none does.
-        """
+        """Since when another hand works in the thing at which a hand stays [s]; None if none."""
         begins = [
             max(each.start_s, segment.start_s)
             for each in self._worked_in
@@ -182,6 +186,10 @@ class Scene:
     def is_self(self, name: str) -> bool:
         """Whether an object is of the agent's own body."""
         return self._tags.get(name) == "self"
+
+    def is_movable(self, name: str) -> bool:
+        """Whether an object can be moved."""
+        return self._tags.get(name) == "mobile"
 
     def rests_on(self, thing: str, support: str) -> bool:
         """Whether the thing lay still on the support at some time while no hand touched it."""

@@ -47,8 +47,8 @@ def _changes(track: SampledTrack, deed: Clause) -> Iterator[Clause]:
         low = before + np.flatnonzero(heights[before:after] < standing_m - CROUCHED_M)
         if len(low):
             lowest = low[heights[low] < heights[low].min() + STANDING_M]
-            yield _clause(deed, CROUCH, track, before, lowest[0])
-            yield _clause(deed, STAND_UP, track, lowest[-1], after)
+            yield _clause(deed, CROUCH, track, int(before), int(lowest[0]))
+            yield _clause(deed, STAND_UP, track, int(lowest[-1]), int(after))
 
 
 def _clause(deed: Clause, pattern: str, track: SampledTrack, first: int, last: int) -> Clause:
@@ -56,8 +56,8 @@ def _clause(deed: Clause, pattern: str, track: SampledTrack, first: int, last: i
         pattern=pattern,
         objects=(),
         ees=deed.ees,
-        start_s=float(first) * track.step_s,
-        end_s=float(last) * track.step_s,
+        start_s=first * track.step_s,
+        end_s=last * track.step_s,
         changes=False,
         name="PostureChange",
     )

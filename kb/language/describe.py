@@ -15,6 +15,7 @@ from kb.language.clauses import clauses, main_things
 from kb.language.contacts import Scene
 from kb.language.crouching import with_crouching
 from kb.language.free_motion import reaches
+from kb.language.gathering import gathered
 from kb.language.hands import (
     as_the_other_hand,
     by_fingers,
@@ -92,7 +93,7 @@ def _story(
     if observation.profile != TO_THE_LETTER:
         steps = without_coming(placed(steps, observation.objects, scene, Turning(observation)))
     if detail == "summary":
-        steps = chosen(in_turns(steps))
+        steps = chosen(gathered(in_turns(steps), observation.objects, scene))
     if not timed:
         steps = edited(steps)
     subject = _subject(observation)

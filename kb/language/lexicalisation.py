@@ -9,7 +9,8 @@ from kb.lexicon.tables import table
 Cases = Collection[str]
 """What holds of a segment: held, there, tool, on, back, self, alone, turns, tilts, rises, steadies.
 
-``off``: it leaves the other at its edge; ``running``: the hand goes over a thing that stays; ``wrung``: it is turned this way and that.
+``movable``: the second object can be moved, too; ``off``: it leaves the other at its edge;
+``running``: the hand goes over a thing that stays; ``wrung``: it is turned this way and that.
 """
 
 USUAL_PREPOSITION = "with"
@@ -35,6 +36,9 @@ TIPPED = frozenset({"pour from {1}", "pour from {1} into {2}"})
 
 HELPS = frozenset({"steady {1}"})
 """Patterns of what moves nothing and yet is a part of what was done."""
+
+ONE_BY_ONE = "one after the other"
+"""How several things are moved."""
 
 BIT_BY_BIT = "bit by bit"
 """How something else is done that pauses interrupt."""

@@ -15,11 +15,16 @@ from kb.language.thresholds import (
     HELD_M,
     OVER_RAD,
     PLACE_M,
+    REST_S,
+    SETTLING_S,
     TURNED_RAD,
 )
 from kb.language.turning import Turning
 
-CARRY = "carry {1}"
+GOALS = ("put {1} on {2}", "bring {1} to {2}")
+"""How patterns begin of a thing that gets to another one."""
+
+CARRY, RISES = "carry {1}", frozenset({"lift {1}", "raise {1}"})
 
 
 def placed(
@@ -36,18 +41,36 @@ def placed(
     grounds = {thing.name for thing in objects if thing.kind in GROUNDS}
     out: list[Clause] = []
     for step in steps:
-        if step.pattern == CARRY:
-            step = _carried(step, scene, turning)
+        if _puts(step) and grounds.intersection(step.objects[1:]):
+            out.append(_on_the_ground(step, out, scene))
+        elif step.pattern == CARRY:
+            out.append(_carried(step, scene, turning))
         elif step.pattern == LOWER and scene.left_there(step.objects[0], step.end_s):
-            step = replace(step, pattern=DOWN)
-        if step.pattern.startswith("put {1}") and grounds.intersection(step.objects[1:]):
-            step = _on_the_ground(step, out, scene)
-        elif step.pattern in {"lift {1}", "raise {1}"} and scene.overhead(
-            step.objects[0], step.end_s, step.end_s
-        ):
-            step = replace(step, pattern=f"{step.pattern} overhead")
-        out.append(step)
+            out.append(replace(step, pattern=DOWN))
+        elif step.pattern in RISES and scene.overhead(step.objects[0], step.end_s, step.end_s):
+            out.append(replace(step, pattern=f"{step.pattern} overhead"))
+        else:
+            out.append(_brought(step, out))
     return tuple(out)
+
+
+def _brought(step: Clause, before: list[Clause]) -> Clause:
+    """What is put or brought to another thing, with the short lifting and carrying before it.
+
+    Those are taken from what is told before.
+    """
+    if not step.pattern.startswith(GOALS):
+        return step
+    start_s = step.start_s
+    while before and _leads_to(before[-1], step) and start_s - before[-1].end_s < REST_S:
+        start_s = before.pop().start_s
+    return replace(step, start_s=start_s)
+
+
+def _leads_to(step: Clause, goal: Clause) -> bool:
+    own = (step.ees, step.objects[:1]) == (goal.ees, goal.objects[:1])
+    plain = step.pattern in {CARRY, "lift {1}", "raise {1}"} and not step.rights
+    return own and plain and step.end_s - step.start_s < SETTLING_S
 
 
 def _carried(step: Clause, scene: Scene, turning: Turning) -> Clause:
@@ -57,6 +80,8 @@ def _carried(step: Clause, scene: Scene, turning: Turning) -> Clause:
     if gone_m < HELD_M and strays_m < 2.0 * HELD_M:
         where = "overhead" if scene.overhead(thing, *span) else "up"
         return replace(step, pattern=f"hold {{1}} {where}")
+    if step.end_s - step.start_s < SETTLING_S:
+        return step
     leant = turning.leant(thing, *span)
     if leant > OVER_RAD:
         return replace(step, pattern=f"{CARRY} upside down")

@@ -1,4 +1,6 @@
-"""A vessel has room; a bent, dented or closed thing has none, but for one that is called a vessel."""
+"""A vessel has room; what is bent, dented or closed has none, unless its kind is a vessel's."""
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -20,7 +22,7 @@ def banana() -> Shape:
     spine = 0.1 * np.column_stack((np.cos(angles), np.sin(angles), np.zeros(12)))
     links = [
         trimesh.creation.cylinder(0.018, segment=[one, other], sections=12)
-        for one, other in zip(spine, spine[1:], strict=False)
+        for one, other in pairwise(spine)
     ]
     return shape(trimesh.util.concatenate(links))
 

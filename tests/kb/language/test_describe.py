@@ -178,8 +178,7 @@ def test_two_hands_that_do_the_same_are_told_once() -> None:
 
 def test_what_no_rule_names_is_said_to_be_so() -> None:
     assert describe(with_unknown()) == (
-        "The agent handled the mug and the table with the right hand in a way "
-        "that no rule names."
+        "The agent handled the mug and the table with the right hand in a way that no rule names."
     )
 
 
@@ -209,9 +208,7 @@ def test_a_purpose_is_told_where_nothing_fulfils_it() -> None:
     seen = observation(
         "Cleaning", {"right_hand": pieces}, (MUG, TABLE), facts=facts, frames=121, rate_hz=100.0
     )
-    assert describe(seen) == (
-        "The agent moved the mug on the table with the right hand to clean."
-    )
+    assert describe(seen) == ("The agent moved the mug on the table with the right hand to clean.")
 
 
 def test_nothing_touched_is_told_as_nothing() -> None:

@@ -135,9 +135,7 @@ def test_what_is_repeated_is_told_once_with_how_often() -> None:
         Piece(cycle[index % 3], (index + 1) * 40, ("mug",)) for index in range(3 * len(cycle))
     )
     seen = observation("Thrice", {"right_hand": pieces}, (MUG,), frames=361, rate_hz=RATE_HZ)
-    assert describe(seen) == (
-        "The agent touched the mug with the right hand, three times in all."
-    )
+    assert describe(seen) == ("The agent touched the mug with the right hand, three times in all.")
 
 
 def test_what_is_done_often_and_changes_nothing_is_counted_in_a_summary() -> None:
