@@ -69,7 +69,7 @@ def _brought(step: Clause, before: list[Clause]) -> Clause:
 
 def _leads_to(step: Clause, goal: Clause) -> bool:
     own = (step.ees, step.objects[:1]) == (goal.ees, goal.objects[:1])
-    plain = step.pattern in {CARRY, "lift {1}", "raise {1}"} and not step.rights
+    plain = step.pattern in {CARRY, *RISES}
     return own and plain and step.end_s - step.start_s < SETTLING_S
 
 
