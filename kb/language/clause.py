@@ -71,7 +71,7 @@ class Clause:
     @property
     def frees(self) -> bool:
         """Whether the end-effector leaves the first object in it."""
-        return self.pattern in MOMENTARY or self.pattern.startswith("take {ee}")
+        return self.pattern in MOMENTARY or self.pattern.startswith(("take {ee}", "hand {1} to "))
 
     @property
     def holds(self) -> bool:

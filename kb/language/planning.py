@@ -152,7 +152,7 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
         return False
     if (last.start_s, last.end_s) == (following.start_s, following.end_s):
         return False
-    long = len(taken) >= LONGEST and not _soon_over(streams[ees])
+    long = len(taken) >= LONGEST and following.objects and not _soon_over(streams[ees])
     if last.frees or _turns_away(taken, following) or long:
         return True
     manual = [each for each in taken if each.objects]
