@@ -78,6 +78,11 @@ class Scene:
             return False
         return bool(np.median(places[:, 2]) > np.median(head[:, 2]) + RISEN_M)
 
+    def stays(self, body: str, start_s: float, end_s: float) -> bool:
+        """Whether a body stays where it is for a time; not where that was not kept."""
+        strays_m = self.strays_m(body, start_s, end_s)
+        return strays_m is not None and strays_m < LEVEL_M
+
     def left_there(self, thing: str, time_s: float) -> bool:
         """Whether a thing is as high when nothing touches it for the first time afterwards."""
         track = self._tracks.get(thing)

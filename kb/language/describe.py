@@ -91,7 +91,8 @@ def _story(
             steps = mostly_together(links, steps)
             steps = with_crouching(steps, observation.links, observation.tracks)
     if observation.profile != TO_THE_LETTER:
-        steps = without_coming(placed(steps, observation.objects, scene, Turning(observation)))
+        there = placed(steps, observation.objects, scene, Turning(observation))
+        steps = without_coming(there, scene)
     if detail == "summary":
         steps = chosen(gathered(in_turns(steps), observation.objects, scene))
     if not timed:

@@ -95,6 +95,9 @@ UPRIGHT, BACK_UPRIGHT = "turn {1} upright", "turn {1} back upright"
 TURNED = frozenset({UPSIDE_DOWN, AROUND, UPRIGHT, BACK_UPRIGHT})
 """Patterns of how a thing is turned, which goes on beside what else is done to it."""
 
+LET_GO = "let go of {1}"
+"""The pattern of a hand that leaves what it has."""
+
 REACH = "reach for {1}"
 """The pattern of a hand that goes to a thing."""
 

@@ -58,7 +58,8 @@ def seen(links: Mapping[str, tuple[tuple[str, int], ...]], way_m: float) -> Obse
 def test_steps_before_a_thing_is_taken_are_walking() -> None:
     told = describe(seen({"right_hand": WORKED, **WALKED}, 0.6), timed=True)
     assert told == (
-        "The agent walked (0.00–1.70 s) and lifted the mug with the right hand (2.00–3.00 s)."
+        "The agent walked (0.00–1.70 s), lifted the mug with the right hand (2.00–3.00 s), and let "
+        "go (3.00 s)."
     )
 
 
@@ -66,12 +67,14 @@ def test_who_comes_nearer_to_the_thing_walks_up_to_it() -> None:
     made = seen({"right_hand": WORKED, **WALKED}, 0.6)
     ahead = sampled_track("mug", 0.01, np.tile((1.5, 0.0, 0.8), (401, 1)))
     told = describe(replace(made, tracks=(*made.tracks, ahead)))
-    assert told == "The agent walked up to the mug and lifted it with the right hand."
+    assert told == (
+        "The agent walked up to the mug, lifted it with the right hand, and put it down."
+    )
 
 
 def test_steps_on_the_spot_are_not_told_beside_what_hands_do() -> None:
     told = describe(seen({"right_hand": WORKED, **WALKED}, 0.05))
-    assert told == "The agent lifted the mug with the right hand."
+    assert told == "The agent lifted the mug with the right hand and let go."
 
 
 def test_feet_alone_walk() -> None:
@@ -80,4 +83,4 @@ def test_feet_alone_walk() -> None:
 
 def test_an_elbow_that_goes_along_with_the_hand_is_not_told() -> None:
     told = describe(seen({"right_hand": WORKED, "right_elbow": WORKED}, 0.0))
-    assert told == "The agent lifted the mug with the right hand."
+    assert told == "The agent lifted the mug with the right hand and let go."

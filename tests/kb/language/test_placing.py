@@ -157,6 +157,26 @@ def test_short_lifting_and_carrying_goes_with_bringing_a_thing_somewhere(
     assert told(Piece("Reach", begun, ("mug",)), *pieces, way=way) == text
 
 
+@pytest.mark.parametrize(("moves_m", "words"), [(0.0, " and put it down"), (0.5, " and let go")])
+def test_what_is_up_in_the_hand_and_let_go_where_it_stays_is_put_down(
+    moves_m: float, words: str
+) -> None:
+    way = (*TAKEN, (0.0, 0.0, 1.0), (moves_m, 0.0, 1.0))
+    gone = Piece("ResumePosture", 400, ("mug",))
+    hand = Touching("right_hand", "mug", 100, 300)
+    done = told(REACHED, LIFTED, Piece("Touch", 290, ("mug",)), gone, way=way, facts=(hand,))
+    assert done.endswith(f"{words}.")
+
+
+def test_that_a_hand_stays_at_what_it_put_somewhere_is_not_told() -> None:
+    way = (*TAKEN, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    put = Piece("PutDown", 300, ("mug", "tray"), features=PLACED)
+    held = Piece("TouchWith", 480, ("mug", "tray"))
+    gone = Piece("ResumePosture", 500, ("mug",))
+    done = told(REACHED, LIFTED, put, held, gone, way=way)
+    assert done == "lifted the mug with the right hand and put it down."
+
+
 def test_a_hand_that_only_comes_and_leaves_is_told_to() -> None:
     way = ((0.0, 0.0, 0.0),) * 3
     gone = Piece("ResumePosture", 200, ("mug",))
