@@ -54,7 +54,10 @@ def test_a_contact_that_drops_out_while_the_hand_carries_the_thing_is_not_told()
 def test_what_a_hand_lets_go_and_takes_again_is_told() -> None:
     still = (Moving("chair", 60, 140), MovedBy("chair", "right_hand", "carried", 60, 140))
     told = describe(seen({"right_hand": LOST}, *CONTACTS, *still))
-    assert told == ("The agent lifted the chair with the right hand and lowered it.")
+    assert told == (
+        "The agent lifted the chair with the right hand and let go. Then the agent lowered the "
+        "chair."
+    )
 
 
 def test_letting_go_is_when_contact_ends() -> None:
