@@ -73,7 +73,7 @@ def query(
     if list_ or question is None:
         _list(chosen)
         return
-    given = _given(parameters or [])
+    given = _given(parameters or [], question)
     raw = _raw(question)
     text = _text(question, raw, given)
     _warn_of_unknown_terms(raw or "")
@@ -87,6 +87,8 @@ def query(
         if raw is None and not answer.rows:
             check_known(store, named(question), given)
             _tell_none(store, chosen)
+        elif raw is not None and answer.variables and not answer.rows:
+            _tell_why_empty(store, text)
     _print(answer, chosen)
 
 
@@ -105,20 +107,31 @@ def _tell_none(store: "Store", chosen: str) -> None:
         typer.echo(f"nothing found among {counted_segments(store)}", err=True)
 
 
+def _tell_why_empty(store: "Store", query: str) -> None:
+    """Name the words of a query of one's own that nothing here has."""
+    from kb.queries.empty_answers import hints
+
+    for sentence in hints(store, query):
+        typer.echo(f"nothing found: {sentence}", err=True)
+
+
 def _corrected(store: "Store") -> "Store":
     from kb.corrected_view import corrected
 
     return corrected(store)
 
 
-def _given(parameters: list[str]) -> dict[str, str]:
+def _given(parameters: list[str], asked: str) -> dict[str, str]:
     from capar.model.errors import CaparError
+    from kb.queries.questions import questions
 
     given = {}
     for parameter in parameters:
         name, equals, value = parameter.partition("=")
         if not equals:
-            raise CaparError(f"{parameter!r} is no parameter; one is written NAME=VALUE")
+            taken = questions()[asked].parameters if asked in questions() else ()
+            names = f": {', '.join(each.name for each in taken)}" if taken else ""
+            raise CaparError(f"{parameter!r} is no parameter; one is written NAME=VALUE{names}")
         given[name] = value
     return given
 

@@ -51,6 +51,21 @@ class SampledTrack:
         counts = np.frombuffer(b64decode(self.samples), dtype="<i4").reshape(-1, 3)
         return np.where(counts == LOST, np.nan, counts * UNIT_M)
 
+    def lost_around(self, time_s: float) -> tuple[float, float] | None:
+        """From when to when the body was lost about a time [s]; none where it was seen.
+
+        The ends are the samples beside, in which it was seen, or those of the track.
+        """
+        lost = np.isnan(self.positions).any(axis=1)
+        at = time_s / self.step_s if self.step_s else 0.0
+        before, after = (min(int(each(at)), len(lost) - 1) for each in (np.floor, np.ceil))
+        if not (lost[before] or lost[after]):
+            return None
+        seen = np.flatnonzero(~lost)
+        first = int(seen[seen < after].max(initial=0))
+        last = int(seen[seen > before].min(initial=len(lost) - 1))
+        return first * self.step_s, last * self.step_s
+
 
 def sampled_track(
     body: str, step_s: float, positions: Float[np.ndarray, "samples 3"]

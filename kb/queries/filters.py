@@ -33,23 +33,35 @@ FILTERS: Mapping[str, Filter] = {
             for each in ("segment", "joint", "place")
         },
     ),
+    "address": Filter(
+        "text",
+        "a segment, as CAPTURE/EE/INDEX",
+        {"segment": "?segment capar:address @value@ ."},
+    ),
     "ee": Filter(
         "text",
         "the name of the end-effector",
         {
             "segment": "?segment capar:ofLink/capar:ee @value@ .",
+            "link": "?link capar:ee @value@ .",
             "place": "?place capar:ee @value@ .",
         },
     ),
     "side": Filter(
         "text",
         "left, right or none",
-        {"segment": "?segment capar:ofLink/capar:side @value@ ."},
+        {
+            "segment": "?segment capar:ofLink/capar:side @value@ .",
+            "link": "?link capar:side @value@ .",
+        },
     ),
     "effector": Filter(
         "text",
         "the kind of end-effector: hand, foot and the like",
-        {"segment": "?segment capar:ofLink/capar:effectorType @value@ ."},
+        {
+            "segment": "?segment capar:ofLink/capar:effectorType @value@ .",
+            "link": "?link capar:effectorType @value@ .",
+        },
     ),
     "performer": Filter(
         "text",
@@ -95,7 +107,7 @@ FILTERS: Mapping[str, Filter] = {
 }
 """Every filter by name."""
 
-_MARK = re.compile(r"^ *# filters \?(segment|seen|joint|place)$", re.MULTILINE)
+_MARK = re.compile(r"^ *# filters \?(segment|seen|link|joint|place)$", re.MULTILINE)
 
 
 def filters_of(query: str) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from pyoxigraph import Literal
 
 from capar.model.errors import CaparError, UnknownNameError
 from kb.queries.filters import FILTERS, filtered, filters_of
-from kb.store import sparql
+from kb.store import literals, sparql
 from ontology.vocabularies import RELATIONS
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ _PARAMETER = re.compile(
 _OBJECT = ("object", "?of a capar:TagObject ; capar:name|(capar:kind/capar:isA/capar:name) ?name")
 _WHOLE = ("whole action", "?of a capar:Observation ; capar:name ?name")
 BEARERS = {
+    "address": ("segment", "?of a capar:Segment ; capar:address ?name"),
     "action": (
         "action",
         "{ ?of a capar:Observation ; rdfs:label ?name } UNION { ?of a ?kind ; capar:name ?name "
@@ -163,7 +164,7 @@ def check_known(store: "Store", asked: Question, given: Mapping[str, object]) ->
 
     Raises:
         UnknownNameError: Nothing that was observed bears a name; the message lists those there are.
-        CaparError: The capture has no such time.
+        CaparError: The capture has no such time, or the body was lost then.
     """
     for parameter in asked.parameters:
         value = str(given.get(parameter.name) or "")
@@ -179,12 +180,32 @@ def check_known(store: "Store", asked: Question, given: Mapping[str, object]) ->
         if value not in known:
             raise UnknownNameError(kind, value, known, where=store.place)
     if {"capture", "time"} <= given.keys():
-        name, time = Literal(str(given["capture"])), float(str(given["time"]))
-        lasts = f"?of a capar:Capture ; capar:name {name} ; capar:duration ?name"
-        end = max(map(float, _texts(store, lasts)))
-        if not 0.0 <= time <= max(end, round(end, 3)):
+        _check_time(store, str(given["capture"]), float(str(given["time"])))
+        if "body" in given:
+            _check_seen(store, str(given["capture"]), str(given["body"]), float(str(given["time"])))
+
+
+def _check_time(store: "Store", capture: str, time_s: float) -> None:
+    lasts = f"?of a capar:Capture ; capar:name {Literal(capture)} ; capar:duration ?name"
+    end_s = max(map(float, _texts(store, lasts)))
+    if not 0.0 <= time_s <= max(end_s, round(end_s, 3)):
+        raise CaparError(
+            f"{store.place}: {capture} lasts from 0 to {end_s:.3f} s; {time_s:g} s lies outside"
+        )
+
+
+def _check_seen(store: "Store", capture: str, body: str, time_s: float) -> None:
+    tracks = _texts(
+        store,
+        f"?seen capar:capture/capar:name {Literal(capture)} ; capar:link|capar:object ?of . "
+        f"?of capar:name|capar:ee {Literal(body)} ; capar:track ?name",
+    )
+    for text in tracks:
+        lost_s = literals.track_of(text).lost_around(time_s)
+        if lost_s is not None:
             raise CaparError(
-                f"{store.place}: {name.value} lasts from 0 to {end:.3f} s; {time:g} s lies outside"
+                f"{store.place}: where {body!r} was at {time_s:g} s is not known: "
+                f"{capture} lost it from {lost_s[0]:.2f} to {lost_s[1]:.2f} s"
             )
 
 

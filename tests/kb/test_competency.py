@@ -318,19 +318,31 @@ def test_when_with_which_version_and_from_which_files(world: World, actionary: A
     assert all(row["recorded"] == recorded[str(row["observation"])] for row in rows)
 
 
-def test_how_long_each_object_was_touched_and_by_which_hand(
+def test_how_long_each_object_was_touched_and_possessed_and_by_which_hand(
     world: World, actionary: Actionary
 ) -> None:
-    lasting: Counter[tuple[str, str, str]] = Counter()
+    touched: Counter[tuple[str, str, str]] = Counter()
+    possessed: Counter[tuple[str, str, str]] = Counter()
     for seen in world.seen:
         hands = {each.ee for each in seen.links}
         for each in world.facts(seen, Touching):
             if each.body in hands:
                 key = (seen.capture, each.body, each.other)
-                lasting[key] += (each.last - each.first) * step(seen)
+                touched[key] += (each.last - each.first) * step(seen)
+    for seen, segment, _ in world.segments():
+        if segment.possessed:
+            possessed[seen.capture, segment.ee, segment.objects[0]] += (
+                segment.end_s - segment.start_s
+            )
     rows = actionary.ask("held")
-    found = {(r["observation"], r["ee"], r["object"]): r["seconds"] for r in rows}
-    assert found == {key: pytest.approx(value) for key, value in lasting.items()}
+    assert any(possessed.values()) and {each["object"] for each in rows} > {"mug"}
+    found = {(r["observation"], r["ee"], r["object"]): r for r in rows}
+    assert found.keys() == touched.keys() | possessed.keys()
+    for key, row in found.items():
+        assert row["touched"] == pytest.approx(touched[key])
+        assert row["possessed"] == pytest.approx(possessed[key])
+    right = actionary.ask("held", side="right", effector="hand")
+    assert right == [row for row in rows if row["ee"] == "right_hand"]
 
 
 def test_when_bottle_and_table_touched(world: World, actionary: Actionary) -> None:
@@ -457,8 +469,10 @@ def test_every_filter_leaves_exactly_what_it_says(world: World, actionary: Actio
         for each in seen.objects
     }
     first = world.seen[0].capture
+    _, _, known = next(iter(world.segments()))
     fitting: dict[tuple[str, object], Callable[[Observation, Segment], bool]] = {
         ("action", "MoveObj"): lambda seen, each: world.is_kind(each, "MoveObj"),
+        ("address", known): lambda seen, each: f"{seen.capture}/{each.ee}/{each.index}" == known,
         ("ee", "left_hand"): lambda seen, each: each.ee == "left_hand",
         ("side", "left"): lambda seen, each: side(seen, each.ee) == "left",
         ("effector", "hand"): lambda seen, each: each.features.end_effector == "hand",

@@ -172,3 +172,39 @@ def test_a_verb_is_not_asked_of_an_actionary_without_a_lexicon(ask: Ask) -> None
     done = ask("query", "verb", "lemma=raise")
     assert done.returncode == 2
     assert "no lexicon is loaded; `capar lexicon load`" in done.stderr
+
+
+EMPTY = {
+    "?s a capar:Correction ; capar:other ?x": ["nothing here is a capar:Correction"],
+    "?s a capar:LookingAt ; capar:other ?x": ["no capar:LookingAt has capar:other", "capar:seen"],
+    "?s a capar:Touching ; capar:seen ?x": ["no capar:Touching has capar:seen", "capar:other"],
+    '?s capar:body/capar:name "mugg"; capar:start ?x': ["'mugg' as its capar:name", "'mug'"],
+    '?s capar:action/capar:name ?x FILTER(?x = "Grasp")': ["nothing has 'Grasp'"],
+    '?s a capar:Segment; capar:objects ?x FILTER(?x IN ("there", "nowhere"))': ["'nowhere'"],
+}
+
+
+@pytest.mark.parametrize("pattern", EMPTY)
+def test_a_query_that_finds_nothing_names_the_word_that_nothing_has(pattern: str, ask: Ask) -> None:
+    done = ask("query", f"SELECT ?x {{ {pattern} }}")
+    assert done.returncode == 0
+    assert "nothing found: " in done.stderr
+    assert all(each in done.stderr for each in EMPTY[pattern]), done.stderr
+
+
+def test_what_is_optional_or_negated_is_not_blamed_for_an_empty_answer(ask: Ask) -> None:
+    done = ask(
+        "query",
+        'SELECT ?s { ?s a capar:Segment ; capar:index 99 OPTIONAL { ?s capar:seen "a" } '
+        'FILTER NOT EXISTS { ?s capar:seen "b" } MINUS { ?s capar:seen "c" } }',
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_segment_is_asked_for_by_its_address(ask: Ask) -> None:
+    _, first, *_ = ask("query", "segments").stdout.splitlines()
+    address = first.split()[0]
+    found = ask("query", "segments", f"address={address}")
+    assert [row.split()[0] for row in found.stdout.splitlines()[1:]] == [address]
+    bare = ask("query", "rule", address)
+    assert bare.returncode == 2 and "NAME=VALUE: action, address, ee" in bare.stderr

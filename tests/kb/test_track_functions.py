@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from observations import drink_from_mug
 
-from capar.model.errors import ParError
+from capar.model.errors import CaparError, ParError
 from capar.model.sampled_track import UNIT_M, SampledTrack, sampled_track
 from kb.actionary import Actionary
 from kb.errors import QueryError
+from kb.queries.questions import check_known, question
 from kb.store.literals import LiteralError, track, track_of
 
 STEP_S = 0.02
@@ -133,3 +134,26 @@ def test_damaged_samples_are_refused(samples: str) -> None:
         SampledTrack("mug", 0.1, samples)
     with pytest.raises(LiteralError):
         track_of(f"0.1 {samples}")
+
+
+def test_where_a_body_was_while_it_was_lost_is_told_with_when(turning: Actionary) -> None:
+    capture = turning.ask("observations")[0]["observation"]
+    asked = {"capture": capture, "body": "right_hand", "time": 1.7}
+    assert turning.ask("place", **asked) == []
+    with pytest.raises(CaparError, match=r"lost it from 1\.50 to 2\.00 s"):
+        check_known(turning.store, question("place"), asked)
+
+
+@given(st.lists(st.booleans(), min_size=1, max_size=30), st.floats(0.0, 1.0))
+def test_a_body_is_lost_between_the_samples_that_saw_it(seen: list[bool], share: float) -> None:
+    places = np.where(np.array(seen)[:, None], 1.0, np.nan) * np.ones(3)
+    known = sampled_track("mug", STEP_S, places)
+    time_s = share * (len(seen) - 1) * STEP_S
+    gap_s = known.lost_around(time_s)
+    sample = time_s / STEP_S
+    beside = {int(np.floor(sample)), min(int(np.ceil(sample)), len(seen) - 1)}
+    assert (gap_s is None) == all(seen[each] for each in beside)
+    if gap_s is not None:
+        assert gap_s[0] <= time_s <= gap_s[1]
+        first, last = (round(end / STEP_S) for end in gap_s)
+        assert not any(seen[first + 1 : last])
