@@ -239,7 +239,7 @@ KINDS: Mapping[str, NoticeKind] = {
     "stand-in-shape": NoticeKind(
         "{0!r} is a stand-in: {shape}",
         "stand-in shapes",
-        "the shape of {names} is not known; a rough one stands for it",
+        "the recording does not tell the shape of {names}; a rough one is assumed",
     ),
     "no-shape": NoticeKind(
         "{0!r} has no shape, so no contact of it is known", "bodies without a shape"
@@ -248,7 +248,7 @@ KINDS: Mapping[str, NoticeKind] = {
     "assumed-support": NoticeKind(
         "{0!r} is assumed: {assumed}",
         "assumed supports",
-        "{names} was not recorded; where it is follows from what rests on it",
+        "the recording does not tell where {names} stood; that is assumed from what rests there",
     ),
     "moving-ground": NoticeKind(
         "{0!r} goes by under the feet of {agent} at {speed_mps:.2f} m/s, as a treadmill does: feet "
@@ -258,7 +258,7 @@ KINDS: Mapping[str, NoticeKind] = {
     "pivot-distance": NoticeKind(
         _pivot_distance,
         "pairs that touch by the distance of their origins",
-        "when these touch is judged by how far their origins are apart: {names}",
+        "when these touch is judged by how far apart they are: {names}",
     ),
     "touch-estimated": NoticeKind(
         _touch_estimated,

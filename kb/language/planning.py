@@ -153,7 +153,8 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
     if (last.start_s, last.end_s) == (following.start_s, following.end_s):
         return False
     long = len(taken) >= LONGEST and following.objects and not _soon_over(streams[ees])
-    if last.frees or _turns_away(taken, following) or long:
+    left = last.frees and bool(following.objects)
+    if left or _turns_away(taken, following) or long:
         return True
     manual = [each for each in taken if each.objects]
     if following.objects and last.grip != following.grip and len(manual) >= ENOUGH_OF_ONE:

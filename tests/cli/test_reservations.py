@@ -89,7 +89,8 @@ def test_stand_ins_are_told_after_the_text(bundle: Callable[[int, int], str]) ->
     told, _, notes = run("describe", bundle(0, 0)).partition(f"\n{HEADING}\n")
     assert told == "Anna touched the box with the right hand.\n"
     assert notes == (
-        "note: the shape of the box and the post is not known; a rough one stands for it\n"
+        "note: the recording does not tell the shape of the box and the post; a rough one is "
+        "assumed\n"
     )
 
 
@@ -125,7 +126,7 @@ def test_explain_tells_those_of_the_bodies_that_its_segment_is_about(
     for arguments in ((place,), (place, "right_hand/1"), (place, "--why-not", "Hit")):
         told, _, notes = run("explain", *arguments).partition(f"\n{HEADING}\n")
         assert "the right hand touched the box" in told or "Hit" in told
-        assert notes.startswith("note: the shape of the box is not known")
+        assert notes.startswith("note: the recording does not tell the shape of the box;")
         assert "post" not in notes
     for arguments in ((), ("--why-not", "Hit")):
         rows = json.loads(run("explain", place, *arguments, "--json"))
