@@ -135,7 +135,8 @@ def handling(
             out += (Lies(touch.body, SHIFTS, touch.other, *span) for span in spans)
             left_mps = release_speed(things[touch.other], touch.last)
             out.append(ReleaseSpeed(touch.body, touch.other, touch.first, round(1000.0 * left_mps)))
-    out += rooms(things, touches, tuple(out), thresholds)
+    kinds = {thing.name: thing.kind for thing in capture.objects}
+    out += rooms(things, kinds, touches, tuple(out), thresholds)
     out += _contacts(capture, bodies, touches, thresholds)
     out += _loads(capture, things, seen, thresholds)
     return tuple(out)

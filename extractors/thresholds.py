@@ -145,9 +145,13 @@ class Thresholds(FootThresholds):
     """A body goes along its length if that is this share of its path [1]: the cosine of 45 degrees.
     One that goes in circles has two thirds."""
 
-    pocket_share: float = 0.1
+    pocket_share: float = 0.15
     """Nothing fits in a body whose convex hull is nowhere further from its surface than this share
-    of its size [1]: of a cup or a bowl it is a third, of a plate a tenth."""
+    of its size [1]: of a cup or a bowl it is a third, of a plate or an apple a tenth."""
+
+    enclosed_share: float = 0.5
+    """From the middle of a hollow, the body's own surface is seen in more than this share of all
+    directions [1]: of a cup in seven tenths, of a bowl in six, of a banana in two."""
 
     swing_turns: int = 4
     """Fewest turning points of motion to and fro [1]: two whole periods less one half."""

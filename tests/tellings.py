@@ -12,7 +12,8 @@ from kb.lexicon.tables import table
 WORDS = Vocabulary(primitive_words(primitive_files()))
 VERBS = {
     *(past(row["pattern"].split()[0]) for row in table("phrases")),
-    past("withdraw"),
+    past("crouch"),
+    past("stand"),
     *(in_progress(pattern).split()[0] for pattern in TURNED),
 }
 """Every verb that a telling may have, in the past, or of what goes on beside something else."""
@@ -20,6 +21,9 @@ VERBS = {
 SPAN = re.compile(r"\((\d+\.\d\d)(?:–(\d+\.\d\d))? s\)")
 MEANWHILE = re.compile(r", turning [^,(]*\([^)]*\)")
 """What went on beside the step before it."""
+
+IN_TURN = re.compile(r", then (with [^.]*)")
+"""The hands that do one after the other what was said last."""
 
 AFTERWARDS = ("Then ", "Next, ", "After that, ", "Once more, ")
 
@@ -37,8 +41,9 @@ def steps_of(text: str) -> tuple[Instruction, ...]:
 
 
 def verbs_of(text: str) -> list[str]:
-    """The verbs of a telling, each as often as it stands there."""
-    return [word for word in re.findall(r"[a-z]+", text) if word in VERBS]
+    """The verbs of a telling, each as often as it stands there, or goes on with another hand."""
+    in_turn = [hand for hands in IN_TURN.findall(text) for hand in re.findall("with", hands)]
+    return [word for word in re.findall(r"[a-z]+", text) if word in VERBS] + in_turn
 
 
 def sentences(text: str) -> list[str]:

@@ -193,7 +193,7 @@ def test_the_table_says_whose_hand_it_is(
 
 def test_what_each_did_is_told_of_each(seen: Observation) -> None:
     told = describe(seen)
-    assert told.startswith("The woman reached for the mug with the right hand")
+    assert told.startswith("The woman lifted the mug with the right hand")
     hers, his = told.split(" The tall man ")
     assert hers.endswith("and handed it to the tall man.")
     assert his.startswith("accepted")

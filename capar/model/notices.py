@@ -216,6 +216,10 @@ class NoticeKind:
     Without one that does, what is told would be taken for more certain than it is.
     """
 
+    plain: str = ""
+    """What it means to whoever reads what was done, of all the ``{names}`` that it is about; empty
+    where its text says that."""
+
     fault: bool = False
     """Whether it tells of a fault of the recording, or of what was stated of it."""
 
@@ -232,22 +236,34 @@ KINDS: Mapping[str, NoticeKind] = {
         "bones that change their length",
         fault=True,
     ),
-    "stand-in-shape": NoticeKind("{0!r} is a stand-in: {shape}", "stand-in shapes"),
+    "stand-in-shape": NoticeKind(
+        "{0!r} is a stand-in: {shape}",
+        "stand-in shapes",
+        "the recording does not tell the shape of {names}; a rough one is assumed",
+    ),
     "no-shape": NoticeKind(
         "{0!r} has no shape, so no contact of it is known", "bodies without a shape"
     ),
     "objects-left-out": NoticeKind(_objects_left_out, "groups of objects left out"),
-    "assumed-support": NoticeKind("{0!r} is assumed: {assumed}", "assumed supports"),
+    "assumed-support": NoticeKind(
+        "{0!r} is assumed: {assumed}",
+        "assumed supports",
+        "the recording does not tell where {names} stood; that is assumed from what rests there",
+    ),
     "moving-ground": NoticeKind(
         "{0!r} goes by under the feet of {agent} at {speed_mps:.2f} m/s, as a treadmill does: feet "
         "that move with it stand",
         "grounds that go by under the feet",
     ),
     "pivot-distance": NoticeKind(
-        _pivot_distance, "pairs that touch by the distance of their origins"
+        _pivot_distance,
+        "pairs that touch by the distance of their origins",
+        "when these touch is judged by how far apart they are: {names}",
     ),
     "touch-estimated": NoticeKind(
-        _touch_estimated, "pairs that touch by a distance estimated from the recording"
+        _touch_estimated,
+        "pairs that touch by a distance estimated from the recording",
+        "when these touch is judged by how close they come: {names}",
     ),
     "distance-contradicted": NoticeKind(
         lambda each: distance_contradicted(each.bodies, each.fields),

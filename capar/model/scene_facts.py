@@ -221,9 +221,9 @@ class Intended(Observed):
 
 @dataclass(frozen=True, slots=True, order=True)
 class Solid(Observed):
-    """An object's surface leaves no room inside its convex hull: nothing can be in it.
+    """Neither an object's surface nor its kind leaves a hollow in it: nothing can be in it.
 
-    It is measured of what moves to and fro and of what that touches.
+    It is measured of what moves to and fro, of what that touches, and of what is tipped.
     """
 
     predicate = "solid"
@@ -241,7 +241,7 @@ class Solid(Observed):
 class Shapeless(Observed):
     """An object's shape is not known, so what is in it, or what it is in, is not known either.
 
-    It is measured of what moves to and fro and of what that touches.
+    It is measured of what moves to and fro, of what that touches, and of what is tipped.
     """
 
     predicate = "shapeless"

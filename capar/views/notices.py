@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterable, Sequence
 
 from capar.model.notices import KINDS, Notice
+from kb.lexicon.english import joined
 
 HEADING = "Known with reservations:"
 
@@ -38,7 +39,25 @@ def note_lines(notices: Iterable[Notice], *, most: int = MOST) -> tuple[str, ...
 
 def reservation_lines(notices: Sequence[Notice]) -> tuple[str, ...]:
     """What follows a text whose reservations those are: a gap, a heading, and the notes."""
-    return ("", HEADING, *note_lines(notices, most=1)) if notices else ()
+    alike: dict[str, list[Notice]] = {}
+    for notice in notices:
+        alike.setdefault(notice.code, []).append(notice)
+    lines = (line for code, group in alike.items() for line in _plain(code, group))
+    return ("", HEADING, *lines) if notices else ()
+
+
+def _plain(code: str, group: Sequence[Notice]) -> Iterable[str]:
+    """What notices of one code mean to whoever reads what was done."""
+    if KINDS[code].plain:
+        names = [*dict.fromkeys(_about(each) for each in group)]
+        named = joined([*names[:NAMED], "others"] if len(names) > NAMED else names)
+        return [f"note: {KINDS[code].plain.format(names=named)}"]
+    return [f"note: {text}" for text in _texts(code, group, most=1)]
+
+
+def _about(notice: Notice) -> str:
+    """The bodies that it is about, as people call them."""
+    return " with ".join(f"the {body.replace('_', ' ')}" for body in notice.bodies)
 
 
 def _texts(code: str, group: Sequence[Notice], most: int) -> Iterable[str]:

@@ -101,6 +101,12 @@ def given_in_audit() -> frozenset[Signature]:
     }
 
 
+MEASURED: frozenset[Signature] = frozenset(
+    {("course", 2), ("member", 3), ("solid", 1), ("shapeless", 1)}
+)
+"""What ``words.lp`` chooses that no rule derives, as it is measured or numbered outside."""
+
+
 def evaluate(
     rules: Sequence[Statement],
     asked: Iterable[Signature],
@@ -137,7 +143,7 @@ def evaluate(
 def words_of(rules: Sequence[Statement]) -> list[Statement]:
     """The rules of ``words.lp`` for relations that a rule base uses."""
     words = _own("words.lp")
-    spoken = heads_of([*rules, *_own("space.lp")]) | {("course", 2), ("member", 3)}
+    spoken = heads_of([*rules, *_own("space.lp")]) | MEASURED
     return [each for each in words if signatures_below([each]) | heads_of([each]) <= spoken]
 
 

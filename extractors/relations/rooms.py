@@ -1,5 +1,6 @@
-"""Room in bodies: in which of those that something moves to and fro at nothing can be."""
+"""Room in bodies: in which of those that are moved to and fro, or tipped, nothing can be."""
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import cast
 
@@ -9,16 +10,29 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from capar.model.capture import Shape
-from capar.model.facts import Fact, Shapeless, Solid, Swings, Touching
+from capar.model.facts import Fact, Leans, Posture, Shapeless, Solid, Swings, Touching
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.thresholds import Thresholds
 
 RESOLUTION = 40
 """Into how many edges the longest side of a body is divided, to sample its surface [1]."""
 
+SIGHTS = 200
+"""In how many directions it is looked whether a body's own surface is there [1]."""
+
+VESSELS = frozenset(
+    (
+        *("bottle", "bowl", "bucket", "carafe", "container", "cup", "decanter", "flask", "glass"),
+        *("jar", "jug", "kettle", "ladle", "mug", "pan", "pitcher", "pot", "scoop", "spoon"),
+        *("teapot", "vase"),
+    )
+)
+"""Kinds of what is hollow, also where its shape is modelled without its hollow, or closed."""
+
 
 def rooms(
     things: Mapping[str, BodyGeometry],
+    kinds: Mapping[str, str],
     touches: Iterable[Touching],
     known: Iterable[Fact],
     thresholds: Thresholds,
@@ -27,18 +41,46 @@ def rooms(
 
     Args:
         things: Bodies of all tag objects, by their names.
+        kinds: What each is, where that is declared.
         touches: What touches what.
-        known: Facts that say what moves to and fro; that, and what it touches, is asked about.
+        known: Facts that say what moves to and fro and what is tipped; that, and what the first
+            touches, is asked about.
         thresholds: How deep a hollow holds something.
     """
-    swung = {each.body for each in known if isinstance(each, Swings)}
+    facts = tuple(known)
+    swung = {each.body for each in facts if isinstance(each, Swings)}
     met = {each.other for each in touches if each.body in swung}
-    for name in sorted((swung | met) & set(things)):
+    for name in sorted((swung | met | _tipped(facts, thresholds)) & set(things)):
         shape = things[name].shape
         if shape is None:
             yield Shapeless(name)
-        elif pocket_m(shape) <= thresholds.pocket_share * shape.size.max():
+        elif kinds.get(name) not in VESSELS and not has_room(shape, thresholds):
             yield Solid(name)
+
+
+def _tipped(facts: Iterable[Fact], thresholds: Thresholds) -> set[str]:
+    """What leans, or leans otherwise at one time than at another by half of that."""
+    leans: dict[str, list[int]] = defaultdict(list)
+    out: set[str] = set()
+    for each in facts:
+        if isinstance(each, Leans):
+            out.add(each.object)
+        elif isinstance(each, Posture):
+            leans[each.body].append(each.lean)
+    far = 500.0 * thresholds.lean_rad
+    return out | {body for body, seen in leans.items() if max(seen) - min(seen) > far}
+
+
+def has_room(shape: Shape, thresholds: Thresholds) -> bool:
+    """Whether a body has a hollow in which something can be.
+
+    Its surface is far from its convex hull there, and is seen from there in most directions: so a
+    bowl has room, and a banana, which is only bent, has none.
+    """
+    found = _pocket(shape)
+    if found is None or found[1] <= thresholds.pocket_share * float(shape.size.max()):
+        return False
+    return enclosure(shape, found[0]) > thresholds.enclosed_share
 
 
 def pocket_m(shape: Shape) -> float:
@@ -47,15 +89,55 @@ def pocket_m(shape: Shape) -> float:
     Of a bowl it is how far the middle of its opening is from its wall or bottom; of a box or a loaf
     nearly zero. It is known to a fortieth of the body's size. Zero for what has no volume.
     """
+    found = _pocket(shape)
+    return 0.0 if found is None else found[1]
+
+
+def _pocket(shape: Shape) -> tuple[Float[np.ndarray, "3"], float] | None:
+    """Where the hull is furthest from the surface, half as far inside of it; and how far [m]."""
     vertices = np.asarray(shape.vertices)
     try:
         hull = ConvexHull(vertices).simplices
     except (QhullError, ValueError):
-        return 0.0
+        return None
     edge_m = float(np.max(shape.size)) / RESOLUTION
     own = _sampled(vertices, np.asarray(shape.faces), edge_m)
     around = _sampled(vertices, hull, edge_m)
-    return float(cKDTree(own).query(around)[0].max())
+    ways = cKDTree(own).query(around)[0]
+    at = int(np.argmax(ways))
+    inward = vertices.mean(axis=0) - around[at]
+    inside = around[at] + 0.5 * ways[at] * inward / max(float(np.linalg.norm(inward)), 1e-9)
+    return inside, float(ways[at])
+
+
+def enclosure(shape: Shape, point: Float[np.ndarray, "3"]) -> float:
+    """In what share of all directions a body's surface is seen from a point [1].
+
+    Rays meet triangles as Moeller and Trumbore (1997) tell.
+    """
+    corners = np.asarray(shape.vertices)[np.asarray(shape.faces)]
+    first, one, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    since = point - first
+    across = np.cross(since, one)
+    seen = 0
+    for sight in _directions():
+        normal = np.cross(sight, other)
+        scale = np.einsum("ij,ij->i", one, normal)
+        flat = np.abs(scale) < 1e-15
+        scale = np.where(flat, 1.0, scale)
+        u = np.einsum("ij,ij->i", since, normal) / scale
+        v = across @ sight / scale
+        far = np.einsum("ij,ij->i", other, across) / scale
+        seen += bool((~flat & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (far > 0.0)).any())
+    return seen / SIGHTS
+
+
+def _directions() -> Float[np.ndarray, "sights 3"]:
+    """Directions that are spread evenly over the sphere, along a spiral (Fibonacci)."""
+    places = np.arange(SIGHTS) + 0.5
+    up, turn = 1.0 - 2.0 * places / SIGHTS, np.pi * (1.0 + np.sqrt(5.0)) * places
+    level = np.sqrt(1.0 - up**2)
+    return np.column_stack((level * np.cos(turn), level * np.sin(turn), up))
 
 
 def _sampled(

@@ -46,6 +46,9 @@ class Clause:
     possessed: bool = False
     """Whether the end-effector possesses the first object."""
 
+    in_turn: tuple[tuple[str, ...], ...] = ()
+    """The end-effectors that do it afterwards, one after the other."""
+
     grip: int = 0
     """How often the end-effector had come to a thing, or left one, when it was done."""
 
@@ -68,7 +71,7 @@ class Clause:
     @property
     def frees(self) -> bool:
         """Whether the end-effector leaves the first object in it."""
-        return self.pattern in MOMENTARY or self.pattern.startswith("take {ee}")
+        return self.pattern in MOMENTARY or self.pattern.startswith(("take {ee}", "hand {1} to "))
 
     @property
     def holds(self) -> bool:
@@ -90,6 +93,10 @@ class Clause:
         """Whether it is a turning of the same thing that is over before the other clause is."""
         turns = self.pattern in TURNED and self.objects[:1] == other.objects[:1]
         return turns and other.start_s <= self.start_s and self.end_s < other.end_s
+
+    def overlaps(self, other: "Clause") -> bool:
+        """Whether both go on at some time."""
+        return self.overlap_s(other) > 0.0
 
     def overlap_s(self, other: "Clause") -> float:
         """For how long both go on [s]."""

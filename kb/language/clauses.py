@@ -15,7 +15,7 @@ from kb.language.lexicalisation import (
     MOMENTARY,
     QUIET,
     SOMEONE,
-    TO_THE_OTHER,
+    TO_A_SIDE,
     Phrasebook,
 )
 from kb.language.purposes import purposeful, with_purposes
@@ -55,6 +55,9 @@ def clauses(
             ipar = ipars.get((segment.ee, segment.start_s))
             cases = _cases(segment, last, scene, ipar, turning, held=held)
             clause = _clause(segment, before, book, cases, names)
+            if clause.helps:
+                since_s = scene.steadies_since_s(segment)
+                clause = replace(clause, start_s=clause.start_s if since_s is None else since_s)
             if SOMEONE in clause.pattern:
                 named = clause.pattern.replace(SOMEONE, scene.taker(segment) or SOMEONE)
                 clause = replace(clause, pattern=named)
@@ -81,9 +84,11 @@ def _when_it_was(segment: Segment, clause: Clause, holding: Holding) -> Clause:
     """The clause at the moment at which the thing leaves the hand, or while it changes hands."""
     if clause.pattern not in MOMENTARY:
         return clause
-    span = holding.passed(segment) if clause.pattern == GIVEN else None
-    if span is not None:
-        return replace(clause, pattern=TO_THE_OTHER, start_s=span.start_s, end_s=span.end_s)
+    passed = holding.passed(segment) if clause.pattern == GIVEN else None
+    if passed is not None:
+        span, side = passed
+        pattern = TO_A_SIDE.get(side, TO_A_SIDE["other"])
+        return replace(clause, pattern=pattern, start_s=span.start_s, end_s=span.end_s)
     left_s = holding.released_s(segment)
     return replace(clause, start_s=left_s, end_s=left_s)
 
@@ -129,7 +134,7 @@ def _cases(
     cases = {"held"} if held else set()
     if _stays(segment) and held and scene.runs_over(segment):
         cases = {"running"}
-    elif _stays(segment) and scene.steadies(segment):
+    elif _stays(segment) and scene.steadies_since_s(segment) is not None:
         cases.add("steadies")
     if motion in {Motion.ROTATION, Motion.BOTH}:
         cases.add("tilts" if motion is Motion.BOTH else "turns")
@@ -138,19 +143,17 @@ def _cases(
     if len(segment.objects) < 2:
         return cases | {"alone"}
     thing, other = segment.objects[:2]
-    if ("with", other, thing) in segment.prepositions:
-        cases.add("tool")
-    if before is not None and before.objects[:2] == (thing, other):
-        cases.add("there")
-    if scene.is_self(other):
-        cases.add("self")
-    if scene.rises(segment):
-        cases.add("rises")
-    if scene.rests_on(thing, other) and _stands_on(segment, thing, other):
-        cases.add("on")
-    if scene.was_there(segment, thing, other):
-        cases.add("back")
-    return cases
+    hold = {
+        "tool": ("with", other, thing) in segment.prepositions,
+        "there": before is not None and before.objects[:2] == (thing, other),
+        "self": scene.is_self(other),
+        "rises": scene.rises(segment),
+        "on": scene.rests_on(thing, other) and _stands_on(segment, thing, other),
+        "movable": scene.is_movable(other),
+        "off": scene.goes_off(segment, thing, other),
+        "back": scene.was_there(segment, thing, other),
+    }
+    return cases | {name for name, holds in hold.items() if holds}
 
 
 def _stays(segment: Segment) -> bool:
@@ -183,7 +186,7 @@ def _clause(
         places = [f"{{{number}}}" for number in range(1, len(objects) + 1)]
         pattern = pattern.replace("{1}", joined(places))
     loads = _loads(segment)
-    if loads and "{1}" in pattern:
+    if loads and "{1}" in pattern and not pattern.startswith("put "):
         places = [f"{{{len(objects) + number}}}" for number in range(1, len(loads) + 1)]
         pattern = pattern.replace("{1}", f"{{1}} with {joined(places)}")
         objects = (*objects, *loads)

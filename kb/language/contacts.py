@@ -4,14 +4,18 @@ This is wording only. It chooses among ways to say an action that the rules have
 down", "put it back"), reads measured contacts alone, and names, splits or drops no segment.
 """
 
+import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from capar.model.facts import Flies, Link, Moving, OfAgent, Swings, Touching
+from capar.model.facts import Flies, Lies, Link, Moving, OfAgent, Swings, Touching
 from capar.model.observation import Observation, ObservedLink, Segment
-from kb.language.thresholds import RISEN_M, RUNNING_MPS, STEADY_S, STILL_M
+from kb.language.thresholds import LEVEL_M, RISEN_M, RUNNING_MPS, STEADY_S, STILL_M, UNSEEN_S
 from kb.lexicon.english import the_agent
+
+HEAD = "head"
+"""The body above which a thing is held overhead."""
 
 
 class Scene:
@@ -21,8 +25,12 @@ class Scene:
         effectors = {link.ee for link in observation.links}
         effectors |= {fact.ee for fact in observation.facts if isinstance(fact, Link)}
         touching = [fact for fact in observation.facts if isinstance(fact, Touching)]
+        self._step_s = observation.duration_s / max(observation.frames - 1, 1)
         self._hands = [each for each in touching if each.body in effectors]
         self._pairs = [each for each in touching if each.body not in effectors]
+        lies = [fact for fact in observation.facts if isinstance(fact, Lies)]
+        self._aside = [fact for fact in lies if fact.how in {"beside", "below"}]
+        self._over = [fact for fact in lies if fact.how in {"above", "inside"}]
         self._moving = [fact for fact in observation.facts if isinstance(fact, Moving)]
         flights = [(each.object, each) for each in observation.facts if isinstance(each, Flies)]
         swings = [(each.body, each) for each in observation.facts if isinstance(each, Swings)]
@@ -52,6 +60,45 @@ class Scene:
             return None
         return float(np.linalg.norm(places - places[0], axis=1).max())
 
+    def over_ground_m(self, body: str, start_s: float, end_s: float) -> tuple[float, float]:
+        """How far a body is at the end, and gets at most, from where it was over the ground [m].
+
+        Endless where that was not kept: nobody can say that it stayed.
+        """
+        places = self._places(body, start_s, end_s)
+        if places is None:
+            return math.inf, math.inf
+        ways = np.linalg.norm(places[:, :2] - places[0, :2], axis=1)
+        return float(ways[-1]), float(ways.max())
+
+    def overhead(self, body: str, start_s: float, end_s: float) -> bool:
+        """Whether a body's middle is above the head all that time, for most of it at least."""
+        places, head = self._places(body, start_s, end_s), self._places(HEAD, start_s, end_s)
+        if places is None or head is None:
+            return False
+        return bool(np.median(places[:, 2]) > np.median(head[:, 2]) + RISEN_M)
+
+    def stays(self, body: str, start_s: float, end_s: float) -> bool:
+        """Whether a body stays where it is for a time; not where that was not kept."""
+        strays_m = self.strays_m(body, start_s, end_s)
+        return strays_m is not None and strays_m < LEVEL_M
+
+    def left_there(self, thing: str, time_s: float) -> bool:
+        """Whether a thing is as high when nothing touches it for the first time afterwards."""
+        track = self._tracks.get(thing)
+        touches = [each for each in self._hands if each.other == thing]
+        if track is None or track.step_s == 0.0 or not touches:
+            return False
+        step_s = self._step_s
+        after_s = time_s
+        for each in sorted(touches, key=lambda each: each.first):
+            if each.first * step_s <= after_s + step_s:
+                after_s = max(after_s, each.last * step_s)
+        then, now = self._places(thing, after_s, after_s), self._places(thing, time_s, time_s)
+        if then is None or now is None or after_s >= (len(track.positions) - 2) * track.step_s:
+            return False
+        return abs(float(then[-1, 2] - now[-1, 2])) < LEVEL_M
+
     def nears(self, body: str, thing: str, start_s: float, end_s: float, by_m: float) -> bool:
         """Whether a body is nearer to where a thing is at the end, by so much [m]."""
         places, there = self._places(body, start_s, end_s), self._places(thing, end_s, end_s)
@@ -59,6 +106,14 @@ class Scene:
             return False
         ways = np.linalg.norm(places[[0, -1], :2] - there[-1, :2], axis=1)
         return bool(ways[0] - ways[1] > by_m)
+
+    def gathers(self, goal: str, things: Sequence[str]) -> bool:
+        """Whether all things are over a place in the end, and none was at first."""
+        over = [each for each in self._over if each.other == goal]
+        last = max((each.last for each in self._over), default=0)
+        there = {each.body for each in over if each.last == last}
+        before = {each.body for each in over if each.first == 0}
+        return there >= set(things) and before.isdisjoint(things)
 
     def rises(self, segment: Segment) -> bool:
         """Whether the object is clearly higher when a segment ends."""
@@ -75,14 +130,16 @@ class Scene:
         spread = float(np.linalg.norm(thing - thing[0], axis=1).max())
         return spread < STILL_M and path / (segment.end_s - segment.start_s) > RUNNING_MPS
 
-    def steadies(self, segment: Segment) -> bool:
-        """Whether the hand stays at a thing in which another hand works."""
-        return any(
-            each.ee != segment.ee
+    def steadies_since_s(self, segment: Segment) -> float | None:
+        """Since when another hand works in the thing at which a hand stays [s]; None if none."""
+        begins = [
+            max(each.start_s, segment.start_s)
+            for each in self._worked_in
+            if each.ee != segment.ee
             and each.objects[1] == segment.objects[0]
             and min(each.end_s, segment.end_s) - max(each.start_s, segment.start_s) >= STEADY_S
-            for each in self._worked_in
-        )
+        ]
+        return min(begins, default=None)
 
     def carried_on(self, link: ObservedLink) -> frozenset[int]:
         """Segments in which contact was lost with what the hand went on carrying.
@@ -135,6 +192,10 @@ class Scene:
         """Whether an object is of the agent's own body."""
         return self._tags.get(name) == "self"
 
+    def is_movable(self, name: str) -> bool:
+        """Whether an object can be moved."""
+        return self._tags.get(name) == "mobile"
+
     def rests_on(self, thing: str, support: str) -> bool:
         """Whether the thing lay still on the support at some time while no hand touched it."""
         if self.is_self(support):
@@ -146,6 +207,18 @@ class Scene:
         return any(
             each.first <= segment.first and each.last < segment.last
             for each in self._between(thing, goal)
+        )
+
+    def goes_off(self, segment: Segment, thing: str, other: str) -> bool:
+        """Whether the thing leaves the other at its edge, by the end of a segment."""
+        soon = round(UNSEEN_S / self._step_s) if self._step_s else 0
+        return any(
+            segment.first < contact.last <= segment.last + soon
+            and aside.first <= contact.last + soon
+            and contact.last <= aside.last
+            for contact in self._between(thing, other)
+            for aside in self._aside
+            if (aside.body, aside.other) == (thing, other)
         )
 
     def taker(self, segment: Segment) -> str:

@@ -7,12 +7,15 @@ from typing import Literal
 from capar.model.capture import Agent
 from capar.model.observation import Observation, ObservedLink
 from kb.language.aggregation import edited
+from kb.language.alternating import in_turns
 from kb.language.bodily import Told, as_one_body, with_walks
 from kb.language.choosing import chosen, longest, mattering
 from kb.language.clause import Clause
 from kb.language.clauses import clauses, main_things
 from kb.language.contacts import Scene
+from kb.language.crouching import with_crouching
 from kb.language.free_motion import reaches
+from kb.language.gathering import gathered
 from kb.language.hands import (
     as_the_other_hand,
     by_fingers,
@@ -22,15 +25,20 @@ from kb.language.hands import (
     told_in_order,
 )
 from kb.language.holding import Holding
-from kb.language.lexicalisation import FREE, Phrasebook
+from kb.language.lexicalisation import FREE, STEP, Phrasebook
+from kb.language.omitting import without_coming
+from kb.language.placing import placed
 from kb.language.planning import sentences
 from kb.language.realisation import Realiser
 from kb.language.repeating import as_segmented, deeds, whole
 from kb.language.turning import Turning, turned, with_turning
-from kb.lexicon.english import capital, the_agent
+from kb.lexicon.english import PEOPLE, capital, the_agent
 from kb.lexicon.links import PrimitiveWords
 
 Detail = Literal["steps", "summary"]
+
+INITIALS = 2
+"""So many letters at most before a number are no name."""
 
 TO_THE_LETTER = "thesis"
 """The profile of rules of which every segment is told as a step of its own."""
@@ -73,12 +81,23 @@ def _story(
         changes = any(each.changes for part in told for each in part)
         told = [mattering(part) if changes else _counted(main_things(part)) for part in told]
         plain = [replace(each, pauses=0) for each in told_in_order(links, told)]
-        steps = chosen(mostly_together(links, plain))
+        if any(each.changes for each in plain):
+            walked = with_walks(plain, links, seen, observation.objects, scene)
+            plain = [each for each in walked if each.pattern != STEP]
+        steps = mostly_together(links, plain)
     else:
         steps = with_walks(told_in_order(links, told), links, seen, observation.objects, scene)
+        if observation.profile != TO_THE_LETTER:
+            steps = mostly_together(links, steps)
+            steps = with_crouching(steps, observation.links, observation.tracks)
+    if observation.profile != TO_THE_LETTER:
+        there = placed(steps, observation.objects, scene, Turning(observation))
+        steps = without_coming(there, scene)
+    if detail == "summary":
+        steps = chosen(gathered(in_turns(steps), observation.objects, scene))
     if not timed:
         steps = edited(steps)
-    subject = the_agent(observation.agent.name, observation.agent.kind)
+    subject = _subject(observation)
     realiser = Realiser(links, observation.objects, timed=timed)
     if not steps:
         moved = _moved_freely(links, book)
@@ -88,6 +107,16 @@ def _story(
         capital(f"{part.opening}{subject} {realiser.sentence(part)}.")
         for part in sentences(steps, lead=longest(steps) if detail == "summary" else ())
     )
+
+
+def _subject(observation: Observation) -> str:
+    """Who acts; one performer alone, who has a number instead of a name, as the performer."""
+    name = observation.agent.name
+    code = name.rstrip("0123456789").rstrip("_- ").lower()
+    numbered = name[-1:].isdigit() and (code in PEOPLE or len(code) <= INITIALS)
+    if numbered and not observation.others:
+        return "the performer"
+    return the_agent(name, observation.agent.kind)
 
 
 def _deeds(

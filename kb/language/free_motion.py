@@ -11,7 +11,15 @@ from jaxtyping import Float
 
 from capar.model.observation import Observation, ObservedLink
 from capar.model.sampled_track import SampledTrack
-from kb.language.thresholds import APEX_M, ASIDE_SHARE, REACHED_M, STILL_M, SWAYING
+from kb.language.thresholds import (
+    APEX_M,
+    ASIDE_SHARE,
+    REACHED_M,
+    REST_S,
+    STILL_M,
+    SWAYING,
+    UNSEEN_S,
+)
 
 HAND, HEAD = "hand", "head"
 
@@ -97,8 +105,7 @@ def _reached(
         above = track.positions[apex, 2] > head.positions[min(apex, len(head.positions) - 1), 2]
         where += " above the head" if above else ""
     there = np.flatnonzero(ways > furthest_m - STILL_M)
-    away = np.linalg.norm(places - places[-1], axis=1) > APEX_M
-    home = int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
+    home = _stops(places, max(round(UNSEEN_S / track.step_s), 1))
     returns = places[-1] - places[int(there[-1])]
     found = Reached(
         ee=ee,
@@ -111,6 +118,20 @@ def _reached(
         down=-float(returns[2]) > ASIDE_SHARE * float(np.linalg.norm(returns)),
     )
     return found, furthest_m
+
+
+def _stops(places: Float[np.ndarray, "frames 3"], brief: int) -> int:
+    """The frame since which a hand is near to where it stays, and as slow as one at rest.
+
+    Args:
+        places: Where it is [m].
+        brief: In how many frames its speed is measured.
+    """
+    away = np.linalg.norm(places - places[-1], axis=1) > APEX_M
+    home = int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
+    gone = np.linalg.norm(places[home + brief :] - places[home : len(places) - brief], axis=1)
+    still = np.flatnonzero(gone < STILL_M * UNSEEN_S / REST_S)
+    return home + int(still[0]) if len(still) else len(places) - 1
 
 
 def _direction(way: Float[np.ndarray, "3"], ahead: Float[np.ndarray, "3"] | None) -> str:

@@ -6,8 +6,8 @@ from difflib import SequenceMatcher
 
 from capar.model.observation import ObservedLink
 from kb.language.clause import Clause, in_time
-from kb.language.lexicalisation import REACH
-from kb.language.thresholds import MOSTLY, REST_S
+from kb.language.lexicalisation import REACH, THIS_WAY, TURN
+from kb.language.thresholds import MOSTLY, REST_S, SETTLING_S
 from kb.lexicon.tables import table
 
 
@@ -74,7 +74,10 @@ def told_in_order(
 
 
 def mostly_together(links: Sequence[ObservedLink], steps: Sequence[Clause]) -> tuple[Clause, ...]:
-    """The clauses; what two hands do alike for most of the time of either is one, while both do."""
+    """The clauses; what two hands do alike for most of the time of either is one, while both do.
+
+    What one turned about alone for a noticed time before is told before that.
+    """
     pairs = {frozenset({links[first].ee, links[second].ee}) for first, second in _pairs(links)}
     out: list[Clause] = []
     for step in steps:
@@ -82,11 +85,15 @@ def mostly_together(links: Sequence[ObservedLink], steps: Sequence[Clause]) -> t
         if partner is None:
             out.append(step)
         else:
-            out[out.index(partner)] = replace(
+            both = replace(
                 _both(partner, step),
                 start_s=max(partner.start_s, step.start_s),
                 end_s=min(partner.end_s, step.end_s),
             )
+            out[out.index(partner)] = both
+            first = min(partner, step, key=in_time)
+            if both.pattern in {TURN, THIS_WAY} and both.start_s - first.start_s > SETTLING_S:
+                out.append(replace(first, end_s=both.start_s))
     return tuple(sorted(out, key=in_time))
 
 

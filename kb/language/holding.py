@@ -11,7 +11,7 @@ from typing import NamedTuple
 from capar.model.facts import MovedBy, MovesWith, Moving, OfAgent, Touching
 from capar.model.observation import Observation, ObservedLink, Segment
 from kb.language.clause import Clause
-from kb.language.lexicalisation import GIVEN, TO_THE_OTHER
+from kb.language.lexicalisation import GIVEN, TO_A_SIDE
 from kb.language.thresholds import BESIDE_MM, REST_S, SCRAP_S, UNSEEN_S
 from kb.lexicon.tables import table
 
@@ -72,18 +72,25 @@ class Holding:
         ]
         return max(ends) * self._step_s if ends else segment.start_s
 
-    def passed(self, giving: Segment) -> Span | None:
-        """From when the other hand has it to when this one has not; None if none takes it."""
+    def passed(self, giving: Segment) -> tuple[Span, str] | None:
+        """From when the other hand has it to when this one has not, and the side of that hand.
+
+        None if none takes it.
+        """
         end_s = self.released_s(giving)
+        sides = {link.ee: link.side for link in self._links}
         begins = [
-            each.first * self._step_s
+            (each.first * self._step_s, sides[each.body])
             for each in self._touches
             if each.other in giving.objects[:1]
             and self._other_hand(giving.ee, each.body)
             and each.first * self._step_s <= max(end_s, giving.start_s)
             and each.last * self._step_s > end_s
         ]
-        return Span(min(max(begins), end_s), end_s) if begins else None
+        if not begins:
+            return None
+        begin_s, side = max(begins)
+        return Span(min(begin_s, end_s), end_s), side
 
     def received(self, receiving: Segment) -> bool:
         """Whether the other hand of the agent gives it, which tells the same."""
@@ -92,7 +99,7 @@ class Holding:
             for each in self._gives
             if each.objects[:1] == receiving.objects[:1] and self._other_hand(receiving.ee, each.ee)
         ]
-        return any(span and abs(span.start_s - receiving.end_s) < REST_S for span in spans)
+        return any(span and abs(span[0].start_s - receiving.end_s) < REST_S for span in spans)
 
     def _other_hand(self, one: str, other: str) -> bool:
         """Whether both are hands of one agent."""
@@ -268,7 +275,7 @@ def _of(handled: Handled) -> tuple[str, ...]:
 
 def _has_nothing(handled: Handled) -> bool:
     """Whether the hand, as far as contacts tell, has not got the thing, and gives it to nobody."""
-    given = handled.clause.pattern in {GIVEN, TO_THE_OTHER}
+    given = handled.clause.pattern in {GIVEN, *TO_A_SIDE.values()}
     return not (handled.segment.possessed or given)
 
 

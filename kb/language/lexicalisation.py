@@ -9,6 +9,7 @@ from kb.lexicon.tables import table
 Cases = Collection[str]
 """What holds of a segment: held, there, tool, on, back, self, alone, turns, tilts, rises, steadies.
 
+``movable``: the second object can be moved, too; ``off``: it leaves the other at its edge;
 ``running``: the hand goes over a thing that stays; ``wrung``: it is turned this way and that.
 """
 
@@ -24,10 +25,10 @@ QUIET = frozenset({"reach for {1}", "let go of {1}", "take {ee} away"})
 GIVEN = "hand {1} over"
 """The pattern of a thing that another hand takes."""
 
-TO_THE_OTHER = "hand {1} over to the other hand"
-"""The same, where that is the other hand of the agent."""
+TO_A_SIDE = {side: f"hand {{1}} over to the {side} hand" for side in ("left", "right", "other")}
+"""The same, where that is the other hand of the agent, by the side of it."""
 
-MOMENTARY = frozenset({"let go of {1}", GIVEN, TO_THE_OTHER, "hand {1} to someone"})
+MOMENTARY = frozenset({"let go of {1}", GIVEN, *TO_A_SIDE.values(), "hand {1} to someone"})
 """Patterns of what is done in a moment: the rest of the segment is the hand's way back."""
 
 TIPPED = frozenset({"pour from {1}", "pour from {1} into {2}"})
@@ -35,6 +36,9 @@ TIPPED = frozenset({"pour from {1}", "pour from {1} into {2}"})
 
 HELPS = frozenset({"steady {1}"})
 """Patterns of what moves nothing and yet is a part of what was done."""
+
+ONE_BY_ONE = "one after the other"
+"""How several things are moved."""
 
 BIT_BY_BIT = "bit by bit"
 """How something else is done that pauses interrupt."""
@@ -64,6 +68,15 @@ FREE = "move {ee}"
 """The pattern of what a hand does that is of no object."""
 
 
+LOWER = "lower {1}"
+"""The pattern of a thing that goes down, wherever to."""
+
+DOWN = "put {1} down"
+"""The pattern of a thing that stands somewhere then."""
+
+GROUNDS = frozenset({"floor", "ground"})
+"""Kinds of what people walk on: that a thing is put on it says nothing of where."""
+
 RUNNING = "keep a hand on {1}"
 """The pattern of a hand that runs over a thing."""
 
@@ -82,6 +95,9 @@ UPRIGHT, BACK_UPRIGHT = "turn {1} upright", "turn {1} back upright"
 TURNED = frozenset({UPSIDE_DOWN, AROUND, UPRIGHT, BACK_UPRIGHT})
 """Patterns of how a thing is turned, which goes on beside what else is done to it."""
 
+LET_GO = "let go of {1}"
+"""The pattern of a hand that leaves what it has."""
+
 REACH = "reach for {1}"
 """The pattern of a hand that goes to a thing."""
 
@@ -94,7 +110,10 @@ WALK, STEP = "walk", "take a step"
 WALK_UP = "walk up to {1}"
 """The same, to the thing that a hand takes next."""
 
-BODILY = frozenset({WALK, STEP, WALK_UP})
+CROUCH, STAND_UP = "crouch", "stand up"
+"""Patterns of a body that goes down with bent knees, and comes up again."""
+
+BODILY = frozenset({WALK, STEP, WALK_UP, CROUCH, STAND_UP})
 """Patterns that name no end-effector."""
 
 ON_FOOT = frozenset({"Step", "Stand", "Walk", "StandOnOneLeg", "RestFoot"})

@@ -22,6 +22,10 @@ FEW = 2
 LONGEST_BESIDE = 4
 """The most clauses of another hand that stand beside them."""
 
+ENOUGH_BESIDE = 2
+"""After so many clauses that stand beside them, what the first hand does next is told for itself.
+"""
+
 ENOUGH_OF_ONE = 2
 """After so many clauses, what is done with another thing begins another sentence."""
 
@@ -148,8 +152,12 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
         return False
     if (last.start_s, last.end_s) == (following.start_s, following.end_s):
         return False
-    long = len(taken) >= LONGEST and not _soon_over(streams[ees])
-    if last.frees or _turns_away(taken, following) or long:
+    long = len(taken) >= LONGEST and following.objects and not _soon_over(streams[ees])
+    left = last.frees and bool(following.objects)
+    if left or _turns_away(taken, following) or long:
+        return True
+    manual = [each for each in taken if each.objects]
+    if following.objects and last.grip != following.grip and len(manual) >= ENOUGH_OF_ONE:
         return True
     recurs = _repeated(streams, ees, 0)[1] > 1
     if recurs or _waits(following, streams) or _changes_hands(last, following, streams):
@@ -161,7 +169,8 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
         for each in rest
         if each.end_s <= following.start_s
     ]
-    return len(waiting) > LONGEST_BESIDE and not following.frees
+    apart = any(not _during(each, taken) for each in waiting)
+    return apart or len(waiting) >= ENOUGH_BESIDE
 
 
 def _soon_over(rest: Sequence[Clause]) -> bool:
@@ -192,7 +201,10 @@ def _changes_hands(last: Clause, following: Clause, streams: Streams) -> bool:
 
 
 def _turns_away(told: Sequence[Clause], following: Clause) -> bool:
-    return len(told) >= ENOUGH_OF_ONE and told[-1].objects[:1] != following.objects[:1]
+    own = [each for each in told if each.objects]
+    if len(own) < ENOUGH_OF_ONE or not following.objects:
+        return False
+    return own[-1].objects[:1] != following.objects[:1]
 
 
 def _beside(taken: Sequence[Clause], rest: list[Clause], streams: Streams) -> list[Clause]:

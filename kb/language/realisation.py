@@ -88,7 +88,11 @@ class Realiser:
         there = f" ({reached.start_s:.2f}–{reached.there_s:.2f} s)" if self._timed else ""
         back = f" ({reached.leaves_s:.2f}–{reached.end_s:.2f} s)" if self._timed else ""
         parts = [f"reached {reached.where} with {hand}{there}"]
-        verb = f"lowered the {kind} again" if reached.down else f"withdrew the {kind}"
+        verb = f"took the {kind} back"
+        if reached.down:
+            verb = f"lowered the {kind} again"
+        elif reached.where.startswith("back"):
+            verb = f"brought the {kind} forward again"
         return [*parts, f"{verb}{back}"] if reached.back else parts
 
     def _of_agent(self, steps: Sequence[Clause]) -> str:
@@ -116,7 +120,11 @@ class Realiser:
         """The hand as what is used, or where the tool is that was just named."""
         *_, word, last = step.pattern.split(" ") if " with {" in step.pattern else ("", "")
         tool = word == "with" and last.startswith("{")
-        return f"{'in' if tool else 'with'} {self._hands(step.ees)}"
+        then = [f"with {self._hands(ees)}" for ees in step.in_turn]
+        if then and step.in_turn[-1] in (step.ees, *step.in_turn[:-1]):
+            then[-1] += " again"
+        after = f", then {joined(then)}" if then else ""
+        return f"{'in' if tool else 'with'} {self._hands(step.ees)}{after}"
 
     def _of_hand(self, steps: Sequence[Clause], topic: str) -> str:
         """The clauses with their hand as the subject, after something was spoken of."""
@@ -148,11 +156,9 @@ class Realiser:
     def _end(self, step: Clause) -> str:
         often = f" {times(step.count)}" if step.count > 1 else ""
         often = f" {step.often}" if step.often else often
-        if step.pauses and step.name not in SUSTAINED:
-            often += f" {BIT_BY_BIT}"
-        elif step.pauses and not self._spans:
+        if step.pauses and step.name in SUSTAINED and not self._spans:
             pauses = "a pause" if step.pauses == 1 else f"{number(step.pauses)} pauses"
-            often += f"{',' if ' with {' in step.pattern else ''} with {pauses}"
+            often += f", with {pauses}"
         purpose = f"{often} to {_with_it(step.purpose)}" if step.purpose else often
         if not self._spans:
             return purpose
@@ -177,8 +183,11 @@ class Realiser:
             filled = filled.replace(f"{{{place}}}", self._mention(name, place))
         if "{" in pattern:
             self._rivals = set(_named(pattern, step.objects[1:], first=2)) - self._fixed
+        if step.pauses and step.name not in SUSTAINED:
+            filled += f" {BIT_BY_BIT}"
         named = "{1}" in step.pattern or step.objects[:1] == (self._topic,)
-        self._topic = step.objects[0] if named and not self._several else ""
+        if step.objects:
+            self._topic = step.objects[0] if named and not self._several else ""
         return filled
 
     def _mention(self, name: str, place: int) -> str:

@@ -6,7 +6,7 @@ from itertools import accumulate
 
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import MOVING, RUNNING, THIS_WAY, TIPPED, TURN
+from kb.language.lexicalisation import LOWER, MOVING, RUNNING, THIS_WAY, TIPPED, TURN
 from kb.language.thresholds import REST_S, SCRAP_M, SCRAP_S, SETTLING_S, UNSEEN_S
 
 
@@ -29,13 +29,13 @@ def _gripped(told: Sequence[Clause]) -> tuple[Clause, ...]:
 
 
 def _steadied(told: Sequence[Clause]) -> list[Clause]:
-    """The clauses, with a hand that stays at a thing and then steadies it as steadying it."""
+    """The clauses, without a hand's staying at a thing that it steadies then."""
     out: list[Clause] = []
     for clause in told:
         last = out[-1] if out else None
         held = last is not None and last.pattern.startswith("hold {1}")
         if last is not None and held and clause.helps and last.objects[:1] == clause.objects[:1]:
-            out[-1] = replace(clause, start_s=last.start_s)
+            out[-1] = clause
         else:
             out.append(clause)
     return out
@@ -119,7 +119,8 @@ def _pauses(deed: Clause, clause: Clause) -> bool:
 
 def more_of(clause: Clause, other: Clause) -> bool:
     """Whether it says what the other says, and where to."""
-    longer = clause.pattern.startswith(f"{other.pattern} ")
+    lowers = other.pattern == LOWER and clause.pattern.startswith("put {1}")
+    longer = lowers or clause.pattern.startswith(f"{other.pattern} ")
     return longer and clause.objects[:1] == other.objects[:1] and not other.purpose
 
 

@@ -27,6 +27,22 @@ gone past a hand's width within a second."""
 RISEN_M = 0.1
 """What is so far [m] above where it was has been lifted: a hand's width."""
 
+HELD_M = 0.2
+"""What is above the ground and ends less far than this [m] from where it was over it has not been
+carried anywhere, if it got no further than twice that on the way: whoever holds a large thing up
+sways with it by so much."""
+
+PLACE_M = 0.2
+"""What is put down less far than this [m] from where it was taken is back in its place: less than a
+step."""
+
+FURTHER_M = 0.5
+"""What is put down further than this [m] from where it was taken is somewhere else on the ground:
+about a step."""
+
+LEVEL_M = 0.03
+"""What is let go at this height [m], more or less, stood there already: a finger's width."""
+
 STEADY_S = 0.5
 """A hand that stays at a thing for so long [s] while another works in it steadies it."""
 
@@ -60,6 +76,14 @@ length of a foot."""
 
 STRIDE_S = 1.0
 """Who stands for longer than this [s] between two steps has stopped walking (``halt_ms``)."""
+
+CROUCHED_M = 0.25
+"""A pelvis that is so far [m] lower than when the body stands has bent knees below it: a quarter of
+a leg, which nobody needs for stooping."""
+
+STANDING_M = 0.08
+"""A body stands while its pelvis is lower than this [m] at most than it gets: what walking and
+leaning make of it."""
 
 REACHED_M = 0.2
 """A free hand that goes less far than this [m] does not reach anywhere: about its own length."""

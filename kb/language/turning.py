@@ -8,6 +8,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from statistics import median
 
 from capar.model.facts import Posture, Travelled
 from capar.model.observation import Observation, Segment
@@ -78,6 +79,11 @@ class Turning:
         if not seen or max(seen[0].lean, seen[-1].lean) > UPRIGHT_RAD:
             return False
         return abs(seen[-1].spin - seen[0].spin) > SOMEWHAT_RAD
+
+    def leant(self, thing: str, start_s: float, end_s: float) -> float:
+        """How far it leans from upright most of that time [rad]; 0 where that is not known."""
+        seen = self._between(thing, start_s, end_s)
+        return median(each.lean for each in seen) if seen else 0.0
 
     def told(self, grip: Sequence[Clause]) -> Iterator[Clause]:
         """Clauses of how a thing is turned over or around while a hand moves it.

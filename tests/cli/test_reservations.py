@@ -87,8 +87,11 @@ def run(*arguments: str) -> str:
 
 def test_stand_ins_are_told_after_the_text(bundle: Callable[[int, int], str]) -> None:
     told, _, notes = run("describe", bundle(0, 0)).partition(f"\n{HEADING}\n")
-    assert told == "Anna reached for the box with the right hand and touched it.\n"
-    assert notes == "note [stand-in-shape]: 2 stand-in shapes: box, post\n"
+    assert told == "Anna touched the box with the right hand.\n"
+    assert notes == (
+        "note: the recording does not tell the shape of the box and the post; a rough one is "
+        "assumed\n"
+    )
 
 
 def test_json_lists_them_by_code(bundle: Callable[[int, int], str]) -> None:
@@ -103,7 +106,7 @@ def test_what_was_never_tracked_is_said_to_be_lost_throughout_and_once(
     place = bundle(0, 10_000)
     told = run("describe", place)
     assert told.startswith("Anna moved the right hand without touching anything.")
-    line = "note [long-gap]: 'box' was lost throughout; no contact of it is known"
+    line = "note: 'box' was lost throughout; no contact of it is known"
     assert [each for each in told.splitlines() if "lost" in each] == [line]
 
 
@@ -111,7 +114,7 @@ def test_a_loss_is_counted_in_words_and_told_once(bundle: Callable[[int, int], s
     told = run("describe", bundle(20, 60))
     (line,) = [each for each in told.splitlines() if "lost" in each]
     assert line == (
-        "note [long-gap]: 'box' was lost once for long, from 0.19 to 0.57 s; a contact before "
+        "note: 'box' was lost once for long, from 0.19 to 0.57 s; a contact before "
         "and after is assumed to have lasted"
     )
 
@@ -123,7 +126,7 @@ def test_explain_tells_those_of_the_bodies_that_its_segment_is_about(
     for arguments in ((place,), (place, "right_hand/1"), (place, "--why-not", "Hit")):
         told, _, notes = run("explain", *arguments).partition(f"\n{HEADING}\n")
         assert "the right hand touched the box" in told or "Hit" in told
-        assert notes.startswith("note [stand-in-shape]: 'box' is a stand-in")
+        assert notes.startswith("note: the recording does not tell the shape of the box;")
         assert "post" not in notes
     for arguments in ((), ("--why-not", "Hit")):
         rows = json.loads(run("explain", place, *arguments, "--json"))

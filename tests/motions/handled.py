@@ -74,6 +74,9 @@ class Stage:
     height_m: float = 0.0
     """How high above the table it begins [m]."""
 
+    kind: str = "block"
+    """What the thing is."""
+
 
 def handle(
     performer: Performer,
@@ -102,7 +105,7 @@ def handle(
         hand = Riding(Moves((reach, back)), thing, scene.grip, taken, ready)
     bodies = (
         figure.hand_body(performer, HAND, hand),
-        Body("block", thing, scene.thing, TagType.MOBILE, mass_kg=0.5),
+        Body("block", thing, scene.thing, TagType.MOBILE, mass_kg=0.5, kind=scene.kind),
         table(performer),
         *scene.others,
     )

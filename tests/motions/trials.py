@@ -108,6 +108,8 @@ class Body:
     """Whether a tracker follows it; else its pose is known, as that of a table."""
 
     mass_kg: float | None = None
+    kind: str = ""
+    """What it is, where its name does not say so."""
 
 
 class Options(TypedDict, total=False):
@@ -177,7 +179,8 @@ def _sensor(body: Body, stream: Stream) -> Sensor:
 
 def _tagged(body: Body, stream: Stream) -> TagObject:
     assert body.tag is not None
-    return TagObject(body.name, body.tag, stream, body.shape, kind=body.name, mass_kg=body.mass_kg)
+    kind = body.kind or body.name
+    return TagObject(body.name, body.tag, stream, body.shape, kind=kind, mass_kg=body.mass_kg)
 
 
 def _stream(body: Body, times: Float[np.ndarray, "frames"], sampling: Sampling) -> Stream:

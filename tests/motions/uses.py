@@ -93,7 +93,7 @@ def pour(performer: Performer, **options: Unpack[Options]) -> Trial:
 
     Nobody was found who can, standing in balance (POSSIBLE.md).
     """
-    stage = Stage(shapes.box(*BLOCK), beside(performer), (_bowl(performer, 0.3),))
+    stage = Stage(shapes.box(*BLOCK), beside(performer), (_bowl(performer, 0.3),), kind="jug")
     over = Leg((0.3, 0.0, 0.0))
     legs = (
         UP,

@@ -137,7 +137,7 @@ def _bowl(ahead_m: float) -> Body:
 
 def pour_on() -> Trial:
     """A block is held leant over a bowl, and moved on a little so."""
-    stage = Stage(shapes.box(*BLOCK), beside(motions.WOMAN), (_bowl(0.3),))
+    stage = Stage(shapes.box(*BLOCK), beside(motions.WOMAN), (_bowl(0.3),), kind="jug")
     legs = (
         uses.UP,
         Leg((0.25, 0.0, 0.0)),
@@ -157,7 +157,7 @@ def pour_inside() -> Trial:
     tumbler = (0.03, 0.03, 0.12)
     out = tumbler[1] / 2 - figure.GRIP_DEPTH + figure.thickness(motions.WOMAN)
     grip = pose((0.0, -out, 0.12), beside(motions.WOMAN).rotation)
-    stage = Stage(shapes.box(*tumbler), grip, (_bowl(0.0),), held=True, height_m=0.22)
+    stage = Stage(shapes.box(*tumbler), grip, (_bowl(0.0),), held=True, height_m=0.22, kind="glass")
     over, back = Leg(turn=(-0.6, 0.0, 0.0)), Leg(turn=(0.6, 0.0, 0.0))
     legs = (Leg((0.0, 0.0, -0.195)), over, back, Leg((0.0, 0.0, 0.195)))
     steps = ("Touch", "Lower", "Touch", "Pour", "Touch", "Pour", "Touch", "Raise", "Touch")

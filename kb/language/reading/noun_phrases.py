@@ -73,11 +73,16 @@ def _another(reader: Reader) -> Noun | None:
 
 
 def _list_goes_on(reader: Reader) -> bool:
-    """Whether a list of things ends with ``and`` before a thing."""
+    """Whether a list of things, however long, ends with ``and`` before a thing."""
     cursor = reader.cursor
     start = cursor.at
-    cursor.accept(",")
-    ends = cursor.accept("and") and cursor.peek() in {"the", "a"}
+    comma = cursor.accept(",")
+    if cursor.accept("and"):
+        ends = cursor.peek() in ARTICLES
+    else:
+        found = _single(reader) if comma and cursor.peek() in ARTICLES else None
+        goes_on = found is not None and bool(found.things) and not reader.finite_ahead()
+        ends = goes_on and _list_goes_on(reader)
     cursor.at = start
     return ends
 

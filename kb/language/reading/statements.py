@@ -60,10 +60,22 @@ def _sentence(reader: Reader, told: _Told) -> None:
             if cursor.done:
                 cursor.at = start
                 raise cursor.error("the sentence ends here", ())
-            told.parts[-1][-1].append(_clause(reader, told))
+            again = _in_turn(reader, told.parts[-1][-1][-1])
+            told.parts[-1][-1].append(again or _clause(reader, told))
             continue
         problem = f"nothing is known that {cursor.peek()!r} could begin"
         raise cursor.error(problem, AFTER)
+
+
+def _in_turn(reader: Reader, last: Instruction) -> Instruction | None:
+    """What was said last, with the hand that does it next: ``then with the left hand``."""
+    cursor = reader.cursor
+    start = cursor.at
+    noun = noun_phrase(reader) if cursor.accept("with") else None
+    if noun is not None and noun.limb:
+        return replace(last, ee=noun.limb)
+    cursor.at = start
+    return None
 
 
 def _accept_all(reader: Reader, words: Sequence[str]) -> bool:

@@ -58,8 +58,8 @@ def seen(links: Mapping[str, tuple[tuple[str, int], ...]], way_m: float) -> Obse
 def test_steps_before_a_thing_is_taken_are_walking() -> None:
     told = describe(seen({"right_hand": WORKED, **WALKED}, 0.6), timed=True)
     assert told == (
-        "The agent walked (0.00–1.70 s), reached for the mug with the right hand (1.70–2.00 s), "
-        "lifted it (2.00–3.00 s), and let go (3.00 s)."
+        "The agent walked (0.00–1.70 s), lifted the mug with the right hand (2.00–3.00 s), and let "
+        "go (3.00 s)."
     )
 
 
@@ -67,12 +67,14 @@ def test_who_comes_nearer_to_the_thing_walks_up_to_it() -> None:
     made = seen({"right_hand": WORKED, **WALKED}, 0.6)
     ahead = sampled_track("mug", 0.01, np.tile((1.5, 0.0, 0.8), (401, 1)))
     told = describe(replace(made, tracks=(*made.tracks, ahead)))
-    assert told.startswith("The agent walked up to the mug, reached for it with the right hand,")
+    assert told == (
+        "The agent walked up to the mug, lifted it with the right hand, and put it down."
+    )
 
 
 def test_steps_on_the_spot_are_not_told_beside_what_hands_do() -> None:
     told = describe(seen({"right_hand": WORKED, **WALKED}, 0.05))
-    assert told == "The agent reached for the mug with the right hand, lifted it, and let go."
+    assert told == "The agent lifted the mug with the right hand and let go."
 
 
 def test_feet_alone_walk() -> None:
@@ -81,4 +83,31 @@ def test_feet_alone_walk() -> None:
 
 def test_an_elbow_that_goes_along_with_the_hand_is_not_told() -> None:
     told = describe(seen({"right_hand": WORKED, "right_elbow": WORKED}, 0.0))
-    assert told == "The agent reached for the mug with the right hand, lifted it, and let go."
+    assert told == "The agent lifted the mug with the right hand and let go."
+
+
+def crouching(*heights_m: float) -> str:
+    """What is told of who lifts a mug from 2 to 3 s, by the pelvis's height each half second."""
+    made = seen({"right_hand": WORKED}, 0.6)
+    seconds = np.arange(401) / 100.0
+    heights = np.interp(seconds, 0.5 * np.arange(len(heights_m)), heights_m)
+    places = np.column_stack((np.zeros((401, 2)), heights))
+    return describe(replace(made, tracks=(*made.tracks, sampled_track("pelvis", 0.01, places))))
+
+
+def test_who_goes_down_beside_what_the_hands_do_crouches_and_stands_up() -> None:
+    assert crouching(1.0, 1.0, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 1.0) == (
+        "The agent crouched, lifted the mug with the right hand, let go, and stood up."
+    )
+
+
+def test_who_stands_up_with_a_thing_lifts_it() -> None:
+    assert crouching(1.0, 1.0, 0.5, 0.5, 0.5, 0.8, 1.0, 1.0, 1.0) == (
+        "The agent crouched, lifted the mug with the right hand, and let go."
+    )
+
+
+def test_who_only_stoops_does_not_crouch() -> None:
+    assert crouching(1.0, 1.0, 0.8, 0.8, 0.8, 0.8, 0.8, 0.8, 1.0) == (
+        "The agent lifted the mug with the right hand and let go."
+    )

@@ -60,7 +60,9 @@ def told(way: Sequence[float], facing: float = 0.0, *, back: bool = True) -> str
 def test_a_reach_has_its_direction(way: tuple[float, ...], words: str) -> None:
     text = told(way)
     assert text.startswith(f"The agent reached {words} with the right hand (0.50–")
-    assert ("and lowered the hand again (" if way[2] > 0.0 else "and withdrew the hand (") in text
+    back = "brought the hand forward again" if words == "back" else "took the hand back"
+    back = "lowered the hand again" if way[2] > 0.0 else back
+    assert f" and {back} (" in text
     assert text.endswith(" s) without touching anything.")
 
 

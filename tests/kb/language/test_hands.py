@@ -40,7 +40,7 @@ def told(detail: Literal["steps", "summary"] = "steps", **links: tuple[Piece, ..
 
 
 REST = (Piece("Rest", 400, ()),)
-BOTH = "The agent reached for the chair with both hands, lifted it, and let go."
+BOTH = "The agent lifted the chair with both hands and let go."
 
 
 def test_what_a_finger_moves_is_moved_by_its_hand() -> None:

@@ -1,0 +1,61 @@
+"""What hands do in turn to one thing: with the right hand, then with the left, then with both."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import groupby
+
+from kb.language.clause import Clause, in_time
+from kb.language.lexicalisation import JOINT, THIS_WAY, TURN
+from kb.language.repeating import whole
+from kb.language.thresholds import MOSTLY
+
+FEWEST_TURNS = 3
+"""So many times one hand after another has the thing, where the turns are told as one deed."""
+
+
+def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses of a summary; where hands mostly turn one thing about in turn, that as one.
+
+    What is done before the first turn and after the last stays; so does all where other things are
+    handled, too.
+
+    Args:
+        steps: What was done, in order of time.
+    """
+    turning = [step for step in steps if step.pattern in {TURN, THIS_WAY} and step.changes]
+    turns = [list(part) for _, part in groupby(turning, key=lambda step: step.ees)]
+    things = {step.objects[:1] for step in steps if step.objects}
+    if (
+        len(turns) < FEWEST_TURNS
+        or len(things) != 1
+        or _lasts_s(turning) < MOSTLY * _lasts_s(steps)
+    ):
+        return tuple(steps)
+    first, last = turning[0], max(turning, key=lambda step: step.end_s)
+    rises = sum(any(map(_rises, _beside(part, steps))) for part in turns)
+    lifted = rises >= len(turns) - 1
+    verbs = f"lift{JOINT}turn {{1}} about" if lifted else THIS_WAY
+    main = replace(
+        whole(turning, pattern=verbs),
+        ees=first.ees,
+        in_turn=tuple(part[0].ees for part in turns[1:]),
+    )
+    before = [
+        step for step in steps if step.end_s <= first.start_s and not (lifted and _rises(step))
+    ]
+    after = [step for step in steps if step.start_s >= last.end_s]
+    return tuple(sorted((*before, main, *after), key=in_time))
+
+
+def _beside(turn: Sequence[Clause], steps: Sequence[Clause]) -> list[Clause]:
+    """What the same hands do while they have the thing that they turn."""
+    grips = {step.grip for step in turn}
+    return [step for step in steps if step.ees == turn[0].ees and step.grip in grips]
+
+
+def _rises(step: Clause) -> bool:
+    return not {"Lift", "Raise"}.isdisjoint((step.name, *step.general))
+
+
+def _lasts_s(steps: Sequence[Clause]) -> float:
+    return sum(step.end_s - step.start_s for step in steps)

@@ -1,0 +1,104 @@
+"""Where a thing is held, how it is carried, and where it is put: overhead, tilted, in its place.
+
+Wording only, from measured ways and postures; rules name segments.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from capar.model.observation import ObservedObject
+from kb.language.clause import Clause
+from kb.language.contacts import Scene
+from kb.language.lexicalisation import DOWN, GROUNDS, LOWER
+from kb.language.thresholds import (
+    FURTHER_M,
+    HELD_M,
+    OVER_RAD,
+    PLACE_M,
+    REST_S,
+    SETTLING_S,
+    TURNED_RAD,
+)
+from kb.language.turning import Turning
+
+GOALS = ("put {1} on {2}", "bring {1} to {2}")
+"""How patterns begin of a thing that gets to another one."""
+
+CARRY, RISES = "carry {1}", frozenset({"lift {1}", "raise {1}"})
+
+
+def placed(
+    steps: Sequence[Clause], objects: Sequence[ObservedObject], scene: Scene, turning: Turning
+) -> tuple[Clause, ...]:
+    """The clauses, with how things are held up and carried, and where they are put.
+
+    Args:
+        steps: What was done, in order of time.
+        objects: The objects.
+        scene: Measured contacts and places.
+        turning: How things are turned.
+    """
+    grounds = {thing.name for thing in objects if thing.kind in GROUNDS}
+    out: list[Clause] = []
+    for step in steps:
+        if _puts(step) and grounds.intersection(step.objects[1:]):
+            out.append(_on_the_ground(step, out, scene))
+        elif step.pattern == CARRY:
+            out.append(_carried(step, scene, turning))
+        elif step.pattern == LOWER and scene.left_there(step.objects[0], step.end_s):
+            out.append(replace(step, pattern=DOWN))
+        elif step.pattern in RISES and scene.overhead(step.objects[0], step.end_s, step.end_s):
+            out.append(replace(step, pattern=f"{step.pattern} overhead"))
+        else:
+            out.append(_brought(step, out))
+    return tuple(out)
+
+
+def _brought(step: Clause, before: list[Clause]) -> Clause:
+    """What is put or brought to another thing, with the short lifting and carrying before it.
+
+    Those are taken from what is told before.
+    """
+    if not step.pattern.startswith(GOALS):
+        return step
+    start_s = step.start_s
+    while before and _leads_to(before[-1], step) and start_s - before[-1].end_s < REST_S:
+        start_s = before.pop().start_s
+    return replace(step, start_s=start_s)
+
+
+def _leads_to(step: Clause, goal: Clause) -> bool:
+    own = (step.ees, step.objects[:1]) == (goal.ees, goal.objects[:1])
+    plain = step.pattern in {CARRY, *RISES}
+    return own and plain and step.end_s - step.start_s < SETTLING_S
+
+
+def _carried(step: Clause, scene: Scene, turning: Turning) -> Clause:
+    """What is carried somewhere as carried, and how; what stays over its place as held up."""
+    thing, span = step.objects[0], (step.start_s, step.end_s)
+    gone_m, strays_m = scene.over_ground_m(thing, *span)
+    if gone_m < HELD_M and strays_m < 2.0 * HELD_M:
+        where = "overhead" if scene.overhead(thing, *span) else "up"
+        return replace(step, pattern=f"hold {{1}} {where}")
+    if step.end_s - step.start_s < SETTLING_S:
+        return step
+    leant = turning.leant(thing, *span)
+    if leant > OVER_RAD:
+        return replace(step, pattern=f"{CARRY} upside down")
+    return replace(step, pattern=f"{CARRY} tilted to one side") if leant > TURNED_RAD else step
+
+
+def _on_the_ground(step: Clause, before: Sequence[Clause], scene: Scene) -> Clause:
+    """What is put on the ground as put in its place, or where it was not before."""
+    own = [each for each in before if each.objects[:1] == step.objects[:1] and each.changes]
+    since = [each for at, each in enumerate(own) if not any(map(_puts, own[at:]))] or [step]
+    taken_s = min(each.start_s for each in since)
+    gone_m, _ = scene.over_ground_m(step.objects[0], taken_s, step.end_s)
+    if gone_m < PLACE_M:
+        return replace(step, pattern="put {1} back in its place")
+    return replace(step, pattern=f"{DOWN} further along" if gone_m > FURTHER_M else DOWN)
+
+
+def _puts(step: Clause) -> bool:
+    """Whether a thing stands somewhere after it."""
+    return step.pattern.startswith("put {1}")

@@ -1,0 +1,185 @@
+"""Where a thing is held, carried and put is told by how it goes; coming and leaving is not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from observations import MUG, TABLE, Piece, observation
+from tellings import steps_of
+
+from capar.model.facts import Fact, Lies, Posture, Touching
+from capar.model.observation import ObservedObject
+from capar.model.par import FeatureSet
+from capar.model.sampled_track import sampled_track
+from kb.language.describe import describe
+
+OWN = FeatureSet("1", "1", "1", "hand", "0")
+PLACED = FeatureSet("100", "101", "10", "hand", "00")
+FLOOR = replace(TABLE, name="floor", kind="floor")
+TRAY = replace(MUG, name="tray", kind="tray")
+Way = tuple[tuple[float, float, float], ...]
+
+TAKEN: Way = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+"""Where a mug is as each second begins, while a hand comes and lifts it [m]."""
+
+
+def told(
+    *pieces: Piece,
+    way: Way,
+    facts: tuple[Fact, ...] = (),
+    things: tuple[ObservedObject, ...] = (MUG, TABLE, FLOOR, TRAY),
+    head_m: float | None = None,
+) -> str:
+    """What is told of a mug that goes from place to place each second, at 100 Hz.
+
+    Args:
+        pieces: What the right hand does.
+        way: Where the mug is as each second begins [m].
+        facts: What else was measured.
+        things: The objects.
+        head_m: How high the head is [m], where it is tracked.
+    """
+    frames = 100 * (len(way) - 1) + 1
+    made = observation(
+        "Placed", {"right_hand": pieces}, things, facts=facts, frames=frames, rate_hz=100.0
+    )
+    (link,) = made.links
+    own = tuple(
+        replace(each, possessed=each.name not in {"Reach", "ResumePosture"})
+        for each in link.segments
+    )
+    seconds = np.arange(frames) / 100.0
+    places = np.column_stack(
+        [np.interp(seconds, np.arange(len(way)), axis) for axis in np.array(way).T]
+    )
+    tracks = [sampled_track("mug", 0.01, places)]
+    if head_m is not None:
+        tracks.append(sampled_track("head", 0.01, np.tile((0.0, 0.0, head_m), (frames, 1))))
+    seen = replace(made, links=(replace(link, segments=own),), tracks=tuple(tracks))
+    text = describe(seen)
+    assert len(steps_of(text)) == 1 + text.count(",") + text.count(" and ") - text.count(", and ")
+    return text.removeprefix("The agent ")
+
+
+REACHED, LIFTED = Piece("Reach", 100, ("mug",)), Piece("Lift", 200, ("mug",), features=OWN)
+CARRIED = Piece("Carry", 400, ("mug",), features=OWN)
+
+
+@pytest.mark.parametrize(
+    ("far_m", "head_m", "words"),
+    [
+        (0.1, None, "held it up"),
+        (0.1, 0.5, "held it overhead"),
+        (0.1, 1.5, "held it up"),
+        (0.6, 0.5, "carried it"),
+    ],
+)
+def test_only_what_gets_somewhere_is_carried(
+    far_m: float, head_m: float | None, words: str
+) -> None:
+    way = (*TAKEN, (0.5 * far_m, 0.0, 1.0), (far_m, 0.0, 1.0))
+    overhead = " overhead" if head_m == 0.5 else ""
+    assert told(REACHED, LIFTED, CARRIED, way=way, head_m=head_m) == (
+        f"lifted the mug{overhead} with the right hand and {words}."
+    )
+
+
+def test_what_is_carried_away_and_back_is_carried() -> None:
+    way = (*TAKEN, (0.8, 0.0, 1.0), (0.1, 0.0, 1.0))
+    assert told(REACHED, LIFTED, CARRIED, way=way).endswith("and carried it.")
+
+
+@pytest.mark.parametrize(
+    ("lean", "how"), [(100, ""), (700, " tilted to one side"), (3000, " upside down")]
+)
+def test_how_a_thing_leans_while_it_is_carried_is_told(lean: int, how: str) -> None:
+    way = (*TAKEN, (0.5, 0.0, 1.0), (1.0, 0.0, 1.0))
+    leans = tuple(Posture("mug", frame, lean, 0) for frame in (200, 300, 400))
+    done = told(Piece("Carry", 400, ("mug",), features=OWN), way=way, facts=leans)
+    assert done == f"carried the mug{how} with the right hand."
+
+
+@pytest.mark.parametrize(
+    ("far_m", "words"),
+    [(0.1, "put it back in its place"), (0.3, "put it down"), (0.9, "put it down further along")],
+)
+def test_what_is_put_on_the_ground_is_put_back_or_elsewhere(far_m: float, words: str) -> None:
+    way = (*TAKEN, (far_m, 0.0, 1.0), (far_m, 0.0, 0.0))
+    lowered = Piece("Lower", 400, ("mug", "floor"), features=PLACED)
+    floor = (Touching("mug", "floor", 0, 100), Touching("mug", "floor", 395, 400))
+    hand = Touching("right_hand", "mug", 100, 400)
+    done = told(REACHED, LIFTED, lowered, way=way, facts=(*floor, hand))
+    assert done == f"lifted the mug with the right hand and {words}."
+
+
+@pytest.mark.parametrize(("end_m", "words"), [(0.0, "put it down"), (0.5, "lowered")])
+def test_what_is_as_high_when_it_is_let_go_is_put_down(end_m: float, words: str) -> None:
+    """What the hand lowers, and then has while it goes up again, is not put down."""
+    way = (*TAKEN, (0.0, 0.0, 0.0), (0.0, 0.0, end_m), (0.0, 0.0, end_m))
+    pieces = (REACHED, LIFTED, Piece("Lower", 300, ("mug",), features=OWN))
+    rest = (Piece("Touch", 400, ("mug",)), Piece("ResumePosture", 500, ("mug",)))
+    hand = Touching("right_hand", "mug", 100, 400)
+    assert words in told(*pieces, *rest, way=way, facts=(hand,))
+
+
+def test_what_leaves_its_support_at_the_edge_is_slid_off() -> None:
+    way = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.5, 0.0, 0.0))
+    slid = Piece("Slide", 200, ("mug", "table"), features=PLACED)
+    table = Touching("mug", "table", 0, 198)
+    aside = Lies("mug", "beside", "table", 190, 200)
+    assert told(REACHED, slid, way=way, facts=(table, aside)) == (
+        "slid the mug off the table with the right hand."
+    )
+    assert told(REACHED, slid, way=way, facts=(table,)) == (
+        "slid the mug along the table with the right hand."
+    )
+
+
+@pytest.mark.parametrize(
+    ("ends", "text"),
+    [
+        ((200, 280, 400), "brought the mug to the tray with the right hand."),
+        ((200, 390, 490), "lifted the mug with the right hand, carried it, and brought it to the "
+         "tray."),
+    ],
+)  # fmt: skip
+def test_short_lifting_and_carrying_goes_with_bringing_a_thing_somewhere(
+    ends: tuple[int, int, int], text: str
+) -> None:
+    way = (*TAKEN, (0.8, 0.0, 1.0), (1.6, 0.0, 1.0), (1.6, 0.0, 0.0))
+    lifted, carried, brought = ends
+    pieces = (
+        Piece("Lift", lifted, ("mug",), features=OWN),
+        Piece("Carry", carried, ("mug",), features=OWN),
+        Piece("MoveObjTo", brought, ("mug", "tray"), features=PLACED),
+    )
+    begun = 110 if brought == 400 else 100
+    assert told(Piece("Reach", begun, ("mug",)), *pieces, way=way) == text
+
+
+@pytest.mark.parametrize(("moves_m", "words"), [(0.0, " and put it down"), (0.5, " and let go")])
+def test_what_is_up_in_the_hand_and_let_go_where_it_stays_is_put_down(
+    moves_m: float, words: str
+) -> None:
+    way = (*TAKEN, (0.0, 0.0, 1.0), (moves_m, 0.0, 1.0))
+    gone = Piece("ResumePosture", 400, ("mug",))
+    hand = Touching("right_hand", "mug", 100, 300)
+    done = told(REACHED, LIFTED, Piece("Touch", 290, ("mug",)), gone, way=way, facts=(hand,))
+    assert done.endswith(f"{words}.")
+
+
+def test_that_a_hand_stays_at_what_it_put_somewhere_is_not_told() -> None:
+    way = (*TAKEN, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    put = Piece("PutDown", 300, ("mug", "tray"), features=PLACED)
+    held = Piece("TouchWith", 480, ("mug", "tray"))
+    gone = Piece("ResumePosture", 500, ("mug",))
+    done = told(REACHED, LIFTED, put, held, gone, way=way)
+    assert done == "lifted the mug with the right hand and put it down."
+
+
+def test_a_hand_that_only_comes_and_leaves_is_told_to() -> None:
+    way = ((0.0, 0.0, 0.0),) * 3
+    gone = Piece("ResumePosture", 200, ("mug",))
+    assert told(REACHED, gone, way=way) == (
+        "reached for the mug with the right hand and took the hand away."
+    )
