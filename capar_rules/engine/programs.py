@@ -1,16 +1,18 @@
-"""The text of a rule base as the solver reads it, without rules that no fact can reach.
+"""The text of a rule base as the solver reads it, without rules that cannot change the answer.
 
 Most rules are about what one capture does not have: doors, seats, a second agent. To read and
 ground them all takes 45 ms, which counts where a process asks the same rules again and again, as
 live observation does for every window. A rule that needs an atom which neither the facts nor
-another rule can give has no instance, so leaving it out leaves the answer as it is.
+another rule can give has no instance, so leaving it out leaves the answer as it is. So does leaving
+out words that nothing shown depends on: many are there for the rules of users, and they are a
+quarter of all atoms.
 """
 
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
 
-from capar_rules.engine.slicing import firing
+from capar_rules.engine.slicing import asked_for, firing
 from capar_rules.engine.syntax import Signature, Statement, parse
 
 
@@ -31,12 +33,13 @@ class RuleBase:
         return tuple(statement for statement in found if statement.kind != "comment")
 
     def program(self, measured: frozenset[Signature]) -> str:
-        """The rules that can fire if only these predicates have facts, and every directive."""
+        """Every directive, and the rules on which the answer depends.
+
+        Args:
+            measured: The only predicates that have facts.
+        """
         if measured not in self.programs:
             fired = {id(rule) for rule in firing(self.statements, measured)}
-            self.programs[measured] = "\n".join(
-                statement.text
-                for statement in self.statements
-                if statement.kind != "rule" or id(statement) in fired
-            )
+            kept = (each for each in self.statements if each.kind != "rule" or id(each) in fired)
+            self.programs[measured] = "\n".join(each.text for each in asked_for(tuple(kept)))
         return self.programs[measured]

@@ -62,6 +62,31 @@ def firing(statements: Sequence[Statement], measured: Iterable[Signature]) -> li
     return [each for number, each in enumerate(statements) if number in fired]
 
 
+def asked_for(statements: Sequence[Statement]) -> list[Statement]:
+    """The rules that what is shown depends on, and every other statement.
+
+    All of them, where more than the definitions of what is shown decides on the answer: choices,
+    constraints, weights, or terms that are shown.
+
+    Args:
+        statements: A rule base.
+    """
+    shown = {each.shows for each in statements if each.shows is not None}
+    if not shown or not all(map(_merely_defines, statements)):
+        return list(statements)
+    read = {id(each) for each in towards(statements, shown)}
+    return [each for each in statements if each.kind != "rule" or id(each) in read]
+
+
+def _merely_defines(statement: Statement) -> bool:
+    if statement.kind == "rule":
+        return statement.head_kind == "atom"
+    return statement.kind in _SAYING_NOTHING or statement.shows is not None
+
+
+_SAYING_NOTHING = ("comment", "defined", "definition")
+
+
 def _needed(statement: Statement) -> set[Signature]:
     """The predicates that must have an atom for a rule to fire."""
     return {

@@ -21,7 +21,11 @@ BLOCK_FACTS = 4096
 
 OFTEN = 2
 """How often rules are loaded whole, and all remarks of the solver heard, before they are reduced to
-what the facts can reach; reading them for that takes as long as five answers [1]."""
+what the answer depends on; reading them for that takes as long as five answers [1]."""
+
+MANY_FACTS = 50_000
+"""Over more facts, those of a minute or two of handling, rules are reduced at once: what no answer
+depends on would take more time and memory than reading them [1]."""
 
 Term = int | str | tuple["Term", ...]
 """A value of the rules: a number, a name or text, or a compound as (functor, arguments...)."""
@@ -161,13 +165,18 @@ def _grounded(files: Iterable[Path], facts: str | Iterable[Fact], option: str) -
 def _program(
     files: tuple[Path, ...], facts: str | Iterable[Fact]
 ) -> tuple[tuple[Path, ...], Iterator[str]]:
-    """Files to load, and texts to add: rules that are asked often are a text instead of files."""
+    """Files to load, and texts to add: rules that are asked often are a text instead of files.
+
+    So are those over many facts, once all remarks on them were heard.
+    """
     if isinstance(facts, str):
         return files, iter([facts])
     facts = tuple(facts)
     base = _rule_base(files, _state(files))
     base.asked += 1
-    if base.asked <= OFTEN:
+    if base.asked <= OFTEN and len(facts) > MANY_FACTS:
+        _grounded(files, "", "--models=1")
+    elif base.asked <= OFTEN:
         return files, _texts(facts)
     return (), chain([base.program(signatures(facts))], _texts(facts))
 

@@ -81,6 +81,9 @@ class Statement:
     defines: Signature | str = ""
     """What ``#defined`` or ``#const`` names."""
 
+    shows: Signature | None = None
+    """What ``#show`` names."""
+
 
 def parse(files: Iterable[Path]) -> tuple[Statement, ...]:
     """The statements of rule files and of the files that they include, in order.
@@ -146,7 +149,8 @@ def _statement(node: ast.AST) -> Statement:
         defines = (node.name, node.arity)
     elif word == "definition":
         defines = node.name
-    return Statement(word, place, text, external=external, defines=defines)
+    shows = (node.name, node.arity) if word == "showsignature" else None
+    return Statement(word, place, text, external=external, defines=defines, shows=shows)
 
 
 class _Named(ast.Transformer):

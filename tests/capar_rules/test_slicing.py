@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from capar_rules.engine.search import brave
-from capar_rules.engine.slicing import firing
+from capar_rules.engine.slicing import asked_for, firing
 from capar_rules.engine.syntax import Signature, parse_text
 
 RULES = parse_text(
@@ -70,3 +70,44 @@ def test_a_rule_is_left_out_when_nothing_that_it_asks_for_is_measured(
     kept = firing(RULES, kinds)
     assert {head.signature[0] for each in kept for head in each.heads} == heads
     assert [each for each in kept if each.kind == "definition"] == [RULES[0]]
+
+
+SHOWING = "#show lost/1. #show shaken/1.\n"
+
+
+@settings(max_examples=80, deadline=None)
+@given(facts())
+def test_the_rules_that_are_asked_for_answer_as_all_do(told: dict[Signature, set[str]]) -> None:
+    rules = (*parse_text(SHOWING), *RULES)
+    text = "\n".join(sorted(each for several in told.values() for each in several))
+    asked = [("lost", 1), ("shaken", 1)]
+    whole, part = (
+        brave("\n".join([*(rule.text for rule in chosen), text]), asked)
+        for chosen in (rules, asked_for(rules))
+    )
+    assert whole == part
+
+
+def test_a_rule_is_left_out_when_nothing_that_is_shown_depends_on_it() -> None:
+    kept = asked_for((*parse_text(SHOWING), *RULES))
+    heads = {head.signature[0] for rule in kept for head in rule.heads}
+    assert heads == {"held", "lost", "shaken"}
+
+
+@pytest.mark.parametrize(
+    "further",
+    [
+        ":- held(X), lost(X).",
+        "{ chosen(X) } :- seen(X).",
+        "one(X); other(X) :- seen(X).",
+        ":~ held(X). [1, X]",
+        "#show X : held(X).",
+    ],
+)
+def test_all_rules_stay_where_more_than_definitions_decides_on_the_answer(further: str) -> None:
+    rules = (*parse_text(SHOWING + further), *RULES)
+    assert asked_for(rules) == list(rules)
+
+
+def test_all_rules_stay_where_everything_is_shown() -> None:
+    assert asked_for(RULES) == list(RULES)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from capar.model.errors import RuleError
 from capar.model.facts import (
     Fact,
     Frames,
@@ -81,3 +82,24 @@ def test_the_shipped_rules_answer_the_same_whole_and_reduced_to_what_facts_reach
     found = [infer(facts, profile=rules) for _ in range(solver.OFTEN + 2)]
     assert found == [found[0]] * len(found)
     assert found[0].links[0].segments[0].name == "Reach"
+
+
+def test_over_many_facts_rules_are_reduced_at_once_and_answer_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rules = tmp_path / "rules.lp"
+    rules.write_text(REACHED)
+    whole = solver.solve([rules], TOUCHES + CROSSINGS)
+    rules.write_text(f"{REACHED}% The same again, not asked yet.")
+    monkeypatch.setattr(solver, "MANY_FACTS", 1)
+    assert solver.solve([rules], TOUCHES + CROSSINGS) == whole
+
+
+def test_remarks_on_rules_are_heard_over_many_facts_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rules = tmp_path / "rules.lp"
+    rules.write_text(REACHED.replace("seated(A) :- near(A, chair)", "seated(A) :- naer(A, chair)"))
+    monkeypatch.setattr(solver, "MANY_FACTS", 1)
+    with pytest.raises(RuleError, match="naer"):
+        solver.solve([rules], TOUCHES + CROSSINGS)
