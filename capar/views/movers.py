@@ -3,7 +3,7 @@
 from collections import Counter, defaultdict
 from collections.abc import Collection, Mapping, Sequence
 
-from capar.model.body_names import body_names
+from capar.model.body_names import body_names, is_plural
 from capar.model.facts import MovedBy
 from capar.model.observation import Observation
 from capar.views.rows import spoken
@@ -62,22 +62,25 @@ def _line(
 ) -> str:
     """What moves a thing: one plain statement, or each mover with its share of the time."""
     thing = names.get(thing, spoken(thing))
+    was = "were" if is_plural(thing) else "was"
     ways = Counter(_together(found, names) for found in movers.values()).most_common(1)
     (together, count) = ways[0]
     if 100.0 * count >= ALL_BUT * len(movers):
-        return f"The {thing} was {together}."
+        return f"The {thing} {was} {together}."
     shares = Counter(mover for found in movers.values() for mover in _movers(found))
     if not shares:
-        return f"The {thing} was {' or '.join(_without_mover(movers.values()))}."
+        return f"The {thing} {was} {' or '.join(_without_mover(movers.values()))}."
     verb = "carried" if _only_carried(movers.values()) else "moved"
     most = sorted(shares.items(), key=lambda share: (-share[1], share[0]))[:MOST_TOLD]
-    told = [
-        f"by the {names.get(mover, spoken(mover))}{_how_long(count, len(movers))}"
-        for mover, count in most
-    ]
-    others = len(shares) - len(told)
+    alike: dict[str, list[str]] = {}
+    for mover, count in most:
+        called = f"the {names.get(mover, spoken(mover))}"
+        alike.setdefault(_how_long(count, len(movers)), []).append(called)
+    told = [f"by {joined(who)}{how_long}" for how_long, who in alike.items()]
+    others = len(shares) - len(most)
     told += [f"by {others} other{'s' * (others > 1)}"] if others else []
-    return f"The {thing} was {verb} {joined(told)}{_remainder(movers.values())}."
+    remainder = _remainder(movers.values(), it="they were" if is_plural(thing) else "it was")
+    return f"The {thing} {was} {verb} {joined(told)}{remainder}."
 
 
 def _movers(found: Collection[tuple[str, str]]) -> set[str]:
@@ -94,12 +97,12 @@ def _without_mover(frames: Collection[Collection[tuple[str, str]]]) -> list[str]
     return [WORDS[how] for how in sorted(hows)]
 
 
-def _remainder(frames: Collection[Collection[tuple[str, str]]]) -> str:
+def _remainder(frames: Collection[Collection[tuple[str, str]]], *, it: str) -> str:
     """What is told of the time in which nothing moves it."""
     alone = [found for found in frames if not _movers(found)]
     share = round(100.0 * len(alone) / len(frames))
     return (
-        f"; for {share} % of the time it was {' or '.join(_without_mover(alone))}" if share else ""
+        f"; for {share} % of the time {it} {' or '.join(_without_mover(alone))}" if share else ""
     )
 
 

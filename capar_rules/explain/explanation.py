@@ -157,7 +157,8 @@ class Explainer:
         reasons = [self._reason(derived.why(each), clock, done) for each in roots]
         against = self._against(segment.name, derived, reasons[0], clock) if segment.known else ()
         briefs = Briefs(self.base.sentences, clock)
-        generals = generals_of(self.base, segment.name)
+        fitting = {name for term, name in derived.holding("fits") if term == clock.own}
+        generals = [each for each in generals_of(self.base, segment.name) if each in fitting]
         return _explanation(segment, reasons, briefs, against, generals)
 
     def _against(

@@ -1,12 +1,13 @@
 """The summary of an explanation: the name's conditions, and what decided against neighbours."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from capar_rules.engine.syntax import split_arguments
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.contrasts import Contrast
+from capar_rules.explain.reaches import Between
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
 
@@ -83,34 +84,49 @@ class Briefs:
 
     def touching(self, nodes: Iterable[Reason]) -> str:
         """Up to which distance bodies are counted as touching that are told to touch."""
-        found: dict[int, list[str]] = {}
+        measured = self.clock.measured
+        found: dict[tuple[bool, Between], dict[int, list[str]]] = {}
         bodies: list[str] = []
         for each in nodes:
             predicate, arguments = _parsed(each.atom)
             if predicate in ("contact_at", "no_contact"):
                 one, other = arguments[1:3] if predicate == "contact_at" else arguments[2:4]
-                reach = self.clock.measured.touch_m.get((one, other))
+                reach = measured.reaches.get((one, other))
                 bodies += [one, other]
                 if reach:
                     pair = f"{self.clock.called(one)} and {self.clock.called(other)}"
-                    found.setdefault(round(1000.0 * reach), []).append(pair)
-        told = [
-            f"{reach} mm" + f" ({_listed(list(dict.fromkeys(pairs)))})" * (len(found) > 1)
-            for reach, pairs in found.items()
-        ]
-        counted = f" Contact is counted within {_listed(told)}." if told else ""
-        return counted + self._stand_ins(bodies)
+                    alike = found.setdefault((measured.near(one, other), reach.between), {})
+                    alike.setdefault(reach.told_mm, []).append(pair)
+        several = sum(map(len, found.values())) > 1
+        return "".join(
+            _counted(told, several=several, near=near, between=between)
+            for (near, between), told in found.items()
+        ) + self._stand_ins(bodies)
 
     def _stand_ins(self, bodies: Iterable[str]) -> str:
         """That contacts are uncertain of bodies whose true shape is not known."""
-        measured = self.clock.measured
-        rough = [each for each in dict.fromkeys(bodies) if each in measured.stand_ins]
-        if not rough:
-            return ""
-        called = _listed([f"the {self.clock.called(each)}" for each in rough])
-        if len(rough) > 1:
-            return f" The shapes of {called} are stand-ins: when they touch is known only roughly."
-        return f" The shape of {called} is a stand-in: when it touches is known only roughly."
+        shapes = self.clock.measured.stand_ins
+        return "".join(
+            f" The shape of the {self.clock.called(each)} is a stand-in ({shapes[each]}): when it "
+            "touches is known only roughly."
+            for each in dict.fromkeys(bodies)
+            if each in shapes
+        )
+
+
+def _counted(
+    found: Mapping[int, Sequence[str]], *, several: bool, near: bool, between: Between
+) -> str:
+    """What distances are between, by how many millimetres they are, of which pairs of bodies."""
+    told = _listed(
+        [
+            f"{reach} mm" + f" ({_listed(list(dict.fromkeys(pairs)))})" * several
+            for reach, pairs in found.items()
+        ]
+    )
+    if not near:
+        return f" Contact is counted within {told}, {between.value}."
+    return f" The {told} are {between.value}."
 
 
 def summary(
@@ -127,18 +143,17 @@ def summary(
     nodes = leading(reason)
     clauses = briefs.clauses(nodes)
     own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
-    shared = [each for each in clauses if each not in own]
-    apart = bool(generals and own and not against)
-    first = _by_subject(shared if apart and shared else clauses, _subjects(nodes, briefs))
-    told = f"{name}, because {first}."
-    for number, contrast in enumerate(against):
-        told += f"{'; n' if number else ' N'}ot {contrast.sentence(clauses)}"
-        clauses.append(contrast.clause)
+    subjects = _subjects(nodes, briefs)
+    apart = bool(generals and own) and all(each.by_features for each in against)
     if apart:
-        because = _by_subject(own, _subjects(nodes, briefs))
-        told += f" Not just {_listed(generals, 'or')}, because {because}"
-    told += "." * (not told.endswith("."))
-    return told + briefs.touching(nodes)
+        more = _by_subject([each for each in clauses if each not in own], subjects)
+        told = f"{name}, and not just {_listed(generals, 'or')}, because "
+        told += _by_subject(own, subjects) + f". Also, {more}" * bool(more)
+    else:
+        told = f"{name}, because {_by_subject(clauses, subjects)}"
+        for number, contrast in enumerate(against):
+            told += f"{';' if number else '.'} {'n' if number else 'N'}ot {contrast.sentence}"
+    return f"{told}." + briefs.touching(nodes)
 
 
 def leading(reason: Reason) -> list[Reason]:
