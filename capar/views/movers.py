@@ -101,9 +101,7 @@ def _remainder(frames: Collection[Collection[tuple[str, str]]], *, it: str) -> s
     """What is told of the time in which nothing moves it."""
     alone = [found for found in frames if not _movers(found)]
     share = round(100.0 * len(alone) / len(frames))
-    return (
-        f"; for {share} % of the time {it} {' or '.join(_without_mover(alone))}" if share else ""
-    )
+    return f"; for {share} % of the time {it} {' or '.join(_without_mover(alone))}" if share else ""
 
 
 def _how_long(count: int, total: int) -> str:

@@ -33,7 +33,7 @@ class Times:
 
 @cache
 def constants() -> Mapping[str, int]:
-    """The numbers of ``thresholds.lp`` that stand in ``#const``, by name, in the units told there."""
+    """The numbers of ``thresholds.lp`` by name, in the units that are told there."""
     text = rule_file("thresholds.lp").read_text(encoding="utf-8")
     return {name: int(value) for name, value in _CONSTANT.findall(text)}
 

@@ -42,6 +42,9 @@ class Measured:
     stand_ins: Mapping[str, str] = field(default_factory=dict)
     """The shapes of bodies that stand in for the true ones, in words, by body."""
 
+    floors: Mapping[str, float] = field(default_factory=dict)
+    """From what distance on a body counts as moved, by body [m]."""
+
     tracked: bool = True
     """Whether there is an object that could be touched."""
 

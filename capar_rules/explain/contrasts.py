@@ -178,7 +178,7 @@ def _clause(
     arguments = split_arguments(atom)
     if literal.sign:
         holding = atoms.matching(literal, match.bound)
-        return _joined(tell(holding)) if holding else ""
+        return _known_text(_joined(tell(holding))) if holding else ""
     if literal.atoms[0].signature == FEATURE:
         return _feature(arguments, atoms, tell)
     if literal.atoms[0].signature == FITS:
@@ -186,6 +186,11 @@ def _clause(
     told = base.sentences.tell(
         literal.atoms[0].signature[0], _known(literal, match), clock, mood="lacks"
     )
+    return _known_text(told)
+
+
+def _known_text(told: str) -> str:
+    """A clause; empty if part of it is not known."""
     return "" if UNBOUND in told else told
 
 

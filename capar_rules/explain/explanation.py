@@ -158,7 +158,8 @@ class Explainer:
         against = self._against(segment.name, derived, reasons[0], clock) if segment.known else ()
         briefs = Briefs(self.base.sentences, clock)
         fitting = {name for term, name in derived.holding("fits") if term == clock.own}
-        generals = [each for each in generals_of(self.base, segment.name) if each in fitting]
+        generals = generals_of(self.base, segment.name)
+        generals = [each for each in generals if each in fitting] or generals
         return _explanation(segment, reasons, briefs, against, generals)
 
     def _against(
@@ -170,7 +171,7 @@ class Explainer:
         @cache
         def tell(atom: str) -> list[str]:
             if atom.startswith("feature("):
-                return briefs.clauses(bit(top, atom, clock))
+                return briefs.contrasted(bit(top, atom, clock))
             if not derived.holds(atom):
                 return []  # it was measured
             return briefs.first(self._reason(derived.why(atom), clock, {}))

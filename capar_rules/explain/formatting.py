@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from capar_rules.borders.times import in_frames, times
+from capar_rules.borders.times import constants, in_frames, times
 from capar_rules.explain import quantities
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.quantities import LEAST_M, Shortfall, Way
@@ -28,7 +28,19 @@ SHORT_WAYS: Mapping[str, Callable[[int, int, int], Shortfall]] = {
 SHORTFALLS = (*SHORT_WAYS, "not_turned", "not_leant")
 """... and of how an angle does."""
 
-OF_BODIES = ("way", *SHIFTS, *SHORTFALLS, "spread", "lean", "far_over", "turn", "until", "none", "little", "still")
+OF_BODIES = (
+    "way",
+    *SHIFTS,
+    *SHORTFALLS,
+    "spread",
+    "lean",
+    "far_over",
+    "turn",
+    "until",
+    "none",
+    "little",
+    "still",
+)
 """Formats of a body, that tell of the segment beside it, or else of the one that is explained."""
 
 UNBOUND = "\0"
@@ -63,16 +75,18 @@ class Argument:
             return self.clock.border(self.beside[0], self.text)
         if form == "object":
             return self.clock.about(self.text)
-        if form == "listed":
-            return self._listed()
-        if form == "placed":
-            return self._placed()
-        if form == "reach":
-            return self._reach()
-        if form == "hand":
-            return self.clock.called(self._hand)
-        if form == "met":
-            return self._met()
+        of_itself = {
+            "listed": self._listed,
+            "placed": self._placed,
+            "reach": self._reach,
+            "hand": lambda: self.clock.called(self._hand),
+            "as_foot": self._as_foot,
+            "floor": self._floor,
+            "blow": lambda: f"{constants()['blow_mm_s']} mm/s",
+            "met": self._met,
+        }
+        if form in of_itself:
+            return of_itself[form]()
         return self._of_span(form) if form in OF_SEGMENTS else None
 
     @property
@@ -95,6 +109,16 @@ class Argument:
         """Up to which distance the second and the third argument count as touching."""
         reach = self.clock.measured.reaches.get((self.beside[1], self.beside[2]))
         return UNBOUND if reach is None else f"{reach.told_mm} mm"
+
+    def _as_foot(self) -> str:
+        """That an end-effector counts as the foot that it is a part of."""
+        called = self.clock.called(self._hand)
+        return f"the {called} counts as the foot" if " of the " in called else UNBOUND
+
+    def _floor(self) -> str:
+        """From where on a body's motion counts, if it is known."""
+        floor_m = self.clock.measured.floors.get(self.text)
+        return f" ({quantities.length(floor_m)} or more)" if floor_m else ""
 
     def _met(self) -> str:
         """What the segment's object touches at the side of the segment that stands second."""

@@ -7,6 +7,7 @@ from capar_rules.engine.syntax import split_arguments
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.contrasts import Contrast
+from capar_rules.explain.formatting import UNBOUND
 from capar_rules.explain.reaches import Between
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
@@ -26,6 +27,9 @@ APART = ("no_contact", "uncounted")
 COURSES = ("rises", "comes_down", "travels", "stays_near")
 """Predicates that tell how a body moved, so that its motion need not be told again."""
 
+
+NUMBERED = ("stays(", "met_gently(")
+"""Prefixes of atoms of which a contrast tells the number that decided."""
 
 OWN = 3
 """Rank of what is no feature, but a name's own condition."""
@@ -59,6 +63,14 @@ class Briefs:
                 return [told or self.of(each)]
         return []
 
+    def contrasted(self, nodes: Sequence[Reason]) -> list[str]:
+        """What is said of nodes that keep a segment from a name, with what numbers decided."""
+        for each in nodes:
+            told = self.sentences.tell(*_parsed(each.atom), self.clock, mood="despite")
+            if told and each.atom.startswith(NUMBERED):
+                return [told]
+        return self.clauses(nodes)
+
     def clauses(self, nodes: Sequence[Reason]) -> list[str]:
         """What is said of nodes, each once; contacts of two bodies at both borders are one.
 
@@ -67,6 +79,7 @@ class Briefs:
         nodes = [each for each in nodes if not self._of_another(each)]
         pairs = merged_contacts(nodes, self.clock)
         told: list[str] = []
+        nodes = [each for each in nodes if UNBOUND not in self.of(each)]
         courses = any(each.atom.startswith(COURSES) for each in nodes)
         for each in nodes:
             pair = pairs.get(each.atom)
@@ -186,6 +199,8 @@ def bit(top: Reason, feature: str, clock: Clock) -> list[Reason]:
             f"stays({objects.get(place)},{segment})",
         ]
         return [each for each in top.walk() if each.atom in wanted]
+    if side == "force":
+        return [each for each in top.walk() if each.atom.startswith(f"met_gently({segment},")]
     pair = hand, objects.get(place, "")
     if place >= len(objects):
         pair = objects.get(0, ""), objects.get(place - len(objects) + 1, "")

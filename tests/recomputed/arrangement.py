@@ -89,6 +89,10 @@ def lay_on(known: Known, what: str, other: str, side: str) -> bool:
     return touches and bool(abs(lowest - known.points(other, frame)[:, 2].max()) < 0.02)
 
 
+def bore(known: Known, other: str, what: str, side: str) -> bool:
+    return lay_on(known, what, other, side)
+
+
 def was_above(known: Known, what: str, other: str, side: str) -> bool:
     """Higher than its top, and no further beside it than higher."""
     frame = known.border(side)
@@ -122,13 +126,19 @@ def _within(known: Known, what: str, points: np.ndarray, other: str, frame: int)
     return ((local >= low) & (local <= high)).all(axis=1)
 
 
-def went_ahead(known: Known) -> bool:
+def went_ahead(known: Known, what: str, hand: str) -> bool:
     """Away from the end-effector's middle, or from where that is nearest to its surface."""
-    return _cosine(known) > 0.65 or (_cosine(known) > 0.0 and _pressing(known) > 0.65)
+    return _about(known, what, hand) and (
+        _cosine(known) > 0.65 or (_cosine(known) > 0.0 and _pressing(known) > 0.65)
+    )
 
 
-def went_after(known: Known) -> bool:
-    return _cosine(known) < -0.65
+def went_after(known: Known, what: str, hand: str) -> bool:
+    return _about(known, what, hand) and _cosine(known) < -0.65
+
+
+def _about(known: Known, what: str, hand: str) -> bool:
+    return (known.segment.objects[0], known.segment.ee) == (name(what), name(hand))
 
 
 def _cosine(known: Known) -> float:
@@ -163,16 +173,16 @@ FORMS = (
     (rf"the {NAME} came down", sank),
     (rf"the {NAME} went aside, more than up or down", went_aside),
     (rf"the {NAME} ended near where it began", ended_near),
-    (rf"the {NAME} was (\d+) mm high at {TIME}", high),
+    (rf"the middle of the {NAME} was (\d+) mm high at {TIME}", high),
     (rf"the {NAME} leant otherwise at the end", leant),
     (rf"the {NAME} leant far over", leant_far),
     (rf"leaning of the {NAME} far over was measured from {TIME} to {TIME}", measured_leaning),
     (rf"the {NAME} turned about the vertical", spun),
-    (rf"the {NAME} lay on the {NAME} at the segment's (start|end)", lay_on),
+    (rf"the {NAME} bore the {NAME} from below at the segment's (start|end)", bore),
     (rf"the {NAME} was above the {NAME} at the segment's (start|end)", was_above),
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),
     (rf"the {NAME} dipped into the {NAME} at the segment's (start|end)", dipped),
-    (r"the object went ahead of the end-effector", went_ahead),
-    (r"the object went after the end-effector", went_after),
+    (rf"the {NAME} went ahead of the {NAME}, away from its middle", went_ahead),
+    (rf"the {NAME} went after the {NAME}, towards its middle", went_after),
     (r"it came down to where it lay when it was let go", came_to_lie),
 )

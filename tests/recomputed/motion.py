@@ -29,10 +29,10 @@ def moved(known: Known, what: str, distance: str, first: str, last: str) -> bool
     A time that is told of motion may be that of an impact, of which smoothing blurs one step.
     """
     begin, end = known.frame(first), known.frame(last)
-    place = known.stream(what).positions
-    way = float(np.linalg.norm(place[end] - place[begin]))
+    place = known.track(what, begin, end)
+    way = float(np.linalg.norm(place[-1] - place[0]))
     if distance:
-        step = max(float(np.linalg.norm(place[at] - place[at - 1])) for at in (begin + 1, end))
+        step = max(float(np.linalg.norm(place[at] - place[at - 1])) for at in (1, -1))
         return abs(way - float(distance)) < 0.02 + step
     far = _apart(known, what, range(begin, end + 1), begin)
     return way < 0.015 and float(far.max()) > 1.0
@@ -52,6 +52,13 @@ def drifted(known: Known, what: str, drift: str, first: str, last: str) -> bool:
     way = float(np.linalg.norm(place[known.frame(last)] - place[known.frame(first)]))
     told = abs(way - float(drift or 0) / 1000.0) < (0.003 if drift else 0.008)
     return told and stayed(known, what, first, last)
+
+
+def went_further(known: Known, what: str) -> bool:
+    """It ends half the width of a hand away, or its path is as long as a hand is wide."""
+    track = known.track(what, known.segment.first, known.segment.last)
+    path = float(np.linalg.norm(np.diff(track, axis=0), axis=1).sum())
+    return float(np.linalg.norm(track[-1] - track[0])) > 0.045 or path > 0.09
 
 
 def stayed(known: Known, what: str, first: str, last: str) -> bool:
