@@ -56,6 +56,21 @@ def _finger(link: ObservedLink) -> str:
     return f"{whose}{link.side} {finger}" if known else ""
 
 
+def limb_names(observation: Observation) -> dict[str, str]:
+    """What bodies are called in prose, and of a hand of several end-effectors each by the hand."""
+    names = body_names(observation)
+    hands = {link.ee: hand for link in observation.links if (hand := _hand(link))}
+    count = Counter(hands.values())
+    return names | {ee: hand for ee, hand in hands.items() if count[hand] > 1}
+
+
+def _hand(link: ObservedLink) -> str:
+    """Which hand an end-effector is or is a finger of; empty if of none, or of no known side."""
+    is_hand = link.kind == "hand" or link.kind.rstrip("0123456789") in FINGERS
+    whose = f"{link.agent} ".replace("_", " ") if link.agent else ""
+    return f"{whose}{link.side} hand" if is_hand and link.side in SIDES.values() else ""
+
+
 def _sided(link: ObservedLink) -> str:
     """An end-effector's name with its side spelt out; empty if no letter stands for the side."""
     letter, _, rest = link.ee.partition("_")

@@ -3,7 +3,7 @@
 from collections import Counter, defaultdict
 from collections.abc import Collection, Mapping, Sequence
 
-from capar.model.body_names import body_names, is_plural
+from capar.model.body_names import is_plural, limb_names
 from capar.model.facts import MovedBy
 from capar.model.observation import Observation
 from capar.views.rows import spoken
@@ -47,23 +47,24 @@ def mover_lines(
         for each in link.segments
         if (each.ee, each.index) == (ee, index)
     )
+    names = limb_names(seen)
     frames: dict[str, dict[int, set[tuple[str, str]]]] = defaultdict(lambda: defaultdict(set))
     for fact in seen.facts:
         if isinstance(fact, MovedBy) and fact.object in segment.objects:
             for frame in range(max(fact.first, segment.first), min(fact.last + 1, segment.last)):
-                frames[fact.object][frame].add((fact.how, fact.mover))
-    names = body_names(seen)
+                frames[fact.object][frame].add((fact.how, names.get(fact.mover, fact.mover)))
     things = [each for each in segment.objects if each not in staying]
-    return tuple(_line(thing, frames[thing], names) for thing in things if frames.get(thing))
+    return tuple(
+        _line(names.get(thing, spoken(thing)), frames[thing])
+        for thing in things
+        if frames.get(thing)
+    )
 
 
-def _line(
-    thing: str, movers: Mapping[int, Collection[tuple[str, str]]], names: Mapping[str, str]
-) -> str:
+def _line(thing: str, movers: Mapping[int, Collection[tuple[str, str]]]) -> str:
     """What moves a thing: one plain statement, or each mover with its share of the time."""
-    thing = names.get(thing, spoken(thing))
     was = "were" if is_plural(thing) else "was"
-    ways = Counter(_together(found, names) for found in movers.values()).most_common(1)
+    ways = Counter(_together(found) for found in movers.values()).most_common(1)
     (together, count) = ways[0]
     if 100.0 * count >= ALL_BUT * len(movers):
         return f"The {thing} {was} {together}."
@@ -74,8 +75,7 @@ def _line(
     most = sorted(shares.items(), key=lambda share: (-share[1], share[0]))[:MOST_TOLD]
     alike: dict[str, list[str]] = {}
     for mover, count in most:
-        called = f"the {names.get(mover, spoken(mover))}"
-        alike.setdefault(_how_long(count, len(movers)), []).append(called)
+        alike.setdefault(_how_long(count, len(movers)), []).append(f"the {spoken(mover)}")
     told = [f"by {joined(who)}{how_long}" for how_long, who in alike.items()]
     others = len(shares) - len(most)
     told += [f"by {others} other{'s' * (others > 1)}"] if others else []
@@ -109,11 +109,13 @@ def _how_long(count: int, total: int) -> str:
     return " throughout" if share >= ALL_BUT else f" for {share:.0f} % of the time it moved"
 
 
-def _together(movers: Collection[tuple[str, str]], names: Mapping[str, str]) -> str:
-    """What several movers do at once, those that do the same together."""
+def _together(movers: Collection[tuple[str, str]]) -> str:
+    """What several movers do at once, those that do the same together; who carries does no more."""
     found: dict[str, list[str]] = defaultdict(list)
+    carrying = {mover for how, mover in movers if how == "carried"}
     for how, mover in sorted(movers):
-        found[how].append(f"the {names.get(mover, spoken(mover))}")
+        if how == "carried" or mover not in carrying:
+            found[how].append(f"the {spoken(mover)}")
     return joined([WORDS[how].format(_few(who)) for how, who in found.items()])
 
 

@@ -95,6 +95,9 @@ class Clock:
     met: Mapping[tuple[str, str, str], Sequence[str]] = field(default_factory=dict)
     """What a body touches at a side of a segment, by segment, side and body."""
 
+    strokes: Mapping[str, int] = field(default_factory=dict)
+    """How often what a segment moves turned back, by the segment's term; absent if never."""
+
     own: str = ""
     """The term of the segment that is explained."""
 

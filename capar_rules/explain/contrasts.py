@@ -55,6 +55,9 @@ class Contrast:
     by_features: bool
     """Whether it is the features that differ, and no condition of the name's own."""
 
+    failing: int = 1
+    """How many conditions keep the segment from the first name."""
+
     @property
     def sentence(self) -> str:
         """Why the segment has none of the names."""
@@ -163,7 +166,9 @@ def _of_neighbour(
         read = {each.atoms[0].signature for each in match.failing}
         featured, direct = bool(read & {FITS, FEATURE}), FEATURE in read
         where = f"{Path(form.rule.place.file).name}:{form.rule.place.line}"
-        contrast = Contrast((other.name,), clauses[place], where, by_features=featured)
+        contrast = Contrast(
+            (other.name,), clauses[place], where, by_features=featured, failing=len(clauses)
+        )
         order = len(match.failing), -round(near, 1), other.steps, *other.distance(form)
         yield _Found(direct, near, order, contrast)
 

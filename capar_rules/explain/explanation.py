@@ -212,7 +212,11 @@ class Explainer:
         for term, side, body, other, _ in derived.holding("meets"):
             met[term, side, body].append(other)
         windows = self.windows
-        return Clock(windows.rate, windows.frames, ends, self.measured, objects, listed, met, own)
+        strokes = {term: int(count) for term, count in derived.holding("strokes")}
+        measured = self.measured
+        return Clock(
+            windows.rate, windows.frames, ends, measured, objects, listed, met, strokes, own
+        )
 
     def _reason(self, grounds: Grounds, clock: Clock, done: dict[str, Reason]) -> Reason:
         if grounds.atom in done:

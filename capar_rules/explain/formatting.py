@@ -82,6 +82,7 @@ class Argument:
             "hand": lambda: self.clock.called(self._hand),
             "as_foot": self._as_foot,
             "floor": self._floor,
+            "not_shaken": self._not_shaken,
             "blow": lambda: f"{constants()['blow_mm_s']} mm/s",
             "met": self._met,
         }
@@ -119,6 +120,19 @@ class Argument:
         """From where on a body's motion counts, if it is known."""
         floor_m = self.clock.measured.floors.get(self.text)
         return f" ({quantities.length(floor_m)} or more)" if floor_m else ""
+
+    def _not_shaken(self) -> str:
+        """How often the segment's object turned back, and how often what is shaken does."""
+        span = self.clock.span(self.text)
+        if span is None:
+            return UNBOUND
+        count = self.clock.strokes.get(self.text, 0)
+        lasted = (span[1] - span[0]) / self.clock.rate_hz
+        often = {0: "never", 1: "once", 2: "twice"}.get(count, f"{count} times")
+        return (
+            f"turned back {often} in {lasted:.2f} s, and what is shaken does so "
+            f"{constants()['fast_strokes']} times in 10 s or more"
+        )
 
     def _met(self) -> str:
         """What the segment's object touches at the side of the segment that stands second."""

@@ -157,7 +157,9 @@ def summary(
     clauses = briefs.clauses(nodes)
     own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
     subjects = _subjects(nodes, briefs)
-    apart = bool(generals and own) and all(each.by_features for each in against)
+    fresh = [each for each in against if each.clause not in clauses]
+    apart = bool(generals and own) and all(each.by_features or each.failing > 1 for each in fresh)
+    against = fresh or against
     if apart:
         more = _by_subject([each for each in clauses if each not in own], subjects)
         told = f"{name}, and not just {_listed(generals, 'or')}, because "

@@ -326,6 +326,7 @@ def flew_on(known: Known) -> bool:
 
 
 FORMS = (
+    (rf"the {NAME} went further than what is merely gripped", went_further),
     (rf"the {NAME} was gone at once", gone_at_once),
     (rf"the path of the {NAME} became level, or ceased to be, at {TIME}", levelled),
     (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),

@@ -153,6 +153,14 @@ def counts_from(known: Known, body: str, far: str) -> bool:
     return _is(floor, far, slack_m=0.0)
 
 
+def not_shaken(known: Known, _: str, often: str, at: str) -> bool:
+    """It turns back no more than so often, over the whole segment."""
+    words = {"never": 0, "once": 1, "twice": 2}
+    count = words[often] if often in words else int(often.removesuffix(" times"))
+    slow = 10.0 * count < 25.0 * float(at)
+    return slow and lasted(known, at) and turned_back_so_often(known, "", str(count))
+
+
 def too_low(known: Known, body: str, verb: str, far: str, asked: str) -> bool:
     """It went so far up or down, which is less than the rules ask for."""
     height = float(_shifted(known, body)[2]) * (1.0 if verb == "rose" else -1.0)
@@ -339,6 +347,11 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"slid on its rail from {NUMBER} m to {NUMBER} m open", slid),
     (rf"turned on its hinge from {NUMBER} rad to {NUMBER} rad open", swung),
     (r"turned back (\d+) times, in strokes of a finger's width and more", turned_back_so_often),
+    (
+        rf"turned back (never|once|twice|\d+ times) in {TIME}, and what is shaken does so 25 times "
+        r"in 10 s or more",
+        not_shaken,
+    ),
     (rf"it lasted {TIME}", lambda known, _, told: lasted(known, told)),
     (rf"leant {DEGREES} from upright at the start and {DEGREES} at the end", leant),
     (rf"turned by {DEGREES} about the vertical", spun),
