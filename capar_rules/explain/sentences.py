@@ -10,6 +10,7 @@ from capar_rules.explain.clock import Clock
 from capar_rules.explain.formatting import SHORTFALLS, Argument
 
 _MOODS = "had not|had|not|mended|brief not|brief|lacks|despite"
+_NO_SUBJECT = "".join(f"(?<!\\b{word} )" for word in ("of", "with", "to", "on", "by", "from"))
 _SHORT = re.compile(rf"\{{(\d+):({'|'.join(SHORTFALLS)})\}}")
 _TEMPLATE = re.compile(rf"%!(!?)\s*(?:({_MOODS}) )?(\w+)/(\d+)(?: (\w+))?:\s*(.+)")
 
@@ -87,7 +88,8 @@ class Sentences:
         values = [Argument(each, arguments, clock) for each in arguments]
         told = template.text.format(*values)
         for each in clock.several:
-            told = re.sub(rf"\bthe {each} (was|is|has|does)\b", _of_several, told)
+            told = re.sub(rf"{_NO_SUBJECT}\bthe {each} (was|is|has|does)\b", _of_several, told)
+            told = re.sub(rf"(\bthe {each} (?:moved|ended) .*where) it ", r"\1 they ", told)
         return told
 
     def nearness(self, predicate: str, arguments: Sequence[str], clock: Clock) -> float:

@@ -59,6 +59,15 @@ def leant_far(known: Known, what: str) -> bool:
     return max(lean(known, what, each) for each in frames) >= FAR_OVER_RAD - SLACK_RAD
 
 
+def lean_border(known: Known, what: str, sense: str, at: str) -> bool:
+    """A stretch of leaning far over begins then, or ends."""
+    return any(
+        each.object == name(what)
+        and near(each.first if sense == "began" else each.last, known.at(at))
+        for each in known.of(Leans)
+    )
+
+
 def measured_leaning(known: Known, what: str, first: str, last: str) -> bool:
     found = any(
         each.object == name(what)
@@ -176,6 +185,7 @@ FORMS = (
     (rf"the middle of the {NAME} was (\d+) mm high at {TIME}", high),
     (rf"the {NAME} leant otherwise at the end", leant),
     (rf"the {NAME} leant far over", leant_far),
+    (rf"the {NAME} (began|ceased) to lean far over at {TIME}", lean_border),
     (rf"leaning of the {NAME} far over was measured from {TIME} to {TIME}", measured_leaning),
     (rf"the {NAME} turned about the vertical", spun),
     (rf"the {NAME} bore the {NAME} from below at the segment's (start|end)", bore),

@@ -245,6 +245,15 @@ def swung(known: Known, what: str) -> bool:
     return to_and_fro(known, what, known.segment.first, known.segment.last)
 
 
+def swing_border(known: Known, what: str, sense: str, at: str) -> bool:
+    """A stretch of motion to and fro begins then, or ends."""
+    return any(
+        each.body == what.replace(" ", "_")
+        and near(each.first if sense == "began" else each.last, known.at(at))
+        for each in known.of(Swings)
+    )
+
+
 def measured_swings(known: Known, what: str, first: str, last: str) -> bool:
     found = any(
         each.body == what.replace(" ", "_")
@@ -327,6 +336,7 @@ def flew_on(known: Known) -> bool:
 
 FORMS = (
     (rf"the {NAME} went further than what is merely gripped", went_further),
+    (rf"the {NAME} (began|ceased) to be moved to and fro at {TIME}", swing_border),
     (rf"the {NAME} was gone at once", gone_at_once),
     (rf"the path of the {NAME} became level, or ceased to be, at {TIME}", levelled),
     (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),
@@ -353,12 +363,12 @@ FORMS = (
         measured_lengthwise,
     ),
     (
-        rf"the {NAME} was seen to have left its place at {TIME}; its motion is taken to begin at "
+        rf"the {NAME} was seen to have moved at {TIME}; the motion is taken to begin at "
         rf"{TIME}",
         left_place,
     ),
     (
-        rf"the {NAME} was seen in its last place at {TIME}; its motion is taken to end at {TIME}",
+        rf"the {NAME} was seen to have stopped at {TIME}; the motion is taken to end at {TIME}",
         came_to_place,
     ),
     (
