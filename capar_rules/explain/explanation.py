@@ -171,7 +171,7 @@ class Explainer:
         @cache
         def tell(atom: str) -> list[str]:
             if atom.startswith("feature("):
-                return briefs.contrasted(bit(top, atom, clock))
+                return briefs.contrasted(bit(top, atom, clock), top)
             if not derived.holds(atom):
                 return []  # it was measured
             return briefs.first(self._reason(derived.why(atom), clock, {}))

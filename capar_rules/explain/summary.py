@@ -24,6 +24,9 @@ BORDERS = ("segment(", "border(", "member(")
 APART = ("no_contact", "uncounted")
 """Predicates of no contact that counts at a border; where that border lies is no reason."""
 
+BESIDE_BORDERS = ("met_gently(", "met_hard(", "newly_met(", "lets_go(", "takes(")
+"""Prefixes of atoms that say themselves when a contact began or ended."""
+
 COURSES = ("rises", "comes_down", "travels", "stays_near")
 """Predicates that tell how a body moved, so that its motion need not be told again."""
 
@@ -63,11 +66,18 @@ class Briefs:
                 return [told or self.of(each)]
         return []
 
-    def contrasted(self, nodes: Sequence[Reason]) -> list[str]:
-        """What is said of nodes that keep a segment from a name, with what numbers decided."""
+    def contrasted(self, nodes: Sequence[Reason], top: Reason) -> list[str]:
+        """What is said of nodes that keep a segment from a name, with what numbers decided.
+
+        A contact that is at one border alone is told as begun or ended in between.
+        """
+        pairs = merged_contacts(list(top.walk()), self.clock)
         for each in nodes:
-            told = self.sentences.tell(*_parsed(each.atom), self.clock, mood="despite")
-            if told and each.atom.startswith(NUMBERED):
+            pair = pairs.get(each.atom, ("", ()))
+            told = self.sentences.tell(*pair, self.clock, mood="despite")
+            if each.atom.startswith(NUMBERED):
+                told = self.sentences.tell(*_parsed(each.atom), self.clock, mood="despite")
+            if told:
                 return [told]
         return self.clauses(nodes)
 
@@ -80,6 +90,7 @@ class Briefs:
         pairs = merged_contacts(nodes, self.clock)
         told: list[str] = []
         nodes = [each for each in nodes if UNBOUND not in self.of(each)]
+        nodes = [each for each in nodes if not self._within_border(each, nodes)]
         courses = any(each.atom.startswith(COURSES) for each in nodes)
         for each in nodes:
             pair = pairs.get(each.atom)
@@ -88,6 +99,15 @@ class Briefs:
             elif not (courses and each.atom.startswith("moved(")):
                 told.append(self.of(each))
         return _at_both([each for each in dict.fromkeys(told) if each])
+
+    def _within_border(self, reason: Reason, nodes: Iterable[Reason]) -> bool:
+        """Whether it is a contact at a time within a border, at which the two are told about."""
+        if not reason.atom.startswith("contact_at("):
+            return False
+        told = [_parsed(each.atom)[1] for each in nodes if each.atom.startswith("contact_at(")]
+        own = _parsed(reason.atom)[1]
+        at_border = [each[1:3] for each in told if self.clock.side(each[0], int(each[4]))]
+        return not self.clock.side(own[0], int(own[4])) and own[1:3] in at_border
 
     def _of_another(self, reason: Reason) -> bool:
         arguments = _parsed(reason.atom.removeprefix("not "))[1]
@@ -244,7 +264,7 @@ def _bears(reason: Reason, below: Reason) -> bool:
     """
     if below.atom.startswith("doubted("):
         return bool(reason.rule)
-    return not reason.atom.startswith((*BORDERS, *APART))
+    return not reason.atom.startswith((*BORDERS, *APART, *BESIDE_BORDERS))
 
 
 def _rank(reason: Reason) -> int:

@@ -60,6 +60,7 @@ TRUE_OF_ANY_SEGMENT = {
     r"force passes to objects in this trial, as its user says": "it is said of the whole capture",
     r"the ([\w ]+?) belongs to ([\w ]+?)": "it is said of the whole capture",
     r"the ([\w ]+?) and the ([\w ]+?) are of different agents": "it is said of the whole capture",
+    r"the ([\w ]+?) counts as the foot": "it is said of the whole capture",
     r"the ([\w ]+?) is a (movable) thing": "it is said of the whole capture",
     r"the ([\w ]+?) is (fixed|part of a body)": "it is said of the whole capture",
     r"the ([\w ]+?) went along one rail in the ([\w ]+?) throughout the recording": (
@@ -188,7 +189,8 @@ def test_every_leaf_with_a_time_is_linked_to_its_frames(name: str) -> None:
 @pytest.mark.parametrize("name", STORIES)
 def test_the_summary_names_the_segment_and_its_reasons(name: str) -> None:
     for known, found in zip(told(name).known, told(name).explanations, strict=True):
-        assert found.summary.startswith(f"{known.segment.name}, because ")
+        opening = rf"{known.segment.name}(, and not just \w+(, \w+)*( or \w+)?)?, because "
+        assert re.match(opening, found.summary)
         assert found.summary.endswith(".")
 
 

@@ -332,7 +332,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         leant_too_little,
     ),
     (rf"met the {NAME} at (\d+) mm/s, less than the 1000 mm/s of a blow", met_gently),
-    (rf"met the {NAME} at (\d+) mm/s, and 1000 mm/s or more are a blow", met_hard),
+    (rf"met the {NAME} at (\d+) mm/s, fast enough for a blow \(1000 mm/s\)", met_hard),
     (rf"had come to touch the {NAME} only at {TIME}", met_first),
     (rf"had the {NAME} already, and let go of it at {TIME}", let_go),
     (rf"took the {NAME} at {TIME}", took),
