@@ -309,7 +309,7 @@ FORMS = (
         rf"in the contact that began at {TIME}",
         borne,
     ),
-    (rf"the {NAME} met the {NAME} at (\d+) mm/s", met_at),
+    (rf"the {NAME} (?:met|struck) the {NAME} at (\d+) mm/s", met_at),
     (
         rf"the {NAME} pressed on the {NAME} along \((-?\d+), (-?\d+), level\) thousandths,"
         rf" at {TIME}",
