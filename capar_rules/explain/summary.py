@@ -87,10 +87,9 @@ class Briefs:
         What holds of another segment is left to the tree: its start and end are not this one's.
         """
         nodes = [each for each in nodes if not self._of_another(each)]
+        nodes = [each for each in nodes if not self._within_border(each, nodes)]
         pairs = merged_contacts(nodes, self.clock)
         told: list[str] = []
-        nodes = [each for each in nodes if UNBOUND not in self.of(each)]
-        nodes = [each for each in nodes if not self._within_border(each, nodes)]
         courses = any(each.atom.startswith(COURSES) for each in nodes)
         for each in nodes:
             pair = pairs.get(each.atom)
@@ -98,7 +97,7 @@ class Briefs:
                 told.append(self.sentences.tell(*pair, self.clock, mood="brief"))
             elif not (courses and each.atom.startswith("moved(")):
                 told.append(self.of(each))
-        return _at_both([each for each in dict.fromkeys(told) if each])
+        return _at_both([each for each in dict.fromkeys(told) if each and UNBOUND not in each])
 
     def _within_border(self, reason: Reason, nodes: Iterable[Reason]) -> bool:
         """Whether it is a contact at a time within a border, at which the two are told about."""
