@@ -15,6 +15,9 @@ FINGERS: Mapping[str, str] = {
 }
 """What parts of a hand are called, by their kind without the number of a joint."""
 
+SIDES: Mapping[str, str] = {"l": "left", "r": "right"}
+"""What letters in the names of sensors stand for."""
+
 ORDINALS = ("first", "second", "third", "fourth")
 
 
@@ -22,7 +25,9 @@ def body_names(observation: Observation) -> dict[str, str]:
     """What bodies are called where that is not their name, by name.
 
     An object is called by its kind if that has several words and no other object is of it; a finger
-    by the hand that it is of, and by the joint where several joints of it are told apart.
+    by the hand that it is of, and by the joint where several joints of it are told apart. Of other
+    end-effectors whose name begins with a letter for the side, that is spelt out, and what the
+    end-effector counts as is told, if the name does not: the ankle of the right foot.
     """
     kinds = Counter(thing.kind for thing in observation.objects)
     names = {}
@@ -38,6 +43,8 @@ def body_names(observation: Observation) -> dict[str, str]:
         if finger:
             alone = count[finger] == 1
             names[link.ee] = finger if alone else f"{_joint(link.kind)} joint of the {finger}"
+        elif sided := _sided(link):
+            names[link.ee] = sided
     return {name: told for name, told in names.items() if told}
 
 
@@ -47,6 +54,35 @@ def _finger(link: ObservedLink) -> str:
     known = finger and link.side in ("left", "right")
     whose = f"{link.agent} ".replace("_", " ") if link.agent else ""
     return f"{whose}{link.side} {finger}" if known else ""
+
+
+def limb_names(observation: Observation) -> dict[str, str]:
+    """What bodies are called in prose, and of a hand of several end-effectors each by the hand."""
+    names = body_names(observation)
+    hands = {link.ee: hand for link in observation.links if (hand := _hand(link))}
+    count = Counter(hands.values())
+    return names | {ee: hand for ee, hand in hands.items() if count[hand] > 1}
+
+
+def _hand(link: ObservedLink) -> str:
+    """Which hand an end-effector is or is a finger of; empty if of none, or of no known side."""
+    is_hand = link.kind == "hand" or link.kind.rstrip("0123456789") in FINGERS
+    whose = f"{link.agent} ".replace("_", " ") if link.agent else ""
+    return f"{whose}{link.side} hand" if is_hand and link.side in SIDES.values() else ""
+
+
+def _sided(link: ObservedLink) -> str:
+    """An end-effector's name with its side spelt out; empty if no letter stands for the side."""
+    letter, _, rest = link.ee.partition("_")
+    if not rest or SIDES.get(letter) != link.side:
+        return ""
+    rest, kind = rest.replace("_", " "), link.kind.replace("_", " ")
+    return f"{link.side} {rest}" if kind in rest else f"{rest} of the {link.side} {kind}"
+
+
+def is_plural(words: str) -> bool:
+    """Whether a name is of several, by its ending: crackers and scissors are, a glass is not."""
+    return words.endswith("s") and not words.endswith(("ss", "us", "is"))
 
 
 def _joint(kind: str) -> str:

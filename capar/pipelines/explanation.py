@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from capar.model.body_names import body_names
-from capar.model.calibration import Found
+from capar.model.calibration import Found, PairCalibration
 from capar.model.capture import Capture
 from capar.model.observation import Observation, Segment
 from capar.model.segment_address import SegmentAddress, find_segment
@@ -17,6 +17,7 @@ from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.explain.clock import Measured, Ways
 from capar_rules.explain.explanation import Explainer, Explanation
 from capar_rules.explain.quantities import Way
+from capar_rules.explain.reaches import Between, Reach
 from capar_rules.explain.why_not import Alternative
 from capar_rules.explain.why_not import why_not as alternatives
 from extractors.measure import Measurements, measure
@@ -125,21 +126,26 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
     return Measured(
         ways(measurements),
         names=body_names(observation),
-        touch_m=touching_distances(measurements),
-        stand_ins=frozenset(
-            body
+        reaches=reaches(measurements),
+        floors={each.name: each.motion_floor_m for each in measurements.calibration.objects},
+        stand_ins={
+            body: str(notice["shape"])
             for notice in observation.notices
             if notice.code == "stand-in-shape"
             for body in notice.bodies
-        ),
+        },
     )
 
 
 def ways(measurements: Measurements) -> Ways:
-    """How a body's origin moves between two frames; steps between lost frames are left out."""
+    """How a body's middle moves between two frames; steps between lost frames are left out.
+
+    The middle is that of its shape, as of the places by which rules decide; without a shape it is
+    the origin.
+    """
 
     def moved(name: str, first: int, last: int) -> Way:
-        track = measurements.bodies.named(name).poses.smooth.positions[first : last + 1]
+        track = measurements.bodies.named(name).middles[first : last + 1]
         steps = np.linalg.norm(np.diff(track, axis=0), axis=1)
         away = np.linalg.norm(track - np.nanmedian(track, axis=0), axis=1)
         straight = float(np.linalg.norm(track[-1] - track[0]))
@@ -148,14 +154,21 @@ def ways(measurements: Measurements) -> Ways:
     return moved
 
 
-def touching_distances(measurements: Measurements) -> dict[tuple[str, str], float]:
-    """The distance up to which two bodies are counted as touching, in either order [m]."""
+def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
+    """Up to which distance, and of what, two bodies are counted as touching, in either order."""
     return {
-        names: pair.touch_m
+        names: Reach(max(pair.touch_m, pair.release_m), _measured_between(pair))
         for pair in measurements.calibration.pairs
         if pair.found is not Found.NEVER
         for names in ((pair.first, pair.second), (pair.second, pair.first))
     }
+
+
+def _measured_between(pair: PairCalibration) -> Between:
+    if not pair.pivots:
+        return Between.SURFACES
+    stated = pair.found in (Found.STATED, Found.TOLERANCE)
+    return Between.ORIGINS if stated else Between.POINTS
 
 
 def segment_named(observation: Observation, text: str) -> Segment:

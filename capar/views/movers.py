@@ -3,7 +3,7 @@
 from collections import Counter, defaultdict
 from collections.abc import Collection, Mapping, Sequence
 
-from capar.model.body_names import body_names
+from capar.model.body_names import is_plural, limb_names
 from capar.model.facts import MovedBy
 from capar.model.observation import Observation
 from capar.views.rows import spoken
@@ -47,37 +47,40 @@ def mover_lines(
         for each in link.segments
         if (each.ee, each.index) == (ee, index)
     )
+    names = limb_names(seen)
     frames: dict[str, dict[int, set[tuple[str, str]]]] = defaultdict(lambda: defaultdict(set))
     for fact in seen.facts:
         if isinstance(fact, MovedBy) and fact.object in segment.objects:
             for frame in range(max(fact.first, segment.first), min(fact.last + 1, segment.last)):
-                frames[fact.object][frame].add((fact.how, fact.mover))
-    names = body_names(seen)
+                frames[fact.object][frame].add((fact.how, names.get(fact.mover, fact.mover)))
     things = [each for each in segment.objects if each not in staying]
-    return tuple(_line(thing, frames[thing], names) for thing in things if frames.get(thing))
+    return tuple(
+        _line(names.get(thing, spoken(thing)), frames[thing])
+        for thing in things
+        if frames.get(thing)
+    )
 
 
-def _line(
-    thing: str, movers: Mapping[int, Collection[tuple[str, str]]], names: Mapping[str, str]
-) -> str:
+def _line(thing: str, movers: Mapping[int, Collection[tuple[str, str]]]) -> str:
     """What moves a thing: one plain statement, or each mover with its share of the time."""
-    thing = names.get(thing, spoken(thing))
-    ways = Counter(_together(found, names) for found in movers.values()).most_common(1)
+    was = "were" if is_plural(thing) else "was"
+    ways = Counter(_together(found) for found in movers.values()).most_common(1)
     (together, count) = ways[0]
     if 100.0 * count >= ALL_BUT * len(movers):
-        return f"The {thing} was {together}."
+        return f"The {thing} {was} {together}."
     shares = Counter(mover for found in movers.values() for mover in _movers(found))
     if not shares:
-        return f"The {thing} was {' or '.join(_without_mover(movers.values()))}."
+        return f"The {thing} {was} {' or '.join(_without_mover(movers.values()))}."
     verb = "carried" if _only_carried(movers.values()) else "moved"
     most = sorted(shares.items(), key=lambda share: (-share[1], share[0]))[:MOST_TOLD]
-    told = [
-        f"by the {names.get(mover, spoken(mover))}{_how_long(count, len(movers))}"
-        for mover, count in most
-    ]
-    others = len(shares) - len(told)
+    alike: dict[str, list[str]] = {}
+    for mover, count in most:
+        alike.setdefault(_how_long(count, len(movers)), []).append(f"the {spoken(mover)}")
+    told = [f"by {joined(who)}{how_long}" for how_long, who in alike.items()]
+    others = len(shares) - len(most)
     told += [f"by {others} other{'s' * (others > 1)}"] if others else []
-    return f"The {thing} was {verb} {joined(told)}{_remainder(movers.values())}."
+    remainder = _remainder(movers.values(), it="they were" if is_plural(thing) else "it was")
+    return f"The {thing} {was} {verb} {joined(told)}{remainder}."
 
 
 def _movers(found: Collection[tuple[str, str]]) -> set[str]:
@@ -94,13 +97,11 @@ def _without_mover(frames: Collection[Collection[tuple[str, str]]]) -> list[str]
     return [WORDS[how] for how in sorted(hows)]
 
 
-def _remainder(frames: Collection[Collection[tuple[str, str]]]) -> str:
+def _remainder(frames: Collection[Collection[tuple[str, str]]], *, it: str) -> str:
     """What is told of the time in which nothing moves it."""
     alone = [found for found in frames if not _movers(found)]
     share = round(100.0 * len(alone) / len(frames))
-    return (
-        f"; for {share} % of the time it was {' or '.join(_without_mover(alone))}" if share else ""
-    )
+    return f"; for {share} % of the time {it} {' or '.join(_without_mover(alone))}" if share else ""
 
 
 def _how_long(count: int, total: int) -> str:
@@ -108,11 +109,13 @@ def _how_long(count: int, total: int) -> str:
     return " throughout" if share >= ALL_BUT else f" for {share:.0f} % of the time it moved"
 
 
-def _together(movers: Collection[tuple[str, str]], names: Mapping[str, str]) -> str:
-    """What several movers do at once, those that do the same together."""
+def _together(movers: Collection[tuple[str, str]]) -> str:
+    """What several movers do at once, those that do the same together; who carries does no more."""
     found: dict[str, list[str]] = defaultdict(list)
+    carrying = {mover for how, mover in movers if how == "carried"}
     for how, mover in sorted(movers):
-        found[how].append(f"the {names.get(mover, spoken(mover))}")
+        if how == "carried" or mover not in carrying:
+            found[how].append(f"the {spoken(mover)}")
     return joined([WORDS[how].format(_few(who)) for how, who in found.items()])
 
 

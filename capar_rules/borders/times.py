@@ -1,6 +1,7 @@
 """The times by which borders are numbered, read from ``thresholds.lp``, where rules have theirs."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache
 
@@ -31,16 +32,20 @@ class Times:
 
 
 @cache
+def constants() -> Mapping[str, int]:
+    """The numbers of ``thresholds.lp`` by name, in the units that are told there."""
+    text = rule_file("thresholds.lp").read_text(encoding="utf-8")
+    return {name: int(value) for name, value in _CONSTANT.findall(text)}
+
+
+@cache
 def times() -> Times:
     """The times that ship with the rules.
 
     Raises:
         RuleError: One is not defined.
     """
-    found = {
-        name: int(value)
-        for name, value in _CONSTANT.findall(rule_file("thresholds.lp").read_text(encoding="utf-8"))
-    }
+    found = constants()
     missing = [each.name for each in fields(Times) if each.name not in found]
     if missing:
         raise RuleError(f"thresholds.lp: expected a #const for {', '.join(missing)}")

@@ -4,9 +4,12 @@ import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
+from capar.model.body_names import is_plural
 from capar.model.facts import Fact, Moving, Place, Posture, Tag, Touching
 from capar_rules.explain.quantities import Way
+from capar_rules.explain.reaches import Reach
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
@@ -33,14 +36,23 @@ class Measured:
     names: Mapping[str, str] = field(default_factory=dict)
     """What bodies are called, where it is not their name."""
 
-    touch_m: Mapping[tuple[str, str], float] = field(default_factory=dict)
-    """The distance up to which two bodies touch, by their names in either order [m]."""
+    reaches: Mapping[tuple[str, str], Reach] = field(default_factory=dict)
+    """Up to which distance two bodies count as touching, by their names in either order."""
 
-    stand_ins: frozenset[str] = frozenset()
-    """The bodies whose shape stands in for the true one."""
+    stand_ins: Mapping[str, str] = field(default_factory=dict)
+    """The shapes of bodies that stand in for the true ones, in words, by body."""
+
+    floors: Mapping[str, float] = field(default_factory=dict)
+    """From what distance on a body counts as moved, by body [m]."""
 
     tracked: bool = True
     """Whether there is an object that could be touched."""
+
+    def near(self, one: str, other: str) -> bool:
+        """Whether two bodies that count as touching may be apart, so that they are told as near."""
+        reach = self.reaches.get((one, other))
+        rough = one in self.stand_ins or other in self.stand_ins
+        return reach is not None and (rough or not reach.is_touch)
 
 
 def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
@@ -83,8 +95,17 @@ class Clock:
     met: Mapping[tuple[str, str, str], Sequence[str]] = field(default_factory=dict)
     """What a body touches at a side of a segment, by segment, side and body."""
 
+    strokes: Mapping[str, int] = field(default_factory=dict)
+    """How often what a segment moves turned back, by the segment's term; absent if never."""
+
     own: str = ""
     """The term of the segment that is explained."""
+
+    @cached_property
+    def several(self) -> tuple[str, ...]:
+        """What the bodies that places are known of are called, if it is a plural."""
+        bodies = {name for name, _ in self.measured.places} | {*self.measured.moving}
+        return tuple(each for name in sorted(bodies) if is_plural(each := self.called(name)))
 
     def called(self, name: str) -> str:
         """A body as sentences call it."""

@@ -22,6 +22,19 @@ NAMES = {
 }
 """What is told of a pair, by what was so at the start and at the end."""
 
+NEAR = {
+    "touches_throughout": "near_throughout",
+    "touches_again": "near_again",
+    "comes_to_touch": "comes_near",
+    "ceases_to_touch": "ceases_to_be_near",
+    "never_touches": "never_near",
+    "touches_at_start": "near_at_start",
+    "touches_at_end": "near_at_end",
+    "touches_not_at_start": "not_near_at_start",
+    "touches_not_at_end": "not_near_at_end",
+}
+"""The same of a pair that may be some way apart while it counts as touching."""
+
 
 def merged_contacts(nodes: Sequence[Reason], clock: Clock) -> dict[str, Told]:
     """What is told in place of each contact, or lack of one, at a border of the segment.
@@ -31,6 +44,10 @@ def merged_contacts(nodes: Sequence[Reason], clock: Clock) -> dict[str, Told]:
     sides: dict[tuple[str, str], dict[str, tuple[str, str]]] = defaultdict(dict)
     atoms: dict[tuple[str, str], list[str]] = defaultdict(list)
     told: dict[str, Told] = {}
+
+    def near(pair: Sequence[str]) -> bool:
+        return clock.measured.near(pair[0], pair[1])
+
     for each in nodes:
         arguments = split_arguments(each.atom) if "(" in each.atom else []
         if each.atom.startswith("no_contact("):
@@ -42,13 +59,13 @@ def merged_contacts(nodes: Sequence[Reason], clock: Clock) -> dict[str, Told]:
         else:
             continue
         if side == "before":
-            told[each.atom] = "touched_before", arguments
+            told[each.atom] = "near_before" * near(pair) or "touched_before", arguments
         elif side:
             key = pair[0], pair[1]
             sides[key][side] = state
             atoms[key].append(each.atom)
     return told | {
-        atom: (_name(found), (clock.own, *pair))
+        atom: (NEAR[_name(found)] if near(pair) else _name(found), (clock.own, *pair))
         for pair, found in sides.items()
         for atom in atoms[pair]
     }

@@ -1,6 +1,6 @@
 """Which neighbouring names a segment comes nearest to, and which condition decided."""
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from capar_rules.explain.neighbours import (
     Neighbour,
     conditions_of_neighbours,
     feature_strings,
+    names_of_strings,
     neighbours,
 )
 from capar_rules.explain.rule_base import RuleBase
@@ -25,6 +26,12 @@ MOST_FAILING = 2
 
 MOST_NAMES = 3
 """So many names are told at most of which the same condition decided."""
+
+LEAST_NEARNESS = 0.25
+"""A name is idle of which what decided fell short by more: it shares less than that [1]."""
+
+HALF = 0.5
+"""How near a condition that has no number is taken to come to being otherwise [1]."""
 
 MOST_TOLD = 2
 """So many conditions are told at most."""
@@ -42,28 +49,33 @@ class Contrast:
     clause: str
     """What kept the segment from them."""
 
-    again: str
-    """The same in other words, for where the clause was told already; empty if there are none."""
-
     rule: str
     """File and line of a rule of the first name that would have needed it otherwise."""
 
-    def sentence(self, told: Collection[str] = ()) -> str:
-        """Why the segment has none of the names, given the clauses that were told before."""
+    by_features: bool
+    """Whether it is the features that differ, and no condition of the name's own."""
+
+    failing: int = 1
+    """How many conditions keep the segment from the first name."""
+
+    @property
+    def sentence(self) -> str:
+        """Why the segment has none of the names."""
         *before, last = self.names
-        clause = self.again or self.clause if self.clause in told else self.clause
-        return f"{', '.join(before)}{' or ' * bool(before)}{last}, because {clause}"
+        return f"{', '.join(before)}{' or ' * bool(before)}{last}, because {self.clause}"
 
 
 @dataclass(frozen=True)
 class _Found:
-    by_features: bool
-    """Whether it is the features that differ, and no condition of the name's own."""
-
     direct: bool
-    """... in a row of its own."""
+    """Whether it is the features that differ, in a row of the name's own."""
 
-    order: tuple[int, int, int, int]
+    nearness: float
+    """By how much what decided missed being otherwise: a share of what was asked for."""
+
+    order: tuple[float, ...]
+    """The less, the nearer: conditions that fail, by how much, and how the names are related."""
+
     contrast: Contrast
 
 
@@ -89,31 +101,49 @@ def contrasts(
         for neighbour in neighbours(base, name)
         for one in _of_neighbour(base, neighbour, atoms, clock, tell)
     ]
-    own = list(_nearest([each for each in found if not each.by_features]))
-    indirect = list(_nearest([each for each in found if each.by_features and not each.direct]))
-    direct = list(_nearest([each for each in found if each.direct]))
-    if own and not feature_strings(base, name):
-        indirect = []
-    elif own:
-        indirect = [each for each in indirect if not {*each.names} & {*own[0].names}]
-    return tuple((own + indirect or direct)[:MOST_TOLD])
+    own = list(_nearest([each for each in found if not each.contrast.by_features]))
+    features = [each for each in found if each.contrast.by_features]
+    indirect = list(_nearest([each for each in features if not each.direct], most=1))
+    direct = list(_nearest([each for each in features if each.direct], most=1))
+    supported = list(_supported(base, derived, atoms, clock))
+    return tuple((supported + own or indirect or direct)[:MOST_TOLD])
 
 
-def _nearest(found: Sequence[_Found]) -> Iterator[Contrast]:
-    """The nearest of some neighbours, with those of which the same condition decided."""
-    if not found:
-        return
-    first = min(found, key=lambda each: each.order)
-    alike = sorted(
-        (
-            each
-            for each in found
-            if each.contrast.clause == first.contrast.clause and each.order[:2] == first.order[:2]
-        ),
-        key=lambda each: each.order,
+def _nearest(found: Sequence[_Found], *, most: int = MOST_TOLD) -> Iterator[Contrast]:
+    """The nearest of some neighbours, each with those of which the same condition decided."""
+    waiting = sorted(
+        (each for each in found if each.nearness >= LEAST_NEARNESS), key=lambda each: each.order
     )
-    names = dict.fromkeys(each.contrast.names[0] for each in alike)
-    yield replace(first.contrast, names=tuple(names)[:MOST_NAMES])
+    told: set[str] = set()
+    for _ in range(most):
+        waiting = [each for each in waiting if each.contrast.names[0] not in told]
+        if not waiting:
+            return
+        first = waiting[0]
+        waiting = [each for each in waiting if each.order[0] == first.order[0]]
+        alike = [each for each in waiting if each.contrast.clause == first.contrast.clause]
+        names = tuple(dict.fromkeys(each.contrast.names[0] for each in alike))[:MOST_NAMES]
+        told |= {*names}
+        yield replace(first.contrast, names=names)
+        waiting = [each for each in waiting if each.contrast.clause != first.contrast.clause]
+
+
+def _supported(
+    base: RuleBase, derived: Derivations, atoms: Atoms, clock: Clock
+) -> Iterator[Contrast]:
+    """The names that it would have were what bore the object all along one of its objects."""
+    own = {side: string for term, side, string in atoms.rows[FEATURE] if term == clock.own}
+    if any(len(string.strip('"')) != 1 for string in own.values()):
+        return
+    beside = {
+        side: string.strip('"') + ("01" if side in ("start", "end") else "0")
+        for side, string in own.items()
+    }
+    for term, other in derived.holding("support"):
+        names = names_of_strings(base, beside) if term == clock.own else ()
+        if names:
+            clause = base.sentences.tell("support", [term, other], clock, mood="brief")
+            yield Contrast(names, clause, "", by_features=False)
 
 
 def _of_neighbour(
@@ -132,13 +162,15 @@ def _of_neighbour(
         if not all(clauses):
             continue
         place = next((at for at, each in enumerate(clauses) if any(map(str.isdigit, each))), 0)
-        again = _lacking(base, match.failing[place], match, clock, "again")
+        near = min(_nearness(base, each, match, clock) for each in match.failing)
         read = {each.atoms[0].signature for each in match.failing}
         featured, direct = bool(read & {FITS, FEATURE}), FEATURE in read
         where = f"{Path(form.rule.place.file).name}:{form.rule.place.line}"
-        contrast = Contrast((other.name,), clauses[place], again, where)
-        order = len(match.failing), other.steps, *other.distance(form)
-        yield _Found(featured, direct, order, contrast)
+        contrast = Contrast(
+            (other.name,), clauses[place], where, by_features=featured, failing=len(clauses)
+        )
+        order = len(match.failing), -round(near, 1), other.steps, *other.distance(form)
+        yield _Found(direct, near, order, contrast)
 
 
 def _clause(
@@ -151,22 +183,36 @@ def _clause(
     arguments = split_arguments(atom)
     if literal.sign:
         holding = atoms.matching(literal, match.bound)
-        return _joined(tell(holding)) if holding else ""
+        return _known_text(_joined(tell(holding))) if holding else ""
     if literal.atoms[0].signature == FEATURE:
         return _feature(arguments, atoms, tell)
     if literal.atoms[0].signature == FITS:
         return _row(base, arguments, atoms, tell)
-    return _lacking(base, literal, match, clock, "lacks")
+    told = base.sentences.tell(
+        literal.atoms[0].signature[0], _known(literal, match), clock, mood="lacks"
+    )
+    return _known_text(told)
 
 
-def _lacking(base: RuleBase, literal: Literal, match: Match, clock: Clock, mood: str) -> str:
-    """What a template says of a condition that fails; empty if none does, or not all is known."""
+def _known_text(told: str) -> str:
+    """A clause; empty if part of it is not known."""
+    return "" if UNBOUND in told else told
+
+
+def _nearness(base: RuleBase, literal: Literal, match: Match, clock: Clock) -> float:
+    """How near a condition that decided came to being otherwise; of those without numbers, half."""
+    if literal.kind != "atom" or literal.sign:
+        return HALF
+    name = literal.atoms[0].signature[0]
+    return base.sentences.nearness(name, _known(literal, match), clock) or HALF
+
+
+def _known(literal: Literal, match: Match) -> list[str]:
+    """The arguments of a condition that fails, as far as they are known."""
     atom = valued(literal.atoms[0].text, match.bound)
-    known = [
+    return [
         UNBOUND if VARIABLE.fullmatch(each) else each.strip('"') for each in split_arguments(atom)
     ]
-    told = base.sentences.tell(literal.atoms[0].signature[0], known, clock, mood=mood)
-    return "" if UNBOUND in told else told
 
 
 def _row(base: RuleBase, arguments: Sequence[str], atoms: Atoms, tell: Tell) -> str:

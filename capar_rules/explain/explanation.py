@@ -157,7 +157,9 @@ class Explainer:
         reasons = [self._reason(derived.why(each), clock, done) for each in roots]
         against = self._against(segment.name, derived, reasons[0], clock) if segment.known else ()
         briefs = Briefs(self.base.sentences, clock)
+        fitting = {name for term, name in derived.holding("fits") if term == clock.own}
         generals = generals_of(self.base, segment.name)
+        generals = [each for each in generals if each in fitting] or generals
         return _explanation(segment, reasons, briefs, against, generals)
 
     def _against(
@@ -169,7 +171,7 @@ class Explainer:
         @cache
         def tell(atom: str) -> list[str]:
             if atom.startswith("feature("):
-                return briefs.clauses(bit(top, atom, clock))
+                return briefs.contrasted(bit(top, atom, clock), top)
             if not derived.holds(atom):
                 return []  # it was measured
             return briefs.first(self._reason(derived.why(atom), clock, {}))
@@ -210,7 +212,11 @@ class Explainer:
         for term, side, body, other, _ in derived.holding("meets"):
             met[term, side, body].append(other)
         windows = self.windows
-        return Clock(windows.rate, windows.frames, ends, self.measured, objects, listed, met, own)
+        strokes = {term: int(count) for term, count in derived.holding("strokes")}
+        measured = self.measured
+        return Clock(
+            windows.rate, windows.frames, ends, measured, objects, listed, met, strokes, own
+        )
 
     def _reason(self, grounds: Grounds, clock: Clock, done: dict[str, Reason]) -> Reason:
         if grounds.atom in done:

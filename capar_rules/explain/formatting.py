@@ -1,11 +1,11 @@
 """The arguments of atoms as sentences have them: names, times and distances."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
-from capar_rules.borders.times import in_frames, times
+from capar_rules.borders.times import constants, in_frames, times
 from capar_rules.explain import quantities
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.quantities import LEAST_M, Way
+from capar_rules.explain.quantities import LEAST_M, Shortfall, Way
 
 DRIFT_M = 0.005
 """Of a body that stays, shorter distances are left out of sentences [m]."""
@@ -16,7 +16,31 @@ OF_SEGMENTS = ("segment", "motion", "distance", "ended", "drift")
 SHIFTS = {"course": quantities.course, "place": quantities.place, "slope": quantities.slope}
 """Formats of a displacement."""
 
-OF_BODIES = ("way", *SHIFTS, "spread", "lean", "turn", "until", "none", "little", "still")
+SHORT_WAYS: Mapping[str, Callable[[int, int, int], Shortfall]] = {
+    "not_up": quantities.not_up,
+    "not_down": quantities.not_down,
+    "not_aside": quantities.not_aside,
+    "not_near": quantities.not_near,
+    "not_slid": quantities.not_slid,
+}
+"""Formats of how a displacement falls short of what a condition asks for."""
+
+SHORTFALLS = (*SHORT_WAYS, "not_turned", "not_leant")
+"""... and of how an angle does."""
+
+OF_BODIES = (
+    "way",
+    *SHIFTS,
+    *SHORTFALLS,
+    "spread",
+    "lean",
+    "far_over",
+    "turn",
+    "until",
+    "none",
+    "little",
+    "still",
+)
 """Formats of a body, that tell of the segment beside it, or else of the one that is explained."""
 
 UNBOUND = "\0"
@@ -51,15 +75,64 @@ class Argument:
             return self.clock.border(self.beside[0], self.text)
         if form == "object":
             return self.clock.about(self.text)
-        if form == "hand":
-            return self.clock.called(self._hand)
-        if form == "met":
-            return self._met()
+        of_itself = {
+            "listed": self._listed,
+            "placed": self._placed,
+            "reach": self._reach,
+            "hand": lambda: self.clock.called(self._hand),
+            "as_foot": self._as_foot,
+            "floor": self._floor,
+            "not_shaken": self._not_shaken,
+            "blow": lambda: f"{constants()['blow_mm_s']} mm/s",
+            "met": self._met,
+        }
+        if form in of_itself:
+            return of_itself[form]()
         return self._of_span(form) if form in OF_SEGMENTS else None
 
     @property
     def _hand(self) -> str:
         return self.text.removeprefix("seg(").split(",")[0]
+
+    def _listed(self) -> str:
+        """The segment's end-effector and its objects."""
+        things = [self.clock.called(each) for each in self.clock.listed.get(self.text, ())]
+        told = [f"the {each}" for each in (self.clock.called(self._hand), *things)]
+        return f"{', '.join(told[:-1])}{' and ' * (len(told) > 1)}{told[-1]}"
+
+    def _placed(self) -> str:
+        """Where the border of an event stands, if not at its frame, which is the sixth argument."""
+        frame = self.clock.frames[self.beside[0]][int(self.text)]
+        told = self.clock.at(frame)
+        return "" if told == self.clock.at(int(self.beside[5])) else f", which counts at {told}"
+
+    def _reach(self) -> str:
+        """Up to which distance the second and the third argument count as touching."""
+        reach = self.clock.measured.reaches.get((self.beside[1], self.beside[2]))
+        return UNBOUND if reach is None else f"{reach.told_mm} mm"
+
+    def _as_foot(self) -> str:
+        """That an end-effector counts as the foot that it is a part of."""
+        called = self.clock.called(self._hand)
+        return f"the {called} counts as the foot" if " of the " in called else UNBOUND
+
+    def _floor(self) -> str:
+        """From where on a body's motion counts, if it is known."""
+        floor_m = self.clock.measured.floors.get(self.text)
+        return f" ({quantities.length(floor_m)} or more)" if floor_m else ""
+
+    def _not_shaken(self) -> str:
+        """How often the segment's object turned back, and how often what is shaken does."""
+        span = self.clock.span(self.text)
+        if span is None:
+            return UNBOUND
+        count = self.clock.strokes.get(self.text, 0)
+        lasted = (span[1] - span[0]) / self.clock.rate_hz
+        often = {0: "never", 1: "once", 2: "twice"}.get(count, f"{count} times")
+        return (
+            f"turned back {often} in {lasted:.2f} s, and what is shaken does so "
+            f"{constants()['fast_strokes']} times in 10 s or more"
+        )
 
     def _met(self) -> str:
         """What the segment's object touches at the side of the segment that stands second."""
@@ -106,7 +179,9 @@ class Argument:
         span = self._span_beside(form)
         if span is None:
             return ""
-        if form in (*SHIFTS, "lean", "turn"):
+        if form in SHORTFALLS:
+            return self._shortfall(form, body, span).text or UNBOUND
+        if form in (*SHIFTS, "lean", "far_over", "turn"):
             return self._between(form, body, span)
         moving = self.clock.motion(body, span)
         if form == "until":
@@ -124,6 +199,27 @@ class Argument:
         terms = [*self.beside, self.clock.own]
         return next((found for each in terms if (found := self.clock.span(each))), None)
 
+    def nearness(self, form: str) -> float:
+        """How near the body came to what such a format says that it falls short of."""
+        body = self._hand if self.text.startswith("seg(") else self.text
+        span = self._span_beside(form)
+        return 0.0 if span is None else self._shortfall(form, body, span).nearness
+
+    def _shortfall(self, form: str, body: str, span: tuple[int, int]) -> Shortfall:
+        known = self.clock.measured
+        if form in ("not_turned", "not_leant"):
+            first, last = (known.postures.get((body, frame)) for frame in span)
+            if first is None or last is None:
+                return quantities.NOTHING
+            if form == "not_turned":
+                return quantities.not_turned(last[1] - first[1])
+            return quantities.not_leant(first[0], last[0])
+        start, end = (known.places.get((body, frame)) for frame in span)
+        if start is None or end is None:
+            return quantities.NOTHING
+        x, y, z = (after - before for before, after in zip(start, end, strict=True))
+        return SHORT_WAYS[form](x, y, z)
+
     def _between(self, form: str, body: str, span: tuple[int, int]) -> str:
         """How place or posture at the end differ from those at the start."""
         known = self.clock.measured
@@ -134,6 +230,8 @@ class Argument:
             shift = [after - before for before, after in zip(start, end, strict=True)]
             return SHIFTS[form](*shift)
         first, last = (known.postures.get((body, frame)) for frame in span)
+        if form == "far_over" and (first is None or last is None):
+            return "far over"
         if first is None or last is None:
             return "by an unknown angle"
         if form == "turn":

@@ -132,6 +132,12 @@ def feature_strings(base: RuleBase, name: str) -> list[dict[str, str]]:
     return [dict(zip(SIDES, row, strict=True)) for row in _names(base).rows.get(name, ())]
 
 
+def names_of_strings(base: RuleBase, strings: Mapping[str, str]) -> tuple[str, ...]:
+    """The primitives with a row of these four strings, by their side."""
+    wanted = tuple(f'"{strings[side]}"' for side in SIDES)
+    return tuple(name for name, rows in _names(base).rows.items() if wanted in rows)
+
+
 @lru_cache(maxsize=256)
 def neighbours(base: RuleBase, name: str) -> tuple[Neighbour, ...]:
     """The names next to one, each with the rules by which segments have it."""

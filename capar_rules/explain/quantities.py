@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+from capar_rules.borders.times import constants
+
 LEAST_M = 0.01
 """Shorter ways are told as less than that [m]."""
 
@@ -91,6 +93,93 @@ def slope(x_mm: int, y_mm: int, z_mm: int) -> str:
     if abs(z_mm) >= aside:
         return f"{sense} more than to the side"
     return f"more to the side than {sense}"
+
+
+@dataclass(frozen=True, slots=True)
+class Shortfall:
+    """How a measure falls short of what a condition asks for."""
+
+    text: str
+    """To stand after the name of the body; empty if the body did nothing of the kind."""
+
+    nearness: float
+    """Its share of what is asked for, below one."""
+
+
+NOTHING = Shortfall("", 0.0)
+
+
+def not_up(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
+    """Why a displacement is no rise."""
+    return _not_steep(math.hypot(x_mm, y_mm), z_mm, "rose", "up")
+
+
+def not_down(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
+    """Why a displacement is no lowering."""
+    return _not_steep(math.hypot(x_mm, y_mm), -z_mm, "sank", "down")
+
+
+def _not_steep(aside_mm: float, height_mm: float, verb: str, sense: str) -> Shortfall:
+    least = constants()["height_mm"]
+    if height_mm < LEVEL_MM:
+        return NOTHING
+    if height_mm < least:
+        far, wanted = _apart(height_mm, least)
+        return Shortfall(f"{verb} by {far}, less than the {wanted} that count", height_mm / least)
+    aside, height = _apart(aside_mm, height_mm)
+    text = f"went further to the side ({aside}) than {sense} ({height})"
+    return Shortfall(text, height_mm / max(aside_mm, height_mm))
+
+
+def not_aside(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
+    """Why a displacement is no carrying to the side."""
+    aside_mm, least = math.hypot(x_mm, y_mm), constants()["aside_mm"]
+    if aside_mm < LEVEL_MM:
+        return NOTHING
+    if aside_mm < least:
+        far, wanted = _apart(aside_mm, least)
+        text = f"went {far} to the side, less than the {wanted} that count"
+        return Shortfall(text, aside_mm / least)
+    height, aside = _apart(abs(z_mm), aside_mm)
+    text = f"went further {'up' if z_mm > 0 else 'down'} ({height}) than to the side ({aside})"
+    return Shortfall(text, aside_mm / max(abs(z_mm), aside_mm))
+
+
+def not_near(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
+    """Why a displacement does not end near where it began."""
+    far_mm, most = math.hypot(x_mm, y_mm, z_mm), constants()["aside_mm"]
+    far, wanted = _apart(far_mm, most)
+    return Shortfall(f"ended {far} from where it began, not within {wanted}", most / far_mm)
+
+
+def not_slid(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
+    """Why a displacement on a support is no sliding."""
+    far_mm, least = math.hypot(x_mm, y_mm, z_mm), constants()["slide_mm"]
+    far, wanted = _apart(far_mm, least)
+    return Shortfall(f"went only {far}, less than the {wanted} of a slide", far_mm / least)
+
+
+def not_turned(turned_mrad: int) -> Shortfall:
+    """Why an angle about the vertical is no turn."""
+    least = constants()["turn_mrad"]
+    text = f"turned by {degrees(turned_mrad)} about the vertical, less than {degrees(least)}"
+    return Shortfall(text, abs(turned_mrad) / least)
+
+
+def not_leant(before_mrad: int, after_mrad: int) -> Shortfall:
+    """Why a change of lean is no tilting."""
+    least, change = constants()["turn_mrad"], abs(after_mrad - before_mrad)
+    text = (
+        f"leant {degrees(before_mrad)} from upright at the start and {degrees(after_mrad)} at the "
+        f"end, a change of less than {degrees(least)}"
+    )
+    return Shortfall(text, change / least)
+
+
+def _apart(one_mm: float, other_mm: float) -> tuple[str, str]:
+    """Two lengths, in millimetres if they would else read as the same."""
+    told = length(one_mm / 1000.0), length(other_mm / 1000.0)
+    return told if told[0] != told[1] else (f"{one_mm:.0f} mm", f"{other_mm:.0f} mm")
 
 
 def degrees(milliradians: int) -> str:

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 from capar_rules.engine.syntax import Literal, Statement
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.formatting import Argument
+from capar_rules.explain.formatting import SHORTFALLS, Argument
 
-_MOODS = "had not|had|not|mended|brief not|brief|lacks|again|despite"
+_MOODS = "had not|had|not|mended|brief not|brief|lacks|despite"
+_NO_SUBJECT = "".join(f"(?<!\\b{word} )" for word in ("of", "with", "to", "on", "by", "from"))
+_SHORT = re.compile(rf"\{{(\d+):({'|'.join(SHORTFALLS)})\}}")
 _TEMPLATE = re.compile(rf"%!(!?)\s*(?:({_MOODS}) )?(\w+)/(\d+)(?: (\w+))?:\s*(.+)")
 
 
@@ -27,7 +29,7 @@ Key = tuple[str, str, int, str]
 
 Moods: "" (it holds), "not", "had" and "had not" (counterfactual), "mended" (taken to hold though
 some frames are doubted), "brief" and "brief not" (in a summary), "lacks" (what holds
-instead), "again" (the same where that was told already), "despite" (what holds and must not).
+instead), "despite" (what holds and must not).
 """
 
 
@@ -73,7 +75,7 @@ class Sentences:
 
     def describes(self, name: str, arity: int, *, as_lacking: bool) -> bool:
         """Whether a sentence says that such an atom holds, or, of one that fails, what does."""
-        unlike = ("brief", "brief not", "again", "despite", *(() if as_lacking else ("lacks",)))
+        unlike = ("brief", "brief not", "despite", *(() if as_lacking else ("lacks",)))
         return bool(self._moods.get((name, arity), set()).difference(unlike))
 
     def tell(
@@ -84,4 +86,25 @@ class Sentences:
         if template is None:
             return ""
         values = [Argument(each, arguments, clock) for each in arguments]
-        return template.text.format(*values)
+        told = template.text.format(*values)
+        for each in clock.several:
+            told = re.sub(rf"{_NO_SUBJECT}\bthe {each} (was|is|has|does)\b", _of_several, told)
+            told = re.sub(rf"(\bthe {each} (?:moved|ended) .*where) it ", r"\1 they ", told)
+        return told
+
+    def nearness(self, predicate: str, arguments: Sequence[str], clock: Clock) -> float:
+        """How near a condition that fails came to holding: a share of what it asks for.
+
+        Zero where its template says no number of what it falls short of.
+        """
+        template = self.template(predicate, arguments, mood="lacks")
+        found = _SHORT.search(template.text) if template else None
+        if found is None:
+            return 0.0
+        return Argument(arguments[int(found[1])], arguments, clock).nearness(found[2])
+
+
+def _of_several(found: re.Match[str]) -> str:
+    """A verb in the plural, after the same name."""
+    verb = {"was": "were", "is": "are", "has": "have", "does": "do"}[found[1]]
+    return found[0].removesuffix(found[1]) + verb

@@ -1,12 +1,14 @@
 """The summary of an explanation: the name's conditions, and what decided against neighbours."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from capar_rules.engine.syntax import split_arguments
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.contrasts import Contrast
+from capar_rules.explain.formatting import UNBOUND
+from capar_rules.explain.reaches import Between
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
 
@@ -22,9 +24,15 @@ BORDERS = ("segment(", "border(", "member(")
 APART = ("no_contact", "uncounted")
 """Predicates of no contact that counts at a border; where that border lies is no reason."""
 
+BESIDE_BORDERS = ("met_gently(", "met_hard(", "newly_met(", "lets_go(", "takes(")
+"""Prefixes of atoms that say themselves when a contact began or ended."""
+
 COURSES = ("rises", "comes_down", "travels", "stays_near")
 """Predicates that tell how a body moved, so that its motion need not be told again."""
 
+
+NUMBERED = ("stays(", "met_gently(")
+"""Prefixes of atoms of which a contrast tells the number that decided."""
 
 OWN = 3
 """Rank of what is no feature, but a name's own condition."""
@@ -58,12 +66,28 @@ class Briefs:
                 return [told or self.of(each)]
         return []
 
+    def contrasted(self, nodes: Sequence[Reason], top: Reason) -> list[str]:
+        """What is said of nodes that keep a segment from a name, with what numbers decided.
+
+        A contact that is at one border alone is told as begun or ended in between.
+        """
+        pairs = merged_contacts(list(top.walk()), self.clock)
+        for each in nodes:
+            pair = pairs.get(each.atom, ("", ()))
+            told = self.sentences.tell(*pair, self.clock, mood="despite")
+            if each.atom.startswith(NUMBERED):
+                told = self.sentences.tell(*_parsed(each.atom), self.clock, mood="despite")
+            if told:
+                return [told]
+        return self.clauses(nodes)
+
     def clauses(self, nodes: Sequence[Reason]) -> list[str]:
         """What is said of nodes, each once; contacts of two bodies at both borders are one.
 
         What holds of another segment is left to the tree: its start and end are not this one's.
         """
         nodes = [each for each in nodes if not self._of_another(each)]
+        nodes = [each for each in nodes if not self._within_border(each, nodes)]
         pairs = merged_contacts(nodes, self.clock)
         told: list[str] = []
         courses = any(each.atom.startswith(COURSES) for each in nodes)
@@ -73,7 +97,16 @@ class Briefs:
                 told.append(self.sentences.tell(*pair, self.clock, mood="brief"))
             elif not (courses and each.atom.startswith("moved(")):
                 told.append(self.of(each))
-        return _at_both([each for each in dict.fromkeys(told) if each])
+        return _at_both([each for each in dict.fromkeys(told) if each and UNBOUND not in each])
+
+    def _within_border(self, reason: Reason, nodes: Iterable[Reason]) -> bool:
+        """Whether it is a contact at a time within a border, at which the two are told about."""
+        if not reason.atom.startswith("contact_at("):
+            return False
+        told = [_parsed(each.atom)[1] for each in nodes if each.atom.startswith("contact_at(")]
+        own = _parsed(reason.atom)[1]
+        at_border = [each[1:3] for each in told if self.clock.side(each[0], int(each[4]))]
+        return not self.clock.side(own[0], int(own[4])) and own[1:3] in at_border
 
     def _of_another(self, reason: Reason) -> bool:
         arguments = _parsed(reason.atom.removeprefix("not "))[1]
@@ -83,34 +116,49 @@ class Briefs:
 
     def touching(self, nodes: Iterable[Reason]) -> str:
         """Up to which distance bodies are counted as touching that are told to touch."""
-        found: dict[int, list[str]] = {}
+        measured = self.clock.measured
+        found: dict[tuple[bool, Between], dict[int, list[str]]] = {}
         bodies: list[str] = []
         for each in nodes:
             predicate, arguments = _parsed(each.atom)
             if predicate in ("contact_at", "no_contact"):
                 one, other = arguments[1:3] if predicate == "contact_at" else arguments[2:4]
-                reach = self.clock.measured.touch_m.get((one, other))
+                reach = measured.reaches.get((one, other))
                 bodies += [one, other]
                 if reach:
                     pair = f"{self.clock.called(one)} and {self.clock.called(other)}"
-                    found.setdefault(round(1000.0 * reach), []).append(pair)
-        told = [
-            f"{reach} mm" + f" ({_listed(list(dict.fromkeys(pairs)))})" * (len(found) > 1)
-            for reach, pairs in found.items()
-        ]
-        counted = f" Contact is counted within {_listed(told)}." if told else ""
-        return counted + self._stand_ins(bodies)
+                    alike = found.setdefault((measured.near(one, other), reach.between), {})
+                    alike.setdefault(reach.told_mm, []).append(pair)
+        several = sum(map(len, found.values())) > 1
+        return "".join(
+            _counted(told, several=several, near=near, between=between)
+            for (near, between), told in found.items()
+        ) + self._stand_ins(bodies)
 
     def _stand_ins(self, bodies: Iterable[str]) -> str:
         """That contacts are uncertain of bodies whose true shape is not known."""
-        measured = self.clock.measured
-        rough = [each for each in dict.fromkeys(bodies) if each in measured.stand_ins]
-        if not rough:
-            return ""
-        called = _listed([f"the {self.clock.called(each)}" for each in rough])
-        if len(rough) > 1:
-            return f" The shapes of {called} are stand-ins: when they touch is known only roughly."
-        return f" The shape of {called} is a stand-in: when it touches is known only roughly."
+        shapes = self.clock.measured.stand_ins
+        return "".join(
+            f" The shape of the {self.clock.called(each)} is a stand-in ({shapes[each]}): when it "
+            "touches is known only roughly."
+            for each in dict.fromkeys(bodies)
+            if each in shapes
+        )
+
+
+def _counted(
+    found: Mapping[int, Sequence[str]], *, several: bool, near: bool, between: Between
+) -> str:
+    """What distances are between, by how many millimetres they are, of which pairs of bodies."""
+    told = _listed(
+        [
+            f"{reach} mm" + f" ({_listed(list(dict.fromkeys(pairs)))})" * several
+            for reach, pairs in found.items()
+        ]
+    )
+    if not near:
+        return f" Contact is counted within {told}, {between.value}."
+    return f" The {told} are {between.value}."
 
 
 def summary(
@@ -127,18 +175,19 @@ def summary(
     nodes = leading(reason)
     clauses = briefs.clauses(nodes)
     own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
-    shared = [each for each in clauses if each not in own]
-    apart = bool(generals and own and not against)
-    first = _by_subject(shared if apart and shared else clauses, _subjects(nodes, briefs))
-    told = f"{name}, because {first}."
-    for number, contrast in enumerate(against):
-        told += f"{'; n' if number else ' N'}ot {contrast.sentence(clauses)}"
-        clauses.append(contrast.clause)
+    subjects = _subjects(nodes, briefs)
+    fresh = [each for each in against if each.clause not in clauses]
+    apart = bool(generals and own) and all(each.by_features or each.failing > 1 for each in fresh)
+    against = fresh or against
     if apart:
-        because = _by_subject(own, _subjects(nodes, briefs))
-        told += f" Not just {_listed(generals, 'or')}, because {because}"
-    told += "." * (not told.endswith("."))
-    return told + briefs.touching(nodes)
+        more = _by_subject([each for each in clauses if each not in own], subjects)
+        told = f"{name}, and not just {_listed(generals, 'or')}, because "
+        told += _by_subject(own, subjects) + f". Also, {more}" * bool(more)
+    else:
+        told = f"{name}, because {_by_subject(clauses, subjects)}"
+        for number, contrast in enumerate(against):
+            told += f"{';' if number else '.'} {'n' if number else 'N'}ot {contrast.sentence}"
+    return f"{told}." + briefs.touching(nodes)
 
 
 def leading(reason: Reason) -> list[Reason]:
@@ -171,6 +220,8 @@ def bit(top: Reason, feature: str, clock: Clock) -> list[Reason]:
             f"stays({objects.get(place)},{segment})",
         ]
         return [each for each in top.walk() if each.atom in wanted]
+    if side == "force":
+        return [each for each in top.walk() if each.atom.startswith(f"met_gently({segment},")]
     pair = hand, objects.get(place, "")
     if place >= len(objects):
         pair = objects.get(0, ""), objects.get(place - len(objects) + 1, "")
@@ -212,7 +263,7 @@ def _bears(reason: Reason, below: Reason) -> bool:
     """
     if below.atom.startswith("doubted("):
         return bool(reason.rule)
-    return not reason.atom.startswith((*BORDERS, *APART))
+    return not reason.atom.startswith((*BORDERS, *APART, *BESIDE_BORDERS))
 
 
 def _rank(reason: Reason) -> int:

@@ -70,7 +70,9 @@ def test_nearly_every_name_is_contrasted_with_another() -> None:
         for each in told(name).explanations
         if each.name != "Unknown"
     ]
-    bare = [each for each in summaries if not CONTRAST.search(each) and " Not just " not in each]
+    bare = [
+        each for each in summaries if not CONTRAST.search(each) and ", and not just " not in each
+    ]
     assert len(bare) <= len(summaries) // 20, bare
 
 

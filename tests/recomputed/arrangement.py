@@ -59,6 +59,15 @@ def leant_far(known: Known, what: str) -> bool:
     return max(lean(known, what, each) for each in frames) >= FAR_OVER_RAD - SLACK_RAD
 
 
+def lean_border(known: Known, what: str, sense: str, at: str) -> bool:
+    """A stretch of leaning far over begins then, or ends."""
+    return any(
+        each.object == name(what)
+        and near(each.first if sense == "began" else each.last, known.at(at))
+        for each in known.of(Leans)
+    )
+
+
 def measured_leaning(known: Known, what: str, first: str, last: str) -> bool:
     found = any(
         each.object == name(what)
@@ -87,6 +96,10 @@ def lay_on(known: Known, what: str, other: str, side: str) -> bool:
     )
     lowest = known.points(what, frame)[:, 2].min()
     return touches and bool(abs(lowest - known.points(other, frame)[:, 2].max()) < 0.02)
+
+
+def bore(known: Known, other: str, what: str, side: str) -> bool:
+    return lay_on(known, what, other, side)
 
 
 def was_above(known: Known, what: str, other: str, side: str) -> bool:
@@ -122,13 +135,19 @@ def _within(known: Known, what: str, points: np.ndarray, other: str, frame: int)
     return ((local >= low) & (local <= high)).all(axis=1)
 
 
-def went_ahead(known: Known) -> bool:
+def went_ahead(known: Known, what: str, hand: str) -> bool:
     """Away from the end-effector's middle, or from where that is nearest to its surface."""
-    return _cosine(known) > 0.65 or (_cosine(known) > 0.0 and _pressing(known) > 0.65)
+    return _about(known, what, hand) and (
+        _cosine(known) > 0.65 or (_cosine(known) > 0.0 and _pressing(known) > 0.65)
+    )
 
 
-def went_after(known: Known) -> bool:
-    return _cosine(known) < -0.65
+def went_after(known: Known, what: str, hand: str) -> bool:
+    return _about(known, what, hand) and _cosine(known) < -0.65
+
+
+def _about(known: Known, what: str, hand: str) -> bool:
+    return (known.segment.objects[0], known.segment.ee) == (name(what), name(hand))
 
 
 def _cosine(known: Known) -> float:
@@ -163,16 +182,17 @@ FORMS = (
     (rf"the {NAME} came down", sank),
     (rf"the {NAME} went aside, more than up or down", went_aside),
     (rf"the {NAME} ended near where it began", ended_near),
-    (rf"the {NAME} was (\d+) mm high at {TIME}", high),
+    (rf"the middle of the {NAME} was (\d+) mm high at {TIME}", high),
     (rf"the {NAME} leant otherwise at the end", leant),
     (rf"the {NAME} leant far over", leant_far),
+    (rf"the {NAME} (began|ceased) to lean far over at {TIME}", lean_border),
     (rf"leaning of the {NAME} far over was measured from {TIME} to {TIME}", measured_leaning),
     (rf"the {NAME} turned about the vertical", spun),
-    (rf"the {NAME} lay on the {NAME} at the segment's (start|end)", lay_on),
+    (rf"the {NAME} bore the {NAME} from below at the segment's (start|end)", bore),
     (rf"the {NAME} was above the {NAME} at the segment's (start|end)", was_above),
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),
     (rf"the {NAME} dipped into the {NAME} at the segment's (start|end)", dipped),
-    (r"the object went ahead of the end-effector", went_ahead),
-    (r"the object went after the end-effector", went_after),
+    (rf"the {NAME} went ahead of the {NAME}, away from its middle", went_ahead),
+    (rf"the {NAME} went after the {NAME}, towards its middle", went_after),
     (r"it came down to where it lay when it was let go", came_to_lie),
 )

@@ -58,20 +58,51 @@ def moved_in_contact(known: Known, what: str, one: str, since: str) -> bool:
     return possessed(known, one, what, since)
 
 
-def rested_on(known: Known, other: str) -> bool:
+def counts(known: Known, one: str, other: str, at: str, border: str) -> bool:
+    """The contact begins then and lasts on, and a border of the segment is at the other time."""
+    ends = (known.segment.first, known.segment.last)
+    lasts = any(
+        near(each.first, known.at(at)) and covers(each, known.at(border))
+        for each in known.touching(one, other)
+    )
+    return lasts and any(abs(known.at(border) - each) <= known.reach for each in ends)
+
+
+def newly_met(known: Known, one: str, other: str, at: str, hand: str) -> bool:
+    """A contact of the two begins then, while the end-effector touches the thing."""
+    return begins(known, one, other, at) and touched(known, hand, one, at)
+
+
+def let_go(known: Known, other: str, thing: str, at: str) -> bool:
+    """The other one's contact with the thing ends then, not before the segment does."""
+    return known.at(at) >= known.segment.last - 1 and any(
+        near(each.last, known.at(at)) for each in known.touching(other, thing)
+    )
+
+
+def took(known: Known, other: str, thing: str, at: str) -> bool:
+    """The other one's contact with the thing begins then, not after the segment's start."""
+    return known.at(at) <= known.segment.first + 1 and any(
+        near(each.first, known.at(at)) for each in known.touching(other, thing)
+    )
+
+
+def rested_on(known: Known, what: str, other: str, hand: str) -> bool:
     """It touched the support before the hand came, and at the segment's borders."""
-    what = known.segment.objects[0]
+    if name(hand) != known.segment.ee:
+        return False
     times = (f"{known.segment.start_s:.3f}", f"{known.segment.end_s:.3f}")
     return all(touched(known, what, other, each) for each in times)
 
 
-def no_support(known: Known, other: str) -> bool:
+def no_support(known: Known, other: str, what: str, hand: str) -> bool:
     """It was moved since the hand came, or came to it only after the hand came."""
-    what = known.segment.objects[0]
-    hand = min(each.first for each in known.touching(known.segment.ee, what))
-    came_later = any(each.first >= hand for each in known.touching(what, other))
+    came = min((each.first for each in known.touching(hand, what)), default=None)
+    if came is None or name(hand) != known.segment.ee:
+        return False
+    came_later = any(each.first >= came for each in known.touching(what, other))
     moved = any(
-        hand <= each.last and each.first < known.segment.last for each in known.moving(what)
+        came <= each.last and each.first < known.segment.last for each in known.moving(what)
     )
     return came_later or moved
 
@@ -87,15 +118,23 @@ FORMS = (
         ended_within,
     ),
     (rf"contact of the {NAME} with the {NAME} was measured from {TIME} to {TIME}", measured),
+    (rf"the {NAME} began to touch the {NAME} at {TIME}, which counts at {TIME}", counts),
     (rf"the {NAME} began to touch the {NAME} at {TIME}", begins),
     (
-        rf"the {NAME} had hold of the {NAME}, which moved in the contact that began at {TIME}",
+        rf"the {NAME} had hold of the {NAME}: it moved at some time in their contact, which "
+        rf"began at {TIME}",
         possessed,
     ),
     (rf"the {NAME} moved in the contact with the {NAME} that began at {TIME}", moved_in_contact),
     (
-        rf"the possessed object rested on the {NAME}, which it did before the hand came",
+        rf"the {NAME} had rested on the {NAME} since before the {NAME} touched it",
         rested_on,
     ),
-    (rf"the {NAME} was not just what the possessed object had rested on all along", no_support),
+    (
+        rf"the {NAME} had not simply borne the {NAME} since before the {NAME} touched it",
+        no_support,
+    ),
+    (rf"the {NAME} had come to touch the {NAME} only at {TIME}, in the {NAME}", newly_met),
+    (rf"the {NAME} had the {NAME} already, and let go of it at {TIME}", let_go),
+    (rf"the {NAME} took the {NAME} at {TIME}", took),
 )

@@ -85,6 +85,10 @@ class Known:
         assert shape is not None
         return shape
 
+    def shape_of(self, what: str) -> Shape | None:
+        """The shape of a body, if it has one."""
+        return self._body(what).shape
+
     def _body(self, what: str) -> Sensor | TagObject:
         for group in (self.capture.objects, self.capture.sensors):
             for each in group:
@@ -104,6 +108,12 @@ class Known:
         """Where the middle of the body's box is in the world [m]."""
         centre = self.shape(what).bounds.mean(axis=0)
         return self.stream(what).positions[frame] + self.turn(what, frame).apply(centre)
+
+    def track(self, what: str, first: int, last: int) -> np.ndarray:
+        """Where the middle of a body is at each frame, or its origin if it has no shape [m]."""
+        if self.shape_of(what) is None:
+            return np.asarray(self.stream(what).positions[first : last + 1])
+        return np.array([self.middle(what, frame) for frame in range(first, last + 1)])
 
     def points(self, what: str, frame: int) -> np.ndarray:
         """Where the corners of its surface are in the world [m]."""

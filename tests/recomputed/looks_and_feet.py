@@ -112,12 +112,20 @@ def bore_none(known: Known) -> bool:
     return _bears(known, known.segment.ee, "none", known.segment.first, known.segment.last)
 
 
-def nothing_says(known: Known) -> bool:
+def of_a_foot(known: Known, what: str) -> bool:
+    """The capture says that it is a foot, or a part of one."""
+    kinds = [each.ee for each in known.seen.observation.links if each.kind == "foot"]
+    return known.segment.ee in kinds and name(what) == known.segment.ee
+
+
+def nothing_says(known: Known, foot: str) -> bool:
     """With one foot tracked nothing can be said, and with two it was lifted or bore something."""
     spans = [each for each in known.of(Touching) if each.body == known.segment.ee]
     ends = (known.segment.first, known.segment.last)
     down = all(any(covers(each, frame) for each in spans) for frame in ends)
-    return len(_feet(known)) < 2 or not down or not bore_none(known)
+    return name(foot) == known.segment.ee and (
+        len(_feet(known)) < 2 or not down or not bore_none(known)
+    )
 
 
 def measured_whole(known: Known, foot: str, first: str, last: str) -> bool:
@@ -146,7 +154,8 @@ FORMS = (
     (rf"the {NAME} still looked at the {NAME} at {TIME}", looked_until),
     (r"the foot bore the whole weight of the body", bore_whole),
     (r"the foot bore no weight", bore_none),
-    (r"nothing says that the foot was down and bore no weight", nothing_says),
+    (rf"no measured weight shows that the {NAME} bore none", nothing_says),
+    (rf"the {NAME} counts as the foot", of_a_foot),
     (
         rf"the {NAME} bore the whole weight, as far as feet tell, from {TIME} to {TIME}",
         measured_whole,

@@ -29,10 +29,10 @@ def moved(known: Known, what: str, distance: str, first: str, last: str) -> bool
     A time that is told of motion may be that of an impact, of which smoothing blurs one step.
     """
     begin, end = known.frame(first), known.frame(last)
-    place = known.stream(what).positions
-    way = float(np.linalg.norm(place[end] - place[begin]))
+    place = known.track(what, begin, end)
+    way = float(np.linalg.norm(place[-1] - place[0]))
     if distance:
-        step = max(float(np.linalg.norm(place[at] - place[at - 1])) for at in (begin + 1, end))
+        step = max(float(np.linalg.norm(place[at] - place[at - 1])) for at in (1, -1))
         return abs(way - float(distance)) < 0.02 + step
     far = _apart(known, what, range(begin, end + 1), begin)
     return way < 0.015 and float(far.max()) > 1.0
@@ -52,6 +52,13 @@ def drifted(known: Known, what: str, drift: str, first: str, last: str) -> bool:
     way = float(np.linalg.norm(place[known.frame(last)] - place[known.frame(first)]))
     told = abs(way - float(drift or 0) / 1000.0) < (0.003 if drift else 0.008)
     return told and stayed(known, what, first, last)
+
+
+def went_further(known: Known, what: str) -> bool:
+    """It ends half the width of a hand away, or its path is as long as a hand is wide."""
+    track = known.track(what, known.segment.first, known.segment.last)
+    path = float(np.linalg.norm(np.diff(track, axis=0), axis=1).sum())
+    return float(np.linalg.norm(track[-1] - track[0])) > 0.045 or path > 0.09
 
 
 def stayed(known: Known, what: str, first: str, last: str) -> bool:
@@ -238,6 +245,15 @@ def swung(known: Known, what: str) -> bool:
     return to_and_fro(known, what, known.segment.first, known.segment.last)
 
 
+def swing_border(known: Known, what: str, sense: str, at: str) -> bool:
+    """A stretch of motion to and fro begins then, or ends."""
+    return any(
+        each.body == what.replace(" ", "_")
+        and near(each.first if sense == "began" else each.last, known.at(at))
+        for each in known.of(Swings)
+    )
+
+
 def measured_swings(known: Known, what: str, first: str, last: str) -> bool:
     found = any(
         each.body == what.replace(" ", "_")
@@ -319,6 +335,8 @@ def flew_on(known: Known) -> bool:
 
 
 FORMS = (
+    (rf"the {NAME} went further than what is merely gripped", went_further),
+    (rf"the {NAME} (began|ceased) to be moved to and fro at {TIME}", swing_border),
     (rf"the {NAME} was gone at once", gone_at_once),
     (rf"the path of the {NAME} became level, or ceased to be, at {TIME}", levelled),
     (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),
@@ -345,12 +363,12 @@ FORMS = (
         measured_lengthwise,
     ),
     (
-        rf"the {NAME} was seen to have left its place at {TIME}; its motion is taken to begin at "
+        rf"the {NAME} was seen to have moved at {TIME}; the motion is taken to begin at "
         rf"{TIME}",
         left_place,
     ),
     (
-        rf"the {NAME} was seen in its last place at {TIME}; its motion is taken to end at {TIME}",
+        rf"the {NAME} was seen to have stopped at {TIME}; the motion is taken to end at {TIME}",
         came_to_place,
     ),
     (

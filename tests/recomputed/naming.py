@@ -112,7 +112,7 @@ def accompanied(known: Known, hand: str) -> bool:
     return several and hand.replace(" ", "_") == known.segment.ee
 
 
-def _core_of(known: Known, hand: str, *strings: str) -> bool:
+def _core_of(known: Known, _: str, hand: str, *strings: str) -> bool:
     if not accompanied(known, hand):
         return False
     first, *others = known.segment.objects
@@ -178,8 +178,11 @@ def _forced(known: Known, what: str, forced: bool) -> bool:
 LIST = r"([\w ,]+)"
 
 
-def features_in_words(known: Known, *told: str) -> bool:
+def features_in_words(known: Known, listed: str, *told: str) -> bool:
     """The pairs and things that are listed, and no others, touch, move and are hit."""
+    bodies = [each.replace("_", " ") for each in (known.segment.ee, *known.segment.objects)]
+    if re.split(r", | and ", listed.replace("the ", "")) != bodies:
+        return False
     return features(known, *_strings(known, known.segment.objects, told))
 
 
@@ -343,12 +346,13 @@ def nearest(known: Known, what: str) -> bool:
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"the segment lies between {TIME} and {TIME}", borders),
     (
-        rf"contacts at the start: {LIST}; at the end: {LIST}; moved: {LIST}; hit: {LIST}",
+        rf"of (the [\w ,]+), contacts at the start: {LIST}; at the end: {LIST}; moved: {LIST}; "
+        rf"hit: {LIST}",
         features_in_words,
     ),
     (
-        rf"leaving aside what else is in the {NAME}, contacts at the start: {LIST}; at the end: "
-        rf"{LIST}; moved: {LIST}; hit: {LIST}",
+        rf"of (the [\w ,]+), leaving aside what else is in the {NAME}, contacts at the start: "
+        rf"{LIST}; at the end: {LIST}; moved: {LIST}; hit: {LIST}",
         _core_of,
     ),
     (rf"more than one thing was in the {NAME}", accompanied),

@@ -67,11 +67,11 @@ def agent(known: Known, what: str) -> str:
     return known.capture.agent_of(body)
 
 
-def another_had(known: Known, other: str) -> bool:
+def another_had(known: Known, other: str, _: str) -> bool:
     return name(other) in _taken_from(known)
 
 
-def another_took(known: Known, other: str) -> bool:
+def another_took(known: Known, other: str, _: str) -> bool:
     return name(other) in _left_to(known)
 
 
@@ -207,7 +207,8 @@ def _pace(known: Known, one: str, other: str, frame: int) -> float:
     """The fastest relative motion of two middles in the last 0.06 s before a frame [m/s]."""
     frames = range(max(frame - round(0.06 * known.rate), 0), frame + 1)
     ways = [known.middle(one, each) - known.middle(other, each) for each in frames]
-    return max(float(np.linalg.norm(b - a)) * known.rate for a, b in pairwise(ways))
+    steps = (float(np.linalg.norm(b - a)) * known.rate for a, b in pairwise(ways))
+    return max(steps, default=0.0)
 
 
 def went_at(known: Known, what: str, mm_s: str, one: str) -> bool:
@@ -247,7 +248,7 @@ def _goes_along(known: Known, what: str, way: np.ndarray) -> bool:
     return bool(np.linalg.norm(known.way(what) - way) < 0.3 * np.linalg.norm(way))
 
 
-def not_slid(known: Known) -> bool:
+def not_slid(known: Known, _: str) -> bool:
     """Nothing touches it from border to border, or it hardly goes aside, or up or down."""
     what, way = known.segment.objects[0], known.way(known.segment.objects[0])
     kept = [
@@ -281,7 +282,7 @@ def not_resting(known: Known, ee: str) -> bool:
     return float(turn.magnitude().max()) > 0.03
 
 
-def not_put_down(known: Known) -> bool:
+def not_put_down(known: Known, _: str) -> bool:
     """It stays in the hand to the last frame, or for long, or does not go down."""
     what = known.segment.objects[0]
     lets_go = any(
@@ -294,21 +295,21 @@ def not_put_down(known: Known) -> bool:
 
 FORMS = (
     (r"it started from rest, or from what it touched", started_from_rest),
-    (r"it was not slid", not_slid),
-    (r"it was not put down", not_put_down),
+    (rf"the {NAME} did not slide on anything from start to end", not_slid),
+    (rf"the {NAME} did not come down to where it was then let go", not_put_down),
     (
         rf"the {NAME} touched none of the tracked objects when the segment began, nor when it "
         r"ended",
         touched_nothing,
     ),
     (rf"the {NAME} moved", not_resting),
-    (rf"the {NAME} did not ride on the {NAME}", not_borne),
+    (rf"the {NAME} was not borne along by the {NAME}", not_borne),
     (
         rf"the {NAME} was borne by the {NAME} and went along with it, "
         rf"in the contact that began at {TIME}",
         borne,
     ),
-    (rf"the {NAME} met the {NAME} at (\d+) mm/s", met_at),
+    (rf"the {NAME} (?:met|struck) the {NAME} at (\d+) mm/s", met_at),
     (
         rf"the {NAME} pressed on the {NAME} along \((-?\d+), (-?\d+), level\) thousandths,"
         rf" at {TIME}",
@@ -322,9 +323,9 @@ FORMS = (
     (rf"the {NAME} was met at its side, neither before, nor behind, nor above", met_aside),
     (rf"the {NAME} went at (\d+) mm/s when the {NAME} let it go", went_at),
     (rf"the {NAME} stayed with the {NAME}", clings),
-    (rf"the {NAME} was met at a high speed", met_fast),
-    (rf"the {NAME} had the object by then", another_had),
-    (rf"the {NAME} had taken the object by then", another_took),
+    (rf"the {NAME} was met as fast as by a blow", met_fast),
+    (rf"the {NAME} had the {NAME} by then", another_had),
+    (rf"the {NAME} had taken the {NAME} by then", another_took),
     (r"it was another agent who had it", stranger_had),
     (r"it was another agent who had taken it", stranger_took),
     (rf"the {NAME} belongs to {NAME}", belongs),

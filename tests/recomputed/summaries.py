@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from capar.model.body_names import body_names
-from capar.model.facts import Moving, Posture
+from capar.model.facts import ClosingSpeed, Moving, Posture
+from capar_rules.engine.solver import rule_file
 from recomputed.doors import NUMBER, slid, swung
-from recomputed.known import NAME, TIME, Known, covers, near
+from recomputed.known import NAME, TIME, Known, covers, name, near
 from recomputed.motion import lasted, stroked
 
 LENGTH = r"(\d+ mm|\d+ cm|\d+\.\d m)"
@@ -24,7 +25,10 @@ SMOOTHED_M = 0.006
 SHORT_M = 0.01
 """A body that ends nearer than this to where it began is told to end there [m]."""
 
-VERBS = "touched|moved|ended|leant|turned|stayed|kept|did|was|had|came|went|then|lay|dipped|started"
+VERBS = (
+    "met|rose|sank|took|counts|bore|touched|moved|ended|leant|turned|stayed|kept|did|was|had|came|went|"
+    "then|lay|dipped|started"
+)
 
 
 @dataclass(frozen=True)
@@ -86,9 +90,9 @@ def _motion(known: Known, body: str) -> tuple[int, int]:
 
 
 def _displaced(known: Known, body: str, span: tuple[int, int]) -> np.ndarray:
-    """The way of the body's origin."""
-    place = known.stream(body).positions
-    return np.asarray(place[span[1]] - place[span[0]])
+    """The way of the body's middle."""
+    track = known.track(body, *span)
+    return np.asarray(track[-1] - track[0])
 
 
 def _shifted(known: Known, body: str) -> np.ndarray:
@@ -104,15 +108,15 @@ def _length(way: np.ndarray) -> float:
 def moved(known: Known, body: str, far: str) -> bool:
     """It ends so far from where its motion began, a step of a blow apart."""
     span = _motion(known, body)
-    place = known.stream(body).positions
-    blur = max(_length(place[at] - place[at - 1]) for at in (span[0] + 1, span[1]))
+    track = known.track(body, *span)
+    blur = max(_length(track[1] - track[0]), _length(track[-1] - track[-2]))
     return _is(_length(_displaced(known, body, span)), far, slack_m=SMOOTHED_M + blur)
 
 
 def wound(known: Known, body: str, path: str, far: str) -> bool:
     """Its steps sum to the path, and it ends so far from where its motion began."""
     span = _motion(known, body)
-    track = known.stream(body).positions[span[0] : span[1] + 1]
+    track = known.track(body, *span)
     steps = float(np.linalg.norm(np.diff(track, axis=0), axis=1).sum())
     way = _length(_displaced(known, body, span))
     ended = _is(way, far) if far else way < SHORT_M + SMOOTHED_M
@@ -130,6 +134,118 @@ def ended(known: Known, body: str, rise: str, sense: str, aside: str) -> bool:
     level = _is(height, rise) if rise else abs(height) <= 2 * SMOOTHED_M
     beside = math.hypot(way[0], way[1])
     return level and (_is(beside, aside) if aside else beside <= 2 * SMOOTHED_M)
+
+
+def _asked(name: str, told: str) -> bool:
+    """Whether a length or an angle is the threshold of that name, as the rules have it."""
+    text = rule_file("thresholds.lp").read_text(encoding="utf-8")
+    (asked,) = re.findall(rf"#const {name} = (\d+)\.", text)
+    if name.endswith("mrad"):
+        return abs(math.degrees(int(asked) / 1000.0) - float(told)) <= 0.6
+    return _is(int(asked) / 1000.0, told, slack_m=0.0)
+
+
+def counts_from(known: Known, body: str, far: str) -> bool:
+    """The body moves from there on, and stayed nearer to where it was."""
+    calibration = known.seen.observation.calibration
+    assert calibration is not None
+    (floor,) = [each.motion_floor_m for each in calibration.objects if each.name == body]
+    return _is(floor, far, slack_m=0.0)
+
+
+def not_shaken(known: Known, _: str, often: str, at: str) -> bool:
+    """It turns back no more than so often, over the whole segment."""
+    words = {"never": 0, "once": 1, "twice": 2}
+    count = words[often] if often in words else int(often.removesuffix(" times"))
+    slow = 10.0 * count < 25.0 * float(at)
+    return slow and lasted(known, at) and turned_back_so_often(known, "", str(count))
+
+
+def too_low(known: Known, body: str, verb: str, far: str, asked: str) -> bool:
+    """It went so far up or down, which is less than the rules ask for."""
+    height = float(_shifted(known, body)[2]) * (1.0 if verb == "rose" else -1.0)
+    return _is(height, far) and 0.0 < height < 0.05 + SMOOTHED_M and _asked("height_mm", asked)
+
+
+def too_far_aside(known: Known, body: str, aside: str, sense: str, rise: str) -> bool:
+    """It went further to the side than up or down."""
+    way = _shifted(known, body)
+    height, beside = float(way[2]) * (1.0 if sense == "up" else -1.0), math.hypot(way[0], way[1])
+    return _is(beside, aside) and _is(height, rise) and beside + SMOOTHED_M > height > 0.0
+
+
+def too_steep(known: Known, body: str, sense: str, rise: str, aside: str) -> bool:
+    """It went further up or down than to the side."""
+    way = _shifted(known, body)
+    height, beside = float(way[2]) * (1.0 if sense == "up" else -1.0), math.hypot(way[0], way[1])
+    return _is(beside, aside) and _is(height, rise) and height + SMOOTHED_M > beside
+
+
+def too_little_aside(known: Known, body: str, aside: str, asked: str) -> bool:
+    way = _shifted(known, body)
+    beside = math.hypot(way[0], way[1])
+    return _is(beside, aside) and beside < 0.1 + SMOOTHED_M and _asked("aside_mm", asked)
+
+
+def too_far(known: Known, body: str, far: str, asked: str) -> bool:
+    return (
+        ended_away(known, body, far)
+        and _length(_shifted(known, body)) > 0.1 - SMOOTHED_M
+        and _asked("aside_mm", asked)
+    )
+
+
+def too_short_to_slide(known: Known, body: str, far: str, asked: str) -> bool:
+    way = _length(_shifted(known, body))
+    return _is(way, far) and way < 0.05 + SMOOTHED_M and _asked("slide_mm", asked)
+
+
+def turned_too_little(known: Known, body: str, told: str, asked: str) -> bool:
+    return spun(known, body, told) and _asked("turn_mrad", asked) and float(told) <= float(asked)
+
+
+def leant_too_little(known: Known, body: str, before: str, after: str, asked: str) -> bool:
+    change = abs(float(before) - float(after))
+    return (
+        leant(known, body, before, after)
+        and _asked("turn_mrad", asked)
+        and change <= float(asked) + 1.0
+    )
+
+
+def met_first(known: Known, body: str, other: str, at: str) -> bool:
+    """A contact of the two begins then, while the end-effector touches the thing."""
+    holds = known.touching(known.segment.ee, body)
+    began = any(near(each.first, known.at(at)) for each in known.touching(body, other))
+    return began and any(covers(each, known.at(at)) for each in holds)
+
+
+def met_gently(known: Known, body: str, other: str, speed: str) -> bool:
+    """They come together so fast, and slower than a blow."""
+    return int(speed) < 1000 and _met(known, body, other, speed)
+
+
+def met_hard(known: Known, body: str, other: str, speed: str) -> bool:
+    return int(speed) >= 1000 and _met(known, body, other, speed)
+
+
+def _met(known: Known, body: str, other: str, speed: str) -> bool:
+    found = [each for each in known.of(ClosingSpeed) if each.speed == int(speed)]
+    return (body, name(other)) in [(each.body, each.other) for each in found]
+
+
+def let_go(known: Known, body: str, thing: str, at: str) -> bool:
+    """The other one's contact with the thing ends then, not before the segment does."""
+    return known.at(at) >= known.segment.last - 1 and any(
+        near(each.last, known.at(at)) for each in known.touching(body, thing)
+    )
+
+
+def took(known: Known, body: str, thing: str, at: str) -> bool:
+    """The other one's contact with the thing begins then, not after the segment's start."""
+    return known.at(at) <= known.segment.first + 1 and any(
+        near(each.first, known.at(at)) for each in known.touching(body, thing)
+    )
 
 
 def until(known: Known, body: str, at: str) -> bool:
@@ -163,7 +279,7 @@ def kept_within(known: Known, body: str, far: str, first: str = "", last: str = 
     """It is never further from the middle of where it is."""
     begin = known.frame(first) if first else known.segment.first
     end = known.frame(last) if last else known.segment.last
-    track = known.stream(body).positions[begin : end + 1]
+    track = known.track(body, begin, end)
     away = np.linalg.norm(track - np.median(track, axis=0), axis=1)
     return _is(float(away.max()), far)
 
@@ -203,6 +319,23 @@ def turned_back_so_often(known: Known, _: str, count: str) -> bool:
 
 
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
+    (rf"(rose|sank) by {LENGTH}, less than the {LENGTH} that count", too_low),
+    (rf"went further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
+    (rf"went further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
+    (rf"went {LENGTH} to the side, less than the {LENGTH} that count", too_little_aside),
+    (rf"ended {LENGTH} from where it began, not within {LENGTH}", too_far),
+    (rf"went only {LENGTH}, less than the {LENGTH} of a slide", too_short_to_slide),
+    (rf"turned by {DEGREES} about the vertical, less than {DEGREES}", turned_too_little),
+    (
+        rf"leant {DEGREES} from upright at the start and {DEGREES} at the end, a change of less "
+        rf"than {DEGREES}",
+        leant_too_little,
+    ),
+    (rf"met the {NAME} at (\d+) mm/s, less than the 1000 mm/s of a blow", met_gently),
+    (rf"met the {NAME} at (\d+) mm/s, fast enough for a blow \(1000 mm/s\)", met_hard),
+    (rf"had come to touch the {NAME} only at {TIME}", met_first),
+    (rf"had the {NAME} already, and let go of it at {TIME}", let_go),
+    (rf"took the {NAME} at {TIME}", took),
     (rf"moved along a path of {LENGTH} and ended (?:{LENGTH} from )?where it began", wound),
     (rf"moved {LENGTH}", moved),
     (rf"ended {LENGTH} from where it began", ended_away),
@@ -214,16 +347,22 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"slid on its rail from {NUMBER} m to {NUMBER} m open", slid),
     (rf"turned on its hinge from {NUMBER} rad to {NUMBER} rad open", swung),
     (r"turned back (\d+) times, in strokes of a finger's width and more", turned_back_so_often),
+    (
+        rf"turned back (never|once|twice|\d+ times) in {TIME}, and what is shaken does so 25 times "
+        r"in 10 s or more",
+        not_shaken,
+    ),
     (rf"it lasted {TIME}", lambda known, _, told: lasted(known, told)),
     (rf"leant {DEGREES} from upright at the start and {DEGREES} at the end", leant),
-    (rf"turned by (?:only )?{DEGREES} about the vertical", spun),
+    (rf"turned by {DEGREES} about the vertical", spun),
     (rf"it shifted by {LENGTH}, too little to count as motion", shifted),
     (rf"kept still \(within {LENGTH}\) and touched [\w ]+ from {TIME} to {TIME}", kept_within),
     (rf"touched the {NAME} at {TIME}", touched_at),
     (rf"stayed within {LENGTH} of one place", kept_within),
+    (rf"too little to count as motion \({LENGTH} or more\)", counts_from),
     (rf"at the start \({TIME}\)", starts),
     (rf"at the end \({TIME}\)", ends),
     (rf"until just before \({TIME}\)", precedes),
-    (r"(\d+ mm)(?= \(|\.|, | and )", counts_within),
+    (r"(\d+ mm)(?= \(|\.|, | and | of the | are between)", counts_within),
 )  # fmt: skip
 """Each form in which a summary tells numbers, and how it is recomputed; the first precede."""

@@ -1,0 +1,36 @@
+"""Of which distance explanations speak where two bodies touch."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+NEAR_MM = 10
+"""Bodies that count as touching while they are further apart are told to be near [mm]."""
+
+
+class Between(StrEnum):
+    """What of two bodies a distance is between, as a sentence says it."""
+
+    SURFACES = "between their surfaces"
+    ORIGINS = "between their origins, as not both have a shape"
+    POINTS = (
+        "between the points of them that were steadily together, estimated from the recording, as "
+        "not both have a shape"
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """Up to which distance two bodies are counted as touching."""
+
+    distance_m: float
+    between: Between = Between.SURFACES
+
+    @property
+    def told_mm(self) -> int:
+        """The distance in whole millimetres, as it is told."""
+        return round(1000.0 * self.distance_m)
+
+    @property
+    def is_touch(self) -> bool:
+        """Whether bodies so near may be told to touch: surfaces, and hardly a gap."""
+        return self.between is Between.SURFACES and self.told_mm <= NEAR_MM

@@ -1,0 +1,76 @@
+"""A way that falls short of a condition is told with number and threshold, or not at all."""
+
+import math
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from capar_rules.borders.times import constants
+from capar_rules.explain import quantities
+
+MM = st.integers(-3000, 3000)
+NUMBER = re.compile(r"([\d.]+) (mm|cm|m)\b")
+SCALE = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+
+
+def told_mm(text: str) -> list[float]:
+    """The lengths that a text tells, in order [mm]."""
+    return [float(number) * SCALE[unit] for number, unit in NUMBER.findall(text)]
+
+
+def rises(x: int, y: int, z: int) -> bool:
+    return z >= constants()["height_mm"] and z * z >= x * x + y * y
+
+
+def travels(x: int, y: int, z: int) -> bool:
+    aside = x * x + y * y
+    return aside >= constants()["aside_mm"] ** 2 and z * z < aside
+
+
+@given(MM, MM, MM)
+def test_why_it_is_no_rise_is_told_of_what_went_up_alone(x: int, y: int, z: int) -> None:
+    if rises(x, y, z):
+        return
+    short = quantities.not_up(x, y, z)
+    assert bool(short.text) == (z >= quantities.LEVEL_MM)
+    assert 0.0 <= short.nearness <= 1.0
+    assert quantities.not_down(x, y, -z) == replaced(short)
+
+
+def replaced(short: quantities.Shortfall) -> quantities.Shortfall:
+    """The same of a way down."""
+    text = short.text.replace("rose", "sank").replace("than up", "than down")
+    return quantities.Shortfall(text, short.nearness)
+
+
+@given(MM, MM, MM)
+def test_why_it_is_no_carrying_is_told_of_what_went_aside(x: int, y: int, z: int) -> None:
+    if travels(x, y, z):
+        return
+    short = quantities.not_aside(x, y, z)
+    assert bool(short.text) == (math.hypot(x, y) >= quantities.LEVEL_MM)
+    assert 0.0 <= short.nearness <= 1.0
+
+
+@given(MM, MM, MM)
+def test_two_lengths_that_decide_are_never_told_as_the_same(x: int, y: int, z: int) -> None:
+    wanted = [] if rises(x, y, z) else [quantities.not_up(x, y, z).text]
+    wanted += [] if travels(x, y, z) else [quantities.not_aside(x, y, z).text]
+    for text in filter(None, wanted):
+        one, other = told_mm(text)
+        assert one != other or abs(math.hypot(x, y) - abs(z)) < 1.0
+
+
+@pytest.mark.parametrize(
+    ("way", "told"),
+    [
+        ((330, 0, 300), "went further to the side (33 cm) than up (30 cm)"),
+        ((0, 0, 48), "rose by 48 mm, less than the 50 mm that count"),
+        ((30, 0, 30), "rose by 3 cm, less than the 5 cm that count"),
+        ((0, 0, -300), ""),
+    ],
+)
+def test_a_way_that_is_no_rise(way: tuple[int, int, int], told: str) -> None:
+    assert quantities.not_up(*way).text == told
