@@ -135,11 +135,20 @@ class FactLedger:
         """The true first frames of intervals that were going on at the frontier."""
         out: dict[tuple[Key, int], int] = {}
         for fact in seen:
-            if _is_interval(fact) and fact.ends()[0] <= self.frontier <= fact.ends()[-1]:
-                known = self._open.get(_key(fact))
-                if known is not None:
-                    out[_key(fact), fact.ends()[0]] = known.first
+            known = self._continued(fact)
+            if known is not None:
+                out[_key(fact), fact.ends()[0]] = known.first
         return out
+
+    def _continued(self, fact: Observed) -> _Open | None:
+        """The interval that went on at the frontier and that a fact tells of; None without one.
+
+        Its end may be told a frame sooner than before, and so be at the frontier or before it.
+        """
+        if not _is_interval(fact) or fact.ends()[0] > self.frontier:
+            return None
+        known = self._open.get(_key(fact))
+        return known if known is not None and fact.ends()[-1] >= known.first else None
 
     def _is_late(self, fact: Observed) -> bool:
         """Whether it is of a motion that goes on, and is not settled though its frames are."""
@@ -149,7 +158,9 @@ class FactLedger:
         return motion is not None and fact.ends()[0] >= motion.first
 
     def _has_ended(self, fact: Observed) -> bool:
-        return _is_interval(fact) and fact.ends()[-1] <= self.frontier
+        """Whether it is an interval that was settled before."""
+        ended = _is_interval(fact) and fact.ends()[-1] <= self.frontier
+        return ended and self._continued(fact) is None
 
 
 def _is_interval(fact: Observed) -> bool:
