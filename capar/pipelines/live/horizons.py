@@ -40,9 +40,10 @@ class LiveHorizons:
     0.4 s is less than a millionth of their way, and losses that are shorter than 0.1 s are filled.
     That is also longer than contacts that are dropped and gaps that are closed (0.1 s)."""
 
-    stop_s: float = 0.75
-    """After its end a segment at whose end a thing stops is settled [s], and facts are kept: where
-    the thing came to rest is the middle of its poses in so much of its rest."""
+    edge_s: float = 0.75
+    """After its end a segment is settled at whose end a thing starts or stops [s], and so late facts
+    are kept: where the thing came to rest is the middle of its poses in so much of its rest, and when
+    it started is told by how its way grew until it was well beyond its floor."""
 
     lasts_s: float = 0.1
     """So much later than a rule asks for, what has to last for some time has lasted it [s]: by then
@@ -91,7 +92,7 @@ class LiveHorizons:
             raise CaparError(
                 "live horizons: expected stride, grain, settle and block longer than 0 s"
             )
-        longest_s = max(self.settle_s, self.stop_s)
+        longest_s = max(self.settle_s, self.edge_s)
         if self.window_s < 2.0 * (longest_s + self.stride_s):
             raise CaparError(
                 f"live horizons: a window of {self.window_s:g} s cannot settle what ended "
@@ -113,6 +114,6 @@ def horizons_of(calibration: Calibration, *, stride_s: float = 0.4) -> LiveHoriz
     return LiveHorizons(
         stride_s=stride_s,
         settle_s=settles_s + known.gap_s,
-        stop_s=max(limits.rest_begins_s, known.filter_s + known.gap_s),
+        edge_s=max(limits.rest_begins_s, known.filter_s + known.gap_s),
         margin_s=known.margin_s,
     )

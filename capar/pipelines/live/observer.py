@@ -41,8 +41,8 @@ from extractors.calibration import thresholds_of
 from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.measure import Measurements, measured
 
-STOPS = "stops_moving"
-"""The event at the end of a segment whose frame is known when a thing has rested for some time."""
+EDGES = ("starts_moving", "stops_moving")
+"""The events at the end of a segment whose frames are known later than others."""
 
 NO_SIDE = "none"
 """The side of an end-effector that is of no limb beside another."""
@@ -96,10 +96,8 @@ class LiveObserver:
         self._poses = CarriedPoses(calibration, self._frames(self.horizons.rest_s))
         self._memory = RuleMemory()
         self._asked = RuleProcess(self.rules)
-        self._segments = SegmentLedger(
-            self.horizons.segments,
-            {STOPS: self._frames(self.horizons.stop_s) - self._frames(self.horizons.settle_s)},
-        )
+        later = self._frames(self.horizons.edge_s) - self._frames(self.horizons.settle_s)
+        self._segments = SegmentLedger(self.horizons.segments, dict.fromkeys(EDGES, later))
         self._result = (
             LiveResult(
                 rig,
@@ -204,7 +202,7 @@ class LiveObserver:
         if len(window.capture.times) < 4:
             return []
         frontier = window.last - (0 if last else self._frames(self.horizons.settle_s))
-        kept = window.last - (0 if last else self._frames(self.horizons.stop_s))
+        kept = window.last - (0 if last else self._frames(self.horizons.edge_s))
         bodies = self._poses.bodies(window)
         self._answers.begin(window.first)
         measurements = measured(
