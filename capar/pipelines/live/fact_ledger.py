@@ -1,7 +1,9 @@
 """Facts of one window after the other, put together as those of one recording."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
+from functools import cache
+from inspect import get_annotations
 from typing import Any, cast
 
 from capar.model.declarations import Span
@@ -63,14 +65,16 @@ class FactLedger:
             facts: Facts of the window, in its own frames.
             begin: The frame of the recording with which the window begins.
         """
-        everything = [_moved(fact, begin) for fact in facts if isinstance(fact, Observed)]
-        late = {fact.ends()[0] for fact in everything if self._is_late(fact)}
+        observed = [fact for fact in facts if isinstance(fact, Observed)]
+        of_motions = (_moved(fact, begin) for fact in observed if isinstance(fact, OF_A_MOTION))
+        late = {fact.ends()[0] for fact in of_motions if self._is_late(fact)}
+        # Most facts are of single frames, and most of them are settled.
         seen = [
-            fact
-            for fact in everything
+            _moved(fact, begin)
+            for fact in observed
             if fact.declaration.span is not Span.INSTANT
-            or fact.ends()[0] > self.frontier
-            or (fact.ends()[0] in late and (_key(fact), fact.ends()[0]) not in self._told)
+            or (at := fact.ends()[0] + begin) > self.frontier
+            or (at in late and (_key(fact), at) not in self._told)
         ]
         firsts = self._firsts(seen)
         own = {(_key(fact), fact.ends()[0]) for fact in seen if _is_interval(fact)}
@@ -169,8 +173,17 @@ def _is_interval(fact: Observed) -> bool:
 
 def _key(fact: Observed) -> Key:
     """The kind of an interval and its bodies: what it measures besides is no part of it."""
-    values = (getattr(fact, each.name) for each in fields(cast(Any, fact)))
-    return type(fact), *(each for each in values if isinstance(each, str))
+    bodies, _ = _layout(type(fact))
+    return type(fact), *(getattr(fact, name) for name in bodies)
+
+
+@cache
+def _layout(kind: type[Observed]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The fields of a kind of fact that hold text, and those that hold frames."""
+    known = get_annotations(kind)
+    frames = () if kind.declaration.span is Span.ALWAYS else FRAMES
+    texts = tuple(name for name, of in known.items() if of is str)
+    return texts, tuple(name for name in known if name in frames)
 
 
 def _key_of_named(fact: Observed) -> Key:
@@ -180,10 +193,11 @@ def _key_of_named(fact: Observed) -> Key:
 
 
 def _moved(fact: Observed, by: int) -> Observed:
-    names = [each.name for each in fields(cast(Any, fact)) if each.name in FRAMES]
-    if not by or not names or fact.declaration.span is Span.ALWAYS:
+    _, frames = _layout(type(fact))
+    if not by or not frames:
         return fact
-    return cast(Observed, replace(cast(Any, fact), **{n: getattr(fact, n) + by for n in names}))
+    changed = {name: getattr(fact, name) + by for name in frames}
+    return cast(Observed, replace(cast(Any, fact), **changed))
 
 
 def _begun(fact: Observed, first: int | None) -> Observed:

@@ -41,9 +41,9 @@ class LiveHorizons:
     That is also longer than contacts that are dropped and gaps that are closed (0.1 s)."""
 
     edge_s: float = 0.75
-    """After its end a segment is settled at whose end a thing starts or stops [s], and so late facts
-    are kept: where the thing came to rest is the middle of its poses in so much of its rest, and when
-    it started is told by how its way grew until it was well beyond its floor."""
+    """After its end a segment is settled at whose end a thing starts or stops [s], and so late
+    facts are kept: where the thing came to rest is the middle of its poses in so much of its rest,
+    and when it started is told by how its way grew until it was well beyond its floor."""
 
     lasts_s: float = 0.1
     """So much later than a rule asks for, what has to last for some time has lasted it [s]: by then
