@@ -55,7 +55,7 @@ class LiveRun:
 
 
 @cache
-def live_run(name: str, *, stride_s: float = 0.4) -> LiveRun:
+def live_run(name: str, *, stride_s: float = 0.45) -> LiveRun:
     """A capture played to the end; a frame is destroyed as soon as the next one follows."""
     capture = CAPTURES[name]()
     known = calibrate(capture)

@@ -17,12 +17,13 @@ class LiveHorizons:
     ``extractors.calibration`` proves.
     """
 
-    stride_s: float = 0.4
+    stride_s: float = 0.45
     """Between two measurements of the short window at most [s], in which segments are found; it is
     measured once more as soon as one that was found is to be settled."""
 
     gathering_s: float = 0.05
-    """So much later a segment is settled than it could be [s], with those that end soon after."""
+    """So much later than one that ends with a start or a stop could be [s] every segment is settled
+    at the latest, with those that end soon after."""
 
     grain_s: float = 1.0
     """Short windows begin at multiples of this [s]: what is measured at their first frame is then
@@ -106,7 +107,7 @@ class LiveHorizons:
         return 2.0 * self.margin_s + self.block_s
 
 
-def horizons_of(calibration: Calibration, *, stride_s: float = 0.4) -> LiveHorizons:
+def horizons_of(calibration: Calibration, *, stride_s: float = 0.45) -> LiveHorizons:
     """The horizons that a calibration calls for: by its margin, its filter, and its rests."""
     known = calibration.horizons
     limits = thresholds_of(calibration)

@@ -3,7 +3,6 @@
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import accumulate
 from types import MappingProxyType
 
 from capar.model.observation import ObservedLink, Segment
@@ -37,7 +36,8 @@ class _Link:
     recent: deque[SettledSegment] = field(default_factory=deque)
     announced: dict[int, Segment] = field(default_factory=dict)
     due: tuple[int, ...] = ()
-    """The frontiers at which the segments are settled that were found to have ended."""
+    """The frontiers at which the segments that were found to have ended are settled at the latest,
+    so that those which end one soon after the other are settled at once."""
 
 
 class SegmentLedger:
@@ -71,7 +71,7 @@ class SegmentLedger:
         return min(starts, default=now if self._links else 0)
 
     def next_due(self, after: int) -> int | None:
-        """The first frontier later than one at which a segment is settled that was found."""
+        """The first frontier later than one at which a segment has to be settled that was found."""
         due = (frontier for link in self._links.values() for frontier in link.due)
         return min((frontier for frontier in due if frontier > after), default=None)
 
@@ -122,8 +122,8 @@ class SegmentLedger:
                 events.append(SegmentEvent(Status.SETTLED, segment, time_s))
                 done.append(each)
                 self._settle(own, each)
-            due = (self._due(each) for _, each in found[settled:] if each.last < now)
-            own.due = tuple(accumulate(due, max))
+            latest = max(self._later.values(), default=0)
+            own.due = tuple(each.last + latest for _, each in found[settled:] if each.last < now)
             upto = min(ended, unseen.get(link.ee, now + 1) - 1)
             told = {each.index: each for _, each in found[settled:] if each.last <= upto}
             events += _announced(own, told, time_s)
