@@ -40,6 +40,7 @@ from capar_rules.pars.inference import Inference
 from extractors.calibration import thresholds_of
 from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.measure import Measurements, measured
+from extractors.relations.weight_bearing import PART
 
 EDGES = ("starts_moving", "stops_moving")
 """The events at the end of a segment whose frames are known later than others."""
@@ -346,6 +347,8 @@ class LiveObserver:
     def _next_lasting(self, recent: Iterable[Observed], last: int) -> int | None:
         """The next frame at which a rest or a stand has lasted as long as rules ask; None without.
 
+        Of rests only those count in which nothing is touched: only they are told.
+
         Args:
             recent: Facts up to the newest frame.
             last: That frame.
@@ -356,10 +359,12 @@ class LiveObserver:
             Bears: in_frames(times().one_leg_ms, rate_hz),
         }
         late = self._frames(self.horizons.lasts_s)
+        going = [fact for fact in recent if fact.ends()[-1:] == (last,) and not _in_part(fact)]
+        touching = {fact.body for fact in going if isinstance(fact, Touching)}
         frames = (
             fact.ends()[0] + round(least[type(fact)]) + late
-            for fact in recent
-            if type(fact) in least and fact.ends()[-1] == last
+            for fact in going
+            if type(fact) in least and not (isinstance(fact, Resting) and fact.ee in touching)
         )
         return min((frame for frame in frames if frame > last), default=None)
 
@@ -369,3 +374,8 @@ class LiveObserver:
 
     def _frames(self, duration_s: float) -> int:
         return max(1, round(duration_s / self._step_s))
+
+
+def _in_part(fact: Observed) -> bool:
+    """Whether it tells that a foot bears a part of the weight, which no rule asks to last."""
+    return isinstance(fact, Bears) and fact.share == PART
