@@ -1,29 +1,32 @@
 """Observation while it happens: frames in, segments out, provisional first and settled soon.
 
 ``LiveObserver`` measures two sliding windows (``horizons`` states every length and its reason). The
-short one names segments: provisional half a second after they end, settled within a second. What is
-settled is not told otherwise while the recording goes on. The long one gives the facts of the
-result, over all of which ``finish`` asks the rules once; no frame is read again, and no more of
-them are held than the long window holds.
+short one names segments: provisional 0.4 s after they end, settled 0.8 s after they end unless
+something named below is awaited. What is settled is not told otherwise while the recording goes on.
+The long one gives the facts of the result, over all of which ``finish`` asks the rules once; no
+frame is measured again, and no more of them are held in memory than the long window holds.
 
 Windows overlap, and little is measured twice. Contact is asked about only at frames whose poses
 differ from the window before (``extractors.contact.earlier_answers``); normals of patches are kept
 by pose. Short windows begin at whole seconds, so that what is measured at their first frame recurs,
 and before every motion that goes on, as how it is parted is told from its beginning. They are
-measured twice a second, when a segment that was found is to be settled, and as soon as a thing
-moves whose first motion decides something.
+measured twice a second, when a segment that was found is to be settled, when a rest or a stand has
+lasted as long as rules ask for, and as soon as a thing moves whose first motion decides something.
 
 Measured with the same calibration, all facts of the result are those of the offline run, as long
 as no motion, contact or rest within which something else is sought is longer than the long window.
 What has to be awaited, and where the two part:
 
-* *Whether a hand takes what it touches* beside another thing is known when the thing moves, *who
-  takes a thing over* when the other lets go of it, and *whether a hand still holds what is out of
-  sight* when it is seen again. All three are awaited for 2 s.
+* *Whether a hand takes what it touches* beside another thing, or meets as fast as a blow does, is
+  known when the thing moves, *who takes a thing over* that lies on nothing fixed when the other
+  lets go of it, and *whether a contact goes on* while one of the two is out of sight when it is
+  seen again. All of these are awaited for 2 s.
+* *Whether a contact goes on* while the bodies stay near each other, and *whether what is swung is
+  swung on*, are awaited for 0.9 s.
 * *How a motion is parted* may be known only when it has come down again: a box that was lifted,
   carried level for 2.5 s and lowered was told as that 2.7 s after the end of the lift.
 * *Purposes that nobody states* are the action that follows; they are told when that is settled.
-* *Standing on one leg* is known once it has lasted the second that its rule asks for.
+* *Standing on one leg* is known once it has lasted the 0.75 s that its rule asks for.
 * *Guides*: a hinge or rail is fitted to every motion of a recording, live to those in the long
   window at its end. It would take the guide as part of the calibration.
 * *Objects that nobody has touched yet* are measured from when they are touched: where they lay

@@ -11,8 +11,10 @@ import sys
 import weakref
 from collections.abc import Sequence
 from contextlib import suppress
+from pathlib import Path
 from threading import Thread
 
+import capar
 from capar.model.errors import CaparError
 from capar.model.facts import Fact
 from capar.pipelines.live.rule_worker import inferred
@@ -30,6 +32,13 @@ AHEAD = 40
 
 WARMING = 3
 """A worker that has answered so often has read the rules for good [1]."""
+
+
+_START = (
+    "import runpy, sys; sys.path.insert(0, sys.argv[1]); "
+    "runpy.run_module('capar.pipelines.live.rule_worker', run_name='__main__')"
+)
+"""Runs the worker of this very copy of the package, from wherever that was imported."""
 
 
 class RuleProcess:
@@ -75,9 +84,11 @@ class RuleProcess:
             try:
                 return self._worker.answer(facts)
             except _EndedError:
-                # Until another one takes over, this process answers itself.
+                # Until another one takes over, this process answers itself; for good, if none can
+                # be started here.
+                starts = self._worker.spent_s > 0.0
                 self._end_worker()
-                self._left = min(self._left, AHEAD)
+                self._left = min(self._left, AHEAD) if starts else sys.maxsize
         return inferred(facts, self._rules)
 
     def close(self) -> None:
@@ -103,8 +114,11 @@ class _Worker:
     """A process that answers."""
 
     def __init__(self) -> None:
-        command = [sys.executable, "-P", "-m", "capar.pipelines.live.rule_worker"]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        # In a session of its own: who interrupts this process still wants its last answer.
+        command = [sys.executable, "-P", "-c", _START, str(Path(capar.__file__).parents[1])]
+        self.process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
+        )
         self.spent_s = 0.0
         self.end = weakref.finalize(self, _end, self.process)
 
