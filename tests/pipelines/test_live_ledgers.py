@@ -34,7 +34,14 @@ from capar.pipelines.live.recording_file import ValuesFile
 from capar.pipelines.live.rule_memory import RuleMemory
 from capar.pipelines.live.rule_process import RuleProcess
 from capar.pipelines.live.rule_worker import inferred
-from capar.pipelines.live.undecided import Handling, awaited, nameless, out_of_sight, undecided
+from capar.pipelines.live.undecided import (
+    Handling,
+    awaited,
+    decided_at,
+    nameless,
+    out_of_sight,
+    undecided,
+)
 from capar_rules.engine.profiles import profile
 from extractors.calibration import calibrate
 from extractors.devices.tracker import Description, Frame
@@ -274,6 +281,17 @@ def test_what_is_swung_or_may_touch_on_is_undecided_since_it_was_last_seen_to() 
     near = replace(handling, lingering={("bowl", "whisk"): 390, ("lid", "pot"): 380})
     assert undecided(near) == {"hand": 390}
     assert near.sure == 379
+
+
+def test_what_has_just_begun_to_move_is_undecided_since_it_is_touched() -> None:
+    own = Touching("hand", "cup", 100, 400)
+    moves = [Moving("cup", 390, 400)]
+    handling = Handling((own,), moves, {"cup"}, last=400, margin=15, longest=200, fresh=20)
+    assert undecided(handling) == {"hand": 100}
+    assert nameless(handling) == {"hand": 100}
+    assert list(decided_at(handling)) == [411]
+    assert undecided(replace(handling, moving=[Moving("cup", 370, 400)])) == {}
+    assert undecided(replace(handling, moving=[Moving("cup", 150, 200), *moves])) == {}
 
 
 def test_the_rules_answer_the_same_from_one_process_after_the_other() -> None:

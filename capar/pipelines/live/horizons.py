@@ -50,6 +50,10 @@ class LiveHorizons:
     """So much later than a rule asks for, what has to last for some time has lasted it [s]: by then
     the filter knows the end of that time as well as it knows a segment that is announced."""
 
+    fresh_s: float = 0.2
+    """So long a motion that has just begun may turn out to be none [s]: a glitch of the tracker, or
+    what the filter makes of the last frames."""
+
     near_s: float = 0.9
     """So long it is awaited whether bodies touch again that have stayed near each other [s]: their
     contact lasts then."""

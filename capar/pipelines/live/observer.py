@@ -33,7 +33,7 @@ from capar.pipelines.live.rule_memory import RuleMemory
 from capar.pipelines.live.rule_process import RuleProcess
 from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
 from capar.pipelines.live.sentences import Teller
-from capar.pipelines.live.undecided import Handling, awaited, nameless, undecided
+from capar.pipelines.live.undecided import Handling, awaited, decided_at, nameless, undecided
 from capar_rules.borders.times import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.pars.inference import Inference
@@ -235,7 +235,7 @@ class LiveObserver:
             time_s=time_s,
         )
         self._frontier = frontier
-        self._lasting = self._next_lasting(recent, window.last)
+        self._lasting = self._next_lasting(recent, decided_at(handling), window.last)
         if self.frames - self._forgotten >= self._frames(self.horizons.grain_s):
             self._forgotten = self.frames
             self._memory.forget(self._rules_begin(window), self._segments.ends(), self._frames(1.0))
@@ -304,6 +304,7 @@ class LiveObserver:
             lost=lost,
             swings=[fact for fact in facts if isinstance(fact, Swings)],
             stroke=self._frames(thresholds_of(self.calibration).swing_s),
+            fresh=self._frames(self.horizons.fresh_s),
             lingering=self._lingering(measurements, facts, lost, window),
             fast={
                 (fact.body, fact.other, fact.first)
@@ -344,14 +345,17 @@ class LiveObserver:
                     out[fact.body, fact.other] = since
         return out
 
-    def _next_lasting(self, recent: Iterable[Observed], last: int) -> int | None:
-        """The next frame at which a rest or a stand has lasted as long as rules ask; None without.
+    def _next_lasting(
+        self, recent: Iterable[Observed], decided: Iterable[int], last: int
+    ) -> int | None:
+        """The next frame at which something has lasted long enough to be told; None without.
 
         Of rests only those count in which nothing is touched: only they are told.
 
         Args:
             recent: Facts up to the newest frame.
-            last: That frame.
+            decided: Frames at which more is known than by rests and stands.
+            last: The newest frame.
         """
         rate_hz = self._rate_mhz / 1000.0
         least = {
@@ -366,7 +370,7 @@ class LiveObserver:
             for fact in going
             if type(fact) in least and not (isinstance(fact, Resting) and fact.ee in touching)
         )
-        return min((frame for frame in frames if frame > last), default=None)
+        return min((frame for frame in (*frames, *decided) if frame > last), default=None)
 
     def _rules_begin(self, window: Window) -> int:
         oldest = window.last - self._frames(self.horizons.rules_s)

@@ -36,6 +36,9 @@ class Handling:
     stroke: int = 0
     """How many frames one way of moving to and fro takes at most."""
 
+    fresh: int = 0
+    """Frames for which a motion that has just begun may yet turn out to be none."""
+
     lingering: Mapping[tuple[str, str], int] = field(default_factory=dict)
     """Bodies that may be said to have touched on, as they are near each other, or one is out of
     sight, and the last frame in which they were seen to touch."""
@@ -71,7 +74,12 @@ def undecided(handling: Handling) -> dict[str, int]:
                 own.first, *(touch.first for touch in besides), out.get(own.body, own.first)
             )
             out[own.body] = first
-    later = (*out_of_sight(handling).items(), *_swinging(handling), *_lingering(handling))
+    later = (
+        *out_of_sight(handling).items(),
+        *_swinging(handling),
+        *_lingering(handling),
+        *_just_taken(handling),
+    )
     for body, since in later:
         out[body] = min(since, out.get(body, since))
     return out
@@ -92,7 +100,7 @@ def nameless(handling: Handling) -> dict[str, int]:
     for own in _going(handling):
         if _may_be_blow(handling, own):
             out[own.body] = min(own.first, out.get(own.body, own.first))
-    for body, since in _lingering(handling):
+    for body, since in (*_lingering(handling), *_just_taken(handling)):
         out[body] = min(since, out.get(body, since))
     return out
 
@@ -161,6 +169,29 @@ def _swinging(handling: Handling) -> Iterator[tuple[str, int]]:
             for touch in handling.touching:
                 if swing.body in (touch.body, touch.other) and touch.last >= swing.last:
                     yield touch.body, swing.last
+
+
+def decided_at(handling: Handling) -> Iterator[int]:
+    """The frames at which it is known whether what is swung, or has begun to move, goes on."""
+    for swing in handling.swings:
+        yield swing.last + handling.stroke + 1
+    for move in handling.moving:
+        yield move.first + handling.fresh + 1
+
+
+def _just_taken(handling: Handling) -> Iterator[tuple[str, int]]:
+    """End-effectors that touch what has just begun to move, and since when they touch it.
+
+    Throughout a contact in which a thing moves it is possessed, so that it matters what it touched.
+    """
+    for own in _going(handling):
+        moves = [
+            move.first
+            for move in handling.moving
+            if move.object == own.other and move.last >= own.first
+        ]
+        if moves and min(moves) > handling.last - handling.fresh:
+            yield own.body, own.first
 
 
 def _lingering(handling: Handling) -> Iterator[tuple[str, int]]:
