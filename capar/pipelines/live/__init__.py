@@ -33,20 +33,18 @@ What has to be awaited, and where the two part:
   before within the long window is told, what was before it is not.
 * *Segments longer than the long window*: style, and where the path begins, are those of its part.
 * *Rests longer than* ``rest_s`` are told by their last part.
-* *Contacts at the very edge of a tolerance* are asked of other frames at once; the answer, exact to
-  0.05 mm, then differs: in two of twenty takes contacts of a box and a table by a frame.
 * *Notices* about the whole recording (losses, sizes, sides, falls) are those of the long windows.
 * *Clocks with uneven steps*: the rate is the calibration's.
 
-In the heavy scene of ``benchmarks/live.py`` (12 sensors, 8 objects of 10,000 faces, 103.3 Hz, 18 s)
-the observation was that of the offline run byte for byte, no settled segment differed, and half of
-the segments were settled within 0.9 s, all within 1.03 s by recorded time; one core of a computer
-with much other work managed 0.95 to 1.07 of real time. Long windows take 0.4 s every 5 s, during
-which frames wait. A tracker that is too fast is measured less often, so that segments are announced
-and settled later.
+In the heavy scene of ``benchmarks/live.py`` (12 sensors, 8 objects of 10,000 faces, 103.3 Hz, 12 s)
+the observation had the facts and segments of the offline run, no settled segment differed, and half
+of the segments were settled within 0.78 s, all within 1.06 s by recorded time; by processor time it
+managed 0.95 of real time on a very busy computer. Long windows take 0.4 s every 5 s, during which
+frames wait. A tracker that is too fast is measured less often, so that segments are announced and
+settled later.
 
-Flicker, segments, movers and the complex PAR of the result are decided by rules over all settled
-facts when it ends; their time grows with the recording. So do kept facts and sampled places.
-Without a result (``keep_result=False``) nothing of ours grows, but the solver frees no term that it
-ever saw: over 7.5 minutes with two bodies the process grew by 1.8 MB a minute.
+Flicker, segments, movers, forces and the complex PAR of the result are decided over all settled
+facts and poses when it ends; the time for that grows with the recording. Until then these lie on
+disk (``recording_file``). The solver frees no term that it ever saw, so that it runs in processes
+that follow each other (``rule_process``): memory is flat.
 """
