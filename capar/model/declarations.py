@@ -91,7 +91,7 @@ class Observed(Fact):
 
     def ends(self) -> tuple[int, ...]:
         """The frames that the fact itself states: an instant, or the first and the last frame."""
-        return _ends_of(type(self))(self)
+        return _ends_of(cast(Any, type(self)))(self)
 
     def other_bodies(self) -> tuple[str, ...]:
         """The other body of each stretch that the fact states; at least the body itself."""

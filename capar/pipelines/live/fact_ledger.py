@@ -173,7 +173,7 @@ def _is_interval(fact: Observed) -> bool:
 
 def _key(fact: Observed) -> Key:
     """The kind of an interval and its bodies: what it measures besides is no part of it."""
-    bodies, _ = _layout(type(fact))
+    bodies, _ = _layout(cast(Any, type(fact)))
     return type(fact), *(getattr(fact, name) for name in bodies)
 
 
@@ -193,7 +193,7 @@ def _key_of_named(fact: Observed) -> Key:
 
 
 def _moved(fact: Observed, by: int) -> Observed:
-    _, frames = _layout(type(fact))
+    _, frames = _layout(cast(Any, type(fact)))
     if not by or not frames:
         return fact
     changed = {name: getattr(fact, name) + by for name in frames}
