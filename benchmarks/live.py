@@ -1,11 +1,14 @@
 """Work, delay and agreement of live observation.
 
-Run by hand: ``python benchmarks/live.py [--events 10000] [--minutes 1] [--json]``.
+Run by hand: ``python benchmarks/live.py [--events 10000] [--minutes 1] [--memory 60] [--json]``.
 
-Two figures. *Work per event*: two bodies that meet again and again, for as many events as asked
-for; the processor time of each tenth of them, and what is held in memory. *A heavy scene*: twelve
-sensors and eight objects with meshes at 103.3 Hz; seconds of recording per second of processor time
-on one core, how late segments are settled, and how many of them the offline run tells otherwise.
+Three figures. *Work per event*: two bodies that meet again and again, for as many events as asked
+for; the processor time of each tenth of them, and what is held in memory. *Memory*: the same two
+bodies with other noise in every frame, the result kept, for as many minutes of recording as asked
+for, as fast as it can be computed; what this process, and the worker that it asks, hold meanwhile.
+*A heavy scene*: twelve sensors and eight objects with meshes at 103.3 Hz; seconds of recording per
+second of processor time on one core, how late segments are settled, and how many of them the
+offline run tells otherwise.
 """
 
 import argparse
@@ -13,6 +16,7 @@ import json
 import resource
 import time
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -58,7 +62,7 @@ def heavy_figures(minutes: float, *, faces: int) -> dict[str, Any]:
     for frame in frames:
         events += observer.push([frame])
     at_the_end, result = observer.finish()
-    spent = time.process_time() - start
+    spent = time.process_time() - start + observer.rules_process.spent_s
     assert result is not None
     late = [event.late_s for event in events if event.status is Status.SETTLED]
     offline = observe_measured(capture, measure(capture, known))
@@ -118,6 +122,45 @@ def work_figures(events: int) -> dict[str, Any]:
     }
 
 
+def memory_figures(minutes: float) -> dict[str, Any]:
+    """What is held in memory as a recording goes on, its result kept."""
+    short = _meeting(60.0, 2.0)
+    observer = LiveObserver(short, calibrate(short))
+    frames = replayed(short)
+    random = np.random.default_rng(1)
+    own, workers, start = {}, {}, time.process_time()
+    total = round(6000 * minutes)
+    for number in range(total):
+        source = frames[number % len(frames)]
+        places = source.positions + random.normal(0.0, 0.0001, source.positions.shape)
+        places[1:] = source.positions[1:]
+        observer.push([Poses(number / 100.0, places, source.orientations)])
+        if (number + 1) % 30000 == 0:
+            minute = (number + 1) // 6000
+            worker = observer.rules_process.worker
+            own[minute] = _resident_mb("self")
+            workers[minute] = _resident_mb(str(worker)) if worker else 0.0
+            print(f"  {minute} min: {own[minute]:.0f} + {workers[minute]:.0f} MB", flush=True)
+    spent = time.process_time() - start + observer.rules_process.spent_s
+    begin = time.process_time()
+    _, result = observer.finish()
+    assert result is not None
+    return {
+        "recording [min]": minutes,
+        "times real time": 60.0 * minutes / spent,
+        "segments": len(result.segments),
+        "resident by minutes [MB]": own,
+        "worker by minutes [MB]": workers,
+        "processor time of the end [s]": time.process_time() - begin,
+        "peak, with the end [MB]": _memory_mb(),
+    }
+
+
+def _resident_mb(process: str) -> float:
+    status = Path(f"/proc/{process}/statm").read_text(encoding="ascii")
+    return int(status.split()[1]) * resource.getpagesize() / 2**20
+
+
 def _meeting(seconds: float, period_s: float) -> Capture:
     """A hand without a mesh of many faces that touches a box once a period."""
     count = round(seconds * 100.0)
@@ -146,12 +189,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--events", type=int, default=10_000)
     parser.add_argument("--minutes", type=float, default=1.0)
+    parser.add_argument("--memory", type=float, default=0.0, help="minutes of recording")
     parser.add_argument("--faces", type=int, default=10_000)
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
     options = parser.parse_args()
     found = {}
     if options.events:
         found["work per event"] = work_figures(options.events)
+    if options.memory:
+        found["memory"] = memory_figures(options.memory)
     if options.minutes:
         found["a heavy scene"] = heavy_figures(options.minutes, faces=options.faces)
     if options.json:

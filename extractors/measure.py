@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from operator import attrgetter
 from typing import Any, cast
 
@@ -96,6 +96,10 @@ class Measurements:
     guides: Mapping[str, Guide]
     """The hinge or rail of each object that moves on one, by object."""
 
+    lingering: Mapping[tuple[str, str], int] = field(default_factory=dict)
+    """Bodies that have stayed so near each other, since the last frame of their contact, that it
+    lasts if they touch again; with that frame."""
+
 
 def measure(
     capture: Capture,
@@ -179,7 +183,14 @@ def measured(
         own += notices_of(capture, calibration, limits)
         own += faults(capture, bodies, touches, _motions(moves), limits)
     return Measurements(
-        _ordered(facts), tuple(own), calibration, tracks, looks, bodies.without_caches(), guides
+        _ordered(facts),
+        tuple(own),
+        calibration,
+        tracks,
+        looks,
+        bodies.without_caches(),
+        guides,
+        {(each.first, each.second): each.interval[1] for each in near if each.lingers},
     )
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import motions
 import numpy as np
+from motions.encounters import kick, throw
 from windows import repeated
 
 from capar.model.capture import Capture, Stream
@@ -28,6 +29,8 @@ CAPTURES: dict[str, Callable[[], Capture]] = {
     "slide": lambda: motions.slide_object(motions.WOMAN).capture,
     "both hands": lambda: motions.pick_up_with_both_hands(motions.WOMAN).capture,
     "one leg": lambda: motions.stand_on_one_leg(motions.WOMAN).capture,
+    "thrown": lambda: throw(motions.WOMAN).capture,
+    "kicked": lambda: kick(motions.WOMAN).capture,
     "sliding on and on": lambda: repeated(motions.slide_object(motions.WOMAN).capture, 5),
     "whisk and bottle": lambda: trial_of(f"{EXAMPLES}/bimacs_optitrack:take0"),
     "box carried": lambda: trial_of(
@@ -52,7 +55,7 @@ class LiveRun:
 
 
 @cache
-def live_run(name: str, *, stride_s: float = 0.5) -> LiveRun:
+def live_run(name: str, *, stride_s: float = 0.45) -> LiveRun:
     """A capture played to the end; a frame is destroyed as soon as the next one follows."""
     capture = CAPTURES[name]()
     known = calibrate(capture)

@@ -71,6 +71,28 @@ class Stream:
         turned = geometry.continuous(geometry.unit(orientations))
         object.__setattr__(self, "orientations", _owned(turned))
 
+    @classmethod
+    def of_checked(
+        cls,
+        times: Float[np.ndarray, "frames"],
+        positions: Float[np.ndarray, "frames 3"],
+        orientations: Float[np.ndarray, "frames 4"],
+    ) -> "Stream":
+        """A stream of arrays that were a stream's before: neither checked nor copied.
+
+        They may lie on disk, so that a long recording needs no memory until it is read.
+
+        Args:
+            times: Seconds since the first frame, strictly increasing.
+            positions: Origin of the body in the world [m]; NaN where it was lost.
+            orientations: Unit quaternions w x y z, body to world.
+        """
+        stream = cls.__new__(cls)
+        object.__setattr__(stream, "times", times)
+        object.__setattr__(stream, "positions", positions)
+        object.__setattr__(stream, "orientations", orientations)
+        return stream
+
     @cached_property
     def lost(self) -> Bool[np.ndarray, "frames"]:
         """Where the pose is not known."""

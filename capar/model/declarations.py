@@ -1,11 +1,12 @@
 """What every kind of observed fact declares, once, where it is defined."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cache
 from inspect import get_annotations
+from operator import attrgetter
 from types import MappingProxyType, ModuleType
 from typing import Any, ClassVar, Self, cast
 
@@ -90,9 +91,7 @@ class Observed(Fact):
 
     def ends(self) -> tuple[int, ...]:
         """The frames that the fact itself states: an instant, or the first and the last frame."""
-        span = self.declaration.span
-        names = span.value if isinstance(span, Span) else ("first",)
-        return tuple(getattr(self, each) for each in names)
+        return _ends_of(cast(Any, type(self)))(self)
 
     def other_bodies(self) -> tuple[str, ...]:
         """The other body of each stretch that the fact states; at least the body itself."""
@@ -116,6 +115,16 @@ class Observed(Fact):
     def between(self, first: int, last: int) -> Self:
         """The same fact of another interval."""
         return replace(cast(Any, self), first=first, last=last)
+
+
+@cache
+def _ends_of(kind: type[Observed]) -> Callable[[Observed], tuple[int, ...]]:
+    """What reads the frames that facts of a kind state; they are read very often."""
+    span = kind.declaration.span
+    names = span.value if isinstance(span, Span) else ("first",)
+    if len(names) > 1:
+        return attrgetter(*names)
+    return lambda fact: tuple(getattr(fact, name) for name in names)
 
 
 _BRACES = re.compile(r"\{(\w+)\}")

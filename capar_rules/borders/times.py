@@ -1,4 +1,4 @@
-"""The times by which borders are numbered, read from ``thresholds.lp``, where rules have theirs."""
+"""The numbers by which borders are numbered, or awaited, read from ``thresholds.lp``."""
 
 import re
 from collections.abc import Mapping
@@ -13,13 +13,16 @@ _CONSTANT = re.compile(r"^#const (\w+) = (\d+)\.", re.MULTILINE)
 
 @dataclass(frozen=True, slots=True)
 class Times:
-    """Durations [ms]; what each means stands beside its value in ``thresholds.lp``."""
+    """Durations [ms] and a speed [mm/s]; what each means stands beside it in ``thresholds.lp``."""
 
     merge_ms: int
     margin_ms: int
     settled_ms: int
     flicker_ms: int
     flicker_window_ms: int
+    rest_ms: int
+    one_leg_ms: int
+    blow_mm_s: int
 
     def __post_init__(self) -> None:
         """Check what the numbering relies on.

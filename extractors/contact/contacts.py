@@ -42,6 +42,10 @@ class Contact:
     gap_m: float
     """How far they are apart at its first frame [m]; zero where they cut each other."""
 
+    lingers: bool = False
+    """Whether they have stayed near each other since, up to the last frame: if they touch again
+    before they part, the contact lasts."""
+
 
 def contact_tolerance(capture: Capture, bodies: Bodies, thresholds: Thresholds) -> float:
     """Distance up to which bodies count as touching [m].
@@ -120,6 +124,7 @@ def contacts(
         pair = calibration.pair(first.name, second.name)
         if pair.found is Found.NEVER:
             continue
+        near_by = np.zeros(len(capture.times), dtype=bool)
         if pair.pivots:
             apart = points_apart(pair, first, second)
             touching = np.nan_to_num(apart, nan=np.inf) <= pair.touch_m
@@ -147,7 +152,8 @@ def contacts(
                 gap = float(points_apart(pair, first, second)[interval[0]])
             else:
                 gap = distance(one, two, interval[0])
-            found.append(Contact(first.name, second.name, interval, gap))
+            lingers = interval[1] + 1 < len(near_by) and bool(near_by[interval[1] + 1 :].all())
+            found.append(Contact(first.name, second.name, interval, gap, lingers=lingers))
     direct = tuple(_direct(capture, found, surfaces, calibration))
     whole = tuple(of_end_effectors(capture, direct, calibration))
     met = [(each.first, each.second, each.interval) for each in whole]

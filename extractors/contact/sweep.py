@@ -3,8 +3,9 @@
 A query at one pose also decides neighbouring poses. A point of one surface that is well within
 the distance of the other stays so while it hardly moves: those poses touch. Surfaces that are
 further apart than the distance by some room stay apart while no point moves by that room: those
-do not touch. Only poses that neither decides are queried, so the answer is as exact as if
-each had been.
+do not touch. Only poses that neither decides are queried. Offset surfaces decide what is clear by
+more than they may be off, and distances the rest, so that the answer at a pose is the same
+whichever other poses are asked about: a window of a recording is told as the whole is.
 """
 
 from dataclasses import dataclass, field
@@ -32,9 +33,9 @@ FRUITLESS_QUERIES = 4
 FEW = 1000
 """Poses up to which distances cost less than the making of offset surfaces [1]."""
 
-DEPTHS = (0.0, 0.4, 0.75, 1.0)
+DEPTHS = (0.0, 0.4, 0.75)
 """Offset surfaces on which a point of contact is sought, as shares of the distance [1]; deepest
-first."""
+first. What only a shallower one would meet is measured."""
 
 RESTART_EVERY = 4
 """One in so many such searches begins at the deepest, the others where the last one ended [1]."""
@@ -60,7 +61,7 @@ def sweep(
         second: The surface that moves.
         turns: Rotation matrices of ``T_first_second``.
         places: Its places [m].
-        distance_m: Distance up to which they touch [m], kept to 0.04 mm.
+        distance_m: Distance up to which they touch [m].
     """
     if not len(places):
         return np.zeros(0, dtype=bool)
@@ -119,16 +120,18 @@ class _Sweep:
         return self.known == _TOUCHES
 
     def _touch(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
-        """A point of the second within the distance, and how far it may move [m]; deepest first."""
+        """A point of the second within the distance, and how far it may move [m]; deepest first.
+
+        Where nothing is so deep, what ``_distance`` says.
+        """
         self.asked += 1
         for depth in range(0 if self.asked % RESTART_EVERY == 0 else self.depth, len(DEPTHS)):
             meeting = self._meet(DEPTHS[depth] * self.distance_m, EXACTNESS_M)
             if meeting is not None:
                 self.depth = depth
-                return self._point(meeting), (
-                    1.0 - DEPTHS[depth]
-                ) * self.distance_m - 2.0 * EXACTNESS_M
-        return None, 0.0
+                within_m = (1.0 - DEPTHS[depth]) * self.distance_m
+                return self._point(meeting), within_m - 2.0 * EXACTNESS_M
+        return self._distance()
 
     def _clearance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
         """How far all may move without touching [m], or else a point as ``_touch`` gives."""

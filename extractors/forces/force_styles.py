@@ -40,7 +40,12 @@ BEFORE_S = 0.05
 
 
 def force_styles(
-    capture: Capture, bodies: Bodies, facts: Iterable[object], guided: Collection[str] = ()
+    capture: Capture,
+    bodies: Bodies,
+    facts: Iterable[object],
+    guided: Collection[str] = (),
+    *,
+    times: Float[np.ndarray, "frames"] | None = None,
 ) -> tuple[ForceStyle, ...]:
     """How end-effectors set things going that moved on alone, in order of time.
 
@@ -52,7 +57,9 @@ def force_styles(
         bodies: Its bodies.
         facts: What was measured of it.
         guided: Objects on hinges and rails, which do not move freely.
+        times: The clock of the bodies [s]; None where they are of the capture itself.
     """
+    clock = capture.times if times is None else times
     touching = [fact for fact in facts if isinstance(fact, Touching)]
     acting = {sensor.name for sensor in capture.acting}
     mobile = {thing.name for thing in capture.objects if thing.tag is TagType.MOBILE}
@@ -62,7 +69,7 @@ def force_styles(
     for contact in touching:
         if contact.body in acting and contact.other in mobile:
             others = [c for c in touching if c.body in acting and c.other == contact.other]
-            style = _style(capture, bodies, contact, others, surfaces)
+            style = _style(capture, bodies, clock, contact, others, surfaces)
             if style is not None:
                 out.append(style)
     return tuple(sorted(out, key=lambda style: (style.start_s, style.object, style.ee)))
@@ -71,12 +78,13 @@ def force_styles(
 def _style(
     capture: Capture,
     bodies: Bodies,
+    times: Float[np.ndarray, "frames"],
     contact: Touching,
     others: list[Touching],
     surfaces: list[Surface],
 ) -> ForceStyle | None:
     """What one contact gave to a thing; None where it did not move on alone."""
-    times, thing = capture.times, bodies.objects[contact.other]
+    thing = bodies.objects[contact.other]
     rested = _rested(thing, contact, times)
     first = contact.first if rested is not None else contact.last
     last = _last_alone(contact, others, len(times))
@@ -93,7 +101,7 @@ def _style(
         return None
     if np.linalg.norm(found.velocity) < GOES_MPS:
         return None
-    return _stated(capture, bodies, contact, found, rested is not None, times[span])
+    return _stated(capture, bodies, times, contact, found, span, rested is not None)
 
 
 def _last_alone(contact: Touching, others: list[Touching], frames: int) -> int | None:
@@ -118,14 +126,15 @@ def _gone(
 def _stated(
     capture: Capture,
     bodies: Bodies,
+    times: Float[np.ndarray, "frames"],
     contact: Touching,
     found: Fit,
+    span: slice,
     struck: bool,
-    clock: Float[np.ndarray, "frames"],
 ) -> ForceStyle:
     thing = capture.tag_object(contact.other)
-    before, after = _striker(capture, bodies, contact.body, found.start_s)
-    mass = thing.mass_kg
+    before, after = _striker(bodies.sensors[contact.body], times, found.start_s)
+    mass, clock = thing.mass_kg, times[span]
     slides = _sliding(found, clock)
     return ForceStyle(
         object=contact.other,
@@ -139,7 +148,7 @@ def _stated(
         follow_mps=_vector(after),
         restitution=restitution(before, after, found.velocity) if struck else None,
         damping_per_s=found.damping,
-        thesis_damping=_thesis(bodies.objects[contact.other], capture, slides),
+        thesis_damping=_thesis(bodies.objects[contact.other], times, slides),
         bounce=found.bounce,
         impulse_ns=None if mass is None else _vector(mass * found.velocity),
         residual_m=found.residual_m,
@@ -147,10 +156,9 @@ def _stated(
 
 
 def _striker(
-    capture: Capture, bodies: Bodies, name: str, at_s: float
+    body: BodyGeometry, times: Float[np.ndarray, "frames"], at_s: float
 ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
     """The velocities of an end-effector just before and just after a time [m/s]."""
-    body, times = bodies.sensors[name], capture.times
     first, last = np.searchsorted(times, [at_s - VELOCITY_S, at_s + VELOCITY_S])
     span = slice(int(first), int(last))
     return velocities_about(times[span], recorded_middles(body, span), at_s)
@@ -181,13 +189,13 @@ def _sliding(found: Fit, clock: Float[np.ndarray, "frames"]) -> tuple[float, flo
 
 
 def _thesis(
-    thing: BodyGeometry, capture: Capture, slides: tuple[float, float] | None
+    thing: BodyGeometry, times: Float[np.ndarray, "frames"], slides: tuple[float, float] | None
 ) -> tuple[float, float] | None:
     if slides is None:
         return None
     stream = thing.poses.smooth
-    first, last = np.searchsorted(capture.times, [slides[0] + BEFORE_S, slides[1]])
-    clock, places = capture.times[first:last], stream.positions[first:last]
+    first, last = np.searchsorted(times, [slides[0] + BEFORE_S, slides[1]])
+    clock, places = times[first:last], stream.positions[first:last]
     if len(clock) < 3 or np.isnan(places).any():
         return None
     return thesis_damping(clock, np.gradient(places, clock, axis=0))

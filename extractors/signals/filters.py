@@ -31,6 +31,21 @@ def cutoff(rate_hz: float, thresholds: Thresholds) -> float:
     return min(thresholds.cutoff_hz, thresholds.cutoff_rate_share * rate_hz)
 
 
+SETTLED_SHARE = 1e-6
+"""Frames whose weights add up to less than this no longer change a filtered pose [1]: of a metre it
+is a micrometre."""
+
+
+def filter_settles_s(step_s: float, thresholds: Thresholds) -> float:
+    """After how long later frames no longer change a filtered one [s]: less than half the filter.
+
+    What lies beyond weighs less than ``SETTLED_SHARE`` on either side.
+    """
+    weights = kernel(step_s, thresholds)
+    beyond = np.cumsum(np.abs(weights))
+    return step_s * (len(weights) // 2 - int(np.searchsorted(beyond, SETTLED_SHARE)))
+
+
 def filter_support_s(step_s: float, thresholds: Thresholds) -> float:
     """Half the length of the low-pass filter [s]."""
     return step_s * (len(kernel(step_s, thresholds)) // 2)

@@ -1,6 +1,9 @@
 """What sliding windows see is put together as if the whole had been seen at once."""
 
+import os
+import signal
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,18 +12,40 @@ from hypothesis import strategies as st
 from live_runs import rig_of
 from measured_bodies import pick_and_place
 
-from capar.model.errors import CaparError, CaptureError, DeviceError
-from capar.model.facts import Gap, Moving, Observed, Pause, Place, Resting, Reverses, Touching
+from capar.model.errors import CaparError, CaptureError, DeviceError, RuleError
+from capar.model.facts import (
+    Gap,
+    Moving,
+    Observed,
+    Pause,
+    Place,
+    Resting,
+    Reverses,
+    Swings,
+    Touching,
+)
 from capar.pipelines.live.device_frames import DeviceFrames
 from capar.pipelines.live.fact_ledger import FactLedger
 from capar.pipelines.live.first_motion import FirstMotion
 from capar.pipelines.live.frames import FrameBuffer, Poses, body_names, replayed
 from capar.pipelines.live.horizons import LiveHorizons
 from capar.pipelines.live.lead_in import lead_in
+from capar.pipelines.live.recording_file import ValuesFile
 from capar.pipelines.live.rule_memory import RuleMemory
-from capar.pipelines.live.undecided import Handling, awaited, out_of_sight, undecided
+from capar.pipelines.live.rule_process import RuleProcess
+from capar.pipelines.live.rule_worker import inferred
+from capar.pipelines.live.undecided import (
+    Handling,
+    awaited,
+    decided_at,
+    nameless,
+    out_of_sight,
+    undecided,
+)
+from capar_rules.engine.profiles import profile
 from extractors.calibration import calibrate
 from extractors.devices.tracker import Description, Frame
+from extractors.measure import measure
 from extractors.relations.running_sums import summed
 
 FRAMES = 400
@@ -76,6 +101,13 @@ def test_where_a_motion_was_highest_is_taken_when_it_has_come_down_and_once() ->
     assert sorted(map(str, done)) == sorted(
         ["moving(box,10,150)", "reverses(box,80)", "place(box,80,0,0,9)"]
     )
+
+
+def test_a_motion_whose_end_is_told_sooner_than_before_is_settled_once_and_not_lost() -> None:
+    ledger, done = FactLedger(), list[Observed]()
+    for last, frontier in ((60, 54), (55, 54), (54, 60), (54, 70)):
+        done += ledger.settle(ledger.stitched([Moving("box", 10, last)], 0), frontier)
+    assert done == [Moving("box", 10, 54)]
 
 
 def test_the_beginning_of_what_goes_on_is_known() -> None:
@@ -204,6 +236,100 @@ def test_who_joins_in_holding_a_thing_is_undecided_until_the_other_lets_go() -> 
 
     assert told(own, other) == {"left": 100}
     assert told(own, replace(other, last=120)) == {}
+
+
+def test_what_lies_on_a_table_or_is_in_the_same_limb_s_hold_is_taken_over_from_nobody() -> None:
+    own, other = Touching("left", "cup", 100, 150), Touching("right", "cup", 20, 150)
+    table = Touching("cup", "table", 0, 130)
+
+    def told(laid: tuple[Touching, ...], limbs: dict[str, object]) -> dict[str, int]:
+        handling = Handling((own, other), (), {"cup"}, last=150, margin=15, longest=200)
+        return undecided(replace(handling, laid=laid, limbs=limbs))
+
+    assert told((), {"left": "left arm", "right": "right arm"}) == {"left": 100}
+    assert told((table,), {}) == {}
+    assert told((replace(table, last=110),), {}) == {"left": 100}
+    assert told((), {"left": "arm", "right": "arm"}) == {}
+
+
+def test_what_is_met_as_fast_as_by_a_blow_is_undecided_until_it_moves_or_for_a_while() -> None:
+    own = Touching("hand", "cup", 100, 150)
+
+    def told(*moving: Moving, last: int = 150) -> tuple[dict[str, int], ...]:
+        handling = Handling(
+            (replace(own, last=last),),
+            moving,
+            {"cup"},
+            last=last,
+            margin=15,
+            longest=200,
+            fast={("hand", "cup", 100)},
+        )
+        return undecided(handling), nameless(handling), awaited(handling)
+
+    assert told() == ({"hand": 100}, {"hand": 100}, {"cup": 100})
+    assert told(Moving("cup", 140, 150)) == ({}, {}, {})
+    assert told(last=301) == ({}, {}, {})
+
+
+def test_what_is_swung_or_may_touch_on_is_undecided_since_it_was_last_seen_to() -> None:
+    own = Touching("hand", "whisk", 100, 400)
+    handling = Handling((own,), (), {"whisk"}, last=400, margin=15, longest=200, stroke=90)
+    swung = replace(handling, swings=[Swings("whisk", 200, 330)])
+    assert undecided(swung) == {"hand": 330}
+    assert undecided(replace(swung, last=421)) == {}
+    near = replace(handling, lingering={("bowl", "whisk"): 390, ("lid", "pot"): 380})
+    assert undecided(near) == {"hand": 390}
+    assert near.sure == 379
+
+
+def test_what_has_just_begun_to_move_is_undecided_since_it_is_touched() -> None:
+    own = Touching("hand", "cup", 100, 400)
+    moves = [Moving("cup", 390, 400)]
+    handling = Handling((own,), moves, {"cup"}, last=400, margin=15, longest=200, fresh=20)
+    assert undecided(handling) == {"hand": 100}
+    assert nameless(handling) == {"hand": 100}
+    assert list(decided_at(handling)) == [411]
+    assert undecided(replace(handling, moving=[Moving("cup", 370, 400)])) == {}
+    assert undecided(replace(handling, moving=[Moving("cup", 150, 200), *moves])) == {}
+
+
+def test_the_rules_answer_the_same_from_one_process_after_the_other() -> None:
+    rules = profile()
+    facts = measure(pick_and_place()).facts
+    asked = RuleProcess(rules, own_asks=1, asks=2)
+    known = inferred(facts, rules)
+    workers = []
+    for _ in range(4):
+        assert asked.ask(facts) == known
+        workers.append(asked.worker)
+    assert workers[0] is None
+    assert len(set(workers[1:])) >= 2
+    worker = asked.worker
+    assert worker is not None
+    os.kill(worker, signal.SIGKILL)
+    assert asked.ask(facts) == known
+    assert asked.worker is None
+    assert asked.spent_s > 0.0
+    asked.close()
+    assert asked.ask(facts) == known
+
+
+def test_a_fault_of_the_rules_is_told_by_a_worker_too(tmp_path: Path) -> None:
+    added = tmp_path / "unfinished.lp"
+    added.write_text("fits(Segment, :-", encoding="utf-8")
+    asked = RuleProcess(profile(added=(added,)), own_asks=0)
+    with pytest.raises(RuleError, match="unfinished"):
+        asked.ask(measure(pick_and_place()).facts)
+    assert asked.worker is not None
+    asked.close()
+
+
+def test_values_are_read_from_disk_as_they_were_kept() -> None:
+    kept = ValuesFile()
+    places = [kept.add(list(range(number))) for number in (3, 0, 2)]
+    assert list(kept) == [0, 1, 2, 0, 1]
+    assert kept.at(places[2]) == [0, 1]
 
 
 def test_what_a_hand_does_with_a_thing_that_is_out_of_sight_is_undecided_for_a_while() -> None:

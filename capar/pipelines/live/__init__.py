@@ -1,49 +1,50 @@
 """Observation while it happens: frames in, segments out, provisional first and settled soon.
 
 ``LiveObserver`` measures two sliding windows (``horizons`` states every length and its reason). The
-short one names segments: provisional half a second after they end, settled within a second. What is
-settled is not told otherwise while the recording goes on. The long one gives the facts of the
-result, over all of which ``finish`` asks the rules once; no frame is read again, and no more of
-them are held than the long window holds.
+short one names segments: provisional 0.4 s after they end, settled 0.8 s after they end unless
+something named below is awaited. What is settled is not told otherwise while the recording goes on.
+The long one gives the facts of the result, over all of which ``finish`` asks the rules once; no
+frame is measured again, and no more of them are held in memory than the long window holds.
 
 Windows overlap, and little is measured twice. Contact is asked about only at frames whose poses
 differ from the window before (``extractors.contact.earlier_answers``); normals of patches are kept
 by pose. Short windows begin at whole seconds, so that what is measured at their first frame recurs,
 and before every motion that goes on, as how it is parted is told from its beginning. They are
-measured twice a second, when a segment that was found is to be settled, and as soon as a thing
-moves whose first motion decides something.
+measured twice a second, when a segment that was found is to be settled, when a rest or a stand has
+lasted as long as rules ask for, and as soon as a thing moves whose first motion decides something.
 
 Measured with the same calibration, all facts of the result are those of the offline run, as long
 as no motion, contact or rest within which something else is sought is longer than the long window.
 What has to be awaited, and where the two part:
 
-* *Whether a hand takes what it touches* beside another thing is known when the thing moves, *who
-  takes a thing over* when the other lets go of it, and *whether a hand still holds what is out of
-  sight* when it is seen again. All three are awaited for 2 s.
+* *Whether a hand takes what it touches* beside another thing, or meets as fast as a blow does, is
+  known when the thing moves, *who takes a thing over* that lies on nothing fixed when the other
+  lets go of it, and *whether a contact goes on* while one of the two is out of sight when it is
+  seen again. All of these are awaited for 2 s.
+* *Whether a contact goes on* while the bodies stay near each other, and *whether what is swung is
+  swung on*, are awaited for 0.9 s.
 * *How a motion is parted* may be known only when it has come down again: a box that was lifted,
   carried level for 2.5 s and lowered was told as that 2.7 s after the end of the lift.
 * *Purposes that nobody states* are the action that follows; they are told when that is settled.
-* *Standing on one leg* is known once it has lasted the second that its rule asks for.
+* *Standing on one leg* is known once it has lasted the 0.75 s that its rule asks for.
 * *Guides*: a hinge or rail is fitted to every motion of a recording, live to those in the long
   window at its end. It would take the guide as part of the calibration.
 * *Objects that nobody has touched yet* are measured from when they are touched: where they lay
   before within the long window is told, what was before it is not.
 * *Segments longer than the long window*: style, and where the path begins, are those of its part.
 * *Rests longer than* ``rest_s`` are told by their last part.
-* *Contacts at the very edge of a tolerance* are asked of other frames at once; the answer, exact to
-  0.05 mm, then differs: in two of twenty takes contacts of a box and a table by a frame.
 * *Notices* about the whole recording (losses, sizes, sides, falls) are those of the long windows.
 * *Clocks with uneven steps*: the rate is the calibration's.
 
-In the heavy scene of ``benchmarks/live.py`` (12 sensors, 8 objects of 10,000 faces, 103.3 Hz, 18 s)
-the observation was that of the offline run byte for byte, no settled segment differed, and half of
-the segments were settled within 0.9 s, all within 1.03 s by recorded time; one core of a computer
-with much other work managed 0.95 to 1.07 of real time. Long windows take 0.4 s every 5 s, during
-which frames wait. A tracker that is too fast is measured less often, so that segments are announced
-and settled later.
+In the heavy scene of ``benchmarks/live.py`` (12 sensors, 8 objects of 10,000 faces, 103.3 Hz, 12 s)
+the observation had the facts and segments of the offline run, no settled segment differed, and half
+of the segments were settled within 0.78 s, all within 1.06 s by recorded time; by processor time it
+managed 0.95 of real time on a very busy computer. Long windows take 0.4 s every 5 s, during which
+frames wait. A tracker that is too fast is measured less often, so that segments are announced and
+settled later.
 
-Flicker, segments, movers and the complex PAR of the result are decided by rules over all settled
-facts when it ends; their time grows with the recording. So do kept facts and sampled places.
-Without a result (``keep_result=False``) nothing of ours grows, but the solver frees no term that it
-ever saw: over 7.5 minutes with two bodies the process grew by 1.8 MB a minute.
+Flicker, segments, movers, forces and the complex PAR of the result are decided over all settled
+facts and poses when it ends; the time for that grows with the recording. Until then these lie on
+disk (``recording_file``). The solver frees no term that it ever saw, so that it runs in processes
+that follow each other (``rule_process``): memory is flat.
 """

@@ -1,7 +1,9 @@
 """Facts of one window after the other, put together as those of one recording."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
+from functools import cache
+from inspect import get_annotations
 from typing import Any, cast
 
 from capar.model.declarations import Span
@@ -63,14 +65,16 @@ class FactLedger:
             facts: Facts of the window, in its own frames.
             begin: The frame of the recording with which the window begins.
         """
-        everything = [_moved(fact, begin) for fact in facts if isinstance(fact, Observed)]
-        late = {fact.ends()[0] for fact in everything if self._is_late(fact)}
+        observed = [fact for fact in facts if isinstance(fact, Observed)]
+        of_motions = (_moved(fact, begin) for fact in observed if isinstance(fact, OF_A_MOTION))
+        late = {fact.ends()[0] for fact in of_motions if self._is_late(fact)}
+        # Most facts are of single frames, and most of them are settled.
         seen = [
-            fact
-            for fact in everything
+            _moved(fact, begin)
+            for fact in observed
             if fact.declaration.span is not Span.INSTANT
-            or fact.ends()[0] > self.frontier
-            or (fact.ends()[0] in late and (_key(fact), fact.ends()[0]) not in self._told)
+            or (at := fact.ends()[0] + begin) > self.frontier
+            or (at in late and (_key(fact), at) not in self._told)
         ]
         firsts = self._firsts(seen)
         own = {(_key(fact), fact.ends()[0]) for fact in seen if _is_interval(fact)}
@@ -135,11 +139,20 @@ class FactLedger:
         """The true first frames of intervals that were going on at the frontier."""
         out: dict[tuple[Key, int], int] = {}
         for fact in seen:
-            if _is_interval(fact) and fact.ends()[0] <= self.frontier <= fact.ends()[-1]:
-                known = self._open.get(_key(fact))
-                if known is not None:
-                    out[_key(fact), fact.ends()[0]] = known.first
+            known = self._continued(fact)
+            if known is not None:
+                out[_key(fact), fact.ends()[0]] = known.first
         return out
+
+    def _continued(self, fact: Observed) -> _Open | None:
+        """The interval that went on at the frontier and that a fact tells of; None without one.
+
+        Its end may be told a frame sooner than before, and so be at the frontier or before it.
+        """
+        if not _is_interval(fact) or fact.ends()[0] > self.frontier:
+            return None
+        known = self._open.get(_key(fact))
+        return known if known is not None and fact.ends()[-1] >= known.first else None
 
     def _is_late(self, fact: Observed) -> bool:
         """Whether it is of a motion that goes on, and is not settled though its frames are."""
@@ -149,7 +162,9 @@ class FactLedger:
         return motion is not None and fact.ends()[0] >= motion.first
 
     def _has_ended(self, fact: Observed) -> bool:
-        return _is_interval(fact) and fact.ends()[-1] <= self.frontier
+        """Whether it is an interval that was settled before."""
+        ended = _is_interval(fact) and fact.ends()[-1] <= self.frontier
+        return ended and self._continued(fact) is None
 
 
 def _is_interval(fact: Observed) -> bool:
@@ -158,8 +173,17 @@ def _is_interval(fact: Observed) -> bool:
 
 def _key(fact: Observed) -> Key:
     """The kind of an interval and its bodies: what it measures besides is no part of it."""
-    values = (getattr(fact, each.name) for each in fields(cast(Any, fact)))
-    return type(fact), *(each for each in values if isinstance(each, str))
+    bodies, _ = _layout(cast(Any, type(fact)))
+    return type(fact), *(getattr(fact, name) for name in bodies)
+
+
+@cache
+def _layout(kind: type[Observed]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The fields of a kind of fact that hold text, and those that hold frames."""
+    known = get_annotations(kind)
+    frames = () if kind.declaration.span is Span.ALWAYS else FRAMES
+    texts = tuple(name for name, of in known.items() if of is str)
+    return texts, tuple(name for name in known if name in frames)
 
 
 def _key_of_named(fact: Observed) -> Key:
@@ -169,10 +193,11 @@ def _key_of_named(fact: Observed) -> Key:
 
 
 def _moved(fact: Observed, by: int) -> Observed:
-    names = [each.name for each in fields(cast(Any, fact)) if each.name in FRAMES]
-    if not by or not names or fact.declaration.span is Span.ALWAYS:
+    _, frames = _layout(cast(Any, type(fact)))
+    if not by or not frames:
         return fact
-    return cast(Observed, replace(cast(Any, fact), **{n: getattr(fact, n) + by for n in names}))
+    changed = {name: getattr(fact, name) + by for name in frames}
+    return cast(Observed, replace(cast(Any, fact), **changed))
 
 
 def _begun(fact: Observed, first: int | None) -> Observed:

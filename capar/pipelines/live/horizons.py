@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 from capar.model.calibration import Calibration
 from capar.model.errors import CaparError
+from extractors.calibration import thresholds_of
+from extractors.signals.filters import filter_settles_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,12 +17,13 @@ class LiveHorizons:
     ``extractors.calibration`` proves.
     """
 
-    stride_s: float = 0.5
+    stride_s: float = 0.45
     """Between two measurements of the short window at most [s], in which segments are found; it is
     measured once more as soon as one that was found is to be settled."""
 
-    gathering_s: float = 0.15
-    """So much later a segment is settled than it could be [s], with those that end soon after."""
+    gathering_s: float = 0.05
+    """So much later than one that ends with a start or a stop could be [s] every segment is settled
+    at the latest, with those that end soon after."""
 
     grain_s: float = 1.0
     """Short windows begin at multiples of this [s]: what is measured at their first frame is then
@@ -29,13 +32,31 @@ class LiveHorizons:
     watch_s: float = 0.05
     """Between two measurements at least [s], where a thing moves whose first motion is awaited."""
 
-    announce_s: float = 0.5
-    """After its end a segment is announced [s]: ends that are newer still move, as most of what the
+    announce_s: float = 0.4
+    """After its end a segment is announced [s]: ends that are newer still move, as much of what the
     filter asks for has not been seen."""
 
-    settle_s: float = 0.75
-    """After its end a segment is settled [s]: more than half the filter (0.63 s), so that no later
-    frame changes a smoothed pose in it, and longer than dropped and closed intervals (0.1 s)."""
+    settle_s: float = 0.5
+    """After its end a segment is settled [s]: what later frames change in a smoothed pose after
+    0.4 s is less than a millionth of their way, and losses that are shorter than 0.1 s are filled.
+    That is also longer than contacts that are dropped and gaps that are closed (0.1 s)."""
+
+    edge_s: float = 0.75
+    """After its end a segment is settled at whose end a thing starts or stops [s], and so late
+    facts are kept: where the thing came to rest is the middle of its poses in so much of its rest,
+    and when it started is told by how its way grew until it was well beyond its floor."""
+
+    lasts_s: float = 0.1
+    """So much later than a rule asks for, what has to last for some time has lasted it [s]: by then
+    the filter knows the end of that time as well as it knows a segment that is announced."""
+
+    fresh_s: float = 0.2
+    """So long a motion that has just begun may turn out to be none [s]: a glitch of the tracker, or
+    what the filter makes of the last frames."""
+
+    near_s: float = 0.9
+    """So long it is awaited whether bodies touch again that have stayed near each other [s]: their
+    contact lasts then."""
 
     window_s: float = 4.0
     """Least length of the short window [s]."""
@@ -76,11 +97,12 @@ class LiveHorizons:
             raise CaparError(
                 "live horizons: expected stride, grain, settle and block longer than 0 s"
             )
-        if self.window_s < 2.0 * (self.settle_s + self.stride_s):
+        longest_s = max(self.settle_s, self.edge_s)
+        if self.window_s < 2.0 * (longest_s + self.stride_s):
             raise CaparError(
                 f"live horizons: a window of {self.window_s:g} s cannot settle what ended "
-                f"{self.settle_s:g} s ago every {self.stride_s:g} s; expected at least "
-                f"{2.0 * (self.settle_s + self.stride_s):g} s"
+                f"{longest_s:g} s ago every {self.stride_s:g} s; expected at least "
+                f"{2.0 * (longest_s + self.stride_s):g} s"
             )
 
     @property
@@ -89,11 +111,14 @@ class LiveHorizons:
         return 2.0 * self.margin_s + self.block_s
 
 
-def horizons_of(calibration: Calibration, *, stride_s: float = 0.5) -> LiveHorizons:
-    """The horizons that a calibration calls for: its margin, and a settling beyond its filter."""
+def horizons_of(calibration: Calibration, *, stride_s: float = 0.45) -> LiveHorizons:
+    """The horizons that a calibration calls for: by its margin, its filter, and its rests."""
     known = calibration.horizons
+    limits = thresholds_of(calibration)
+    settles_s = filter_settles_s(calibration.step_s, limits)
     return LiveHorizons(
         stride_s=stride_s,
-        settle_s=max(0.75, known.filter_s + known.gap_s),
+        settle_s=settles_s + known.gap_s,
+        edge_s=max(limits.rest_begins_s, known.filter_s + known.gap_s),
         margin_s=known.margin_s,
     )

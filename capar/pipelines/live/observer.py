@@ -1,13 +1,25 @@
 """The live observer: frames in, announcements out, and at the end an observation."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, TagType
-from capar.model.facts import Displaced, Fact, Frames, Moving, Observed, RateMhz, Touching
+from capar.model.facts import (
+    Bears,
+    ClosingSpeed,
+    Displaced,
+    Fact,
+    Frames,
+    Moving,
+    Observed,
+    RateMhz,
+    Resting,
+    Swings,
+    Touching,
+)
 from capar.model.observation import Observation
 from capar.pipelines.live.carried_poses import CarriedPoses
 from capar.pipelines.live.carried_sums import CarriedSums
@@ -18,15 +30,23 @@ from capar.pipelines.live.frames import FrameBuffer, Poses, Window
 from capar.pipelines.live.horizons import LiveHorizons, horizons_of
 from capar.pipelines.live.result import LiveResult
 from capar.pipelines.live.rule_memory import RuleMemory
+from capar.pipelines.live.rule_process import RuleProcess
 from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
 from capar.pipelines.live.sentences import Teller
-from capar.pipelines.live.undecided import Handling, awaited, out_of_sight, undecided
-from capar_rules.borders.deflicker import steady
+from capar.pipelines.live.undecided import Handling, awaited, decided_at, nameless, undecided
 from capar_rules.borders.times import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.pars.inference import Inference, infer
+from capar_rules.pars.inference import Inference
+from extractors.calibration import thresholds_of
 from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.measure import Measurements, measured
+from extractors.relations.weight_bearing import PART
+
+EDGES = ("starts_moving", "stops_moving")
+"""The events at the end of a segment whose frames are known later than others."""
+
+NO_SIDE = "none"
+"""The side of an end-effector that is of no limb beside another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +96,9 @@ class LiveObserver:
         self._sums = CarriedSums()
         self._poses = CarriedPoses(calibration, self._frames(self.horizons.rest_s))
         self._memory = RuleMemory()
-        self._segments = SegmentLedger(self.horizons.segments)
+        self._asked = RuleProcess(self.rules)
+        later = self._frames(self.horizons.edge_s) - self._frames(self.horizons.settle_s)
+        self._segments = SegmentLedger(self.horizons.segments, dict.fromkeys(EDGES, later))
         self._result = (
             LiveResult(
                 rig,
@@ -93,6 +115,7 @@ class LiveObserver:
         self._answers = EarlierAnswers()
         self._first_motion = FirstMotion(calibration, self._buffer.streams)
         self._stirs = False
+        self._lasting: int | None = None
         self._measured = 0
         self._frontier = -1
         self._forgotten = 0
@@ -111,6 +134,11 @@ class LiveObserver:
     def held(self) -> int:
         """How many frames are held at most, however many were pushed."""
         return self._buffer.longest
+
+    @property
+    def rules_process(self) -> RuleProcess:
+        """What asks the rules, in this process or in others."""
+        return self._asked
 
     @property
     def contradictions(self) -> Contradictions:
@@ -140,8 +168,10 @@ class LiveObserver:
         if since >= self._frames(self.horizons.watch_s if self._stirs else self.horizons.stride_s):
             return True
         late_s = self.horizons.settle_s + self.horizons.gathering_s
-        waits = self._segments.next_end(self._frontier)
-        return waits is not None and waits + self._frames(late_s) < self.frames
+        waits = self._segments.next_due(self._frontier)
+        if waits is not None and waits + self._frames(late_s) < self.frames:
+            return True
+        return self._lasting is not None and self._lasting < self.frames
 
     def finish(self) -> tuple[list[SegmentEvent], Observation | None]:
         """Settle everything; no frame follows.
@@ -150,6 +180,7 @@ class LiveObserver:
             CaptureError: Fewer than two frames were pushed.
         """
         events = self._evaluate(last=True)
+        self._asked.close()
         if self._result is None:
             return events, None
         window = self._buffer.window(self._frames(self.horizons.whole_s) + 1)
@@ -172,6 +203,7 @@ class LiveObserver:
         if len(window.capture.times) < 4:
             return []
         frontier = window.last - (0 if last else self._frames(self.horizons.settle_s))
+        kept = window.last - (0 if last else self._frames(self.horizons.edge_s))
         bodies = self._poses.bodies(window)
         self._answers.begin(window.first)
         measurements = measured(
@@ -182,13 +214,13 @@ class LiveObserver:
             answers=self._answers,
             notices=False,
         )
-        if frontier - self._sums.frame >= self._frames(self.horizons.grain_s):
-            self._sums.advance(window, measurements, frontier)
-        self._poses.advance(window, bodies, frontier)
+        if kept - self._sums.frame >= self._frames(self.horizons.grain_s):
+            self._sums.advance(window, measurements, kept)
+        self._poses.advance(window, bodies, kept)
         recent = self._facts.stitched(measurements.facts, window.first)
         inference, count = self._inferred(measurements, recent, window.last)
-        handling = self._handling(recent, window)
-        sure = frontier if last else min(frontier, handling.sure)
+        handling = self._handling(measurements, recent, window)
+        sure = kept if last else min(kept, handling.sure)
         self._memory.add(self._facts.settle(recent, max(sure, self._facts.frontier)))
         time_s = self._buffer.time_s(window.last)
         self._first_motion.await_(window, awaited(handling))
@@ -198,11 +230,12 @@ class LiveObserver:
             ended=window.last - self._frames(self.horizons.announce_s),
             frontier=frontier,
             undecided=handling.with_margin(undecided(handling)),
-            unseen=handling.with_margin(out_of_sight(handling)),
+            unseen=handling.with_margin(nameless(handling)),
             rate_hz=self._rate_mhz / 1000.0,
             time_s=time_s,
         )
         self._frontier = frontier
+        self._lasting = self._next_lasting(recent, decided_at(handling), window.last)
         if self.frames - self._forgotten >= self._frames(self.horizons.grain_s):
             self._forgotten = self.frames
             self._memory.forget(self._rules_begin(window), self._segments.ends(), self._frames(1.0))
@@ -247,13 +280,15 @@ class LiveObserver:
         facts: list[Fact] = [Frames(0, last), RateMhz(self._rate_mhz), *always]
         facts += self._memory
         facts += recent
-        chosen = steady(facts) if self.rules.steady else tuple(facts)
-        return infer(chosen, profile=self.rules), len(chosen)
+        return self._asked.ask(facts), len(facts)
 
-    def _handling(self, recent: list[Observed], window: Window) -> Handling:
+    def _handling(
+        self, measurements: Measurements, recent: list[Observed], window: Window
+    ) -> Handling:
         """What is touched, moves and is lost, where later frames may decide."""
         facts = (*self._memory, *recent)
         acting = {sensor.name for sensor in self._buffer.rig.acting}
+        fixed = {thing.name for thing in self._buffer.rig.objects if thing.tag is TagType.FIXED}
         lost = {
             name: window.first + int(np.flatnonzero(~body.stream.lost)[-1])
             for name, body in window.capture.bodies.items()
@@ -267,7 +302,75 @@ class LiveObserver:
             margin=round(in_frames(times().merge_ms, self._rate_mhz / 1000.0)),
             longest=self._frames(self.horizons.handing_s),
             lost=lost,
+            swings=[fact for fact in facts if isinstance(fact, Swings)],
+            stroke=self._frames(thresholds_of(self.calibration).swing_s),
+            fresh=self._frames(self.horizons.fresh_s),
+            lingering=self._lingering(measurements, facts, lost, window),
+            fast={
+                (fact.body, fact.other, fact.first)
+                for fact in facts
+                if isinstance(fact, ClosingSpeed) and fact.speed >= times().blow_mm_s
+            },
+            laid=[fact for fact in facts if isinstance(fact, Touching) and fact.other in fixed],
+            limbs={
+                sensor.name: (self._buffer.rig.agent_of(sensor), sensor.side)
+                for sensor in self._buffer.rig.acting
+                if sensor.side != NO_SIDE
+            },
         )
+
+    def _lingering(
+        self,
+        measurements: Measurements,
+        facts: Iterable[Observed],
+        lost: Mapping[str, int],
+        window: Window,
+    ) -> dict[tuple[str, str], int]:
+        """Bodies that may be said to have touched on, and when they were last seen to touch.
+
+        Args:
+            measurements: What was measured in the window.
+            facts: Facts up to the newest frame.
+            lost: Of each body that is not seen now, the last frame in which it was.
+            window: The last frames.
+        """
+        oldest = window.last - self._frames(self.horizons.near_s)
+        near = ((pair, window.first + at) for pair, at in measurements.lingering.items())
+        out = {pair: at for pair, at in near if at >= oldest}
+        unseen = window.last - self._frames(self.horizons.handing_s)
+        for fact in facts:
+            if isinstance(fact, Touching):
+                since = max(lost.get(fact.body, -1), lost.get(fact.other, -1))
+                if max(fact.first, unseen) <= since <= fact.last:
+                    out[fact.body, fact.other] = since
+        return out
+
+    def _next_lasting(
+        self, recent: Iterable[Observed], decided: Iterable[int], last: int
+    ) -> int | None:
+        """The next frame at which something has lasted long enough to be told; None without.
+
+        Of rests only those count in which nothing is touched: only they are told.
+
+        Args:
+            recent: Facts up to the newest frame.
+            decided: Frames at which more is known than by rests and stands.
+            last: The newest frame.
+        """
+        rate_hz = self._rate_mhz / 1000.0
+        least = {
+            Resting: in_frames(times().rest_ms, rate_hz),
+            Bears: in_frames(times().one_leg_ms, rate_hz),
+        }
+        late = self._frames(self.horizons.lasts_s)
+        going = [fact for fact in recent if fact.ends()[-1:] == (last,) and not _in_part(fact)]
+        touching = {fact.body for fact in going if isinstance(fact, Touching)}
+        frames = (
+            fact.ends()[0] + round(least[type(fact)]) + late
+            for fact in going
+            if type(fact) in least and not (isinstance(fact, Resting) and fact.ee in touching)
+        )
+        return min((frame for frame in (*frames, *decided) if frame > last), default=None)
 
     def _rules_begin(self, window: Window) -> int:
         oldest = window.last - self._frames(self.horizons.rules_s)
@@ -275,3 +378,8 @@ class LiveObserver:
 
     def _frames(self, duration_s: float) -> int:
         return max(1, round(duration_s / self._step_s))
+
+
+def _in_part(fact: Observed) -> bool:
+    """Whether it tells that a foot bears a part of the weight, which no rule asks to last."""
+    return isinstance(fact, Bears) and fact.share == PART

@@ -1,7 +1,13 @@
-"""The observation of a live recording, put together block by block as it is settled."""
+"""The observation of a live recording, put together block by block as it is settled.
 
+What grows with the recording lies on disk until it ends: poses, facts, and what is measured of
+segments. In memory there remain, of each settled segment, its ends.
+"""
+
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from jaxtyping import Float
@@ -18,6 +24,7 @@ from capar.pipelines.live.carried_poses import CarriedPoses
 from capar.pipelines.live.carried_sums import CarriedSums
 from capar.pipelines.live.fact_ledger import FactLedger
 from capar.pipelines.live.frames import Window
+from capar.pipelines.live.recording_file import PosesFile, ValuesFile
 from capar.pipelines.live.segment_details import SegmentDetails, segment_details
 from capar.pipelines.live.segment_ledger import SettledSegment
 from capar.pipelines.movers import unmoved_notices
@@ -28,11 +35,22 @@ from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Key, infer
 from capar_rules.pars.naming_rules import naming_rules
 from capar_rules.pars.primitive_pars import ipars, upars
+from extractors.bodies.bodies import Bodies
 from extractors.bodies.observed_objects import observed_object
 from extractors.contact.earlier_answers import EarlierAnswers
+from extractors.forces.force_styles import force_styles
 from extractors.measure import Measurements, measured
 from extractors.relations.guide_locations import guide_location
 from extractors.segments.sampled_tracks import track_of
+
+
+@dataclass(frozen=True, slots=True)
+class _Kept:
+    """What is remembered of a settled segment."""
+
+    index: int
+    first: int
+    last: int
 
 
 @dataclass
@@ -72,15 +90,15 @@ class LiveResult:
         self._rig, self._calibration, self._rules, self._name = rig, calibration, rules, name
         self._rate_mhz = rate_mhz
         self._ledger = FactLedger()
-        self._facts: list[Observed] = []
+        self._facts = ValuesFile()
         self._always: dict[Fact, None] = {}
-        self._settled: dict[Key, SettledSegment] = {}
+        self._settled: dict[str, list[_Kept]] = defaultdict(list)
         self._waiting: list[SettledSegment] = []
-        self._details: dict[Key, SegmentDetails] = {}
+        self._details = ValuesFile()
+        self._detailed: dict[Key, int] = {}
         self._objects: dict[str, ObservedObject] = {}
         self._notices: dict[object, Notice] = {}
-        self._tracks: dict[str, list[np.ndarray]] = {}
-        self._times: list[np.ndarray] = []
+        self._recorded = PosesFile()
         self._sums = CarriedSums()
         self._poses = CarriedPoses(calibration, rest_frames)
         self._answers = EarlierAnswers()
@@ -109,7 +127,7 @@ class LiveResult:
         self._sums.advance(window, measurements, frontier)
         before = self._ledger.frontier
         found = self._ledger.stitched(measurements.facts, window.first)
-        self._facts += self._ledger.settle(found, frontier)
+        self._facts.add(self._ledger.settle(found, frontier))
         for fact in measurements.facts:
             if isinstance(fact, Observed) and not fact.ends():
                 self._always.setdefault(fact)
@@ -118,22 +136,25 @@ class LiveResult:
                 self._objects[thing.name] = observed_object(thing)
         for told in measurements.notices:
             self._notices[told.code, told.bodies] = told
-        self._keep_places(window, measurements, before + 1, frontier)
+        self._recorded.add(window, measurements.bodies, before + 1, frontier)
         self._last = measurements
         ready = [each for each in self._waiting if each.segment.last <= frontier]
         self._waiting = [each for each in self._waiting if each.segment.last > frontier]
         for settled in ready:
             key = settled.segment.ee, settled.segment.index
             self.inexact.clipped_segments += int(settled.segment.first < window.first)
-            self._details[key] = segment_details(window, measurements, settled)
+            self._detailed[key] = self._details.add(
+                [segment_details(window, measurements, settled)]
+            )
 
     def segments(self, done: Sequence[SettledSegment]) -> None:
         """Take the segments that an answer of the rules settles."""
         for settled in done:
-            key = settled.segment.ee, settled.segment.index
-            if key not in self._settled:
+            segment = settled.segment
+            own = self._settled[segment.ee]
+            if segment.index == len(own):
                 self._waiting.append(settled)
-            self._settled[key] = settled
+                own.append(_Kept(segment.index, segment.first, segment.last))
 
     def observation(self, window: Window) -> Observation:
         """The whole, once everything is settled.
@@ -147,7 +168,8 @@ class LiveResult:
         assert self._last is not None
         if window.last < 1:
             raise CaptureError("a live recording of fewer than two frames: nothing can be observed")
-        times = np.concatenate(self._times)
+        times = self._recorded.times
+        bodies = self._recorded.bodies(self._last.bodies)
         duration_s = float(times[-1])
         facts = self._all_facts(window.last)
         steadied = steady(facts) if self._rules.steady else tuple(facts)
@@ -193,25 +215,25 @@ class LiveResult:
             joint=inference.joint,
             others=self._rig.others,
             calibration=self._calibration,
+            forces=force_styles(self._rig, bodies, steadied, self._last.guides, times=times),
             guides=tuple(
                 guide_location(objects[name], objects[guide.base], guide)
                 for name, guide in sorted(guides.items())
             ),
             naming=naming_rules(self._rules, (each.name for each in ordered)),
-            tracks=tuple(self._sampled(times)),
+            tracks=tuple(self._sampled(bodies, times)),
         )
 
     def _details_of(self, segment: Segment) -> SegmentDetails:
         """What was measured of a segment; of one that was settled otherwise, of most of it."""
-        own = [each.segment for each in self._settled.values() if each.segment.ee == segment.ee]
-        shared = {
-            known.index: min(known.last, segment.last) - max(known.first, segment.first)
-            for known in own
-        }
-        nearest = max(own, key=lambda known: shared[known.index])
+        nearest = max(
+            self._settled[segment.ee],
+            key=lambda known: min(known.last, segment.last) - max(known.first, segment.first),
+        )
         same = nearest.first == segment.first and nearest.last == segment.last
         self.inexact.settled_otherwise += int(not same)
-        return self._details[segment.ee, nearest.index]
+        (found,) = self._details.at(self._detailed[segment.ee, nearest.index])
+        return cast(SegmentDetails, found)
 
     def _all_facts(self, last: int) -> list[Fact]:
         """Every settled fact, in the order in which facts are written."""
@@ -222,18 +244,12 @@ class LiveResult:
             groups.setdefault(type(fact), set()).add(fact)
         return [each for kind in MEASURED for each in sorted(groups.get(kind, ()))]
 
-    def _keep_places(
-        self, window: Window, measurements: Measurements, first: int, last: int
-    ) -> None:
-        """Add the smoothed places of some frames to those that are kept; of what rests, one."""
-        part = slice(first - window.first, last - window.first + 1)
-        self._times.append(window.capture.times[part].copy())
-        for name, pose in measurements.bodies.poses.items():
-            places = pose.settled if pose.rests else pose.smooth
-            self._tracks.setdefault(name, []).append(places.positions[part].copy())
-
-    def _sampled(self, times: Float[np.ndarray, "frames"]) -> Iterator[SampledTrack]:
+    def _sampled(
+        self, bodies: Bodies, times: Float[np.ndarray, "frames"]
+    ) -> Iterator[SampledTrack]:
         """The track of each body, from the smoothed places that were kept."""
-        assert self._last is not None
-        for name, pose in sorted(self._last.bodies.poses.items()):
-            yield track_of(name, np.concatenate(self._tracks[name]), times, rests=pose.rests)
+        for name, pose in sorted(bodies.poses.items()):
+            places = pose.smooth.positions
+            if pose.rests:
+                places = np.broadcast_to(self._recorded.place(name), (len(times), 3))
+            yield track_of(name, places, times, rests=pose.rests)

@@ -35,8 +35,9 @@ class _Link:
 
     recent: deque[SettledSegment] = field(default_factory=deque)
     announced: dict[int, Segment] = field(default_factory=dict)
-    ends: tuple[int, ...] = ()
-    """The last frames of the segments that were found to have ended, and are not settled."""
+    due: tuple[int, ...] = ()
+    """The frontiers at which the segments that were found to have ended are settled at the latest,
+    so that those which end one soon after the other are settled at once."""
 
 
 class SegmentLedger:
@@ -44,10 +45,13 @@ class SegmentLedger:
 
     Args:
         kept: How many settled segments of a link are remembered.
+        later: By how many frames later than others a segment is settled that ends with such a kind
+            of event.
     """
 
-    def __init__(self, kept: int) -> None:
+    def __init__(self, kept: int, later: Mapping[str, int] = MappingProxyType({})) -> None:
         self._kept = kept
+        self._later = later
         self._links: dict[str, _Link] = {}
         self.contradictions = Contradictions()
 
@@ -66,10 +70,10 @@ class SegmentLedger:
         ]
         return min(starts, default=now if self._links else 0)
 
-    def next_end(self, after: int) -> int | None:
-        """The first frame later than one at which a segment ends that was found; None without."""
-        ends = (end for link in self._links.values() for end in link.ends)
-        return min((end for end in ends if end > after), default=None)
+    def next_due(self, after: int) -> int | None:
+        """The first frontier later than one at which a segment has to be settled that was found."""
+        due = (frontier for link in self._links.values() for frontier in link.due)
+        return min((frontier for frontier in due if frontier > after), default=None)
 
     def take(
         self,
@@ -89,7 +93,8 @@ class SegmentLedger:
             inference: Segments in frames of the recording.
             now: The newest frame: segments that end there go on.
             ended: Segments that end no later are announced, if they are not settled.
-            frontier: Segments that end no later are settled; at the recording's end, ``now``.
+            frontier: Segments that end no later are settled, but for those that wait ``later``; at
+                the recording's end, ``now``, all are.
             rate_hz: Frames a second [Hz].
             time_s: Time of the newest frame [s].
             undecided: Of a link, the frame from which on no segment ends that may be settled yet.
@@ -101,13 +106,15 @@ class SegmentLedger:
             own = self._links.setdefault(link.ee, _Link())
             found = list(self._unsettled(own, link, rate_hz))
             settled = 0
-            if found and own.recent and found[0][1].last <= frontier:
+            if found and own.recent and self._due(found[0][1]) <= frontier:
                 amended = self._with_purpose(own, link)
                 if amended is not None:
                     events.append(SegmentEvent(Status.PURPOSE, amended.segment, time_s))
                     done.append(amended)
             for local, segment in found:
-                if segment.last > frontier or segment.last >= undecided.get(link.ee, now + 1):
+                if segment.last >= undecided.get(link.ee, now + 1):
+                    break
+                if self._due(segment) > frontier and frontier < now:
                     break
                 settled += 1
                 key = (link.ee, local)
@@ -115,11 +122,16 @@ class SegmentLedger:
                 events.append(SegmentEvent(Status.SETTLED, segment, time_s))
                 done.append(each)
                 self._settle(own, each)
-            own.ends = tuple(each.last for _, each in found[settled:] if each.last < now)
+            latest = max(self._later.values(), default=0)
+            own.due = tuple(each.last + latest for _, each in found[settled:] if each.last < now)
             upto = min(ended, unseen.get(link.ee, now + 1) - 1)
             told = {each.index: each for _, each in found[settled:] if each.last <= upto}
             events += _announced(own, told, time_s)
         return events, done
+
+    def _due(self, segment: Segment) -> int:
+        """The frontier at which a segment is settled."""
+        return segment.last + max(self._later.get(border.kind, 0) for border in segment.ends)
 
     def _with_purpose(self, own: _Link, link: ObservedLink) -> SettledSegment | None:
         """The last settled segment with what it was for, where that was not known before."""

@@ -1,10 +1,10 @@
 """From which frame on later frames may yet decide what an end-effector does."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
-from capar.model.facts import Moving, Touching
+from capar.model.facts import Moving, Swings, Touching
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +30,34 @@ class Handling:
     lost: Mapping[str, int] = field(default_factory=dict)
     """Of each body that is not seen now, the last frame in which it was."""
 
+    swings: Sequence[Swings] = ()
+    """When things move to and fro."""
+
+    stroke: int = 0
+    """How many frames one way of moving to and fro takes at most."""
+
+    fresh: int = 0
+    """Frames for which a motion that has just begun may yet turn out to be none."""
+
+    lingering: Mapping[tuple[str, str], int] = field(default_factory=dict)
+    """Bodies that may be said to have touched on, as they are near each other, or one is out of
+    sight, and the last frame in which they were seen to touch."""
+
+    fast: AbstractSet[tuple[str, str, int]] = frozenset()
+    """Contacts that began as fast as a blow: end-effector, object, first frame."""
+
+    laid: Sequence[Touching] = ()
+    """Contacts of objects that can be moved with what is fixed."""
+
+    limbs: Mapping[str, object] = field(default_factory=dict)
+    """What limb an end-effector is of, where it is of one."""
+
     @property
     def sure(self) -> int:
-        """The last frame before which no contact ends, and no motion, for not being seen."""
-        oldest = self.last - self.longest
-        return min((since - 1 for since in self.lost.values() if since > oldest), default=self.last)
+        """The last frame before which no contact ends that may yet go on, and no motion."""
+        lost = (since for since in self.lost.values() if since > self.last - self.longest)
+        open_ = (*lost, *self.lingering.values())
+        return min((since - 1 for since in open_), default=self.last)
 
     def with_margin(self, since: Mapping[str, int]) -> dict[str, int]:
         """Frames so much earlier that no event of those at them is before."""
@@ -46,12 +69,18 @@ def undecided(handling: Handling) -> dict[str, int]:
     out: dict[str, int] = {}
     for own in _going(handling):
         besides = _besides(handling, own)
-        if besides or _is_shared(handling, own):
+        if besides or _is_shared(handling, own) or _may_be_blow(handling, own):
             first = min(
                 own.first, *(touch.first for touch in besides), out.get(own.body, own.first)
             )
             out[own.body] = first
-    for body, since in out_of_sight(handling).items():
+    later = (
+        *out_of_sight(handling).items(),
+        *_swinging(handling),
+        *_lingering(handling),
+        *_just_taken(handling),
+    )
+    for body, since in later:
         out[body] = min(since, out.get(body, since))
     return out
 
@@ -60,8 +89,19 @@ def awaited(handling: Handling) -> dict[str, int]:
     """The things whose first motion decides, and the frame at which each is touched first."""
     out: dict[str, int] = {}
     for own in _going(handling):
-        if _besides(handling, own):
+        if _besides(handling, own) or _may_be_blow(handling, own):
             out[own.other] = min(own.first, out.get(own.other, own.first))
+    return out
+
+
+def nameless(handling: Handling) -> dict[str, int]:
+    """The first frame of each end-effector about which too much is open to announce anything."""
+    out = out_of_sight(handling)
+    for own in _going(handling):
+        if _may_be_blow(handling, own):
+            out[own.body] = min(own.first, out.get(own.body, own.first))
+    for body, since in (*_lingering(handling), *_just_taken(handling)):
+        out[body] = min(since, out.get(body, since))
     return out
 
 
@@ -89,17 +129,89 @@ def _going(handling: Handling) -> list[Touching]:
 
 
 def _is_shared(handling: Handling, own: Touching) -> bool:
-    """Whether somebody else has held the thing before.
+    """Whether somebody else has held the thing before, from whom it may be taken.
 
-    Who takes it over is known once one of the two lets go of it, or is taken not to.
+    Who takes it over is known once one of the two lets go of it, or is taken not to. What lies on
+    something fixed as it is touched is not taken over, nor is what the same limb has already.
     """
-    joined = any(
-        touch.other == own.other
+    if handling.last - own.first > handling.longest or _is_laid(handling, own):
+        return False
+    before = [
+        touch.body
+        for touch in _going(handling)
+        if touch.other == own.other
         and touch.body != own.body
         and touch.first < own.first - handling.margin
-        for touch in _going(handling)
+    ]
+    limb = handling.limbs.get(own.body)
+    by_the_same = any(limb is not None and handling.limbs.get(body) == limb for body in before)
+    return bool(before) and not by_the_same
+
+
+def _may_be_blow(handling: Handling, own: Touching) -> bool:
+    """Whether a thing was met fast, is touched still, and has not moved: to be taken is no blow."""
+    return (
+        (own.body, own.other, own.first) in handling.fast
+        and not _has_moved(handling, own)
+        and handling.last - own.first <= handling.longest
     )
-    return joined and handling.last - own.first <= handling.longest
+
+
+def _has_moved(handling: Handling, own: Touching) -> bool:
+    """Whether a thing has moved since it was touched."""
+    return any(move.object == own.other and move.last >= own.first for move in handling.moving)
+
+
+def _swinging(handling: Handling) -> Iterator[tuple[str, int]]:
+    """End-effectors that touch what may move to and fro on, and since when that is open."""
+    for swing in handling.swings:
+        if swing.last >= handling.last - handling.stroke:
+            for touch in handling.touching:
+                if swing.body in (touch.body, touch.other) and touch.last >= swing.last:
+                    yield touch.body, swing.last
+
+
+def decided_at(handling: Handling) -> Iterator[int]:
+    """The frames at which it is known whether what is swung, or has begun to move, goes on."""
+    for swing in handling.swings:
+        yield swing.last + handling.stroke + 1
+    for move in handling.moving:
+        yield move.first + handling.fresh + 1
+
+
+def _just_taken(handling: Handling) -> Iterator[tuple[str, int]]:
+    """End-effectors that touch what has just begun to move, and since when they touch it.
+
+    Throughout a contact in which a thing moves it is possessed, so that it matters what it touched.
+    """
+    for own in _going(handling):
+        moves = [
+            move.first
+            for move in handling.moving
+            if move.object == own.other and move.last >= own.first
+        ]
+        if moves and min(moves) > handling.last - handling.fresh:
+            yield own.body, own.first
+
+
+def _lingering(handling: Handling) -> Iterator[tuple[str, int]]:
+    """End-effectors whose contact, or that of what they touch, may yet go on, and since when."""
+    acting = {touch.body for touch in handling.touching}
+    for pair, since in handling.lingering.items():
+        yield from ((body, since) for body in pair if body in acting)
+        for touch in handling.touching:
+            if touch.other in pair and touch.first <= since <= touch.last:
+                yield touch.body, since
+
+
+def _is_laid(handling: Handling, own: Touching) -> bool:
+    """Whether a thing lies on something fixed for some time before and after it is touched."""
+    return any(
+        own.other in (touch.body, touch.other)
+        and touch.first <= own.first - handling.margin
+        and own.first + handling.margin <= touch.last
+        for touch in handling.laid
+    )
 
 
 def _besides(handling: Handling, own: Touching) -> list[Touching]:
@@ -108,7 +220,7 @@ def _besides(handling: Handling, own: Touching) -> list[Touching]:
     Once it moves, the hand has possessed it from the first, and its other contacts do not count;
     for some time it is awaited that it does.
     """
-    if any(move.object == own.other and move.last >= own.first for move in handling.moving):
+    if _has_moved(handling, own):
         return []
     return [
         touch

@@ -1,0 +1,170 @@
+"""Rules that are asked for hours without memory that grows.
+
+The solver frees no term that it ever saw, and every frame has terms of its own: within an hour they
+would fill some hundred megabytes. So a process of its own is asked, which another one replaces in
+time. The first minutes need none: to start one takes as long as some answers.
+"""
+
+import pickle
+import subprocess
+import sys
+import weakref
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from threading import Thread
+
+import capar
+from capar.model.errors import CaparError
+from capar.model.facts import Fact
+from capar.pipelines.live.rule_worker import inferred
+from capar_rules.engine.profiles import Profile
+from capar_rules.pars.inference import Inference
+
+OWN_ASKS = 400
+"""So often this process asks the rules itself [1]: in three minutes or more."""
+
+ASKS = 800
+"""So often a worker is asked before another one takes over [1]: some ten megabytes of terms."""
+
+AHEAD = 40
+"""The next worker is started so many questions before [1]: in twenty seconds or so."""
+
+WARMING = 3
+"""A worker that has answered so often has read the rules for good [1]."""
+
+
+_START = (
+    "import runpy, sys; sys.path.insert(0, sys.argv[1]); "
+    "runpy.run_module('capar.pipelines.live.rule_worker', run_name='__main__')"
+)
+"""Runs the worker of this very copy of the package, from wherever that was imported."""
+
+
+class RuleProcess:
+    """Answers what rules say of facts, from this process or from workers that follow each other.
+
+    Args:
+        rules: The rule base.
+        own_asks: How often this process answers itself, at first.
+        asks: How often each worker is asked.
+    """
+
+    def __init__(self, rules: Profile, *, own_asks: int = OWN_ASKS, asks: int = ASKS) -> None:
+        self._rules = rules
+        self._left = own_asks
+        self._asks = asks
+        self._worker: _Worker | None = None
+        self._next: _Starting | None = None
+        self._spent_s = 0.0
+
+    @property
+    def spent_s(self) -> float:
+        """The processor time of all workers [s]."""
+        return self._spent_s + (self._worker.spent_s if self._worker else 0.0)
+
+    @property
+    def worker(self) -> int | None:
+        """The number of the worker's process; None while this process answers itself."""
+        return self._worker.process.pid if self._worker else None
+
+    def ask(self, facts: Sequence[Fact]) -> Inference:
+        """What the rules say of facts.
+
+        Raises:
+            RuleError: The rules have a fault, or not exactly one answer.
+        """
+        if self._left <= AHEAD and self._next is None:
+            self._next = _Starting(self._rules, facts)
+        if self._left <= 0 and self._next is not None:
+            self._end_worker()
+            self._worker, self._next, self._left = self._next.worker(), None, self._asks
+        self._left -= 1
+        if self._worker is not None:
+            try:
+                return self._worker.answer(facts)
+            except _EndedError:
+                # Until another one takes over, this process answers itself; for good, if none can
+                # be started here.
+                starts = self._worker.spent_s > 0.0
+                self._end_worker()
+                self._left = min(self._left, AHEAD) if starts else sys.maxsize
+        return inferred(facts, self._rules)
+
+    def close(self) -> None:
+        """End the workers; this process answers what is asked then."""
+        if self._next is not None:
+            self._next.worker().end()
+            self._next = None
+        self._end_worker()
+        self._left = sys.maxsize
+
+    def _end_worker(self) -> None:
+        if self._worker is not None:
+            self._spent_s += self._worker.spent_s
+            self._worker.end()
+        self._worker = None
+
+
+class _EndedError(Exception):
+    """A worker has ended by itself."""
+
+
+class _Worker:
+    """A process that answers."""
+
+    def __init__(self) -> None:
+        # In a session of its own: who interrupts this process still wants its last answer.
+        command = [sys.executable, "-P", "-c", _START, str(Path(capar.__file__).parents[1])]
+        self.process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
+        )
+        self.spent_s = 0.0
+        self.end = weakref.finalize(self, _end, self.process)
+
+    def answer(self, facts: Sequence[Fact]) -> Inference:
+        assert self.process.stdout is not None
+        try:
+            self.send(tuple(facts))
+            answer, self.spent_s = pickle.load(self.process.stdout)
+        except (EOFError, BrokenPipeError, pickle.UnpicklingError):
+            raise _EndedError from None
+        if isinstance(answer, CaparError):
+            raise answer
+        assert isinstance(answer, Inference)
+        return answer
+
+    def send(self, value: object) -> None:
+        assert self.process.stdin is not None
+        pickle.dump(value, self.process.stdin, protocol=pickle.HIGHEST_PROTOCOL)
+        self.process.stdin.flush()
+
+
+class _Starting:
+    """A worker that is started aside, and asked until it has read the rules for good."""
+
+    def __init__(self, rules: Profile, facts: Sequence[Fact]) -> None:
+        self._rules = rules
+        self._worker = _Worker()
+        self._thread = Thread(target=self._warm, args=(tuple(facts),), daemon=True)
+        self._thread.start()
+
+    def _warm(self, facts: Sequence[Fact]) -> None:
+        with suppress(CaparError, _EndedError, BrokenPipeError):
+            self._worker.send(self._rules)
+            for _ in range(WARMING):
+                self._worker.answer(facts)
+
+    def worker(self) -> _Worker:
+        """The worker, once it is ready."""
+        self._thread.join()
+        return self._worker
+
+
+def _end(process: "subprocess.Popen[bytes]") -> None:
+    assert process.stdin is not None
+    assert process.stdout is not None
+    with suppress(BrokenPipeError):
+        process.stdin.close()
+    process.stdout.close()
+    process.wait()
