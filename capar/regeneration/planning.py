@@ -1,5 +1,6 @@
 """From a recorded performance to what another body is to do in another scene."""
 
+import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -11,7 +12,7 @@ from capar.body.human import Human
 from capar.model.capture import TagType
 from capar.regeneration import attending
 from capar.regeneration.body_frames import BodyFrames
-from capar.regeneration.drafts import Draft, check_stance
+from capar.regeneration.drafts import MOST_TURNS, Draft, check_stance
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.flights import flight_notes, flights
 from capar.regeneration.grips import Grip, Turn
@@ -184,7 +185,8 @@ def _beside(scene: Scene, ahead_m: float, aside_m: float) -> Scene:
 def _remedy(source: Source, scene: Scene, human: Human) -> str:
     """What would make it possible."""
     for words, changed, body in _remedies(source, scene, human):
-        if _possible(source, changed, body):
+        most = FEW_TURNS if body is human else MOST_TURNS
+        if _possible(source, changed, body, most):
             return f"{words} would do"
     return "no other height, size, nearer place or recorded body that was tried would do"
 
@@ -206,6 +208,9 @@ def _remedies(source: Source, scene: Scene, human: Human) -> Iterator[tuple[str,
         words = f"what can be moved {BOTH_M:.1f} m nearer to the performer"
         nearer = _drawn_nearer(raised(scene, name, by_m), BOTH_M)
         yield f"{_higher(name, by_m)} and {words}", nearer, human
+    for thing, (name, by_m) in itertools.product(mobile(scene), levels):
+        words = f"{_higher(name, by_m)} and {thing!r} of {SMALLER:.1f} times the size"
+        yield words, resized(raised(scene, name, by_m), thing, SMALLER), human
     recorded_m, own_m = (body.measures["stature"] for body in (source.human, human))
     if recorded_m > own_m + TALLER_M:
         yield f"a body as tall as the recorded one, {recorded_m:.2f} m,", scene, source.human
@@ -225,10 +230,10 @@ def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
     return scene
 
 
-def _possible(source: Source, scene: Scene, human: Human) -> bool:
+def _possible(source: Source, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
     try:
         check_stance(scene, human)
-        return Draft(source, scene, human, own_style(source)).reachable_grips(FEW_TURNS)[1] is None
+        return Draft(source, scene, human, own_style(source)).reachable_grips(most)[1] is None
     except PlanError:
         return False
 
