@@ -28,14 +28,14 @@ from capar.pipelines.round_trips import (
     round_trip,
 )
 from capar.regeneration.motions import Motion
-from capar.regeneration.scene_files import ASIDE_M
+from capar.regeneration.scene_files import DRAWS
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source
 
 AGENTS = ("man", "woman", "child")
 SEED = 7
 RATE_HZ = 30.0
-KEY = ("action", "agent", "scene", "rules", "aside_m")
+KEY = ("action", "agent", "scene", "rules", "draw")
 """What tells a trip from others."""
 
 Row = dict[str, Any]
@@ -49,11 +49,11 @@ def rows(options: argparse.Namespace, before: list[Row]) -> Iterator[Row]:
         source: Source | None = None
         for number in options.scenes:
             for agent in options.agents:
-                key = (action, agent, number, options.rules, options.aside)
+                key = (action, agent, number, options.rules, options.draw)
                 if key not in done:
                     source = source or _source(action, options.rules)
                     human = bodies.setdefault(agent, body(agent, source))
-                    scene = numbered_scene(source, number, SEED, options.aside)
+                    scene = numbered_scene(source, number, SEED, DRAWS[options.draw])
                     made = tried(source, agent, human, number, scene)
                     yield dict(zip(KEY, key, strict=True)) | made
 
@@ -63,7 +63,7 @@ def searched(some: list[Row]) -> Iterator[Row]:
     for row in some:
         if row["solved"] is None:
             source = _source(row["action"], row["rules"])
-            scene = numbered_scene(source, row["scene"], SEED, row["aside_m"])
+            scene = numbered_scene(source, row["scene"], SEED, DRAWS[row["draw"]])
             found = search(source, scene, body(row["agent"], source))
             yield row | {"solved": found.solved, "search": found.sentence}
 
@@ -186,7 +186,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--agents", nargs="+", default=list(AGENTS))
     parser.add_argument("--rules", default="extended", help="profile by which is observed")
     parser.add_argument(
-        "--aside", type=float, default=ASIDE_M, help="how far things are drawn from their place [m]"
+        "--draw", choices=DRAWS, default="usual", help="ranges from which scenes are drawn"
     )
     parser.add_argument("--results", type=Path, help="file to which each trip is added")
     parser.add_argument("--search", action="store_true", help="try what was refused otherwise")

@@ -17,6 +17,9 @@ CHIN_BELOW_EYES = 0.063
 PALM = (0.22, 0.075)
 """Half the breadth and half the thickness of the palm [share of the hand's length]."""
 
+PALM_FROM_WRIST = 0.42
+"""Distance of the middle of the palm from the wrist [share of the hand's length]."""
+
 USUAL_MASS = 27.0
 """Mass over squared stature of the body whose girths the data file gives [kg/m2]."""
 
@@ -107,7 +110,7 @@ def _hand(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
 
 def palm_centre(m: Measures) -> Float[np.ndarray, "3"]:
     """The middle of the right palm's surface in the hand's frame [m]."""
-    return np.array([0.0, PALM[1], -0.42]) * m["hand_length"]
+    return np.array([0.0, PALM[1], -PALM_FROM_WRIST]) * m["hand_length"]
 
 
 def _foot(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:

@@ -5,7 +5,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures
-from capar.body.body_shapes import PALM
+from capar.body.body_shapes import PALM, PALM_FROM_WRIST
 from capar.body.things import Thing
 
 AIR_M = 0.0005
@@ -13,6 +13,9 @@ AIR_M = 0.0005
 
 CLEAR_M = 0.014
 """How far a hand at a thing's side stays above what the thing stands on [m]."""
+
+WRIST_OUT_M = 0.022
+"""How far the wrist of a hand at a box's side is out of the box, and with it the forearm [m]."""
 
 YAWS = (0.0, -0.35, -0.7, -1.05, 0.35)
 """Directions of the fingers tried on a round thing, outwards positive [rad]."""
@@ -45,6 +48,9 @@ def side_grip(
     height = max(0.5 * (low[2] + high[2]), low[2] + heel * measures["hand_length"] + CLEAR_M)
     reach = (-low[1] if side == "right" else high[1]) + AIR_M
     place = np.array([0.0, 0.0, height]) - inwards * reach
+    if not thing.round:
+        wrist = PALM_FROM_WRIST * np.cos(pitch) * measures["hand_length"]
+        place[0] = min(0.0, low[0] - WRIST_OUT_M + wrist)
     return RigidTransform.from_components(place, palm_turn(inwards, fingers))
 
 

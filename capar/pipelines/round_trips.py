@@ -8,6 +8,7 @@ import numpy as np
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
+from capar.body.targets import CUTOFF_HZ
 from capar.model.capture import Capture
 from capar.model.errors import UnknownNameError
 from capar.model.facts import Touching
@@ -21,7 +22,7 @@ from capar.regeneration.mirroring import OTHER, mirrored
 from capar.regeneration.motions import Motion
 from capar.regeneration.quality import Quality
 from capar.regeneration.regenerating import regenerate
-from capar.regeneration.scene_files import ASIDE_M, drawn_scene
+from capar.regeneration.scene_files import USUAL, Draw, drawn_scene
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source, source_of
 
@@ -62,6 +63,7 @@ def observed_source(
     completion: Completion | None = None,
     *,
     rules: str = "extended",
+    cutoff_hz: float | None = CUTOFF_HZ,
 ) -> Source:
     """A capture, observed and ready to be performed.
 
@@ -69,6 +71,7 @@ def observed_source(
         capture: What was recorded, or where it is described.
         completion: What is assumed where the recording does not say it.
         rules: Profile by which it is observed.
+        cutoff_hz: Of the filter that takes noise from paths [Hz]; None leaves them as recorded.
 
     Raises:
         PlanError: The capture does not determine a performance.
@@ -76,7 +79,7 @@ def observed_source(
     """
     trial = trial_of(capture)
     if completion is None:
-        return source_of(trial, observe(trial, rules=rules))
+        return source_of(trial, observe(trial, rules=rules), cutoff_hz=cutoff_hz)
     trial = completed(trial, completion)
     return source_of(
         trial,
@@ -84,6 +87,7 @@ def observed_source(
         stance=completion.stance,
         floor_m=completion.floor_m,
         notes=completion.notes,
+        cutoff_hz=cutoff_hz,
     )
 
 
@@ -132,18 +136,18 @@ def round_trips(
             yield round_trip(source, agent, human, number, scene)
 
 
-def numbered_scene(source: Source, number: int, seed: int, aside_m: float = ASIDE_M) -> Scene:
+def numbered_scene(source: Source, number: int, seed: int, draw: Draw = USUAL) -> Scene:
     """The drawn scene of that number; 0 is the recorded one.
 
     Args:
         source: What was recorded.
         number: Of the scene.
         seed: Of all scenes.
-        aside_m: How far from its place a thing is drawn along each axis [m].
+        draw: The ranges from which it is drawn.
     """
     if not number:
         return source.scene
-    return drawn_scene(source.scene, np.random.default_rng([seed, number]), aside_m)
+    return drawn_scene(source.scene, np.random.default_rng([seed, number]), draw)
 
 
 def round_trip(source: Source, agent: str, human: Human, number: int, scene: Scene) -> Trip:

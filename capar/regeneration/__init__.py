@@ -2,6 +2,7 @@
 
 from capar.regeneration.captures import capture_of as capture_of
 from capar.regeneration.captures import write_motion as write_motion
+from capar.regeneration.direct_mapping import map_directly as map_directly
 from capar.regeneration.errors import PlanError as PlanError
 from capar.regeneration.grips import Grip as Grip
 from capar.regeneration.motions import Motion as Motion

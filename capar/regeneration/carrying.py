@@ -8,6 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from capar.body.human import Human
 from capar.regeneration.collisions import Surroundings
+from capar.regeneration.errors import PlanError
 from capar.regeneration.path_mapping import STRAIGHT, Detour, mapped
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, vectors
@@ -21,6 +22,9 @@ BESIDE_M = 0.01
 
 SLACK_M = 0.0005
 """How much nearer than at both ends it may come [m]."""
+
+CUT_M = 0.001
+"""How much deeper than at both ends it may be inside something [m]."""
 
 STRIDE = 2
 """Frames between two at which a way is checked."""
@@ -50,6 +54,9 @@ class Carrying:
             ends: Where it starts and where it has to go.
             others: Where the other things are meanwhile.
             turn: How far the scene's way is turned about z [rad].
+
+        Raises:
+            PlanError: However far it is lifted, it goes through something.
         """
         best, least = STRAIGHT, np.inf
         for detour in (Detour(lift) for lift in LIFTS_M):
@@ -59,7 +66,10 @@ class Carrying:
                 best, least = detour, short
             if least <= 0.0:
                 break
-        return self._mapped(part, ends, turn, best), best
+        path = self._mapped(part, ends, turn, best)
+        if least > 0.0:
+            self._check_free(name, path, others)
+        return path, best
 
     def _mapped(
         self,
@@ -70,6 +80,20 @@ class Carrying:
     ) -> RigidTransform:
         facing = self.scene.heading
         return mapped(part, *ends, turn=turn, detour=detour, heading=facing, kind=self.kind)
+
+    def _check_free(
+        self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]
+    ) -> None:
+        """No way leads deeper into something than both of its ends are."""
+        poses, still = vectors(path), {n: vectors(pose) for n, pose in others.items()}
+        ends = [dict(self._gaps(name, poses[row], still)) for row in (0, -1)]
+        found = (pair for pose in poses for pair in self._gaps(name, pose, still))
+        other, gap = min(found, key=lambda pair: pair[1], default=("", 0.0))
+        if gap < min(0.0, *(end.get(other, 0.0) for end in ends)) - CUT_M:
+            raise PlanError(
+                f"{name!r} would go {-1e3 * gap:.0f} mm into {other!r} on its way, however far it "
+                "is lifted"
+            )
 
     def _short(
         self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]

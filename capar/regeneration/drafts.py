@@ -27,7 +27,7 @@ KEYS = 6
 """Key postures in a hold, besides those at goals."""
 
 KEY_ITERATIONS = 40
-MOST_TURNS = 90
+MOST_TURNS = 120
 """Turns of a grip that are tried."""
 
 SETTLE_S = 0.45
@@ -87,16 +87,7 @@ class Draft:
         solver = Solver(self.new.human, (*self.scene.place, self.scene.floor_m), self.scene.heading)
         worst = (0.0, "")
         for frame in self.key_frames(group):
-            palms = {
-                grip.hold.side: vectors(
-                    self.things[grip.hold.thing][frame] * grip.pose * self.new.palms[grip.hold.side]
-                )
-                for grip in grips
-                if grip.hold.first <= frame <= grip.hold.last
-            }
-            firm = dict.fromkeys(palms, 1.0)
-            head = vectors(self.head[frame])
-            goal = Targets(palms, firm, head, float(self.firmness[frame]), self.looks[frame])
+            goal = self.targets(grips, frame)
             solver.follow(goal, most=KEY_ITERATIONS)
             metres, radians = solver.missed(goal)
             ratio = max(metres / REACH_M, radians / REACH_RAD)
@@ -114,6 +105,29 @@ class Draft:
             if ratio > enough:
                 break
         return worst
+
+    def key_postures(
+        self,
+    ) -> tuple[dict[int, Float[np.ndarray, "posture"]], Float[np.ndarray, "posture"]]:
+        """The posture at each key frame with the chosen grips, and the one of standing at ease."""
+        solver = Solver(self.new.human, (*self.scene.place, self.scene.floor_m), self.scene.heading)
+        out = {}
+        for frame in self.key_frames(list(self.source.holds)):
+            solver.follow(self.targets(list(self.grips), frame), most=KEY_ITERATIONS)
+            out[frame] = solver.posture
+        return out, solver.rest
+
+    def targets(self, grips: list[Grip], frame: int) -> Targets:
+        """Where palms, head and gaze are to be at a frame."""
+        palms = {
+            grip.hold.side: vectors(
+                self.things[grip.hold.thing][frame] * grip.pose * self.new.palms[grip.hold.side]
+            )
+            for grip in grips
+            if grip.hold.first <= frame <= grip.hold.last
+        }
+        firm, head = dict.fromkeys(palms, 1.0), vectors(self.head[frame])
+        return Targets(palms, firm, head, float(self.firmness[frame]), self.looks[frame])
 
     def _sentence(self, group: list[Hold], frame: int, metres: float, radians: float) -> str:
         at_s = self.source.times[frame]

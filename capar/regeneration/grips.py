@@ -27,7 +27,7 @@ PITCHES = (0.0, 0.15, -0.15, 0.3, -0.3, 0.5, -0.5)
 """Turns about the normal of the palm that are tried [rad]."""
 
 TILTS = (0.0, -0.1, 0.1, -0.2, 0.2, 0.3)
-"""Turns across the palm, fingers to the thing positive, that are tried without others [rad]."""
+"""Turns across the palm, fingers to the thing positive, that are tried [rad]."""
 
 PITCH_WEIGHT, TILT_WEIGHT = 2.0, 4.0
 """How much worse these turns are than one about a round thing [1]."""
@@ -75,7 +75,7 @@ def turns(thing: Thing) -> Iterator[Turn]:
     """The turns to try on a thing, the smallest first."""
     yaws = YAWS if is_round(thing.shape) else YAWS[:1]
     found = [Turn(yaw, pitch) for yaw in yaws for pitch in PITCHES]
-    found += [Turn(tilt=tilt) for tilt in TILTS[1:]]
+    found += [Turn(0.0, pitch, tilt) for pitch in PITCHES for tilt in TILTS[1:]]
     yield from sorted(found, key=lambda each: each.size)
 
 

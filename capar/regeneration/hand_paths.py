@@ -21,8 +21,8 @@ BACKS_M = (0.0, 0.05, 0.1, 0.15, 0.2, 0.3)
 OFFS_M = (0.0, 0.003, 0.02, 0.05)
 """Detours that are tried [m]."""
 
-STRIDE = 2
-"""Frames between two at which a path is checked."""
+CHECK_S = 0.02
+"""Most time between two frames at which a path is checked, unless frames are farther apart [s]."""
 
 LEAVING_S = 0.3
 """So long after it let something go a hand may be near it [s]."""
@@ -128,6 +128,7 @@ class _Clearance:
         self.posture = Solver(new.human, (*scene.place, scene.floor_m), scene.heading).rest
         self.new, self.things, self.care = new, things, care
         self.leaving = round(LEAVING_S * rate_hz)
+        self.stride = max(int(CHECK_S * rate_hz), 1)
 
     def first_clear(
         self,
@@ -169,7 +170,7 @@ class _Clearance:
             for near, some in ((True, beside), (False, resting))
         }
         worst = 0.0
-        for frame in range(0, len(path), STRIDE):
+        for frame in range(0, len(path), self.stride):
             near = min(frame, len(path) - 1 - frame) <= self.leaving
             for name, gap in self._gaps(side, around, frame).items():
                 least = (

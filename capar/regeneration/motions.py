@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from capar.regeneration.guides import Guide
 from capar.regeneration.planning import Plan
 from capar.regeneration.solving import Solver
 
@@ -20,8 +21,13 @@ class Motion:
     postures: Float[np.ndarray, "frames posture"]
 
 
-def perform_plan(plan: Plan) -> Motion:
-    """Follow a plan frame by frame."""
+def perform_plan(plan: Plan, guide: Guide | None = None) -> Motion:
+    """Follow a plan frame by frame.
+
+    Args:
+        plan: What is to be done.
+        guide: Postures to which the body is drawn meanwhile; standing at ease, unless stated.
+    """
     scene = plan.scene
     solver = Solver(plan.human, (*scene.place, scene.floor_m), scene.heading)
     targets = plan.targets()
@@ -29,6 +35,8 @@ def perform_plan(plan: Plan) -> Motion:
     solver.frame.bound(1.0 / plan.source.rate_hz)
     postures = np.empty((len(plan.source.times), len(solver.posture)))
     for frame in range(len(postures)):
+        if guide is not None:
+            solver.draw_to(guide.postures[frame], float(guide.weights[frame]))
         solver.follow(targets[frame])
         postures[frame] = solver.posture
     return Motion(plan, postures)

@@ -1,6 +1,7 @@
 """From a recorded performance to what another body is to do in another scene."""
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from capar.body.human import Human
 from capar.model.capture import TagType
 from capar.regeneration import attending
 from capar.regeneration.body_frames import BodyFrames
-from capar.regeneration.drafts import Draft, check_stance
+from capar.regeneration.drafts import MOST_TURNS, Draft, check_stance
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.flights import flight_notes, flights
 from capar.regeneration.grips import Grip, Turn
@@ -33,9 +34,15 @@ STEPS_M = (
 """Places that are tried, from the given one ahead and to the left [m]."""
 
 NEARER_M = (0.05, 0.1, 0.15, 0.2, 0.3)
-HIGHER_M = (0.1, -0.1, 0.2, -0.2)
+HIGHER_M = (0.1, -0.1, 0.2, -0.2, 0.4, -0.4)
 DRAWN_M = (0.1, 0.2, 0.3)
 """Remedies that are tried where something is out of reach [m]: standing, fixed things, others."""
+
+BOTH_M = 0.2
+"""How much nearer things are where fixed ones are higher or lower besides [m]."""
+
+TALLER_M = 0.02
+"""A recorded body that is so much taller is tried, too [m]."""
 
 SMALLER = 0.7
 """Likewise the size of what can be moved [1]."""
@@ -177,21 +184,40 @@ def _beside(scene: Scene, ahead_m: float, aside_m: float) -> Scene:
 
 def _remedy(source: Source, scene: Scene, human: Human) -> str:
     """What would make it possible."""
+    for words, changed, body in _remedies(source, scene, human):
+        most = FEW_TURNS if body is human else MOST_TURNS
+        if _possible(source, changed, body, most):
+            return f"{words} would do"
+    return "no other height, size, nearer place or recorded body that was tried would do"
+
+
+def _remedies(source: Source, scene: Scene, human: Human) -> Iterator[tuple[str, Scene, Human]]:
+    """What may help, in words, and the scene and the body with it."""
+    fixed = [name for name, thing in scene.things.items() if thing.tag is TagType.FIXED]
+    levels = [(name, by_m) for name in fixed for by_m in HIGHER_M]
     for by_m in NEARER_M if scene.stays else ():
-        if _possible(source, _beside(scene, by_m, 0.0), human):
-            return f"standing {by_m:.2f} m further ahead would do"
-    for name in [n for n, t in scene.things.items() if t.tag is TagType.FIXED]:
-        for by_m in HIGHER_M:
-            if _possible(source, raised(scene, name, by_m), human):
-                way = "higher" if by_m > 0 else "lower"
-                return f"{name!r} {abs(by_m):.1f} m {way} would do"
+        yield f"standing {by_m:.2f} m further ahead", _beside(scene, by_m, 0.0), human
+    for name, by_m in levels:
+        yield _higher(name, by_m), raised(scene, name, by_m), human
     for by_m in DRAWN_M:
-        if _possible(source, _drawn_nearer(scene, by_m), human):
-            return f"what can be moved {by_m:.1f} m nearer to the performer would do"
+        words = f"what can be moved {by_m:.1f} m nearer to the performer"
+        yield words, _drawn_nearer(scene, by_m), human
     for name in mobile(scene):
-        if _possible(source, resized(scene, name, SMALLER), human):
-            return f"{name!r} of {SMALLER:.1f} times the size would do"
-    return "no other height, size or nearer place that was tried would do; a larger body might"
+        yield f"{name!r} of {SMALLER:.1f} times the size", resized(scene, name, SMALLER), human
+    for name, by_m in levels:
+        words = f"what can be moved {BOTH_M:.1f} m nearer to the performer"
+        nearer = _drawn_nearer(raised(scene, name, by_m), BOTH_M)
+        yield f"{_higher(name, by_m)} and {words}", nearer, human
+    for thing, (name, by_m) in itertools.product(mobile(scene), levels):
+        words = f"{_higher(name, by_m)} and {thing!r} of {SMALLER:.1f} times the size"
+        yield words, resized(raised(scene, name, by_m), thing, SMALLER), human
+    recorded_m, own_m = (body.measures["stature"] for body in (source.human, human))
+    if recorded_m > own_m + TALLER_M:
+        yield f"a body as tall as the recorded one, {recorded_m:.2f} m,", scene, source.human
+
+
+def _higher(name: str, by_m: float) -> str:
+    return f"{name!r} {abs(by_m):.1f} m {'higher' if by_m > 0 else 'lower'}"
 
 
 def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
@@ -204,10 +230,10 @@ def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
     return scene
 
 
-def _possible(source: Source, scene: Scene, human: Human) -> bool:
+def _possible(source: Source, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
     try:
         check_stance(scene, human)
-        return Draft(source, scene, human, own_style(source)).reachable_grips(FEW_TURNS)[1] is None
+        return Draft(source, scene, human, own_style(source)).reachable_grips(most)[1] is None
     except PlanError:
         return False
 

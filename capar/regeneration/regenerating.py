@@ -3,6 +3,7 @@
 from capar.body.human import Human
 from capar.regeneration.drafts import Draft
 from capar.regeneration.errors import PlanError
+from capar.regeneration.guides import Guide, guide_of
 from capar.regeneration.hand_paths import Care
 from capar.regeneration.motions import Motion, perform_plan
 from capar.regeneration.planning import led, reachable
@@ -38,9 +39,11 @@ def regenerate(
     Raises:
         PlanError: It is out of reach or impossible; the message says what would help.
     """
-    best: tuple[Motion, Quality] | None = None
     scene = scene or source.scene
-    best = _careful(reachable(source, scene, human, style))
+    draft = reachable(source, scene, human, style)
+    best = _careful(draft)
+    if not best[1].passed and draft.grips:
+        best = min(best, _careful(draft, guide_of(draft)), key=_failures)
     watched: frozenset[int] = frozenset()
     for _ in range(GRIPS):
         held = [gate for gate in best[1].gates if not gate.passed and gate.name in BY_GRIP]
@@ -55,11 +58,11 @@ def regenerate(
     return best
 
 
-def _careful(draft: Draft) -> tuple[Motion, Quality]:
+def _careful(draft: Draft, guide: Guide | None = None) -> tuple[Motion, Quality]:
     """The best motion of some grips, hands being led with more care where it takes that."""
     tried: list[tuple[Motion, Quality]] = []
     for care in CARES:
-        motion = perform_plan(led(draft, care))
+        motion = perform_plan(led(draft, care), guide)
         tried.append((motion, quality(motion)))
         if not BY_CARE & set(tried[-1][1].failed):
             break

@@ -1,7 +1,7 @@
 """Scenes that are not as they were recorded: from a file, or drawn at random by a seed."""
 
 import tomllib
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,16 +11,29 @@ from capar.model.capture import TagType
 from capar.model.errors import FileError
 from capar.regeneration.scenes import Scene, mobile, moved, raised, resized
 
-HEIGHTS_M = (0.6, 1.1)
-"""Heights of the table that are drawn [m]."""
 
-SIZES = (0.7, 1.4)
-"""Sizes of what can be moved, of the recorded [1]."""
+@dataclass(frozen=True)
+class Draw:
+    """The ranges from which a scene is drawn."""
 
-ASIDE_M = 0.1
-"""How far from its place a thing is drawn along each axis [m]."""
+    heights_m: tuple[float, float]
+    """Of the table [m]."""
 
-DRAWS = 200
+    sizes: tuple[float, float]
+    """Of what can be moved, of the recorded [1]."""
+
+    aside_m: float
+    """How far from its place a thing is drawn along each axis [m]."""
+
+
+USUAL = Draw((0.6, 1.1), (0.7, 1.4), 0.1)
+WIDE = Draw((0.5, 1.25), (0.6, 1.5), 0.3)
+"""Wide enough that not everything is in reach of every body."""
+
+DRAWS = {"usual": USUAL, "wide": WIDE}
+"""By the names under which they are asked for."""
+
+ATTEMPTS = 200
 APART_M = 0.02
 """How far drawn things are apart at least [m]."""
 
@@ -56,26 +69,26 @@ def read_scene(path: Path, scene: Scene) -> Scene:
     return replace(scene, place=(x, y), heading=turn, floor_m=floor, stays=stays)
 
 
-def drawn_scene(scene: Scene, rng: np.random.Generator, aside_m: float = ASIDE_M) -> Scene:
+def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> Scene:
     """A scene with other sizes and places, its first fixed thing as high as a table may be.
 
     Args:
         scene: As it was recorded.
         rng: What draws.
-        aside_m: How far from its place a thing is drawn along each axis [m].
+        draw: The ranges from which it draws.
     """
     for name in mobile(scene):
-        scene = resized(scene, name, float(rng.uniform(*SIZES)))
+        scene = resized(scene, name, float(rng.uniform(*draw.sizes)))
     fixed = [name for name, thing in scene.things.items() if thing.tag is TagType.FIXED]
     if fixed:
         thing = scene.thing(fixed[0])
         top = thing.place[2] + float(thing.shape.bounds[1, 2])
-        scene = raised(scene, fixed[0], float(rng.uniform(*HEIGHTS_M)) - top)
-    for _ in range(DRAWS):
+        scene = raised(scene, fixed[0], float(rng.uniform(*draw.heights_m)) - top)
+    for _ in range(ATTEMPTS):
         found = scene
         for name in mobile(scene):
             x, y, z = scene.thing(name).place
-            dx, dy = rng.uniform(-aside_m, aside_m, 2)
+            dx, dy = rng.uniform(-draw.aside_m, draw.aside_m, 2)
             found = moved(found, name, (x + dx, y + dy, z), scene.thing(name).heading)
         if _sound(scene, found):
             return found

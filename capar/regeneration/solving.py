@@ -10,7 +10,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.acting import RELAXED
 from capar.body.gaze import LOOK_COST, look_tasks, share_costs
-from capar.body.human import Human
+from capar.body.human import ROOT_SIZE, Human
 from capar.body.scripts import SIDES
 from capar.body.solving import Solver as Steps
 
@@ -37,6 +37,9 @@ BALANCE_COST = 20.0
 """Weight of a metre of the centre of mass from above the feet."""
 
 DAMPING_COST = 0.1
+EASE_COST, GUIDE_COST = 0.15, 1.0
+"""Weights of a radian from standing at ease, and at least so from a posture that guides."""
+
 LARGEST_STEP = 0.15
 """Largest step of a hinge in one iteration [rad]."""
 
@@ -115,6 +118,8 @@ class Solver:
         self.looks = look_tasks()
         self.home = {side: vectors(self.palm(side)) for side in SIDES}
         self.goals = {side: pose[4:] for side, pose in self.home.items()}
+        self.ease = mink.PostureTask(human.model, cost=share_costs(human, EASE_COST))
+        self.ease.set_target(self.rest)
         self.tasks = [*self.palms.values(), self.head, *self.looks.values(), *self._stance()]
         self.frame = FrameLimit(len(human.joints))
         self.steps = Steps(human, self.tasks, longest_rad=LARGEST_STEP, limits=[self.frame])
@@ -122,12 +127,10 @@ class Solver:
     def _stance(self) -> list[mink.Task]:
         feet = [mink.FrameTask(f"{s}_foot", "body", FOOT_COST, FOOT_COST) for s in SIDES]
         balance = mink.ComTask(cost=[BALANCE_COST, BALANCE_COST, 0.0])
-        ease = mink.PostureTask(self.human.model, cost=share_costs(self.human, 0.15))
         for foot in feet:
             foot.set_target_from_configuration(self.configuration)
         balance.set_target_from_configuration(self.configuration)
-        ease.set_target(self.rest)
-        return [*feet, balance, ease, mink.DampingTask(self.human.model, cost=DAMPING_COST)]
+        return [*feet, balance, self.ease, mink.DampingTask(self.human.model, cost=DAMPING_COST)]
 
     def palm(self, side: str) -> RigidTransform:
         """Where a palm is."""
@@ -147,6 +150,21 @@ class Solver:
     def posture(self) -> Float[np.ndarray, "posture"]:
         """As it is."""
         return np.array(self.configuration.q)
+
+    def draw_to(self, posture: Float[np.ndarray, "posture"], weight: float) -> None:
+        """From now on be drawn to a posture's joint angles, more or less strongly.
+
+        Args:
+            posture: What guides; where the pelvis is in it does not matter.
+            weight: 1 as strongly as a guide does, 0 as to standing at ease.
+        """
+        guide = self.rest.copy()
+        guide[ROOT_SIZE:] = posture[ROOT_SIZE:]
+        self.ease.set_target(guide)
+        usual = share_costs(self.human, EASE_COST)
+        firmer = np.maximum(usual, GUIDE_COST)
+        firmer[:6] = 0.0
+        self.ease.set_cost(usual + weight * (firmer - usual))
 
     def follow(self, targets: Targets, *, most: int = MOST) -> None:
         """Go on to the targets."""

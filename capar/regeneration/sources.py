@@ -10,7 +10,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.anthropometry import measures_of
 from capar.body.human import Human
 from capar.body.skeleton import eyes_between
-from capar.body.targets import target
+from capar.body.targets import CUTOFF_HZ, target
 from capar.body.things import Thing
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagType
 from capar.model.facts import Touching
@@ -109,6 +109,7 @@ def source_of(
     stance: tuple[tuple[float, float], float] | None = None,
     floor_m: float = 0.0,
     notes: tuple[str, ...] = (),
+    cutoff_hz: float | None = CUTOFF_HZ,
 ) -> Source:
     """What a capture and its observation say of the performance.
 
@@ -118,14 +119,15 @@ def source_of(
         stance: Where the performer stands [m] and faces [rad]; by the head, unless stated.
         floor_m: Height of the floor [m].
         notes: What is to be told of it.
+        cutoff_hz: Of the filter that takes noise from paths [Hz]; None leaves them as recorded.
 
     Raises:
         PlanError: It is not known where the performer stands, or a hand or thing has no shape.
     """
     human = Human.of(measures_of(capture.agent))
-    eyes = _eyes(capture)
+    eyes = _eyes(capture, cutoff_hz)
     place, heading = stance or _stance(human, eyes)
-    tracks = {name: _path(body.stream) for name, body in capture.bodies.items()}
+    tracks = {name: _path(body.stream, cutoff_hz) for name, body in capture.bodies.items()}
     objects = [each for each in capture.objects if each.tag is not TagType.SELF]
     things, paths = {}, {}
     for each in objects:
@@ -186,9 +188,9 @@ def moves(path: RigidTransform) -> bool:
     return bool(gone.max() >= MOVES_M or turned.max() >= MOVES_RAD)
 
 
-def _path(stream: Stream) -> RigidTransform:
+def _path(stream: Stream, cutoff_hz: float | None = CUTOFF_HZ) -> RigidTransform:
     """A stream without noise, its losses filled from both sides."""
-    one = target(stream)
+    one = target(stream, cutoff_hz=cutoff_hz)
     frames = np.arange(len(stream.times))
     known = np.flatnonzero(~np.isnan(one.positions[:, 0]))
     spots = np.stack([np.interp(frames, known, c[known]) for c in one.positions.T], axis=1)
@@ -196,7 +198,7 @@ def _path(stream: Stream) -> RigidTransform:
     return transforms(spots, turns / np.linalg.norm(turns, axis=1, keepdims=True))
 
 
-def _eyes(capture: Capture) -> RigidTransform:
+def _eyes(capture: Capture, cutoff_hz: float | None = CUTOFF_HZ) -> RigidTransform:
     heads = [each for each in capture.sensors if each.end_effector == "head"]
     if not heads:
         raise PlanError(
@@ -204,7 +206,7 @@ def _eyes(capture: Capture) -> RigidTransform:
             "stands and looks; there are " + ", ".join(each.name for each in capture.sensors)
         )
     head = heads[0]
-    path = _path(head.stream)
+    path = _path(head.stream, cutoff_hz)
     ahead = path.rotation[:START_FRAMES].mean().apply(np.array(head.gaze))
     x = np.array([ahead[0], ahead[1], 0.0]) / np.hypot(ahead[0], ahead[1])
     z = np.array([0.0, 0.0, 1.0])

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from capar import regeneration
 from capar.body.anthropometry import ready_made
 from capar.body.bundles import write_bundle
 from capar.body.gaze import lines_of_sight
@@ -24,6 +25,7 @@ from capar.body.scripts import (
 from capar.body.sensing import PERFECT, Tracker
 from capar.body.things import Scene, Thing, box, cup, scene, table
 from capar.model.errors import UnknownNameError
+from capar.regeneration.collisions import Pair, Surroundings
 from extractors.readers.bundle.capture_toml import read_capture
 
 pytestmark = pytest.mark.long
@@ -95,6 +97,16 @@ def test_what_is_not_held_stays_where_it_was(acted: Performance) -> None:
         travelled = float(np.ptp(path.translation, axis=0).max())
         assert (travelled > 0.05) == (name in moved)
         assert path.translation[:, 2].min() >= acted.scene.thing(name).place[2] - 1e-9
+
+
+@pytest.mark.parametrize("who", ["man", "woman"])
+def test_no_forearm_is_inside_the_box_that_is_lifted(who: str) -> None:
+    acted = _act(who, "lift")
+    around = Surroundings(acted.human, regeneration.Scene(acted.scene.things, (0.0, 0.0), 0.0))
+    for frame in range(0, len(acted.times), 2):
+        around.pose(acted.motion[frame], {n: path[frame] for n, path in acted.things.items()})
+        found = around.near(["right_forearm", "left_forearm", "right_hand", "left_hand"])
+        assert min(pair.distance_m for pair in [*found, Pair(1.0, "", "")]) > -0.001
 
 
 def test_hands_keep_clear_of_the_table(acted: Performance) -> None:

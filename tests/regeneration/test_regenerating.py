@@ -15,6 +15,7 @@ from capar.model.capture import Capture
 from capar.pipelines.round_trips import body, observed_source, round_trips
 from capar.regeneration import Motion, PlanError, Quality, Source, regenerate
 from capar.regeneration.body_frames import body_frames
+from capar.regeneration.departures import departures
 from capar.regeneration.hand_frames import body_hand_frame
 from capar.regeneration.motions import perform_plan
 from capar.regeneration.planning import plan
@@ -48,17 +49,11 @@ def test_the_frame_on_a_recorded_hand_is_the_one_on_the_body_that_was_recorded()
     assert away.rotation.magnitude() < np.radians(1.0)
 
 
-@pytest.mark.parametrize("action", ["drink", "touch"])
+@pytest.mark.parametrize("action", ["drink", "touch", "pick_up"])
 def test_the_recorded_body_in_the_recorded_scene_goes_the_recorded_way(action: str) -> None:
     motion, found = _done(action, "same")
     assert found.passed, found.failed
-    source = motion.plan.source
-    for name, path in source.paths.items():
-        off = motion.plan.things[name].translation - path.translation
-        assert np.linalg.norm(off, axis=1).max() < 0.005
-    palms = source.human.sites(motion.postures, ["right_palm"])["right_palm"][0]
-    true = source.hands["right"].path * motion.plan.frames.palms["right"]
-    assert np.linalg.norm(palms - true.translation, axis=1).max() < 0.005
+    assert max(measure.value for measure in departures(motion)) < 5.0
 
 
 def test_a_child_drinks_at_its_own_mouth_and_the_same_action_is_observed() -> None:

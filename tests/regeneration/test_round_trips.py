@@ -16,7 +16,10 @@ RATE_HZ, SEED = 30.0, 7
 
 TRIPS = (
     ("drink", "child", 2),
+    ("drink", "woman", 1),
     ("drink", "woman", 5),
+    ("drink", "child", 9),
+    ("touch", "child", 3),
     ("touch", "woman", 1),
     ("slide", "man", 3),
     ("carry", "woman", 2),

@@ -7,7 +7,7 @@ import pytest
 
 from capar.body.things import Thing, box, cup, table
 from capar.model.errors import CaparError, UnknownNameError
-from capar.regeneration.scene_files import drawn_scene, read_scene
+from capar.regeneration.scene_files import DRAWS, Draw, drawn_scene, read_scene
 from capar.regeneration.scenes import Scene, raised, resized
 
 
@@ -71,6 +71,21 @@ def test_an_unknown_object_in_a_scene_file_is_named_with_those_that_are_there(
     path.write_text("[object.cup]\nsize = 2.0\n")
     with pytest.raises(UnknownNameError, match=r"no thing 'cup'.*mug"):
         read_scene(path, _scene())
+
+
+@pytest.mark.parametrize("draw", DRAWS.values(), ids=DRAWS)
+def test_drawn_scenes_are_within_the_ranges_from_which_they_are_drawn(draw: Draw) -> None:
+    before = _scene()
+    for number in range(10):
+        after = drawn_scene(before, np.random.default_rng([7, number]), draw)
+        top = after.thing("table").place[2] + after.thing("table").shape.bounds[1, 2]
+        assert draw.heights_m[0] <= top <= draw.heights_m[1]
+        for name in ("mug", "crate"):
+            one, two = before.thing(name), after.thing(name)
+            assert draw.sizes[0] <= two.size[0] / one.size[0] <= draw.sizes[1]
+            aside = np.abs(np.array(two.place) - one.place)[:2]
+            assert aside.max() <= draw.aside_m
+            assert after.support(name) == "table"
 
 
 def test_drawn_scenes_stand_and_a_seed_draws_the_same_one() -> None:

@@ -1,0 +1,184 @@
+"""Direct mapping (thesis 3.2 to 3.6): a recording performed by another body without PARs.
+
+The baseline of every comparison. Hands and things go where they were recorded; what met the
+performer's head meets the new one's. Nothing is planned around obstacles, no grip is fitted to
+the new hand, and the scene is the recorded one.
+"""
+
+import itertools
+from collections.abc import Mapping
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.human import Human
+from capar.regeneration import attending
+from capar.regeneration.body_frames import (
+    BodyFrames,
+    body_frames,
+    head_path,
+    head_ratio,
+    rest_pose,
+)
+from capar.regeneration.drafts import SETTLE_S
+from capar.regeneration.grips import Grip, Turn
+from capar.regeneration.motions import Motion, perform_plan
+from capar.regeneration.path_mapping import SHORT_M, arc_shares
+from capar.regeneration.planning import Plan
+from capar.regeneration.quality import Quality, quality
+from capar.regeneration.sources import Hold, Meeting, Source
+from capar.regeneration.styles import own_style
+from capar.regeneration.thing_paths import Goal
+
+HEAD_SHARE = 0.1
+"""How firmly the head is kept on its way where nothing meets it [1]."""
+
+
+def map_directly(source: Source, human: Human) -> tuple[Motion, Quality]:
+    """Let a body do what was recorded, in the recorded scene, by direct mapping.
+
+    Args:
+        source: The recorded performance.
+        human: Who performs.
+
+    Returns:
+        The motion, and its gates; none of them is a condition here.
+    """
+    motion = perform_plan(mapped_plan(source, human))
+    return motion, quality(motion)
+
+
+def mapped_plan(source: Source, human: Human) -> Plan:
+    """Where hands, things, head and gaze are at every frame by direct mapping.
+
+    Args:
+        source: The recorded performance.
+        human: Who performs.
+    """
+    scene = source.scene
+    old, new = body_frames(source.human, scene), body_frames(human, scene)
+    head = head_path(source, old, new)
+    things = {name: _thing_path(source, old, new, head, name) for name in source.paths}
+    hands = {side: _hand_path(source, old, new, things, side) for side in source.hands}
+    meeting = attending.around(source, source.meetings, SETTLE_S)
+    return Plan(
+        source=source,
+        scene=scene,
+        human=human,
+        frames=new,
+        goals={name: goals for name in things if (goals := _goals(source, things, name))},
+        grips=tuple(_grip(source, hold) for hold in source.holds),
+        detours={},
+        hands=hands,
+        style=own_style(source),
+        grasps={side: np.ones(len(source.times)) for side in hands},
+        things=things,
+        head=head,
+        firmness=np.maximum(meeting, HEAD_SHARE),
+        looks=attending.looks(source, things, head),
+        notes=source.notes,
+    )
+
+
+def axis_mapped(
+    path: Float[np.ndarray, "frames 3"],
+    start: Float[np.ndarray, "3"],
+    goal: Float[np.ndarray, "3"],
+) -> Float[np.ndarray, "frames 3"]:
+    """A path between other ends, axis by axis (thesis 3.4.2, eq. 3.3) [m].
+
+    Along an axis on which the ends of the path are near each other the quotient of the equation
+    has no meaning: there the displacements of both ends are added, by the share of the way.
+
+    Args:
+        path: As it was recorded [m].
+        start: Where the new path begins [m].
+        goal: Where it ends [m].
+    """
+    gone, wanted = path[-1] - path[0], goal - start
+    shares = arc_shares(path)[:, None]
+    added = path + (start - path[0]) * (1.0 - shares) + (goal - path[-1]) * shares
+    wide = np.abs(gone) > SHORT_M
+    scaled = (path - path[0]) / np.where(wide, gone, 1.0) * wanted + start
+    return np.where(wide, scaled, added)
+
+
+def _thing_path(
+    source: Source, old: BodyFrames, new: BodyFrames, head: RigidTransform, name: str
+) -> RigidTransform:
+    """``T_world_thing``: where it was recorded, and at the new head where it met the head."""
+    recorded = source.paths[name]
+    spots = recorded.translation.copy()
+    own = [meeting for meeting in source.meetings if meeting.thing == name]
+    for meeting in own:
+        part = slice(meeting.first, meeting.last + 1)
+        local = (source.eyes[part].inv() * recorded[part]).translation * head_ratio(old, new)
+        spots[part] = head[part].apply(local)
+    for first, last in _between(source, own, name):
+        ends = spots[first], spots[last]
+        spots[first : last + 1] = axis_mapped(recorded.translation[first : last + 1], *ends)
+    return RigidTransform.from_components(spots, recorded.rotation)
+
+
+def _between(source: Source, own: list[Meeting], name: str) -> list[tuple[int, int]]:
+    """Stretches in which a thing is on its way to the head or from it."""
+    out = []
+    for hold in source.holds:
+        met = [m for m in own if hold.first <= m.first <= hold.last]
+        if hold.thing == name and met:
+            edges = [hold.first, *(e for m in met for e in (m.first, min(m.last, hold.last)))]
+            pairs = itertools.pairwise([*edges, hold.last])
+            out += [(a, b) for number, (a, b) in enumerate(pairs) if number % 2 == 0 and b > a]
+    return out
+
+
+def _hand_path(
+    source: Source,
+    old: BodyFrames,
+    new: BodyFrames,
+    things: Mapping[str, RigidTransform],
+    side: str,
+) -> RigidTransform:
+    """``T_world_hand``: on what it holds as it was recorded, and led from hold to hold."""
+    recorded, last = source.hands[side].path, len(source.times) - 1
+    spots = recorded.translation.copy()
+    turns = recorded.rotation.as_quat()
+    holds = [hold for hold in source.holds if hold.side == side]
+    for hold in holds:
+        part = slice(hold.first, hold.last + 1)
+        thing = things[hold.thing][part]
+        held = thing * source.paths[hold.thing][part].inv() * recorded[part]
+        spots[part], turns[part] = held.translation, held.rotation.as_quat()
+    for before, after in zip([None, *holds], [*holds, None], strict=True):
+        first = before.last if before else 0
+        final = after.first if after else last
+        if final > first:
+            start = spots[first] if before else _rest(source, old, new, side, 0)
+            goal = spots[final] if after else _rest(source, old, new, side, last)
+            part = slice(first, final + 1)
+            spots[part] = axis_mapped(recorded.translation[part], start, goal)
+    return RigidTransform.from_components(spots, Rotation.from_quat(turns))
+
+
+def _rest(
+    source: Source, old: BodyFrames, new: BodyFrames, side: str, frame: int
+) -> Float[np.ndarray, "3"]:
+    return np.asarray(rest_pose(source, old, new, side, frame).translation)
+
+
+def _goals(source: Source, things: Mapping[str, RigidTransform], name: str) -> list[Goal]:
+    """Where a thing is at each event, for the gates."""
+    spans: list[Hold | Meeting] = [*source.holds, *source.meetings]
+    own = [span for span in spans if span.thing == name]
+    frames = sorted({frame for span in own for frame in (span.first, span.last)})
+    return [Goal(name, frame, things[name][frame], "as recorded") for frame in frames]
+
+
+def _grip(source: Source, hold: Hold) -> Grip:
+    """How the recorded hand lay on the thing, in the median of the hold."""
+    part = slice(hold.first, hold.last + 1)
+    poses = source.paths[hold.thing][part].inv() * source.hands[hold.side].path[part]
+    spot = np.median(poses.translation, axis=0)
+    pose = RigidTransform.from_components(spot, poses.rotation.mean())
+    return Grip(hold, pose, Turn(), 0.0)

@@ -1,0 +1,47 @@
+"""A held thing is lifted over what stands in its way, or it is refused where that is too high."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from capar.body.anthropometry import ready_made
+from capar.body.human import Human
+from capar.body.things import Thing, box, cup, table
+from capar.model.capture import TagType
+from capar.regeneration import PlanError
+from capar.regeneration.carrying import LIFTS_M, Carrying
+from capar.regeneration.path_mapping import STRAIGHT, Detour
+from capar.regeneration.scenes import Scene
+from capar.regeneration.style_kinds import Kind
+
+HEIGHT_M = 0.8
+
+
+def _way(wall_m: float) -> tuple[RigidTransform, Detour]:
+    """A mug's way of 0.4 m to the left, lifted by 0.1 m, over a wall half-way."""
+    mug = Thing("mug", cup(0.035, 0.09), (0.45, -0.2, HEIGHT_M), round=True)
+    wall = Thing("wall", box(0.3, 0.02, wall_m), (0.45, 0.0, HEIGHT_M), tag=TagType.FIXED)
+    things = {each.name: each for each in (table(HEIGHT_M), mug, wall)}
+    carrying = Carrying(Human.of(ready_made("man")), Scene(things, (0.0, 0.0), 0.0), Kind.PATH)
+    share = np.linspace(0.0, 1.0, 31)
+    lift = 0.4 * share * (1.0 - share)
+    spots = mug.pose.translation + np.stack([0.0 * share, 0.4 * share, lift], axis=1)
+    part = RigidTransform.from_translation(spots)
+    others = {name: thing.pose for name, thing in things.items() if name != "mug"}
+    return carrying.way("mug", part, (part[0], part[-1]), others, 0.0)
+
+
+def test_nothing_is_lifted_that_has_a_free_way() -> None:
+    assert _way(0.02)[1] == STRAIGHT
+
+
+def test_a_thing_is_lifted_over_a_wall() -> None:
+    path, detour = _way(0.15)
+    assert detour.lift_m > 0.0
+    over = np.argmin(np.abs(path.translation[:, 1]))
+    assert path.translation[over, 2] > HEIGHT_M + 0.15
+
+
+def test_a_wall_that_is_higher_than_any_lift_is_refused() -> None:
+    with pytest.raises(PlanError, match=r"'mug' would go \d+ mm into 'wall' on its way"):
+        _way(max(LIFTS_M) + 0.3)

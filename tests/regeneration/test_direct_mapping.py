@@ -1,0 +1,117 @@
+"""Direct mapping leads the recorded ways to another body, and repeats them on the recorded one."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from capar.body.bundles import write_bundle
+from capar.body.recording import Truth
+from capar.body.scripted_actions import action_capture
+from capar.cli import main
+from capar.pipelines.round_trips import body, observed_source
+from capar.regeneration import Source, map_directly
+from capar.regeneration.departures import departures
+from capar.regeneration.direct_mapping import axis_mapped, mapped_plan
+from capar.regeneration.path_mapping import SHORT_M
+
+RATE_HZ = 30.0
+
+PLACES = arrays(float, 3, elements=st.floats(-1.0, 1.0))
+PATHS = arrays(float, (7, 3), elements=st.floats(-1.0, 1.0))
+
+
+@cache
+def _source(action: str) -> Source:
+    return observed_source(action_capture(action, rate_hz=RATE_HZ), cutoff_hz=None)
+
+
+@given(PATHS, PLACES, PLACES)
+def test_a_mapped_path_has_the_ends_that_were_asked_for(
+    path: np.ndarray, start: np.ndarray, goal: np.ndarray
+) -> None:
+    made = axis_mapped(path, start, goal)
+    np.testing.assert_allclose(made[[0, -1]], [start, goal], atol=1e-9)
+
+
+@given(PATHS)
+def test_a_path_with_its_own_ends_stays_as_it_is(path: np.ndarray) -> None:
+    np.testing.assert_allclose(axis_mapped(path, path[0], path[-1]), path, atol=1e-9)
+
+
+@given(PATHS, PLACES)
+def test_a_path_that_is_moved_as_a_whole_keeps_its_shape(path: np.ndarray, by: np.ndarray) -> None:
+    made = axis_mapped(path, path[0] + by, path[-1] + by)
+    np.testing.assert_allclose(made, path + by, atol=1e-9)
+
+
+@given(PATHS, PLACES, PLACES)
+def test_each_wide_axis_is_mapped_by_the_equation(
+    path: np.ndarray, start: np.ndarray, goal: np.ndarray
+) -> None:
+    made = axis_mapped(path, start, goal)
+    for axis in np.flatnonzero(np.abs(path[-1] - path[0]) > SHORT_M):
+        x, new = path[:, axis], made[:, axis]
+        share = (x - x[0]) / (x[-1] - x[0])
+        np.testing.assert_allclose(new, share * (goal[axis] - start[axis]) + start[axis], atol=1e-9)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("action", ["drink", "touch", "pick_up"])
+def test_the_recorded_body_repeats_the_recorded_way(action: str) -> None:
+    source = _source(action)
+    motion, found = map_directly(source, source.human)
+    assert len(departures(motion)) == len(source.hands) + len(motion.plan.goals)
+    assert max(measure.value for measure in departures(motion)) < 1.0
+    for name in ("feet", "joint limits", "joint speed", "speed profile", "things not held"):
+        assert found.gate(name).passed
+
+
+@pytest.mark.long
+def test_a_child_takes_the_mug_where_it_was_taken_and_drinks_at_its_own_mouth() -> None:
+    source = _source("drink")
+    child = body("child", source)
+    plan = mapped_plan(source, child)
+    (hold,), (meeting,) = source.holds, source.meetings
+    for frame in (hold.first, hold.last):
+        np.testing.assert_allclose(
+            plan.hands["right"].translation[frame],
+            source.hands["right"].path.translation[frame],
+            atol=1e-6,
+        )
+    motion, _ = map_directly(source, child)
+    frame = (meeting.first + meeting.last) // 2
+    mouth = child.sites(motion.postures, ["mouth"])["mouth"][0][frame]
+    rim = plan.things["mug"][frame].apply(np.array(plan.scene.thing("mug").shape.vertices))
+    assert np.linalg.norm(rim - mouth, axis=1).min() < 0.03
+    higher = source.paths["mug"].translation[frame] - plan.things["mug"].translation[frame]
+    assert higher[2] > 0.2
+
+
+def _run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["capar", *arguments])
+    try:
+        main()
+    except SystemExit as end:
+        return int(end.code or 0)
+    return 0
+
+
+@pytest.mark.long
+def test_the_command_prints_gates_and_departures_and_writes_a_capture(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    recorded, out = tmp_path / "man", tmp_path / "same"
+    write_bundle(action_capture("touch", rate_hz=RATE_HZ), Truth((), (), (), ()), recorded)
+    assert _run(monkeypatch, "map", str(recorded), "--output", str(out)) == 0
+    printed = capsys.readouterr().out
+    assert "penetration" in printed
+    assert "from the recorded way: 0." in printed
+    again = observed_source(out).observation
+    assert again.complex_par.signature == _source("touch").observation.complex_par.signature
+    assert _run(monkeypatch, "map", str(recorded), "--output", str(out)) == 2
+    assert "not an empty folder" in capsys.readouterr().err
