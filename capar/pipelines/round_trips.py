@@ -83,6 +83,7 @@ def observed_source(
         observe(trial, rules=rules),
         stance=completion.stance,
         floor_m=completion.floor_m,
+        axes=completion.axes,
         notes=completion.notes,
     )
 

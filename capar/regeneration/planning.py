@@ -37,6 +37,9 @@ HIGHER_M = (0.1, -0.1, 0.2, -0.2)
 DRAWN_M = (0.1, 0.2, 0.3)
 """Remedies that are tried where something is out of reach [m]: standing, fixed things, others."""
 
+TOLD_M = 0.005
+"""A correction of a grip that is told [m]."""
+
 SMALLER = 0.7
 """Likewise the size of what can be moved [1]."""
 
@@ -119,18 +122,25 @@ def reachable(
         PlanError: As ``plan`` says.
     """
     style = style or own_style(source)
+    pressed: Draft | None = None
     try:
-        return _draft(source, scene, human, style, watched)
+        found = _draft(source, scene, human, style, watched)
+        if not found.pressed:
+            return found
+        pressed, why = found, found.pressed[0]
     except PlanError as error:
-        if not scene.stays:
-            for ahead_m, aside_m in STEPS_M:
-                nearby = _beside(scene, ahead_m, aside_m)
-                if _possible(source, nearby, human):
-                    found = _draft(source, nearby, human, style, watched)
-                    way = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
-                    found.told.append(f"stands {way} of the given place, since there {error}")
-                    return found
-        raise PlanError(f"{error}; {_remedy(source, scene, human)}") from None
+        why = str(error)
+    for ahead_m, aside_m in () if scene.stays else STEPS_M:
+        nearby = _beside(scene, ahead_m, aside_m)
+        if _possible(source, nearby, human):
+            found = _draft(source, nearby, human, style, watched)
+            way = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
+            found.told.append(f"stands {way} of the given place, since there {why}")
+            return found
+    if pressed:
+        pressed.told += [f"whatever the grip, {told}" for told in pressed.pressed]
+        return pressed
+    raise PlanError(f"{why}; {_remedy(source, scene, human)}")
 
 
 def led(draft: Draft, care: Care) -> Plan:
@@ -207,7 +217,8 @@ def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
 def _possible(source: Source, scene: Scene, human: Human) -> bool:
     try:
         check_stance(scene, human)
-        return Draft(source, scene, human, own_style(source)).reachable_grips(FEW_TURNS)[1] is None
+        draft = Draft(source, scene, human, own_style(source))
+        return draft.reachable_grips(FEW_TURNS)[1] is None and not draft.pressed
     except PlanError:
         return False
 
@@ -217,7 +228,19 @@ def _notes(
 ) -> tuple[str, ...]:
     out = list(source.notes)
     for grip in grips:
-        if grip.turn != Turn():
+        if grip.turn.drawn_m > 0.0:
+            out.append(
+                f"the {grip.hold.side} hand takes {grip.hold.thing!r} drawn back by "
+                f"{1e3 * grip.turn.drawn_m:.0f} mm along its fingers, so that its forearm stays "
+                "outside"
+            )
+        if abs(grip.out_m) > TOLD_M:
+            way = "off" if grip.out_m > 0.0 else "towards"
+            out.append(
+                f"the {grip.hold.side} hand's grip is moved {1e3 * abs(grip.out_m):.0f} mm {way} "
+                f"{grip.hold.thing!r}, so that the surfaces just touch"
+            )
+        if grip.turn != Turn(drawn_m=grip.turn.drawn_m):
             out.append(
                 f"the {grip.hold.side} hand's grip on {grip.hold.thing!r} is turned by "
                 f"{np.degrees(grip.turn.yaw):.0f} degrees about it, "

@@ -40,9 +40,10 @@ def regenerate(
     """
     best: tuple[Motion, Quality] | None = None
     scene = scene or source.scene
-    best = _careful(reachable(source, scene, human, style))
+    draft = reachable(source, scene, human, style)
+    best = _careful(draft)
     watched: frozenset[int] = frozenset()
-    for _ in range(GRIPS):
+    for _ in range(0 if draft.pressed else GRIPS):
         held = [gate for gate in best[1].gates if not gate.passed and gate.name in BY_GRIP]
         if not held or watched.issuperset(gate.frame for gate in held):
             break
