@@ -109,14 +109,12 @@ def test_a_hand_that_is_drawn_back_still_touches(turn: Turn) -> None:
 def _frame(outer_m: float, inner_m: float) -> Shape:
     """A square picture frame in the y-z plane, 2 cm deep, of four overlapping bars."""
     wide, middle = outer_m - inner_m, 0.5 * (outer_m + inner_m)
-    bars = []
-    for turn in range(4):
-        bar = trimesh.creation.box((0.02, 2.0 * outer_m, wide))
-        bar.apply_translation([0.0, 0.0, middle])
-        bar.apply_transform(trimesh.transformations.rotation_matrix(0.5 * np.pi * turn, [1, 0, 0]))
-        bars.append(bar)
-    mesh = trimesh.util.concatenate(bars)
-    return Shape(np.array(mesh.vertices), np.array(mesh.faces))
+    box = trimesh.creation.box((0.02, 2.0 * outer_m, wide))
+    bar = np.array(box.vertices) + np.array([0.0, 0.0, middle])
+    turns = Rotation.from_euler("x", 90.0 * np.arange(4)[:, None], degrees=True)
+    vertices = np.concatenate([turn.apply(bar) for turn in turns])
+    faces = np.concatenate([np.array(box.faces) + len(bar) * number for number in range(4)])
+    return Shape(vertices, faces)
 
 
 def test_what_is_in_an_opening_of_a_hollow_thing_is_as_far_from_it_as_its_surface_is() -> None:
