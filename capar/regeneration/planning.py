@@ -14,7 +14,7 @@ from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.drafts import Draft, check_stance
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.flights import flight_notes, flights
-from capar.regeneration.grips import Grip, Turn
+from capar.regeneration.grips import OUT_M, Grip, Turn
 from capar.regeneration.hand_paths import Care, hand_paths
 from capar.regeneration.path_mapping import Detour
 from capar.regeneration.scenes import Scene, mobile, moved, raised, resized
@@ -236,9 +236,11 @@ def _notes(
             )
         if abs(grip.out_m) > TOLD_M:
             way = "off" if grip.out_m > 0.0 else "towards"
+            ends = abs(grip.out_m) > OUT_M - TOLD_M
+            so = "the most that is tried, and may not touch" if ends else "so that it just touches"
             out.append(
                 f"the {grip.hold.side} hand's grip is moved {1e3 * abs(grip.out_m):.0f} mm {way} "
-                f"{grip.hold.thing!r}, so that the surfaces just touch"
+                f"{grip.hold.thing!r}, {so}"
             )
         if grip.turn != Turn(drawn_m=grip.turn.drawn_m):
             out.append(
