@@ -1,18 +1,21 @@
 """Is the performer whose style was borrowed found again from the regenerated motion alone?
 
-Thesis 5.4 asked six people. Here five performers do one reach each six times; their styles are
+Thesis 5.4 asked six people. Here some performers do one reach each six times; their styles are
 measured and fixed. Then bodies of other sizes, in drawn scenes, borrow the style of a seventh or
-later trial, and the nearest of the performers by the measured style of the motion is named.
+later trial, and the nearest of the performers by the measured style of the motion is named: by the
+plain distance, and by one that weights what performing changes less. That one is measured on other
+performers, the development half, before; none of them is in the test.
 
-Run as ``PYTHONPATH=. python benchmarks/performer_styles.py [TRIALS [RATIO ...]]``; with
-``--real NPZ_FOLDER`` the performers' usual ways are the first reaches of
-``smartbody_mocap_reaching``; the ratio 0 takes them as they are.
+Run as ``PYTHONPATH=. python benchmarks/performer_styles.py [TRIALS [RATIO ...]]``: five virtual
+performers, five others for development. With ``--real NPZ_FOLDER`` the performers' usual ways are
+the reaches of ``smartbody_mocap_reaching``, every second one by name for development, the others
+for the test; with ``--all`` the test is of all of them. The ratio 0 takes them as they are.
 """
 
 import sys
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -29,16 +32,19 @@ from capar.regeneration.planning import led, reachable
 from capar.regeneration.scene_files import drawn_scene
 from capar.regeneration.sources import Source
 from capar.regeneration.style_distances import (
+    StyleMetric,
     WayStyle,
     between_distance,
     nearest_between,
     nearest_performer,
+    style_metric,
     way_style,
     within_distance,
 )
 from capar.regeneration.styles import Style, borrowed_style
 
-SEED = 54
+SEED, DEVELOPMENT_SEED = 54, 155
+DEVELOPMENT_RATIO = 3.0
 RATE_HZ = 20.0
 PERFORMERS, TRIALS = 5, 6
 AGENTS, SCENES = ("man", "woman", "child"), 4
@@ -77,12 +83,10 @@ def bent(way: np.ndarray, parameters: np.ndarray) -> np.ndarray:
     return np.asarray(places + np.outer(side, left) + np.outer(up, [0.0, 0.0, 1.0]))
 
 
-def usual_ways(real: Path | None) -> Ways:
+def usual_ways(real: Sequence[Path]) -> Ways:
     """What the performers' ways have in common: the recorded reach, or a real one of each."""
     own = source().hands[SIDE].path.translation[: reach() + 1]
-    if real is None:
-        return [own] * PERFORMERS
-    return [real_way(path, own) for path in sorted(real.glob("*.npz"))[:PERFORMERS]]
+    return [real_way(path, own) for path in real] or [own] * PERFORMERS
 
 
 def real_way(path: Path, own: np.ndarray) -> np.ndarray:
@@ -103,13 +107,14 @@ def real_way(path: Path, own: np.ndarray) -> np.ndarray:
 
 
 class Performers:
-    """Five performers, so far apart as is asked for, and their six trials."""
+    """Performers, so far apart as is asked for, and their six trials."""
 
-    def __init__(self, ratio: float, real: Path | None) -> None:
-        self.rng = np.random.default_rng([SEED, round(100 * ratio), real is not None])
-        self.own = self.rng.normal(size=(PERFORMERS, len(WITHIN)))
-        self.noise = self.rng.normal(size=(PERFORMERS, TRIALS, len(WITHIN)))
-        self.ways, self.real = usual_ways(real), real is not None
+    def __init__(self, ratio: float, real: Sequence[Path], seed: int = SEED) -> None:
+        self.ways, self.real = usual_ways(real), bool(real)
+        self.count = len(self.ways)
+        self.rng = np.random.default_rng([seed, round(100 * ratio), self.real])
+        self.own = self.rng.normal(size=(self.count, len(WITHIN)))
+        self.noise = self.rng.normal(size=(self.count, TRIALS, len(WITHIN)))
         self.mean = np.mean(self.ways, axis=0)
         self.spread = 0.0
         if ratio <= 0.0:
@@ -131,7 +136,7 @@ class Performers:
     def _trials(self) -> dict[str, list[WayStyle]]:
         return {
             f"performer_{who}": [way_style(self.way(who, noise)) for noise in self.noise[who]]
-            for who in range(PERFORMERS)
+            for who in range(self.count)
         }
 
     @property
@@ -167,38 +172,74 @@ def regenerated(way: np.ndarray, agent: str, scene: int) -> WayStyle:
     return way_style(palm[: reach() + 1])
 
 
-def found(ratio: float, count: int, real: Path | None) -> tuple[Performers, int]:
-    """How often the performer is found."""
-    performers, right = Performers(ratio, real), 0
+@dataclass(frozen=True, eq=False)
+class Borrowed:
+    """A style that was borrowed, and what came of it."""
+
+    who: str
+    given: WayStyle
+    made: WayStyle
+
+
+def performances(performers: Performers, count: int) -> list[Borrowed]:
+    """Further trials, each borrowed by a body in a scene; all of both meet every performer."""
+    out = []
     for number in range(count):
-        who = number % PERFORMERS
+        who = number % performers.count
         way = performers.way(who, performers.rng.normal(size=len(WITHIN)))
-        agent = AGENTS[number % len(AGENTS)]
-        style = regenerated(way, agent, 1 + number % SCENES)
-        named = nearest_performer(style, performers.trials)
-        right += named == f"performer_{who}"
-    return performers, right
+        turn = number // performers.count  # so that no body or scene belongs to a performer
+        agent = AGENTS[(number + turn) % len(AGENTS)]
+        made = regenerated(way, agent, 1 + (number + turn // len(AGENTS)) % SCENES)
+        out.append(Borrowed(f"performer_{who}", way_style(way), made))
+    return out
 
 
-def report(ratios: Sequence[float], count: int, real: Path | None) -> None:
-    print("asked ratio  spread  within  between  ratio  nearest pair  found")
+def developed(count: int, real: Sequence[Path]) -> list[tuple[WayStyle, WayStyle]]:
+    """What performing changes of the styles of the performers of the development half."""
+    performers = Performers(DEVELOPMENT_RATIO, real, DEVELOPMENT_SEED)
+    return [(one.given, one.made) for one in performances(performers, count)]
+
+
+def report(
+    ratios: Sequence[float],
+    count: int,
+    real: Sequence[Path],
+    changed: Sequence[tuple[WayStyle, WayStyle]],
+) -> None:
+    print("asked ratio  within  between  ratio  nearest pair  given ways  plain  weighted")
     for ratio in ratios:
-        performers, right = found(ratio, count, real)
-        within, between = (d(performers.trials) for d in (within_distance, between_distance))
+        performers = Performers(ratio, real)
+        trials = performers.trials
+        metric: StyleMetric = style_metric(trials, changed)
+        done = performances(performers, count)
+        right = (
+            sum(nearest_performer(one.given, trials) == one.who for one in done),
+            sum(nearest_performer(one.made, trials) == one.who for one in done),
+            sum(metric.nearest_performer(one.made, trials) == one.who for one in done),
+        )
+        within, between = (d(trials) for d in (within_distance, between_distance))
         print(
-            f"{ratio:11.2f}  {performers.spread:6.2f}  {within:6.3f}  {between:7.3f}  "
-            f"{between / within:5.2f}  {nearest_between(performers.trials) / within:12.2f}  "
-            f"{right} of {count}",
+            f"{ratio:11.2f}  {within:6.3f}  {between:7.3f}  {between / within:5.2f}  "
+            f"{nearest_between(trials) / within:12.2f}  {right[0]:10d}  {right[1]:5d}  "
+            f"{right[2]:8d} of {count}",
             flush=True,
         )
 
 
-if __name__ == "__main__":
-    arguments = sys.argv[1:]
-    folder = None
+def main(arguments: list[str]) -> None:
+    whole = "--all" in arguments
+    arguments = [word for word in arguments if word != "--all"]
+    learnt: list[Path] = []
+    tested: list[Path] = []
     if "--real" in arguments:
         at = arguments.index("--real")
-        folder = Path(arguments[at + 1])
+        files = sorted(Path(arguments[at + 1]).glob("*.npz"))
+        learnt, tested = files[0::2], files if whole else files[1::2]
         del arguments[at : at + 2]
-    wanted = int(arguments[0]) if arguments else 60
-    report([float(ratio) for ratio in arguments[1:]] or RATIOS, wanted, folder)
+    count = int(arguments[0]) if arguments else 60
+    changed = developed(count, learnt)
+    report([float(ratio) for ratio in arguments[1:]] or RATIOS, count, tested, changed)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -86,6 +86,7 @@ def observed_source(
         observe(trial, rules=rules),
         stance=completion.stance,
         floor_m=completion.floor_m,
+        axes=completion.axes,
         notes=completion.notes,
         cutoff_hz=cutoff_hz,
     )

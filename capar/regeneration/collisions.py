@@ -21,8 +21,8 @@ NEAR_M = 0.08
 HOLLOW = 0.98
 """A thing that fills a smaller share of its hull is hollow [1]."""
 
-SAMPLES = 4000
-"""Points on the surface of a hollow thing."""
+SAMPLES, SPACING_M = 4000, 0.008
+"""Points on the surface of a hollow thing, at least, and how far apart they are on a large one."""
 
 
 @dataclass(frozen=True, order=True)
@@ -87,7 +87,7 @@ class Surroundings:
                         continue
                     found = self._distance(geom, other)
                     if found < 0.0 and self.hollow[name] is not None:
-                        found = max(found, self._outside(geom, name))
+                        found = max(found, self._apart(geom, name))
                     if found < NEAR_M:
                         out.append(Pair(found, part, name))
         return out
@@ -111,8 +111,8 @@ class Surroundings:
             return NEAR_M
         return float(mujoco.mj_geomDistance(self.model, self.data, first, second, NEAR_M, None))
 
-    def _outside(self, geom: int, name: str) -> float:
-        """How far the surface of a hollow thing is outside of a part; not above zero [m]."""
+    def _apart(self, geom: int, name: str) -> float:
+        """How far the surface of a hollow thing is from a part, negative where it is inside [m]."""
         points = self.hollow[name]
         assert points is not None
         mocap = self.bodies[name]
@@ -122,7 +122,7 @@ class Surroundings:
         )
         turn = self.data.geom_xmat[geom].reshape(3, 3)
         local = (pose.apply(points) - self.data.geom_xpos[geom]) @ turn
-        return float(min(_depths(local, self.model, geom).min(), 0.0))
+        return float(_depths(local, self.model, geom).min())
 
 
 def _rotation(quaternion: Float[np.ndarray, "4"]) -> Rotation:
@@ -153,7 +153,9 @@ def _surface_points(shape: Shape) -> Float[np.ndarray, "points 3"] | None:
     mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
     if abs(mesh.volume) > HOLLOW * mesh.convex_hull.volume:
         return None
-    points, _ = trimesh.sample.sample_surface(mesh, SAMPLES, seed=0)
+    points, _ = trimesh.sample.sample_surface(
+        mesh, max(SAMPLES, round(mesh.area / SPACING_M**2)), seed=0
+    )
     return np.concatenate([np.array(shape.vertices), np.array(points)])
 
 

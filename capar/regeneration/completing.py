@@ -15,11 +15,13 @@ from capar.body.human import Human
 from capar.model.capture import Capture, Role, Sensor, Stream
 from capar.model.errors import CaparError, FileError
 from capar.model.geometry import transforms
+from capar.regeneration.hand_frames import HandAxes
 from capar.regeneration.mirroring import LOCAL, OTHER, mirrored_shape
 from capar.regeneration.sources import eyes_in_body
 
-KEYS = {"from_s", "to_s", "performer", "mirrored", "assumed_size"}
+KEYS = {"from_s", "to_s", "performer", "mirrored", "assumed_size", "hand"}
 PERFORMER_KEYS = {"kind", "stature_m", "place", "heading_deg", "floor_m"}
+HAND_KEYS = {"fingers", "palm"}
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,9 @@ class Completion:
     sizes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Other lengths along x and y of things whose size the capture only assumes [m]."""
 
+    axes: Mapping[str, HandAxes] = field(default_factory=dict)
+    """Which way the hands with a sensor point and face in its frame, by side."""
+
     @property
     def stance(self) -> tuple[tuple[float, float], float] | None:
         """Where the performer stands [m] and faces [rad]; None where the head says it."""
@@ -78,6 +83,11 @@ class Completion:
             )
         for thing, (x, y) in self.sizes.items():
             out.append(f"assumed: {thing!r} is {x:.2f} x {y:.2f} m")
+        for side, axes in self.axes.items():
+            out.append(
+                f"assumed: in its sensor's frame the {side} hand's fingers point to "
+                f"{_told(axes.fingers)} and its palm faces {_told(axes.palm)}"
+            )
         return tuple(out)
 
 
@@ -86,7 +96,9 @@ def read_completion(path: Path) -> Completion:
 
     ``from_s`` and ``to_s``; ``[performer]`` with ``kind``, ``stature_m``, ``place``,
     ``heading_deg`` and ``floor_m``; ``[mirrored]`` with ``left_hand = "OBJECT"``;
-    ``[assumed_size]`` with ``OBJECT = [X, Y]`` of things whose size is assumed in the capture [m].
+    ``[assumed_size]`` with ``OBJECT = [X, Y]`` of things whose size is assumed in the capture [m];
+    ``[hand.right]`` and ``[hand.left]`` with ``fingers`` and ``palm``, directions [X, Y, Z] in the
+    frame of the hand's sensor.
 
     Raises:
         FileError: The file cannot be read, or says something else.
@@ -99,6 +111,12 @@ def read_completion(path: Path) -> Completion:
     mirrored, sizes = (_table(path, table, name) for name in ("mirrored", "assumed_size"))
     _check_keys(path, "the file", table, KEYS)
     _check_keys(path, "[performer]", performer, PERFORMER_KEYS)
+    hands = {
+        side: _table(path, _table(path, table, "hand"), side) for side in table.get("hand", {})
+    }
+    _check_keys(path, "[hand]", hands, set(OTHER))
+    for side, row in hands.items():
+        _check_keys(path, f"[hand.{side}]", row, HAND_KEYS)
     try:
         place = performer.get("place")
         return Completion(
@@ -111,9 +129,24 @@ def read_completion(path: Path) -> Completion:
             floor_m=float(performer.get("floor_m", 0.0)),
             mirrored={str(hand): str(thing) for hand, thing in mirrored.items()},
             sizes={n: (float(s[0]), float(s[1])) for n, s in sizes.items()},
+            axes={side: _axes(row) for side, row in hands.items()},
         )
+    except KeyError as error:
+        raise FileError(path, f"[hand] lacks {error}.", "State both fingers and palm.") from None
     except (TypeError, ValueError, IndexError) as error:
         raise FileError(path, f"{error}.", "Numbers are needed, and place = [x, y].") from None
+
+
+def _axes(row: Mapping[str, Any]) -> HandAxes:
+    fingers, palm = (np.array([float(x) for x in row[name]]) for name in ("fingers", "palm"))
+    for direction in (fingers, palm):
+        if direction.shape != (3,) or not np.linalg.norm(direction) > 0.0:
+            raise ValueError(f"{direction.tolist()} is no direction [x, y, z]")
+    return HandAxes(fingers, palm)
+
+
+def _told(direction: Float[np.ndarray, "3"]) -> str:
+    return "(" + ", ".join(f"{x:g}" for x in direction) + ")"
 
 
 def completed(capture: Capture, completion: Completion) -> Capture:

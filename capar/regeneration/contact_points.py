@@ -31,6 +31,16 @@ def contact_points(
     return one[nearest[patch]].mean(axis=0), two[patch].mean(axis=0)
 
 
+def surface_samples(
+    shape: Shape,
+) -> tuple[Float[np.ndarray, "points 3"], Float[np.ndarray, "points 3"]]:
+    """Points on a surface and its normals there, outwards, in the shape's frame [m, 1]."""
+    mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
+    points, faces = trimesh.sample.sample_surface(mesh, SAMPLES, seed=0)
+    outwards = 1.0 if mesh.volume >= 0.0 else -1.0
+    return np.array(points), outwards * np.array(mesh.face_normals[faces])
+
+
 def _points(shape: Shape) -> Float[np.ndarray, "points 3"]:
     mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
     points, _ = trimesh.sample.sample_surface(mesh, SAMPLES, seed=0)

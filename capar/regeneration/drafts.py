@@ -1,5 +1,7 @@
 """What is decided of a performance before hands' ways are: goals, and grips that reach."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from jaxtyping import Float
 
@@ -10,7 +12,7 @@ from capar.regeneration.body_frames import body_frames, head_path
 from capar.regeneration.collisions import Pair, Surroundings
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.flights import first_guess
-from capar.regeneration.grips import Grip, Gripping, turns
+from capar.regeneration.grips import Grip, Gripping, Turn, drawn_turns, turns
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, Targets, vectors
 from capar.regeneration.sources import Hold, Source
@@ -23,6 +25,10 @@ REACH_M, REACH_RAD = 0.0009, float(np.radians(0.9))
 CUT_M = 0.001
 """How deep a part of the body may be inside a thing [m]."""
 
+PRESSED_M = 0.025
+"""An arm that is no deeper inside what it holds presses against it: flesh gives way and the
+mannequin does not. It is a last resort, told, and fails the gate of penetration [m]."""
+
 KEYS = 6
 """Key postures in a hold, besides those at goals."""
 
@@ -32,6 +38,18 @@ MOST_TURNS = 120
 
 SETTLE_S = 0.45
 """How long the head takes to be firmly where it is to be [s]."""
+
+
+@dataclass(frozen=True)
+class Miss:
+    """By how much grips fail at their worst key posture."""
+
+    ratio: float = 0.0
+    """In units of what is allowed [1]."""
+
+    sentence: str = ""
+    cuts: bool = False
+    """Whether a part of the body is inside what is held, while the hands reach it."""
 
 
 class Draft:
@@ -56,51 +74,67 @@ class Draft:
         self.looks = attending.looks(source, self.things, self.head)
         self.gripping = Gripping(source, scene, self.old, self.new)
         self.grips: tuple[Grip, ...] = ()
+        self.pressed: list[str] = []
         self.watched, self.style = watched, style
 
     def reachable_grips(self, most: int = MOST_TURNS) -> tuple[list[Grip], str | None]:
-        """A grip for every hold with the least turn that reaches; what is missed if none does."""
+        """A grip for every hold with the least turn that reaches; what is missed if none does.
+
+        Where an arm presses against what it holds whatever the grip, that is in ``pressed``.
+        """
         chosen: list[Grip] = []
         for group in _groups(self.source.holds):
-            best, found = None, False
-            options = turns(self.scene.thing(group[0].thing))
-            for turn in list(options)[:most]:
-                grips = [self.gripping.grip(hold, turn) for hold in group]
-                enough = np.inf if best is None else max(best[0][0], 1.0)
-                miss = self._missed(chosen + grips, group, enough)
-                if best is None or miss[0] < best[0][0]:
-                    best = (miss, grips)
-                if miss[0] <= 1.0:
-                    found = True
-                    break
-            assert best is not None
-            chosen += best[1]
-            if not found:
-                return chosen, best[0][1]
+            usual = list(turns(self.scene.thing(group[0].thing)))[:most]
+            miss, grips = self._best_grips(chosen, group, usual)
+            if miss.ratio > 1.0 and miss.cuts and most == MOST_TURNS:
+                found = self._best_grips(chosen, group, list(drawn_turns()))
+                miss, grips = min((miss, grips), found, key=lambda tried: tried[0].ratio)
+            chosen += grips
+            if miss.ratio > 1.0 and not (miss.cuts and miss.ratio * CUT_M <= PRESSED_M):
+                return chosen, miss.sentence
+            if miss.ratio > 1.0:
+                self.pressed.append(miss.sentence)
         return chosen, None
 
-    def _missed(self, grips: list[Grip], group: list[Hold], enough: float) -> tuple[float, str]:
+    def _best_grips(
+        self, chosen: list[Grip], group: list[Hold], options: list[Turn]
+    ) -> tuple[Miss, list[Grip]]:
+        """The first of some turns that reaches, or else the one that misses least."""
+        best: tuple[Miss, list[Grip]] | None = None
+        for turn in options:
+            grips = [self.gripping.grip(hold, turn) for hold in group]
+            enough = np.inf if best is None else max(best[0].ratio, 1.0)
+            miss = self._missed(chosen + grips, group, enough)
+            if best is None or miss.ratio < best[0].ratio:
+                best = (miss, grips)
+            if miss.ratio <= 1.0:
+                break
+        assert best is not None
+        return best
+
+    def _missed(self, grips: list[Grip], group: list[Hold], enough: float) -> Miss:
         """How far the key postures of some holds are missed, in units of what is allowed.
 
         No further than is enough to be worse than another grip.
         """
         solver = Solver(self.new.human, (*self.scene.place, self.scene.floor_m), self.scene.heading)
-        worst = (0.0, "")
+        worst = Miss()
         for frame in self.key_frames(group):
             goal = self.targets(grips, frame)
             solver.follow(goal, most=KEY_ITERATIONS)
             metres, radians = solver.missed(goal)
             ratio = max(metres / REACH_M, radians / REACH_RAD)
-            if ratio > worst[0]:
-                worst = (ratio, self._sentence(group, frame, metres, radians))
+            if ratio > worst.ratio:
+                worst = Miss(ratio, self._sentence(group, frame, metres, radians))
             pair = self.deepest_cut(solver.posture, grips, frame)
-            if pair and -pair.distance_m / CUT_M > worst[0]:
+            if pair and -pair.distance_m / CUT_M > worst.ratio:
                 depth, sides = -pair.distance_m, _sides(group)
-                worst = (
+                worst = Miss(
                     depth / CUT_M,
                     f"while the {sides} hand has {group[0].thing!r} at "
                     f"{self.source.times[frame]:.2f} s, {pair.part} is {1e3 * depth:.0f} mm inside "
                     f"{pair.thing!r}",
+                    pair.thing == group[0].thing,
                 )
             if ratio > enough:
                 break

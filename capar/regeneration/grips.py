@@ -29,8 +29,18 @@ PITCHES = (0.0, 0.15, -0.15, 0.3, -0.3, 0.5, -0.5)
 TILTS = (0.0, -0.1, 0.1, -0.2, 0.2, 0.3)
 """Turns across the palm, fingers to the thing positive, that are tried [rad]."""
 
+DRAWN_M = (0.03, 0.06, 0.09, 0.12)
+"""How far a hand is drawn back along its fingers, so that its forearm leaves the thing;
+each also tilted [m]."""
+
+DRAWN_TILTS = (0.0, -0.2, 0.2)
+"""Turns across the palm that are tried with it [rad]."""
+
 PITCH_WEIGHT, TILT_WEIGHT = 2.0, 4.0
 """How much worse these turns are than one about a round thing [1]."""
+
+OUT_M = 0.1
+"""How far a recorded hand is brought to the surface of what it holds at most [m]."""
 
 CLEAR_M = 0.014
 """How far a hand stays above what the thing stands on, if it did so before [m]."""
@@ -52,6 +62,9 @@ class Turn:
     tilt: float = 0.0
     """Across the palm, the fingers towards the thing [rad]."""
 
+    drawn_m: float = 0.0
+    """How far the hand is drawn back along its fingers [m]."""
+
     @property
     def size(self) -> float:
         """How much worse than none it is [rad]."""
@@ -70,6 +83,9 @@ class Grip:
     raised_m: float
     """How far it was raised to stay clear of what the thing stands on [m]."""
 
+    out_m: float = 0.0
+    """How far it was moved off the thing so that it just touches; negative towards it [m]."""
+
 
 def turns(thing: Thing) -> Iterator[Turn]:
     """The turns to try on a thing, the smallest first."""
@@ -77,6 +93,11 @@ def turns(thing: Thing) -> Iterator[Turn]:
     found = [Turn(yaw, pitch) for yaw in yaws for pitch in PITCHES]
     found += [Turn(0.0, pitch, tilt) for pitch in PITCHES for tilt in TILTS[1:]]
     yield from sorted(found, key=lambda each: each.size)
+
+
+def drawn_turns() -> Iterator[Turn]:
+    """What is tried where an arm would be inside what its hand takes: nearer the fingertips."""
+    yield from (Turn(tilt=tilt, drawn_m=drawn_m) for drawn_m in DRAWN_M for tilt in DRAWN_TILTS)
 
 
 def is_round(shape: Shape) -> bool:
@@ -109,9 +130,13 @@ class Gripping:
         pose = RigidTransform.from_components(spot + gap - turned.apply(point), turned)
         if is_round(after.shape):
             pose = RigidTransform.from_rotation(self._about(hold, turn)) * pose
+        pose = pose * RigidTransform.from_translation([-turn.drawn_m, 0.0, 0.0])
         raised = self._raise(hold, pose)
         pose = RigidTransform.from_translation([0.0, 0.0, raised]) * pose
-        return Grip(hold, self._touching(hold, pose), turn, raised)
+        out = self._out(hold, pose)
+        return Grip(
+            hold, pose * RigidTransform.from_translation([0.0, 0.0, -out]), turn, raised, out
+        )
 
     def _recorded(
         self, hold: Hold
@@ -155,8 +180,8 @@ class Gripping:
         low = scene.thing(hold.thing).shape.bounds[0, 2]
         return float(pose.apply(np.array(hand.vertices))[:, 2].min() - low)
 
-    def _touching(self, hold: Hold, pose: RigidTransform) -> RigidTransform:
-        """The hand moved along its palm's normal until it touches."""
+    def _out(self, hold: Hold, pose: RigidTransform) -> float:
+        """How far against its palm a hand is moved until it just touches [m]."""
         rest, side = self.new.rest[hold.side], hold.side
         names = [f"{side}_{each}" for each in HAND_SEGMENTS]
 
@@ -166,7 +191,7 @@ class Gripping:
             found = (p.distance_m for p in self.around.near(names) if p.thing == hold.thing)
             return min(found, default=1.0)
 
-        return pose * RigidTransform.from_translation([0.0, 0.0, -touching_shift(apart)])
+        return touching_shift(apart, OUT_M)
 
 
 def _hand_shape(sensor: Sensor, frame: RigidTransform) -> Shape:

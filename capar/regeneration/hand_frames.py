@@ -14,6 +14,10 @@ from capar.body.human import Human
 from capar.body.recording import HAND_SEGMENTS
 from capar.body.surfaces import segment_surface
 from capar.model.capture import Shape
+from capar.regeneration.errors import PlanError
+
+LEAST_SINE = 0.5
+"""Of the angle between a palm's direction and its fingers' [1]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +29,38 @@ class HandFrame:
 
     extents: Float[np.ndarray, "3"]
     """Lengths of the hand along the frame's axes [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class HandAxes:
+    """Which way a hand points and faces, as it is known of a recording's sensor."""
+
+    fingers: Float[np.ndarray, "3"]
+    """To where the straight fingers point, in the sensor's frame."""
+
+    palm: Float[np.ndarray, "3"]
+    """To where the palm faces, likewise."""
+
+
+def stated_hand_frame(shape: Shape, axes: HandAxes) -> HandFrame:
+    """The frame along axes that are known, whatever the shape of the half-bent hand is.
+
+    Args:
+        shape: The hand's surface.
+        axes: Its directions; the palm's is kept where they are not at right angles.
+
+    Raises:
+        PlanError: The two are along one line.
+    """
+    z = axes.palm / np.linalg.norm(axes.palm)
+    x = axes.fingers - (axes.fingers @ z) * z
+    if np.linalg.norm(x) < LEAST_SINE * np.linalg.norm(axes.fingers):
+        raise PlanError("a palm does not face along its own fingers")
+    x = x / np.linalg.norm(x)
+    hull = trimesh.convex.convex_hull(np.array(shape.vertices))
+    turn = Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))
+    pose = RigidTransform.from_components(np.array(hull.center_mass), turn)
+    return HandFrame(pose, np.ptp(pose.inv().apply(hull.vertices), axis=0))
 
 
 def hand_frame(

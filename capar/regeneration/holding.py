@@ -29,6 +29,9 @@ GRASP_M = 0.025
 GRASP_RAD = float(np.radians(20.0))
 """Likewise the angle [rad]."""
 
+SLID = 2.0
+"""Multiple of both by which a hand may slide before the thing leaves and after it arrived [1]."""
+
 CARRIED_M = 0.02
 """A thing that is so far from where a contact begins and from where it ends is under way [m]."""
 
@@ -143,8 +146,9 @@ def _together(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | 
 def _carried(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | None:
     """When a hand grasps a thing that it carries; None if it carries it at no time.
 
-    The grasp is compared with its median while the thing is under way, and lasts as long as it
-    stays near that; it has to do so all the way.
+    The grasp is compared with its median while the thing is under way, and has to stay near that
+    all the way. Before and after, while the thing is about to leave and has arrived, it lasts as
+    long as the hand has not slid much further.
     """
     under_way = np.flatnonzero(_under_way(thing))
     if len(under_way) < 2:
@@ -153,10 +157,10 @@ def _carried(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | N
     relative = thing.inv() * hand
     off, turned = _apart(relative, relative[first : last + 1])
     grasped = (off < GRASP_M) & (turned < GRASP_RAD)
-    for begin, end in runs(grasped):
-        if begin <= first and last <= end:
-            return int(begin), int(end)
-    return None
+    if not grasped[first : last + 1].all():
+        return None
+    near = (off < SLID * GRASP_M) & (turned < SLID * GRASP_RAD)
+    return next((int(b), int(e)) for b, e in runs(near) if b <= first and last <= e)
 
 
 def wandering(thing: RigidTransform, hand: RigidTransform) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.drafts import MOST_TURNS, Draft, check_stance
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.flights import flight_notes, flights
-from capar.regeneration.grips import Grip, Turn
+from capar.regeneration.grips import OUT_M, Grip, Turn
 from capar.regeneration.hand_paths import Care, hand_paths
 from capar.regeneration.path_mapping import Detour
 from capar.regeneration.scenes import Scene, mobile, moved, raised, resized
@@ -43,6 +43,9 @@ BOTH_M = 0.2
 
 TALLER_M = 0.02
 """A recorded body that is so much taller is tried, too [m]."""
+
+TOLD_M = 0.005
+"""A correction of a grip that is told [m]."""
 
 SMALLER = 0.7
 """Likewise the size of what can be moved [1]."""
@@ -126,18 +129,25 @@ def reachable(
         PlanError: As ``plan`` says.
     """
     style = style or own_style(source)
+    pressed: Draft | None = None
     try:
-        return _draft(source, scene, human, style, watched)
+        found = _draft(source, scene, human, style, watched)
+        if not found.pressed:
+            return found
+        pressed, why = found, found.pressed[0]
     except PlanError as error:
-        if not scene.stays:
-            for ahead_m, aside_m in STEPS_M:
-                nearby = _beside(scene, ahead_m, aside_m)
-                if _possible(source, nearby, human):
-                    found = _draft(source, nearby, human, style, watched)
-                    way = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
-                    found.told.append(f"stands {way} of the given place, since there {error}")
-                    return found
-        raise PlanError(f"{error}; {_remedy(source, scene, human)}") from None
+        why = str(error)
+    for ahead_m, aside_m in () if scene.stays else STEPS_M:
+        nearby = _beside(scene, ahead_m, aside_m)
+        if _possible(source, nearby, human):
+            found = _draft(source, nearby, human, style, watched)
+            way = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
+            found.told.append(f"stands {way} of the given place, since there {why}")
+            return found
+    if pressed:
+        pressed.told += [f"whatever the grip, {told}" for told in pressed.pressed]
+        return pressed
+    raise PlanError(f"{why}; {_remedy(source, scene, human)}")
 
 
 def led(draft: Draft, care: Care) -> Plan:
@@ -233,7 +243,8 @@ def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
 def _possible(source: Source, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
     try:
         check_stance(scene, human)
-        return Draft(source, scene, human, own_style(source)).reachable_grips(most)[1] is None
+        draft = Draft(source, scene, human, own_style(source))
+        return draft.reachable_grips(most)[1] is None and not draft.pressed
     except PlanError:
         return False
 
@@ -243,7 +254,21 @@ def _notes(
 ) -> tuple[str, ...]:
     out = list(source.notes)
     for grip in grips:
-        if grip.turn != Turn():
+        if grip.turn.drawn_m > 0.0:
+            out.append(
+                f"the {grip.hold.side} hand takes {grip.hold.thing!r} drawn back by "
+                f"{1e3 * grip.turn.drawn_m:.0f} mm along its fingers, so that its forearm stays "
+                "outside"
+            )
+        if abs(grip.out_m) > TOLD_M:
+            way = "off" if grip.out_m > 0.0 else "towards"
+            ends = abs(grip.out_m) > OUT_M - TOLD_M
+            so = "the most that is tried, and may not touch" if ends else "so that it just touches"
+            out.append(
+                f"the {grip.hold.side} hand's grip is moved {1e3 * abs(grip.out_m):.0f} mm {way} "
+                f"{grip.hold.thing!r}, {so}"
+            )
+        if grip.turn != Turn(drawn_m=grip.turn.drawn_m):
             out.append(
                 f"the {grip.hold.side} hand's grip on {grip.hold.thing!r} is turned by "
                 f"{np.degrees(grip.turn.yaw):.0f} degrees about it, "

@@ -274,7 +274,9 @@ def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
         if min(way(new)[-1], way(old)[-1]) < MOVING_M + 2.0 * SETTLED_M:
             continue
         for first, last in _pieces(motion, side):
-            one, two = (np.diff(way(p[first : last + 1])) for p in (new, old))
+            held = _with_thing(plan, side, first, last)
+            model = (old if held is None else held)[first : last + 1]
+            one, two = np.diff(way(new[first : last + 1])), np.diff(way(model))
             if min(one.sum(), two.sum()) >= MOVING_M and len(one) > 3:
                 value = float(np.corrcoef(one, two)[0, 1])
                 worst = min(worst, (value, first, f"{side} hand"))
@@ -289,6 +291,22 @@ def _model(plan: Plan, side: str) -> RigidTransform:
     led = {launch.side for launch in plan.source.launches if plan.style.force is ForceKind.SAME}
     planned = plan.style.kind is Kind.EVEN or side in led
     return plan.hands[side] if planned else plan.style.hands[side]
+
+
+def _with_thing(
+    plan: Plan, side: str, first: int, last: int
+) -> Float[np.ndarray, "frames 3"] | None:
+    """The way of a hand that had been rigidly on what it holds throughout some frames.
+
+    A living hand slides a little on what it carries, and performed it does not; its speed is
+    compared with the thing's.
+    """
+    for grip in plan.grips:
+        hold = grip.hold
+        if hold.side == side and hold.first <= first and last <= hold.last:
+            carried = plan.style.kind is not Kind.EVEN and hold.thing in plan.style.things
+            return (plan.style.things[hold.thing] * grip.pose).translation if carried else None
+    return None
 
 
 def _pieces(motion: Motion, side: str) -> list[tuple[int, int]]:

@@ -45,7 +45,7 @@ def regenerate(
     if not best[1].passed and draft.grips:
         best = min(best, _careful(draft, guide_of(draft)), key=_failures)
     watched: frozenset[int] = frozenset()
-    for _ in range(GRIPS):
+    for _ in range(0 if draft.pressed else GRIPS):
         held = [gate for gate in best[1].gates if not gate.passed and gate.name in BY_GRIP]
         if not held or watched.issuperset(gate.frame for gate in held):
             break

@@ -16,8 +16,9 @@ from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagTy
 from capar.model.facts import Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
+from capar.regeneration.contact_points import surface_samples
 from capar.regeneration.errors import PlanError
-from capar.regeneration.hand_frames import HandFrame, hand_frame
+from capar.regeneration.hand_frames import HandAxes, HandFrame, hand_frame, stated_hand_frame
 from capar.regeneration.holding import (
     GRASP_M,
     GRASP_RAD,
@@ -44,6 +45,10 @@ STANDS_M = 0.5
 
 LAUNCH_FRAMES = 3
 """A thing may be seen to move so long before the frame of the blow: filters blur it [1]."""
+
+FACED_M = 0.02
+"""Points of a surface that are further from a hand's middle than the nearest by no more than this
+are faced by its palm [m]."""
 
 MOVES_M, MOVES_RAD = 0.02, float(np.radians(10.0))
 """A thing that never goes or turns further does not move [m, rad]."""
@@ -108,6 +113,7 @@ def source_of(
     *,
     stance: tuple[tuple[float, float], float] | None = None,
     floor_m: float = 0.0,
+    axes: Mapping[str, HandAxes] | None = None,
     notes: tuple[str, ...] = (),
     cutoff_hz: float | None = CUTOFF_HZ,
 ) -> Source:
@@ -118,6 +124,8 @@ def source_of(
         observation: What was done in it.
         stance: Where the performer stands [m] and faces [rad]; by the head, unless stated.
         floor_m: Height of the floor [m].
+        axes: Which way hands point and face, by side; by their shapes and what they touch,
+            unless stated.
         notes: What is to be told of it.
         cutoff_hz: Of the filter that takes noise from paths [Hz]; None leaves them as recorded.
 
@@ -138,7 +146,8 @@ def source_of(
     for sensor in capture.acting:
         if sensor.end_effector == "hand" and sensor.side in {"right", "left"}:
             near = _touched(sensor, touching, paths, things)
-            hands[sensor.side] = _hand(sensor, tracks[sensor.name], shoulder, near)
+            known = (axes or {}).get(sensor.side)
+            hands[sensor.side] = _hand(sensor, tracks[sensor.name], shoulder, near, known)
     told = [*notes, "the point of contact on each hand is measured on the capture's meshes"]
     tracks_of_hands = {side: (hand.sensor, hand.path) for side, hand in hands.items()}
     holds = holds_of(tracks_of_hands, paths, touching)
@@ -248,15 +257,18 @@ def _touched(
     touching: list[Touching],
     paths: Mapping[str, RigidTransform],
     things: Mapping[str, Thing],
-) -> list[tuple[int, np.ndarray]]:
-    """The frames in the middle of a hand's contacts, and corners of what it touches there."""
+) -> list[tuple[int, np.ndarray, np.ndarray]]:
+    """The frames in the middle of a hand's contacts, and the surface of what it touches there.
+
+    Points on it and their outward normals, in the world.
+    """
     out = []
     for each in touching:
         if each.body == sensor.name and each.other in things:
             frame = (each.first + each.last) // 2
-            out.append(
-                (frame, paths[each.other][frame].apply(np.array(things[each.other].shape.vertices)))
-            )
+            points, normals = surface_samples(things[each.other].shape)
+            pose = paths[each.other][frame]
+            out.append((frame, pose.apply(points), pose.rotation.apply(normals)))
     return out
 
 
@@ -264,18 +276,23 @@ def _hand(
     sensor: Sensor,
     path: RigidTransform,
     shoulder: Float[np.ndarray, "3"],
-    near: list[tuple[int, np.ndarray]],
+    near: list[tuple[int, np.ndarray, np.ndarray]],
+    axes: HandAxes | None,
 ) -> HandTrack:
     if sensor.shape is None:
         raise PlanError(f"sensor {sensor.name!r} has no shape of the hand; give it a mesh or a box")
+    if axes is not None:
+        own = stated_hand_frame(sensor.shape, axes)
+        return HandTrack(sensor.name, sensor.side, own, path * own.pose)
     middle = 0.5 * sensor.shape.bounds.sum(axis=0)
     outwards = path.apply(middle) - shoulder
     fingers = path.rotation.inv().apply(outwards).mean(axis=0)
     palm = np.zeros(3)
-    for frame, corners in near:
-        here = path[frame].inv().apply(corners)
-        nearest = here[np.argsort(np.linalg.norm(here - middle, axis=1))[:8]]
-        palm = palm + nearest.mean(axis=0) - middle
+    for frame, points, normals in near:
+        # Against the surface, not towards it: a recorded hand may be inside of what it holds.
+        apart = np.linalg.norm(points - path[frame].apply(middle), axis=1)
+        facing = -normals[apart < apart.min() + FACED_M].mean(axis=0)
+        palm = palm + path[frame].rotation.inv().apply(facing)
     if not near:  # a hand that touches nothing hangs with its palm to the body
         here = path[0].apply(middle)
         palm = path.rotation[0].inv().apply([shoulder[0] - here[0], shoulder[1] - here[1], 0.0])

@@ -16,6 +16,9 @@ SAMPLES = 17
 APART_M, APART_SHARE = 0.05, 0.05
 """A shape so far aside counts as much as a timing that is so far off: one unit of distance."""
 
+LEAST_SPREAD = 0.1
+"""Every single number of a style is taken to vary at least so much, in units of distance [1]."""
+
 SHORTEST_M = 0.05
 """A shorter way has no direction from which anything could deviate [m]."""
 
@@ -64,6 +67,54 @@ def nearest_performer(style: WayStyle, trials: Mapping[str, Sequence[WayStyle]])
         sorted(trials),
         key=lambda name: np.mean([style_distance(style, trial) for trial in trials[name]]),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class StyleMetric:
+    """A distance that counts a difference by how little it varies without meaning anything.
+
+    Two things change a style though the performer is the same: a performer's trials vary, and
+    another body in another scene cannot keep it all, as where a way is lifted clear of a table.
+    """
+
+    weights: Float[np.ndarray, "features features"]
+    """Inverse of the covariance of both."""
+
+    def distance(self, one: WayStyle, other: WayStyle) -> float:
+        """How far two styles are apart, in standard deviations (Mahalanobis 1936) [1]."""
+        apart = _features(one) - _features(other)
+        return float(np.sqrt(apart @ self.weights @ apart))
+
+    def nearest_performer(self, style: WayStyle, trials: Mapping[str, Sequence[WayStyle]]) -> str:
+        """Whose trials a style is nearest to, in the mean; the first by name if equally near."""
+        return min(
+            sorted(trials),
+            key=lambda name: np.mean([self.distance(style, trial) for trial in trials[name]]),
+        )
+
+
+def style_metric(
+    trials: Mapping[str, Sequence[WayStyle]], performed: Sequence[tuple[WayStyle, WayStyle]]
+) -> StyleMetric:
+    """The metric of some performers' trials and of what performing changes.
+
+    Args:
+        trials: Of each performer, at least two of one of them.
+        performed: Styles that were borrowed, each with that of the motion that came of it.
+    """
+    rows = [np.array([_features(trial) for trial in some]) for some in trials.values()]
+    off = np.concatenate([some - some.mean(axis=0) for some in rows])
+    within = off.T @ off / (len(off) - len(rows))
+    lost = np.array([_features(made) - _features(given) for given, made in performed])
+    changed = lost.T @ lost / len(lost) if len(lost) else np.zeros_like(within)
+    least = LEAST_SPREAD**2 * np.eye(len(within))
+    return StyleMetric(np.linalg.inv(within + changed + least))
+
+
+def _features(style: WayStyle) -> Float[np.ndarray, "features"]:
+    """Shape and timing, whose difference has ``style_distance`` as its length [1]."""
+    shape, timing = style.shape.ravel() / APART_M, style.timing / APART_SHARE
+    return np.concatenate([shape, timing]) / np.sqrt(SAMPLES)
 
 
 def within_distance(trials: Mapping[str, Sequence[WayStyle]]) -> float:

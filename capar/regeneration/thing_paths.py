@@ -1,7 +1,7 @@
 """Where things are throughout: at rest, on the way between goals, and at the head."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -9,6 +9,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
 from capar.body.things import Thing
+from capar.model.facts import Displaced
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
 from capar.regeneration.carrying import Carrying
 from capar.regeneration.collisions import Surroundings
@@ -25,6 +26,9 @@ STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
 
 TOUCH_M = 0.0005
 """What is left between surfaces that touch [m]."""
+
+STEP_M = 0.005
+"""Steps in which the nearest place is sought where it touches [m]."""
 
 SEARCH_M = 0.03
 """How far a thing is moved at most so that it touches [m]."""
@@ -63,8 +67,16 @@ def thing_goals(
             down = _put_down(source, scene, name, (first, last), pose)
             goals += _poised(source, scene, name, (first, last), (pose, down.pose))
             goals.sort(key=lambda goal: goal.frame)
-            goals.append(down)
+            goals.append(replace(down, frame=_stopped(source, name, goals[-1].frame, last)))
+            if goals[-1].frame < last:
+                goals.append(replace(down, reason="stays there"))
     return out
+
+
+def _stopped(source: Source, name: str, after: int, last: int) -> int:
+    """The frame at which a thing was seen to stop, after one and not later than another one."""
+    own = (fact for fact in source.observation.facts if isinstance(fact, Displaced))
+    return max((f.last for f in own if f.object == name and after < f.last <= last), default=last)
 
 
 def thing_paths(
@@ -301,10 +313,20 @@ def _touching(scene: Scene, new: BodyFrames, name: str, local: RigidTransform) -
     return RigidTransform.from_translation([touching_shift(apart), 0.0, 0.0]) * local
 
 
-def touching_shift(apart: Callable[[float], float]) -> float:
-    """How far to move so that a distance that grows with it becomes ``TOUCH_M`` [m]."""
-    low, high = -SEARCH_M, SEARCH_M
-    for _ in range(24):
+def touching_shift(apart: Callable[[float], float], most_m: float = SEARCH_M) -> float:
+    """The least way to move so that a distance becomes ``TOUCH_M`` [m].
+
+    Args:
+        apart: The distance after a move; moving on, away from the surface next to it.
+        most_m: How far it is moved at most [m].
+    """
+    inside = apart(0.0) <= TOUCH_M
+    step = STEP_M if inside else -STEP_M
+    near = far = 0.0
+    while abs(far) < most_m and (apart(far) <= TOUCH_M) == inside:
+        near, far = far, far + step
+    low, high = sorted((near, far))
+    for _ in range(16):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if apart(middle) > TOUCH_M else (middle, high)
     return 0.5 * (low + high)

@@ -136,6 +136,10 @@ def test_an_assumed_support_has_another_size() -> None:
         ("performer = 3", "performer is no table"),
         ("from_s = 'soon'", "Numbers are needed"),
         ("from_s = ", "is no TOML"),
+        ("[hand.middle]", r"unknown key 'middle' in \[hand\]"),
+        ("[hand.right]\nthumb = [1, 0, 0]", r"unknown key 'thumb' in \[hand.right\]"),
+        ("[hand.right]\npalm = [0, 0, 1]", r"\[hand\] lacks 'fingers'"),
+        ("[hand.left]\npalm = [0, 0, 1]\nfingers = [0, 0, 0]", r"is no direction"),
     ],
 )
 def test_a_file_of_assumptions_says_what_is_wrong_with_it(
@@ -161,6 +165,15 @@ def test_every_key_of_a_file_is_read(tmp_path: Path) -> None:
     assert len(found.notes) == 6
     assert found.stance is not None
     np.testing.assert_allclose(found.stance[1], 0.5 * np.pi)
+
+
+def test_the_directions_of_hands_are_read_and_told(tmp_path: Path) -> None:
+    path = tmp_path / "assumed.toml"
+    path.write_text("[hand.left]\nfingers = [0, 1, 0]\npalm = [0, 0.1, -1]\n")
+    found = read_completion(path)
+    np.testing.assert_array_equal(found.axes["left"].palm, [0.0, 0.1, -1.0])
+    (note,) = found.notes
+    assert "left hand's fingers point to (0, 1, 0) and its palm faces (0, 0.1, -1)" in note
 
 
 def _run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:

@@ -20,6 +20,7 @@ from capar.regeneration.style_distances import (
     nearest_between,
     nearest_performer,
     style_distance,
+    style_metric,
     way_style,
     within_distance,
 )
@@ -62,6 +63,26 @@ def test_the_nearest_performer_is_the_one_whose_trials_are_like_it() -> None:
     assert nearest_performer(way_style(_way(0.0, 0.09, 0.1)), trials) == "high"
     assert nearest_performer(way_style(_way(0.01, 0.0, 0.4)), trials) == "late"
     assert within_distance(trials) < nearest_between(trials) <= between_distance(trials)
+
+
+def test_what_performing_changes_counts_less() -> None:
+    trials = {
+        name: [way_style(_way(aside, up + off, 0.0)) for off in (-0.01, 0.01)]
+        for name, (aside, up) in {"low": (0.0, 0.0), "high": (0.06, 0.12)}.items()
+    }
+    borrowed, lifted = way_style(_way(0.0, 0.0, 0.0)), way_style(_way(0.0, 0.1, 0.0))
+    assert nearest_performer(lifted, trials) == "high"
+    others = [  # of performers who are neither: performing lifts, and leaves the rest as it is
+        (way_style(_way(aside, 0.0, 0.0)), way_style(_way(aside, up, 0.0)))
+        for aside in (-0.03, 0.1)
+        for up in (0.0, 0.05, 0.15)
+    ]
+    metric = style_metric(trials, others)
+    assert metric.nearest_performer(lifted, trials) == "low"
+    assert metric.nearest_performer(borrowed, trials) == "low"
+    assert metric.distance(lifted, lifted) == 0.0
+    plain = style_metric(trials, [])
+    assert plain.distance(lifted, borrowed) > 3.0 * metric.distance(lifted, borrowed)
 
 
 def test_what_does_not_move_has_no_style() -> None:

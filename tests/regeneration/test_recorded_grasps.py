@@ -1,0 +1,164 @@
+"""Recorded hands stand inside what they hold, slide on it, and are performed on its surface."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.recording import HAND_SEGMENTS
+from capar.body.scripted_actions import action_capture
+from capar.body.things import Thing
+from capar.model.capture import Capture, Shape, Stream, TagType
+from capar.model.facts import Touching
+from capar.pipelines.round_trips import observed_source
+from capar.regeneration import PlanError
+from capar.regeneration.collisions import Surroundings
+from capar.regeneration.drafts import Draft
+from capar.regeneration.grips import Turn, drawn_turns
+from capar.regeneration.hand_frames import HandAxes, stated_hand_frame
+from capar.regeneration.holding import holds_of
+from capar.regeneration.scenes import Scene
+from capar.regeneration.solving import Solver
+from capar.regeneration.sources import Source, source_of
+from capar.regeneration.styles import own_style
+from capar.regeneration.thing_paths import TOUCH_M, touching_shift
+
+RATE_HZ = 30.0
+
+
+@cache
+def _source(action: str) -> Source:
+    return observed_source(action_capture(action, rate_hz=RATE_HZ))
+
+
+def _shifted(capture: Capture, name: str, off_m: np.ndarray) -> Capture:
+    """The capture with an object elsewhere, by so much at each frame."""
+    thing = capture.tag_object(name)
+    moved = Stream(
+        np.array(thing.stream.times), thing.stream.positions + off_m, thing.stream.orientations
+    )
+    things = (replace(o, stream=moved) if o.name == name else o for o in capture.objects)
+    return replace(capture, objects=tuple(things))
+
+
+@pytest.mark.parametrize("into_m", [0.02, 0.05, 0.08])
+def test_a_palm_faces_what_it_touches_though_the_hand_was_recorded_inside(into_m: float) -> None:
+    source = _source("touch")
+    hand = source.hands["right"]
+    palm = hand.path[source.holds[0].first].rotation.apply([0.0, 0.0, 1.0])
+    capture = _shifted(source.capture, "crate", -into_m * palm)
+    inside = source_of(capture, source.observation).hands["right"].frame
+    turned = inside.pose.rotation * hand.frame.pose.rotation.inv()
+    assert turned.magnitude() < np.radians(1.0)
+
+
+def test_a_stated_palm_is_kept_whatever_shape_the_hand_has() -> None:
+    source = _source("touch")
+    axes = HandAxes(fingers=np.array([1.0, 0.3, 0.0]), palm=np.array([0.0, 0.0, -2.0]))
+    stated = source_of(source.capture, source.observation, axes={"right": axes}).hands["right"]
+    turn = stated.frame.pose.rotation.as_matrix()
+    np.testing.assert_allclose(turn[:, 2], [0.0, 0.0, -1.0], atol=1e-12)
+    np.testing.assert_allclose(turn[:, 0], np.array([1.0, 0.3, 0.0]) / np.hypot(1.0, 0.3))
+    np.testing.assert_allclose(np.linalg.det(turn), 1.0)
+    shape = source.capture.sensor("right_hand").shape
+    assert shape is not None
+    with pytest.raises(PlanError, match="along its own fingers"):
+        stated_hand_frame(shape, HandAxes(np.array([0.0, 0.1, 1.0]), np.array([0.0, 0.0, 1.0])))
+
+
+@pytest.mark.parametrize(
+    ("surface", "moved_m"),
+    [
+        (lambda by_m: by_m - 0.062, 0.062),  # 62 mm inside
+        (lambda by_m: by_m + 0.017, -0.017),  # 17 mm off
+        (lambda by_m: min(by_m + 0.01, abs(by_m - 0.05) - 0.02), -0.01),  # the nearer of two
+    ],
+)
+def test_a_hand_is_moved_to_the_nearest_surface(
+    surface: Callable[[float], float], moved_m: float
+) -> None:
+    assert abs(touching_shift(surface, 0.1) - moved_m - TOUCH_M) < 1e-4
+
+
+@cache
+def _draft() -> Draft:
+    source = _source("pick_up")
+    return Draft(source, source.scene, source.human, own_style(source))
+
+
+@pytest.mark.parametrize("turn", list(drawn_turns())[::4])
+def test_a_hand_that_is_drawn_back_still_touches(turn: Turn) -> None:
+    draft = _draft()
+    hold = draft.source.holds[0]
+    usual = draft.gripping.grip(hold, Turn())
+    drawn = draft.gripping.grip(hold, turn)
+    back = (usual.pose.inv() * drawn.pose).translation
+    if turn.tilt == 0.0:
+        np.testing.assert_allclose(back[0], -turn.drawn_m, atol=0.002)
+    around = draft.gripping.around
+    around.pose(draft.gripping.posture, {hold.thing: draft.new.rest[hold.side] * drawn.pose.inv()})
+    pairs = around.near([f"{hold.side}_{part}" for part in HAND_SEGMENTS])
+    gap_m = min(pair.distance_m for pair in pairs if pair.thing == hold.thing)
+    assert abs(gap_m - TOUCH_M) < 5e-4
+
+
+def _frame(outer_m: float, inner_m: float) -> Shape:
+    """A square picture frame in the y-z plane, 2 cm deep, of four overlapping bars."""
+    wide, middle = outer_m - inner_m, 0.5 * (outer_m + inner_m)
+    box = trimesh.creation.box((0.02, 2.0 * outer_m, wide))
+    bar = np.array(box.vertices) + np.array([0.0, 0.0, middle])
+    turns = Rotation.from_euler("x", 90.0 * np.arange(4)[:, None], degrees=True)
+    vertices = np.concatenate([turn.apply(bar) for turn in turns])
+    faces = np.concatenate([np.array(box.faces) + len(bar) * number for number in range(4)])
+    return Shape(vertices, faces)
+
+
+def test_what_is_in_an_opening_of_a_hollow_thing_is_as_far_from_it_as_its_surface_is() -> None:
+    human = _source("touch").human
+    palm = Solver(human, (0.0, 0.0, 0.0), 0.0).palm("right").translation
+    scene = Scene({}, (0.0, 0.0), 0.0)
+    for inner_m in (0.14, 0.18):
+        frame = Thing(
+            "frame", _frame(inner_m + 0.05, inner_m), (0.0, 0.0, 0.0), 0.0, TagType.MOBILE
+        )
+        around = Surroundings(human, replace(scene, things={"frame": frame}))
+        pose = RigidTransform.from_components(palm, Rotation.identity())
+        around.pose(Solver(human, (0.0, 0.0, 0.0), 0.0).rest, {"frame": pose})
+        found = {pair.part: pair.distance_m for pair in around.near(["right_hand"])}
+        if inner_m == 0.18:
+            assert not found  # further than is measured
+        else:
+            assert 0.02 < found["right_hand"] < 0.08
+
+
+def _sliding(far_m: float, over: np.ndarray) -> RigidTransform:
+    spots = np.outer(np.interp(np.arange(90), [0, 30, 60, 90], [0, 0, 0.4, 0.4]), [1.0, 0.0, 0.0])
+    spots[over] += [0.0, far_m, 0.0]
+    if far_m > 0.0:  # a living grasp is never rigid
+        spots[:, 2] += 0.012 * np.sin(0.3 * np.arange(90))
+    return RigidTransform.from_translation(spots)
+
+
+@pytest.mark.parametrize(("far_m", "last"), [(0.04, 80), (0.06, 69)])
+def test_a_hand_may_slide_on_what_it_has_put_down_and_holds_it_meanwhile(
+    far_m: float, last: int
+) -> None:
+    thing, hand = _sliding(0.0, np.arange(0)), _sliding(far_m, np.arange(70, 90))
+    (hold,) = holds_of(
+        {"right": ("right_hand", hand)}, {"box": thing}, [Touching("right_hand", "box", 10, 80)]
+    )
+    assert (hold.first, hold.last) == (10, last)
+
+
+def test_what_is_put_down_stands_still_from_when_it_was_seen_to() -> None:
+    draft = _draft()
+    hold = draft.source.holds[0]
+    down, after = draft.goals[hold.thing][-2:]
+    assert down.frame < after.frame == hold.last
+    path = draft.things[hold.thing].translation
+    assert np.ptp(path[down.frame : after.frame + 1], axis=0).max() == 0.0
+    assert np.linalg.norm(path[down.frame - 3] - path[down.frame]) > 0.0
