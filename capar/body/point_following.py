@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.spatial.transform import Rotation
 
-from capar.body.flat_feet import UprightTask
+from capar.body.flat_feet import DirectionTask, UprightTask
 from capar.body.human import Human
 from capar.body.point_task import PointTask
 from capar.body.sensor_following import LARGEST_STEP, SOLVER
@@ -48,6 +48,9 @@ PLANTED_COST = 0.5
 HANGING_COST = 0.5
 """Weight of a radian by which the upper arm of an unseen arm does not hang straight down."""
 
+FACE_COST = 3.0
+"""Weight of a radian between the face and where it looks, as of a sensor's orientation."""
+
 ROAMING_M = 0.5
 """Who goes further than this on unseen legs is not taken to stand on one spot [m]."""
 
@@ -69,12 +72,16 @@ class Guidance:
     ground_m: float | None = None
     """Height of the ground on which they do [m]."""
 
+    faces: Float[np.ndarray, "frames 3"] | None = None
+    """Where the face looks, as directions in the world [1]; NaN where that is not known."""
+
     ease: float = 1.0
     """How much more than usual the standing posture counts [1]."""
 
     def at(self, frames: Int[np.ndarray, "some"]) -> "Guidance":
         """The same for some of the frames."""
-        return replace(self, flat={side: when[frames] for side, when in self.flat.items()})
+        flat = {side: when[frames] for side, when in self.flat.items()}
+        return replace(self, flat=flat, faces=None if self.faces is None else self.faces[frames])
 
 
 def followed(
@@ -109,6 +116,8 @@ def followed(
     tasks += [one for foot in feet.values() for one in foot.tasks]
     segments = {segment_of(human, place) for place in places.values()}
     tasks += _hanging(segments)
+    face = DirectionTask("head", (1.0, 0.0, 0.0), FACE_COST)
+    tasks += [] if guidance.faces is None else [face]
     if not any(_on_leg(segment) for segment in segments):
         tasks += _stance(human, start, roams=_roams(targets))
     speeds = dict.fromkeys(human.joints, LARGEST_STEP)
@@ -121,6 +130,9 @@ def followed(
             task.aim(targets[frame])
             for side, foot in feet.items():
                 foot.trust(float(guidance.flat[side][frame]))
+            if guidance.faces is not None:
+                face.trust(float(np.isfinite(guidance.faces[frame]).all()))
+                face.aim(np.nan_to_num(guidance.faces[frame]))
             for _ in range((ITERATIONS if frame != best else SETTLING) * bool(seen[frame].any())):
                 step = mink.solve_ik(configuration, tasks, 1.0, SOLVER, limits=limits)
                 configuration.integrate_inplace(step, 1.0)

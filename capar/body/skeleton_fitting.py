@@ -131,6 +131,16 @@ def with_trunk(measures: Measures, share: float) -> Measures:
         return measures
 
 
+def with_head(measures: Measures, higher_m: float) -> Measures:
+    """The same body with a neck longer by so much [m]; the same if no body has such a neck."""
+    raised = {name: measures[name] + higher_m for name in UPPER_HEIGHTS}
+    given = {name: measures[name] for name in measures.given} | raised
+    try:
+        return estimate_measures(sex=measures.sex, age=measures.age, given=given)
+    except MeasuresError:
+        return measures
+
+
 def with_ankles(
     measures: Measures,
     points: Mapping[str, Float[np.ndarray, "frames 3"]],
