@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 import mink
+import mujoco
 import numpy as np
 from jaxtyping import Bool, Float
 from scipy.linalg import null_space
@@ -46,6 +47,38 @@ def _on_foot(place: str, side: str) -> bool:
 
 def _rise(heights: Float[np.ndarray, "frames"]) -> Float[np.ndarray, "frames"]:
     return np.asarray(heights - np.nanquantile(heights, LOWEST_SHARE))
+
+
+class GroundTask(mink.Task):
+    """Keeps places on feet out of the ground; above it they are free."""
+
+    def __init__(self, model: mujoco.MjModel, places: Mapping[str, float], cost: float) -> None:
+        """Set up the task.
+
+        Args:
+            model: The body's.
+            places: Sites, each with the height that it may not be below [m].
+            cost: Weight of a metre.
+        """
+        super().__init__(cost=np.full(len(places), cost))
+        self._sites = [model.site(name).id for name in places]
+        self._heights = np.array(list(places.values()))
+
+    def compute_error(self, configuration: mink.Configuration) -> Float[np.ndarray, "places"]:
+        """Height above what is allowed, where that is negative; else 0 [m]."""
+        heights = configuration.data.site_xpos[self._sites, 2]
+        return np.asarray(np.minimum(heights - self._heights, 0.0))
+
+    def compute_jacobian(
+        self, configuration: mink.Configuration
+    ) -> Float[np.ndarray, "places dofs"]:
+        """How those heights change with the joints."""
+        model, data = configuration.model, configuration.data
+        out, part = np.zeros((len(self._sites), model.nv)), np.empty((3, model.nv))
+        for row in np.flatnonzero(self.compute_error(configuration) < 0.0):
+            mujoco.mj_jacSite(model, data, part, None, self._sites[row])
+            out[row] = part[2]
+        return out
 
 
 class DirectionTask(mink.Task):

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.spatial.transform import Rotation
 
-from capar.body.flat_feet import DirectionTask, UprightTask
+from capar.body.flat_feet import DirectionTask, GroundTask, UprightTask
 from capar.body.human import Human
 from capar.body.point_task import PointTask
 from capar.body.sensor_following import LARGEST_STEP, SOLVER
@@ -47,6 +47,14 @@ PLANTED_COST = 0.5
 
 HANGING_COST = 0.5
 """Weight of a radian by which the upper arm of an unseen arm does not hang straight down."""
+
+GROUND_COST = 20.0
+"""Weight of a metre by which a heel or toes are in the ground."""
+
+SOLE_PLACES = ("heel", "second_metatarsal", "toe_tip")
+SOLE_SHARE = 0.7
+"""Share of the height of such places above the sole that they keep above the ground [1]: a foot
+that rolls over its heel or toes has them nearer to it."""
 
 FACE_COST = 3.0
 """Weight of a radian between the face and where it looks, as of a sensor's orientation."""
@@ -115,7 +123,7 @@ def followed(
     tasks = [task, ease, mink.DampingTask(human.model, cost=DAMPING_COST)]
     tasks += [one for foot in feet.values() for one in foot.tasks]
     segments = {segment_of(human, place) for place in places.values()}
-    tasks += _hanging(segments)
+    tasks += _hanging(segments) + _above_ground(human, guidance.ground_m)
     face = DirectionTask("head", (1.0, 0.0, 0.0), FACE_COST)
     tasks += [] if guidance.faces is None else [face]
     if not any(_on_leg(segment) for segment in segments):
@@ -179,6 +187,16 @@ def _hanging(segments: Collection[str]) -> list[mink.Task]:
         for side in SIDES
         if not {f"{side}_{name}" for name in ("forearm", "hand")} & set(segments)
     ]
+
+
+def _above_ground(human: Human, ground_m: float | None) -> list[mink.Task]:
+    """A task that keeps heels and toes out of the ground, where its height is known."""
+    if ground_m is None:
+        return []
+    places = [f"{side}_{place}" for side in SIDES for place in SOLE_PLACES]
+    standing = human.sites(human.posture()[None], places)
+    low = {name: ground_m + SOLE_SHARE * float(one[0][0, 2]) for name, one in standing.items()}
+    return [GroundTask(human.model, low, GROUND_COST)]
 
 
 def _roams(targets: Float[np.ndarray, "frames points 3"]) -> bool:
