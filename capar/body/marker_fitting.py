@@ -1,5 +1,6 @@
 """From markers on the skin to the body's motion: size, places of the markers, then postures."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
@@ -47,6 +48,10 @@ theirs [1]: which way a segment is turned only they tell."""
 
 CLUSTER_WEIGHT = 0.7
 """Weight of markers whose places are found from the motion itself [1]."""
+
+LARGE_CLUSTER = 4
+"""So many such markers on a segment weigh as much as more of them together: a shoulder blade with a
+dozen markers would else bend the chest that it glides on."""
 
 SPANS: Mapping[str, tuple[tuple[str, str], ...]] = {
     "upper_arm": (("upper_arm", "forearm"), ("acromion", "elbow_lateral")),
@@ -277,9 +282,14 @@ def _own_places(
     joints: Iterable[str] = (),
 ) -> Convention:
     """Every marker at the site that was made for it, and joints at the origins of segments."""
-    riding = [f"marker_{name}" for name in local if not names[name].exact]
+    riding = [name for name in local if not names[name].exact]
+    count = Counter(names[name].place for name in riding)
+    weights = {
+        f"marker_{n}": CLUSTER_WEIGHT * min(1.0, (LARGE_CLUSTER / count[names[n].place]) ** 0.5)
+        for n in riding
+    }
     places = {name: f"marker_{name}" for name in local} | {name: name for name in joints}
-    return file_convention(places, dict.fromkeys(riding, CLUSTER_WEIGHT))
+    return file_convention(places, weights)
 
 
 def local_places(

@@ -59,6 +59,9 @@ that rolls over its heel or toes has them nearer to it."""
 FACE_COST = 3.0
 """Weight of a radian between the face and where it looks, as of a sensor's orientation."""
 
+HEAD_COST = 1.5
+"""Weight of a radian by which an unseen head is not upright: who leans looks ahead all the same."""
+
 ROAMING_M = 0.5
 """Who goes further than this on unseen legs is not taken to stand on one spot [m]."""
 
@@ -181,12 +184,17 @@ def _on_leg(segment: str) -> bool:
 
 
 def _hanging(segments: Collection[str]) -> list[mink.Task]:
-    """Tasks that let arms hang, whichever way the trunk leans, of which nothing is seen."""
-    return [
+    """Tasks that let arms hang and keep a head upright of which nothing is seen.
+
+    They do so whichever way the trunk leans.
+    """
+    arms: list[mink.Task] = [
         UprightTask(f"{side}_upper_arm", HANGING_COST)
         for side in SIDES
         if not {f"{side}_{name}" for name in ("forearm", "hand")} & set(segments)
     ]
+    head = [] if {"head", "neck"} & set(segments) else [UprightTask("head", HEAD_COST)]
+    return [*arms, *head]
 
 
 def _above_ground(human: Human, ground_m: float | None) -> list[mink.Task]:

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
 from capar.body.human import Human
-from capar.body.point_following import Guidance, SkeletonError, followed
+from capar.body.point_following import Guidance, SkeletonError, followed, segment_of
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
 from extractors.readers.body_names.body_names import SIDES
 from extractors.readers.body_names.conventions import Convention
@@ -49,6 +49,9 @@ class SkeletonFit:
     motion: Float[np.ndarray, "frames posture"]
     residuals_m: Mapping[str, Float[np.ndarray, "frames"]]
     """By foreign name, distance of the body's place from the point [m]; NaN if lost."""
+
+    segments: Mapping[str, str]
+    """By foreign name, the segment that its place is on."""
 
     derived: bool
     """Whether orientations of segments come of points only, so that turns about the long axes of
@@ -205,4 +208,5 @@ def fit_skeleton(
     residuals = {
         name: np.linalg.norm(where[place][0] - spots[name], axis=1) for name, place in named.items()
     }
-    return SkeletonFit(body, motion, residuals, derived=True)
+    segments = {name: segment_of(body, place) for name, place in named.items()}
+    return SkeletonFit(body, motion, residuals, segments, derived=True)

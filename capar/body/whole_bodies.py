@@ -146,7 +146,9 @@ def fit_places(found: Places, *, ground_m: float | None = None) -> Fit:
     made = _skeleton(found, ground_m)
     seconds = time.perf_counter() - began
     lost = {name: np.isnan(found.points[name]).any(axis=1) for name in made.residuals_m}
-    return Fit(made.human, found.times, made.motion, lost, made.residuals_m, {}, seconds)
+    return Fit(
+        made.human, found.times, made.motion, lost, made.residuals_m, {}, seconds, made.segments
+    )
 
 
 def _skeleton(found: Places, ground_m: float | None) -> SkeletonFit:
