@@ -63,10 +63,11 @@ class Fit:
         """Segments of which nothing is followed, on them or beyond them from the pelvis."""
         parents = {name: one.parent for name, one in skeleton(self.human.measures).items()}
         seen: set[str] = set()
-        for segment in self.segments.values():
-            while segment and segment not in seen:
-                seen.add(segment)
-                segment = parents[segment]
+        for followed in self.segments.values():
+            above = followed
+            while above and above not in seen:
+                seen.add(above)
+                above = parents[above]
         ends = {name for name in parents if without_side(name) in ENDS and parents[name] in seen}
         ends |= {name for name in parents if parents[name] in ends}
         return tuple(name for name in parents if name not in seen | ends)

@@ -1,9 +1,9 @@
 """Centres of joints between segments on which clusters of markers ride, from how these move.
 
 Two rigid clusters on both sides of a joint have one point in common that keeps its place in both:
-the joint's centre (symmetrical centre of rotation estimation, Ehrig et al. 2006, J Biomech 39:2798).
-Where a joint hardly turns, or only about one axis, the motion leaves it open along that; there the
-centre stays where a first fit of the body had it.
+the joint's centre (symmetrical centre of rotation estimation; Ehrig et al. 2006, J Biomech
+39:2798). Where a joint hardly turns, or only about one axis, the motion leaves it open along that;
+there the centre stays where a first fit of the body had it.
 """
 
 from collections.abc import Mapping, Sequence

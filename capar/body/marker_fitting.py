@@ -125,9 +125,7 @@ def fit_markers(
     for _ in range(ROUNDS):
         human = with_markers(human.measures, local, seen)
         own = _own_places(local, seen, joints)
-        again = fit_skeleton(
-            {**sampled, **joints}, own, human=human, guidance=known.at(frames)
-        )
+        again = fit_skeleton({**sampled, **joints}, own, human=human, guidance=known.at(frames))
         local = local_places(again, sampled, seen)
     human = with_markers(human.measures, local, seen)
     own = _own_places(local, seen)
@@ -139,7 +137,9 @@ def _joints(
     made: SkeletonFit, points: Points, names: Mapping[str, BodyName]
 ) -> dict[str, Float[np.ndarray, "frames 3"]]:
     """Centres of joints between segments with three markers or more, by the segment below [m]."""
-    segments = {n: segment_of(made.human, each.place) for n, each in names.items() if _is_sided(each)}
+    segments = {
+        n: segment_of(made.human, each.place) for n, each in names.items() if _is_sided(each)
+    }
     parents = {child: parent for side in SIDES for child, parent in _jointed(side)}
     where = made.human.sites(made.motion, parents)
     return joint_centres(points, segments, parents, {name: one[0] for name, one in where.items()})

@@ -1,4 +1,4 @@
-"""Hands and heads of skeletons, of which three points or more are seen: how these sit on the body's.
+"""Where points of a skeleton's hands and head sit on the body's, if three or more are seen.
 
 Such points turn a hand or a head fully. Where they sit on the body is not found from its postures,
 which they are to turn, but from their own shape, laid onto the same points of the body.
@@ -53,7 +53,7 @@ def rigid_places(
         places: The place on the body of each.
         faces: Directions in which the face looks [1], where they are known.
     """
-    out = {}
+    out: dict[str, Float[np.ndarray, "3"]] = {}
     heads = [name for name, place in places.items() if place == "head"]
     if faces is not None and heads:
         points = {**points, FACE: points[heads[0]] + FACE_M * faces}
@@ -106,7 +106,9 @@ def _usual(human: Human, segment: str, places: Sequence[str]) -> Float[np.ndarra
 
 
 def _laid(
-    shape: Float[np.ndarray, "points 3"], usual: Float[np.ndarray, "points 3"], places: Sequence[str]
+    shape: Float[np.ndarray, "points 3"],
+    usual: Float[np.ndarray, "points 3"],
+    places: Sequence[str],
 ) -> Float[np.ndarray, "points 3"]:
     """A shape turned as the body has its places, and moved to where it hangs."""
     held = [place.endswith("_eye") for place in places]

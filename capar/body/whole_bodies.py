@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.body.capture_fitting import fit_capture
+from capar.body.fit_remarks import recorded_spine, remarks
 from capar.body.fitting import Fit
 from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import LEAST_EXACT, fit_markers
@@ -121,6 +122,22 @@ def _faces(
             out[known] = geometry.rotations(turns[known]).apply(ahead)
             return out
     return None
+
+
+def remarks_on(place: str | Path, capture: Capture, made: Fit) -> list[str]:
+    """What a reader of the fitted body's pictures asks about.
+
+    Args:
+        place: Where the capture is described.
+        capture: The same, read.
+        made: The body fitted to it.
+
+    Raises:
+        CaparError: As of ``fit_body``.
+    """
+    found = whole_body(place)
+    spine = [] if found is None else recorded_spine(made, found.points)
+    return [*remarks(made, capture, ground(capture)), *spine]
 
 
 def ground(capture: Capture) -> float | None:

@@ -32,7 +32,8 @@ LOWEST_SHARE = 0.05
 def with_mannequin(shown: Stage, fit: Fit) -> Stage:
     """The same stage with a fitted body on it, at the frames of the fit nearest to those shown.
 
-    Segments of which nothing was recorded are faint. Where the recording has no floor, a ground under the lowest soles is added and named as assumed.
+    Segments of which nothing was recorded are faint. Where the recording has no floor, a ground
+    under the lowest soles is added and named as assumed.
     """
     nearest = np.abs(shown.times[:, None] - fit.times[None]).argmin(axis=1)
     poses = poses_of(fit.human, fit.motion[nearest])
