@@ -16,7 +16,7 @@ from capar.body.marker_fitting import (
     with_markers,
 )
 from capar.body.point_following import Guidance
-from capar.body.rigid_parts import part_of, rigid_places
+from capar.body.rigid_parts import part_of, rigid_places, rigid_shape
 from capar.body.skeleton_fitting import (
     SkeletonFit,
     fit_skeleton,
@@ -37,6 +37,9 @@ WEIGHTS = {"index_knuckle": 0.5, "fingers": 0.5, "fifth_knuckle": 0.5, "thumb_ti
 
 HEAD_BY_EYES = 0.3
 """How much the head's joint counts where eyes are seen [1]."""
+
+SPINE_M = 0.05
+"""How far from the axis of its segment a joint of the spine may be [m]."""
 
 EARLY_SHARE = 0.1
 """How much of their weight necks and heads have before it is known where on the body theirs are."""
@@ -66,13 +69,14 @@ def fit_joints(
         points: By foreign name [m]; NaN where lost.
         convention: What the names mean.
         ground_m: Height of the ground on which feet stand, where it is known [m].
-        stated: Places on the body of names that the convention lacks, or has otherwise.
+        stated: Places on the body of names that the convention lacks, or has otherwise. They are
+            left out if those on one hand or on the head do not move as one.
         faces: Directions in the world in which the face looks [1], where they are known.
 
     Raises:
         SkeletonError: Fewer than four places are known, or the points are of no body.
     """
-    places = {**convention.named(points), **(stated or {})}
+    places = _believed(points, convention.named(points), stated or {})
     known = Guidance(standing_flat(points, places), ground_m, faces)
     told = replace(convention, points=places, whole_names=True)
     measures = with_ankles(measures_from_points(points, told), points, places, known)
@@ -89,7 +93,7 @@ def fit_joints(
         first = _fit(sampled, measures, local, names, early, known.at(frames))
         settled = _settled(shaped, first, sampled, names, places)
         measures = with_head(measures, _eyes_higher_m(first, sampled, places))
-        local = {**settled, **_forward(local_places(first, sampled, own), names)}
+        local = {**settled, **_anatomical(local_places(first, sampled, own), names)}
     return _fit(points, measures, local, names, weights, known)
 
 
@@ -97,6 +101,21 @@ def _weight(convention: Convention, place: str, places: Mapping[str, str]) -> fl
     if place == "head" and "right_eye" in places.values():
         return HEAD_BY_EYES
     return WEIGHTS.get(without_side(place), convention.weight(place))
+
+
+def _believed(
+    points: Points, named: Mapping[str, str], stated: Mapping[str, str]
+) -> dict[str, str]:
+    """Places by a convention and as a capture states them, if the points of each part are rigid.
+
+    Else the stated ones are of another take, and are left out.
+    """
+    both = {**named, **stated}
+    for part in {part_of(place) for place in stated.values()}:
+        own = [points[name] for name, place in both.items() if part_of(place) == part]
+        if len(own) > 1 and rigid_shape(own) is None:
+            return dict(named)
+    return both
 
 
 def _early(name: str, names: Mapping[str, BodyName], places: Mapping[str, str]) -> float:
@@ -144,11 +163,23 @@ def _eyes_higher_m(made: SkeletonFit, points: Points, places: Mapping[str, str])
     return float(np.nanmedian(off))
 
 
-def _forward(local: Local, names: Mapping[str, BodyName]) -> dict[str, Float[np.ndarray, "3"]]:
-    """Places on segments, those of toes straight ahead of the ankle: a foot points to its toes."""
-    ahead = np.array([1.0, 0.0, 1.0])
-    toes = {name for name in local if without_side(names[name].place) == "toes"}
-    return {name: spot * ahead if name in toes else spot for name, spot in local.items()}
+def _anatomical(local: Local, names: Mapping[str, BodyName]) -> dict[str, Float[np.ndarray, "3"]]:
+    """Places on segments, where a body can have them.
+
+    Those of toes are straight ahead of the ankle, as a foot points to its toes; those of the spine
+    are in the trunk, also of somebody who bends throughout and whose spine is recorded otherwise.
+    """
+    out = {}
+    for name, spot in local.items():
+        place = without_side(names[name].place)
+        if place == "toes":
+            out[name] = spot * np.array([1.0, 0.0, 1.0])
+        elif parts().get(place) in {"trunk", "pelvis"}:
+            aside = max(float(np.linalg.norm(spot[:2])) / SPINE_M, 1.0)
+            out[name] = spot / np.array([aside, aside, 1.0])
+        else:
+            out[name] = spot
+    return out
 
 
 def _fit(

@@ -89,7 +89,9 @@ def rigid_shape(
         return None
     centred = stack - stack.mean(axis=1, keepdims=True)
     shape = centred[0]
-    turned = np.stack([Rotation.align_vectors(shape, frame)[0].apply(frame) for frame in centred])
+    with catch_warnings(action="ignore", category=UserWarning):  # two points leave a turn open
+        turns = [Rotation.align_vectors(shape, frame)[0] for frame in centred]
+    turned = np.stack([turn.apply(frame) for turn, frame in zip(turns, centred, strict=True)])
     rest = turned - turned.mean(axis=0)
     rigid = np.sqrt((rest**2).sum(axis=2).mean()) < RIGID_M
     return np.asarray(turned.mean(axis=0)) if rigid else None
