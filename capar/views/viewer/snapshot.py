@@ -18,8 +18,8 @@ EYE = np.array([0.9, -1.1, 0.7])
 """From where it is seen, in the world."""
 
 SUN = np.array([0.3, -0.5, 0.8])
-EDGE_M = 0.08
-"""Larger triangles of objects are divided, so that each is before or behind a thing."""
+EDGE_M = 0.04
+"""Larger triangles are divided, so that each is before or behind a thing [m]."""
 
 MOST_FACES = 6000
 """A surface of more is drawn as its convex hull [1]: leaving out faces would make holes."""
@@ -124,10 +124,9 @@ def _triangles(body: StagedBody, frame: int) -> Float[np.ndarray, "triangles 3 3
         if len(faces) > MOST_FACES:
             hull = trimesh.Trimesh(vertices, faces, process=False).convex_hull
             vertices, faces = np.asarray(hull.vertices), np.asarray(hull.faces)
-    if body.kind not in ("body", "sensor", "looks"):
-        edge_m = max(EDGE_M, float(np.ptp(vertices, axis=0).max()) / 40.0)
-        divided = trimesh.remesh.subdivide_to_size(vertices, faces, edge_m)  # type: ignore[no-untyped-call]
-        vertices, faces = divided
+    edge_m = max(EDGE_M, float(np.ptp(vertices, axis=0).max()) / 40.0)
+    divided = trimesh.remesh.subdivide_to_size(vertices, faces, edge_m)  # type: ignore[no-untyped-call]
+    vertices, faces = divided
     turn = Rotation.from_quat(body.orientations[frame], scalar_first=True)
     return np.asarray((turn.apply(vertices) + body.positions[frame])[faces])
 
