@@ -32,8 +32,12 @@ from extractors.readers.drafting.stance import Points
 LIMB_JOINTS = {"upper_arm", "forearm", "hand", "thigh", "shank", "foot"}
 """Joints that are at the same place in every skeleton."""
 
-WEIGHTS = {"index_knuckle": 0.5, "fingers": 0.5, "fifth_knuckle": 0.5, "thumb_tip": 0.2}
-"""How much places on the hand count [1]."""
+WEIGHTS = {
+    "index_knuckle": 0.5, "fingers": 0.5, "fifth_knuckle": 0.5, "thumb_tip": 0.2,
+    "pelvis": 1.0, "lumbar_lower": 1.0, "lumbar_upper": 1.0, "thorax_lower": 1.0,
+    "thorax_upper": 1.0,
+}  # fmt: skip
+"""How much places on the hand count, and joints of the spine once their places are known [1]."""
 
 HEAD_BY_EYES = 0.3
 """How much the head's joint counts where eyes are seen [1]."""

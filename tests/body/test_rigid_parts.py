@@ -1,5 +1,8 @@
 """Hands, heads and spines of other skeletons are turned and placed as their points tell."""
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -10,9 +13,15 @@ from capar.body.human import Human
 from capar.body.joint_fitting import fit_joints
 from capar.body.rigid_parts import rigid_places, rigid_shape
 from capar.body.skeleton_fitting import SkeletonFit
+from capar.body.whole_bodies import fit_body
 from capar.model import geometry
 from extractors.readers.body_names.body_names import SIDES
 from extractors.readers.body_names.conventions import convention
+from extractors.readers.bundle.capture_toml import read_capture
+
+DATA = Path(os.environ.get("CAPAR_DATA", Path(__file__).parents[3] / "shared" / "data"))
+recorded_people = pytest.mark.skipif(not DATA.exists(), reason=f"no recordings at {DATA}")
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 TIMES = np.arange(0.0, 1.5, 1.0 / 30.0)
 KNUCKLES = {"index": "index_knuckle", "middle": "fingers", "little": "fifth_knuckle"}
@@ -127,3 +136,22 @@ def test_rigid_places_of_a_body_are_its_own() -> None:
     np.testing.assert_allclose(found["R_Wrist"], 0.0, atol=1e-6)
     index = human.model.site("right_index_knuckle").pos
     np.testing.assert_allclose(found["right_index"], index, atol=1e-6)
+
+
+@recorded_people
+@pytest.mark.parametrize("clip", ["sub2_largetable_000", "sub2_woodchair_005"])
+def test_recorded_eyes_are_in_the_head_and_recorded_knuckles_in_the_hands(clip: str) -> None:
+    place = f"{EXAMPLES / 'omomo_intermimic'}:{clip}"
+    made = fit_body(place, read_capture(place))
+    for eye in ("L_Index2", "L_Index3"):
+        assert np.median(made.residuals_m[eye]) < 0.015
+    for knuckle in ("L_Middle1", "L_Pinky1", "L_Ring1", "R_Middle1", "R_Pinky1", "R_Ring1"):
+        assert np.median(made.residuals_m[knuckle]) < 0.01
+
+
+@recorded_people
+def test_a_take_with_other_names_is_followed_by_its_convention_alone() -> None:
+    place = f"{EXAMPLES / 'omomo_intermimic'}:sub3_largebox_003"
+    made = fit_body(place, read_capture(place))
+    assert not {"L_Index2", "L_Ring1"} & set(made.residuals_m)
+    assert np.median(made.residuals_m["L_Wrist"]) < 0.01
