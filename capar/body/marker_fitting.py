@@ -136,13 +136,18 @@ def fit_markers(
 def _joints(
     made: SkeletonFit, points: Points, names: Mapping[str, BodyName]
 ) -> dict[str, Float[np.ndarray, "frames 3"]]:
-    """Centres of joints between segments with three markers or more, by the segment below [m]."""
+    """Centres of joints between segments with three markers or more, by the segment below [m].
+
+    Empty if they are too few to place the body without its markers.
+    """
     segments = {
         n: segment_of(made.human, each.place) for n, each in names.items() if _is_sided(each)
     }
     parents = {child: parent for side in SIDES for child, parent in _jointed(side)}
     where = made.human.sites(made.motion, parents)
-    return joint_centres(points, segments, parents, {name: one[0] for name, one in where.items()})
+    guesses = {name: one[0] for name, one in where.items()}
+    found = joint_centres(points, segments, parents, guesses)
+    return found if len(found) >= LEAST_EXACT else {}
 
 
 def _jointed(side: str) -> list[tuple[str, str]]:

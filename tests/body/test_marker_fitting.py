@@ -104,6 +104,17 @@ def test_recorded_walks_are_followed_and_told_by_marker(
 
 
 @pytest.mark.usefixtures("recordings")
+def test_clusters_with_few_joints_between_them_are_followed_by_their_markers(
+    tmp_path: Path,
+) -> None:
+    recording = read_recording(DATA / "foreign_files" / "propulsion.c3d")
+    (tmp_path / "capture.toml").write_text(draft([recording], tmp_path, "propulsion"))
+    made = fit_body(tmp_path, read_capture(tmp_path))
+    assert len(made.residuals_m) > 25
+    assert float(np.nanmedian(np.concatenate([*made.residuals_m.values()]))) < 0.02
+
+
+@pytest.mark.usefixtures("recordings")
 def test_a_body_of_poses_is_followed_from_its_capture() -> None:
     found = whole_body(EXAMPLES / "omomo_intermimic:sub3_largebox_003")
     assert found is not None
