@@ -117,11 +117,10 @@ def palm_centre(m: Measures) -> Float[np.ndarray, "3"]:
 def _foot(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
     long, wide, high = m["foot_length"], m["foot_breadth"], m["ankle_height"]
     none = np.zeros(3)
-    back = 0.45 * HEEL * long
-    half = np.array([0.5 * (HEEL + BALL) * long - 0.5 * back, 0.36 * wide, 0.33 * high])
-    centre = np.array([0.5 * (BALL - HEEL) * long + 0.5 * back, 0.0, half[2] - high])
+    half = np.array([0.5 * (HEEL + BALL) * long, 0.42 * wide, 0.12 * high])
+    centre = np.array([0.5 * (BALL - HEEL) * long, 0.0, half[2] - high])
     yield Form("right_foot", "box", centre, half, "shoe", none)
-    heel = np.array([1.1 * back, 0.36 * wide, 0.45 * high])
+    heel = np.array([0.55 * HEEL * long, 0.36 * wide, 0.45 * high])
     centre = np.array([-HEEL * long + heel[0], 0.0, heel[2] - high])
     yield Form("right_foot", "ellipsoid", centre, heel, "shoe", none)
     instep = np.array([0.22 * long, 0.36 * wide, 0.55 * high])
