@@ -27,6 +27,9 @@ REACHES = ("ReachBackLow01", "ReachForwardHigh01", "ReachForwardLow01", "ReachFo
 FILES = ("cmu_walk.bvh", "std_walking2_markers.trc", "walk_free_01.trc", "sgi_int.c3d",
          "test3.bvh", "racing.c3d", "propulsion.c3d")  # fmt: skip
 
+FAR_MM = 30.0
+"""Distances larger than this are counted, as ``capar fit`` reports them [mm]."""
+
 
 def places() -> Iterator[tuple[str, str]]:
     """The name and the place of each capture."""
@@ -62,6 +65,7 @@ def row(name: str, place: str) -> str:
     span = float(made.times[-1] - made.times[0])
     return (
         f"| {name} | {len(medians)} | {np.nanmedian(every):.1f} | {np.nanpercentile(every, 95):.1f}"
+        f" | {np.nanmean(every > FAR_MM):.1%}"
         f" | {medians[worst]:.1f} ({worst.rpartition(':')[2]}) | {soles_mm(made, ground(capture))}"
         f" | {made.human.measures['stature']:.2f} | {made.seconds / span:.1f} |"
     )
@@ -69,9 +73,9 @@ def row(name: str, place: str) -> str:
 
 def main() -> None:
     """Print the table."""
-    print("| recording | followed | median [mm] | 95 % [mm] | worst of medians [mm] "
+    print("| recording | followed | median [mm] | 95 % [mm] | over 30 mm | worst of medians [mm] "
           "| sole above floor [mm] | stature [m] | time / motion |")  # fmt: skip
-    print("|---|---|---|---|---|---|---|---|")
+    print("|---|---|---|---|---|---|---|---|---|")
     for name, place in places():
         if not sys.argv[1:] or any(word in name for word in sys.argv[1:]):
             print(row(name, place), flush=True)

@@ -23,6 +23,9 @@ PALM_FROM_WRIST = 0.42
 USUAL_MASS = 27.0
 """Mass over squared stature of the body whose girths the data file gives [kg/m2]."""
 
+USUAL_BREADTH = 0.2368
+"""Breadth between the acromia of the same body [share of stature]; Gordon et al. 2014."""
+
 
 @dataclass(frozen=True, eq=False)
 class Form:
@@ -58,7 +61,8 @@ def _row_form(row: dict[str, Any], m: Measures, segments: Mapping[str, Segment])
         ends = [row[key] * along + offset for key in ("from", "to")]
         half = np.array([row["size"] * tall * wide, 0.5 * np.linalg.norm(ends[1] - ends[0]), 0.0])
         return Form(row["body"], "capsule", sum(ends) / 2, half, row["colour"], ends[1] - ends[0])
-    half = np.array(row["half"]) * tall * np.array([wide, wide, 1.0])
+    broad = m["shoulder_breadth"] / tall / USUAL_BREADTH if row.get("broad") else 1.0
+    half = np.array(row["half"]) * tall * np.array([wide, max(wide * broad, wide), 1.0])
     return Form(
         row["body"], row["type"], row["at"] * along + offset, half, row["colour"], np.zeros(3)
     )
@@ -116,9 +120,12 @@ def palm_centre(m: Measures) -> Float[np.ndarray, "3"]:
 def _foot(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
     long, wide, high = m["foot_length"], m["foot_breadth"], m["ankle_height"]
     none = np.zeros(3)
-    half = np.array([0.5 * (HEEL + BALL) * long, 0.42 * wide, 0.33 * high])
+    half = np.array([0.5 * (HEEL + BALL) * long, 0.42 * wide, 0.12 * high])
     centre = np.array([0.5 * (BALL - HEEL) * long, 0.0, half[2] - high])
     yield Form("right_foot", "box", centre, half, "shoe", none)
+    heel = np.array([0.55 * HEEL * long, 0.36 * wide, 0.45 * high])
+    centre = np.array([-HEEL * long + heel[0], 0.0, heel[2] - high])
+    yield Form("right_foot", "ellipsoid", centre, heel, "shoe", none)
     instep = np.array([0.22 * long, 0.36 * wide, 0.55 * high])
     yield Form(
         "right_foot", "ellipsoid", np.array([0.06 * long, 0.0, -0.45 * high]), instep, "shoe", none

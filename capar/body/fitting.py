@@ -2,18 +2,20 @@
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.body.human import ROOT_SIZE, Human
-from capar.body.mounting import Calibration, mounted
+from capar.body.mounting import Calibration, mounted, places
 from capar.body.sensor_following import Follower
+from capar.body.skeleton import skeleton
 from capar.body.targets import Target, target
 from capar.model import geometry
 from capar.model.capture import Stream
 from capar.model.errors import CaparError
+from extractors.readers.body_names.body_names import without_side
 
 BRIDGE_COST = 0.5
 """Weight of the posture where a sensor is lost."""
@@ -24,6 +26,10 @@ LIMIT_MARGIN = float(np.radians(0.1))
 
 class FitError(CaparError):
     """Sensors that the body cannot be fitted to."""
+
+
+ENDS = ("fingers", "fingertips", "thumb", "toes", "eye")
+"""Segments that are taken to be seen with those that they are on."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +54,23 @@ class Fit:
 
     seconds: float
     """How long fitting took [s]."""
+
+    segments: Mapping[str, str] = field(default_factory=dict)
+    """By place followed, the segment that it is on."""
+
+    @property
+    def unrecorded(self) -> tuple[str, ...]:
+        """Segments of which nothing is followed, on them or beyond them from the pelvis."""
+        parents = {name: one.parent for name, one in skeleton(self.human.measures).items()}
+        seen: set[str] = set()
+        for followed in self.segments.values():
+            above = followed
+            while above and above not in seen:
+                seen.add(above)
+                above = parents[above]
+        ends = {name for name in parents if without_side(name) in ENDS and parents[name] in seen}
+        ends |= {name for name in parents if parents[name] in ends}
+        return tuple(name for name in parents if name not in seen | ends)
 
     @property
     def at_limit(self) -> Bool[np.ndarray, "frames hinges"]:
@@ -86,7 +109,8 @@ def fit(
     motion = _bridge(follower, motion, targets, iterations)
     seconds = time.perf_counter() - began
     bridged = {place: each.weights == 0.0 for place, each in targets.items()}
-    made = Fit(body, clock, motion, bridged, {}, {}, seconds)
+    segments = {place: places()[place] for place in known}
+    made = Fit(body, clock, motion, bridged, {}, {}, seconds, segments)
     return _with_residuals(made, targets)
 
 

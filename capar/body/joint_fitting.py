@@ -1,5 +1,12 @@
 """From joints and key points to the body's motion, heads and toes where the file has them."""
 
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.body.anthropometry import Measures
 from capar.body.flat_feet import standing_flat
 from capar.body.human import Human
 from capar.body.marker_fitting import (
@@ -9,46 +16,186 @@ from capar.body.marker_fitting import (
     with_markers,
 )
 from capar.body.point_following import Guidance
-from capar.body.skeleton_fitting import SkeletonFit, fit_skeleton, measures_from_points, with_ankles
-from extractors.readers.body_names.body_names import BodyName, without_side
+from capar.body.rigid_parts import part_of, rigid_places, rigid_shape
+from capar.body.skeleton_fitting import (
+    SkeletonFit,
+    fit_skeleton,
+    measures_from_points,
+    with_ankles,
+    with_head,
+)
+from capar.model import geometry
+from extractors.readers.body_names.body_names import BodyName, parts, without_side
 from extractors.readers.body_names.conventions import Convention
 from extractors.readers.drafting.stance import Points
 
 LIMB_JOINTS = {"upper_arm", "forearm", "hand", "thigh", "shank", "foot"}
 """Joints that are at the same place in every skeleton."""
 
+WEIGHTS = {
+    "index_knuckle": 0.5, "fingers": 0.5, "fifth_knuckle": 0.5, "thumb_tip": 0.2,
+    "pelvis": 1.0, "lumbar_lower": 1.0, "lumbar_upper": 1.0, "thorax_lower": 1.0,
+    "thorax_upper": 1.0,
+}  # fmt: skip
+"""How much places on the hand count, and joints of the spine once their places are known [1]."""
+
+HEAD_BY_EYES = 0.3
+"""How much the head's joint counts where eyes are seen [1]."""
+
+SPINE_M = 0.05
+"""How far from the axis of its segment a joint of the spine may be [m]."""
+
+EARLY_SHARE = 0.1
+"""How much of their weight necks and heads have before it is known where on the body theirs are."""
+
+ROUNDS = 3
+"""Times that places are found anew from postures."""
+
+Local = Mapping[str, Float[np.ndarray, "3"]]
+
 
 def fit_joints(
-    points: Points, convention: Convention, *, ground_m: float | None = None
+    points: Points,
+    convention: Convention,
+    *,
+    ground_m: float | None = None,
+    stated: Mapping[str, str] | None = None,
+    faces: Float[np.ndarray, "frames 3"] | None = None,
 ) -> SkeletonFit:
     """Fit the body to joints or key points in a world whose z axis points up.
 
-    Where skeletons have their toes, necks and heads differs. They begin where the body has its
-    own; then each is where it is on its segment in the median of the fitted postures, in which
-    feet that stand are flat.
+    Hands and heads of which three points are seen are turned as these are. Where skeletons have
+    their toes, necks, spines and other heads differs. They begin where the body has its own; then
+    each is where it is on its segment in the median of the fitted postures, in which feet that
+    stand are flat. A foot points to its toes.
 
     Args:
         points: By foreign name [m]; NaN where lost.
         convention: What the names mean.
         ground_m: Height of the ground on which feet stand, where it is known [m].
+        stated: Places on the body of names that the convention lacks, or has otherwise. They are
+            left out if those on one hand or on the head do not move as one.
+        faces: Directions in the world in which the face looks [1], where they are known.
 
     Raises:
         SkeletonError: Fewer than four places are known, or the points are of no body.
     """
-    places = convention.named(points)
-    known = Guidance(standing_flat(points, places), ground_m)
-    measures = with_ankles(measures_from_points(points, convention), points, places, known)
+    places = _believed(points, convention.named(points), stated or {})
+    known = Guidance(standing_flat(points, places), ground_m, faces)
+    told = replace(convention, points=places, whole_names=True)
+    measures = with_ankles(measures_from_points(points, told), points, places, known)
+    weights = {name: _weight(convention, place, places) for name, place in places.items()}
     names = {n: BodyName(n, place, exact=True, by=convention.title) for n, place in places.items()}
     frames = sample_frames(points, names)
     sampled = {name: points[name][frames] for name in places}
-    first = fit_skeleton(sampled, convention, human=Human.of(measures), guidance=known.at(frames))
-    own = {n: each for n, each in names.items() if without_side(each.place) not in LIMB_JOINTS}
-    local = local_places(first, sampled, own)
-    found = dict(places) | {name: f"marker_{name}" for name in local}
-    weights = {found[name]: convention.weight(place) for name, place in places.items()}
-    return fit_skeleton(
-        points,
-        file_convention(found, weights),
-        human=with_markers(measures, local, own),
-        guidance=known,
-    )
+    shaped = rigid_places(Human.of(measures), sampled, places, known.at(frames).faces)
+    names |= {name: replace(names[name], place=part_of(places[name])) for name in shaped}
+    early = {name: weight * _early(name, names, places) for name, weight in weights.items()}
+    own = {n: each for n, each in names.items() if n not in shaped and _differs(each)}
+    local: Local = shaped
+    for _ in range(ROUNDS):
+        first = _fit(sampled, measures, local, names, early, known.at(frames))
+        settled = _settled(shaped, first, sampled, names, places)
+        measures = with_head(measures, _eyes_higher_m(first, sampled, places))
+        local = {**settled, **_anatomical(local_places(first, sampled, own), names)}
+    return _fit(points, measures, local, names, weights, known)
+
+
+def _weight(convention: Convention, place: str, places: Mapping[str, str]) -> float:
+    if place == "head" and "right_eye" in places.values():
+        return HEAD_BY_EYES
+    return WEIGHTS.get(without_side(place), convention.weight(place))
+
+
+def _believed(
+    points: Points, named: Mapping[str, str], stated: Mapping[str, str]
+) -> dict[str, str]:
+    """Places by a convention and as a capture states them, if the points of each part are rigid.
+
+    Else the stated ones are of another take, and are left out.
+    """
+    both = {**named, **stated}
+    for part in {part_of(place) for place in stated.values()}:
+        own = [points[name] for name, place in both.items() if part_of(place) == part]
+        if len(own) > 1 and rigid_shape(own) is None:
+            return dict(named)
+    return both
+
+
+def _early(name: str, names: Mapping[str, BodyName], places: Mapping[str, str]) -> float:
+    """How much of its weight a point has until places on spine, neck and head are found [1].
+
+    Skeletons have the joints of spines anywhere; those of heads and necks differ by centimetres,
+    but eyes do not.
+    """
+    place = names[name].place
+    if parts().get(without_side(place)) in {"trunk", "pelvis"} and place != "neck":
+        return 0.0
+    eyed = any(each.endswith("_eye") for each in places.values())
+    return EARLY_SHARE if place == "neck" or (place == "head" and not eyed) else 1.0
+
+
+def _differs(name: BodyName) -> bool:
+    """Whether skeletons have a joint at different places on its segment."""
+    return without_side(name.place) not in {*LIMB_JOINTS, "fingers", "thumb_tip"}
+
+
+def _settled(
+    shaped: Local,
+    first: SkeletonFit,
+    points: Points,
+    names: Mapping[str, BodyName],
+    places: Mapping[str, str],
+) -> dict[str, Float[np.ndarray, "3"]]:
+    """Rigid places; those of a head without eyes moved to where its joint is in the postures."""
+    heads = {name for name in shaped if names[name].place == "head"}
+    joint = next((name for name in heads if places[name] == "head"), None)
+    if joint is None or any(places[name].endswith("_eye") for name in heads):
+        return dict(shaped)
+    moved = local_places(first, points, {joint: names[joint]})[joint] - shaped[joint]
+    return {name: spot + moved if name in heads else spot for name, spot in shaped.items()}
+
+
+def _eyes_higher_m(made: SkeletonFit, points: Points, places: Mapping[str, str]) -> float:
+    """How much higher above the chest eyes are than the body has them [m]; 0 where unseen."""
+    eyes = [name for name, place in places.items() if place.endswith("_eye")]
+    if not eyes:
+        return 0.0
+    where = made.human.sites(made.motion, [*(f"marker_{name}" for name in eyes), "thorax_upper"])
+    chest = geometry.rotations(where["thorax_upper"][1])
+    off = [chest.inv().apply(points[n] - where[f"marker_{n}"][0])[:, 2] for n in eyes]
+    return float(np.nanmedian(off))
+
+
+def _anatomical(local: Local, names: Mapping[str, BodyName]) -> dict[str, Float[np.ndarray, "3"]]:
+    """Places on segments, where a body can have them.
+
+    Those of toes are straight ahead of the ankle, as a foot points to its toes; those of the spine
+    are in the trunk, also of somebody who bends throughout and whose spine is recorded otherwise.
+    """
+    out = {}
+    for name, spot in local.items():
+        place = without_side(names[name].place)
+        if place == "toes":
+            out[name] = spot * np.array([1.0, 0.0, 1.0])
+        elif parts().get(place) in {"trunk", "pelvis"}:
+            aside = max(float(np.linalg.norm(spot[:2])) / SPINE_M, 1.0)
+            out[name] = spot / np.array([aside, aside, 1.0])
+        else:
+            out[name] = spot
+    return out
+
+
+def _fit(
+    points: Points,
+    measures: Measures,
+    local: Local,
+    names: Mapping[str, BodyName],
+    weights: Mapping[str, float],
+    guidance: Guidance,
+) -> SkeletonFit:
+    """The body fitted to points, some of which have places of their own on it."""
+    found = {n: f"marker_{n}" if n in local else each.place for n, each in names.items()}
+    own = file_convention(found, {place: weights[name] for name, place in found.items()})
+    human = with_markers(measures, local, names)
+    return fit_skeleton(points, own, human=human, guidance=guidance)

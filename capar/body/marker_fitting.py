@@ -1,6 +1,7 @@
 """From markers on the skin to the body's motion: size, places of the markers, then postures."""
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,17 +11,19 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
 from capar.body.flat_feet import standing_flat
 from capar.body.human import Human
+from capar.body.joint_centres import joint_centres
 from capar.body.model import body_spec
 from capar.body.point_following import Guidance, SkeletonError, segment_of
 from capar.body.skeleton import skeleton
 from capar.body.skeleton_fitting import (
     SkeletonFit,
     fit_skeleton,
+    measures_from_points,
     trunk_share,
     with_ankles,
     with_trunk,
 )
-from extractors.readers.body_names.body_names import BodyName
+from extractors.readers.body_names.body_names import SIDES, BodyName
 from extractors.readers.body_names.conventions import Convention
 from extractors.readers.drafting.stance import Points, mean_of, standing_by_parts
 
@@ -46,6 +49,10 @@ theirs [1]: which way a segment is turned only they tell."""
 CLUSTER_WEIGHT = 0.7
 """Weight of markers whose places are found from the motion itself [1]."""
 
+LARGE_CLUSTER = 4
+"""So many such markers on a segment weigh as much as more of them together: a shoulder blade with a
+dozen markers would else bend the chest that it glides on."""
+
 SPANS: Mapping[str, tuple[tuple[str, str], ...]] = {
     "upper_arm": (("upper_arm", "forearm"), ("acromion", "elbow_lateral")),
     "forearm": (("forearm", "hand"), ("elbow_lateral", "wrist_radial")),
@@ -53,6 +60,9 @@ SPANS: Mapping[str, tuple[tuple[str, str], ...]] = {
     "shank": (("shank", "foot"), ("knee_lateral", "ankle_lateral")),
 }
 """Pairs of places, of one side, between which a measure lies; the first that is there counts."""
+
+LIMBS = (("shank", "thigh"), ("foot", "shank"), ("forearm", "upper_arm"))
+"""Segments of limbs, each with the one that it hangs on."""
 
 BREADTHS: Mapping[str, tuple[str, ...]] = {
     "shoulder_breadth": ("upper_arm", "acromion"),
@@ -108,15 +118,52 @@ def fit_markers(
     eased = replace(known.at(frames), ease=ease)
     first = _by_landmarks(human.measures, sampled, exact, clusters, eased)
     local = local_places(first, sampled, seen)
+    joints = {} if ease == 1.0 else _joints(first, sampled, seen)
+    if joints:
+        human = Human.of(_measures_by_joints(human.measures, joints, known.at(frames)))
+        local = {}
     for _ in range(ROUNDS):
         human = with_markers(human.measures, local, seen)
-        own = _own_places(local, seen)
-        again = fit_skeleton(sampled, own, human=human, guidance=known.at(frames))
+        own = _own_places(local, seen, joints)
+        again = fit_skeleton({**sampled, **joints}, own, human=human, guidance=known.at(frames))
         local = local_places(again, sampled, seen)
     human = with_markers(human.measures, local, seen)
     own = _own_places(local, seen)
     shown = {name: points[name] for name in local}
     return MarkerFit(fit_skeleton(shown, own, human=human, guidance=known), local)
+
+
+def _joints(
+    made: SkeletonFit, points: Points, names: Mapping[str, BodyName]
+) -> dict[str, Float[np.ndarray, "frames 3"]]:
+    """Centres of joints between segments with three markers or more, by the segment below [m].
+
+    Empty if they are too few to place the body without its markers.
+    """
+    segments = {
+        n: segment_of(made.human, each.place) for n, each in names.items() if _is_sided(each)
+    }
+    parents = {child: parent for side in SIDES for child, parent in _jointed(side)}
+    where = made.human.sites(made.motion, parents)
+    guesses = {name: one[0] for name, one in where.items()}
+    found = joint_centres(points, segments, parents, guesses)
+    return found if len(found) >= LEAST_EXACT else {}
+
+
+def _jointed(side: str) -> list[tuple[str, str]]:
+    """Segments of limbs with the one that they hang on; that of an arm is the chest."""
+    pairs = [(f"{side}_{child}", f"{side}_{parent}") for child, parent in LIMBS]
+    return [*pairs, (f"{side}_thigh", "pelvis"), (f"{side}_upper_arm", "thorax_upper")]
+
+
+def _measures_by_joints(measures: Measures, joints: Points, guidance: Guidance) -> Measures:
+    """Measures by the centres of joints; the same ones if they tell no limb's length."""
+    places = {name: name for name in joints}
+    try:
+        made = measures_from_points(joints, file_convention(places, {}))
+    except SkeletonError:
+        return measures
+    return with_ankles(made, joints, places, guidance)
 
 
 def _clusters(names: Mapping[str, BodyName]) -> dict[str, list[str]]:
@@ -235,12 +282,19 @@ def file_convention(places: Mapping[str, str], weights: Mapping[str, float]) -> 
 
 
 def _own_places(
-    local: Mapping[str, Float[np.ndarray, "3"]], names: Mapping[str, BodyName]
+    local: Mapping[str, Float[np.ndarray, "3"]],
+    names: Mapping[str, BodyName],
+    joints: Iterable[str] = (),
 ) -> Convention:
-    """Every marker at the site that was made for it."""
-    riding = [f"marker_{name}" for name in local if not names[name].exact]
-    places = {name: f"marker_{name}" for name in local}
-    return file_convention(places, dict.fromkeys(riding, CLUSTER_WEIGHT))
+    """Every marker at the site that was made for it, and joints at the origins of segments."""
+    riding = [name for name in local if not names[name].exact]
+    count = Counter(names[name].place for name in riding)
+    weights = {
+        f"marker_{n}": CLUSTER_WEIGHT * min(1.0, (LARGE_CLUSTER / count[names[n].place]) ** 0.5)
+        for n in riding
+    }
+    places = {name: f"marker_{name}" for name in local} | {name: name for name in joints}
+    return file_convention(places, weights)
 
 
 def local_places(

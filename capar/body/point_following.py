@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.spatial.transform import Rotation
 
-from capar.body.flat_feet import UprightTask
+from capar.body.flat_feet import DirectionTask, GroundTask, UprightTask
 from capar.body.human import Human
 from capar.body.point_task import PointTask
 from capar.body.sensor_following import LARGEST_STEP, SOLVER
@@ -48,6 +48,20 @@ PLANTED_COST = 0.5
 HANGING_COST = 0.5
 """Weight of a radian by which the upper arm of an unseen arm does not hang straight down."""
 
+GROUND_COST = 20.0
+"""Weight of a metre by which a heel or toes are in the ground."""
+
+SOLE_PLACES = ("heel", "second_metatarsal", "toe_tip")
+SOLE_SHARE = 0.7
+"""Share of the height of such places above the sole that they keep above the ground [1]: a foot
+that rolls over its heel or toes has them nearer to it."""
+
+FACE_COST = 3.0
+"""Weight of a radian between the face and where it looks, as of a sensor's orientation."""
+
+HEAD_COST = 1.5
+"""Weight of a radian by which an unseen head is not upright: who leans looks ahead all the same."""
+
 ROAMING_M = 0.5
 """Who goes further than this on unseen legs is not taken to stand on one spot [m]."""
 
@@ -69,12 +83,16 @@ class Guidance:
     ground_m: float | None = None
     """Height of the ground on which they do [m]."""
 
+    faces: Float[np.ndarray, "frames 3"] | None = None
+    """Where the face looks, as directions in the world [1]; NaN where that is not known."""
+
     ease: float = 1.0
     """How much more than usual the standing posture counts [1]."""
 
     def at(self, frames: Int[np.ndarray, "some"]) -> "Guidance":
         """The same for some of the frames."""
-        return replace(self, flat={side: when[frames] for side, when in self.flat.items()})
+        flat = {side: when[frames] for side, when in self.flat.items()}
+        return replace(self, flat=flat, faces=None if self.faces is None else self.faces[frames])
 
 
 def followed(
@@ -108,7 +126,9 @@ def followed(
     tasks = [task, ease, mink.DampingTask(human.model, cost=DAMPING_COST)]
     tasks += [one for foot in feet.values() for one in foot.tasks]
     segments = {segment_of(human, place) for place in places.values()}
-    tasks += _hanging(segments)
+    tasks += _hanging(segments) + _above_ground(human, guidance.ground_m)
+    face = DirectionTask("head", (1.0, 0.0, 0.0), FACE_COST)
+    tasks += [] if guidance.faces is None else [face]
     if not any(_on_leg(segment) for segment in segments):
         tasks += _stance(human, start, roams=_roams(targets))
     speeds = dict.fromkeys(human.joints, LARGEST_STEP)
@@ -121,6 +141,9 @@ def followed(
             task.aim(targets[frame])
             for side, foot in feet.items():
                 foot.trust(float(guidance.flat[side][frame]))
+            if guidance.faces is not None:
+                face.trust(float(np.isfinite(guidance.faces[frame]).all()))
+                face.aim(np.nan_to_num(guidance.faces[frame]))
             for _ in range((ITERATIONS if frame != best else SETTLING) * bool(seen[frame].any())):
                 step = mink.solve_ik(configuration, tasks, 1.0, SOLVER, limits=limits)
                 configuration.integrate_inplace(step, 1.0)
@@ -161,12 +184,27 @@ def _on_leg(segment: str) -> bool:
 
 
 def _hanging(segments: Collection[str]) -> list[mink.Task]:
-    """Tasks that let arms hang, whichever way the trunk leans, of which nothing is seen."""
-    return [
+    """Tasks that let arms hang and keep a head upright of which nothing is seen.
+
+    They do so whichever way the trunk leans.
+    """
+    arms: list[mink.Task] = [
         UprightTask(f"{side}_upper_arm", HANGING_COST)
         for side in SIDES
         if not {f"{side}_{name}" for name in ("forearm", "hand")} & set(segments)
     ]
+    head = [] if {"head", "neck"} & set(segments) else [UprightTask("head", HEAD_COST)]
+    return [*arms, *head]
+
+
+def _above_ground(human: Human, ground_m: float | None) -> list[mink.Task]:
+    """A task that keeps heels and toes out of the ground, where its height is known."""
+    if ground_m is None:
+        return []
+    places = [f"{side}_{place}" for side in SIDES for place in SOLE_PLACES]
+    standing = human.sites(human.posture()[None], places)
+    low = {name: ground_m + SOLE_SHARE * float(one[0][0, 2]) for name, one in standing.items()}
+    return [GroundTask(human.model, low, GROUND_COST)]
 
 
 def _roams(targets: Float[np.ndarray, "frames points 3"]) -> bool:

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
 from capar.body.human import Human
-from capar.body.point_following import Guidance, SkeletonError, followed
+from capar.body.point_following import Guidance, SkeletonError, followed, segment_of
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
 from extractors.readers.body_names.body_names import SIDES
 from extractors.readers.body_names.conventions import Convention
@@ -49,6 +49,9 @@ class SkeletonFit:
     motion: Float[np.ndarray, "frames posture"]
     residuals_m: Mapping[str, Float[np.ndarray, "frames"]]
     """By foreign name, distance of the body's place from the point [m]; NaN if lost."""
+
+    segments: Mapping[str, str]
+    """By foreign name, the segment that its place is on."""
 
     derived: bool
     """Whether orientations of segments come of points only, so that turns about the long axes of
@@ -131,6 +134,16 @@ def with_trunk(measures: Measures, share: float) -> Measures:
         return measures
 
 
+def with_head(measures: Measures, higher_m: float) -> Measures:
+    """The same body with a neck longer by so much [m]; the same if no body has such a neck."""
+    raised = {name: measures[name] + higher_m for name in UPPER_HEIGHTS}
+    given = {name: measures[name] for name in measures.given} | raised
+    try:
+        return estimate_measures(sex=measures.sex, age=measures.age, given=given)
+    except MeasuresError:
+        return measures
+
+
 def with_ankles(
     measures: Measures,
     points: Mapping[str, Float[np.ndarray, "frames 3"]],
@@ -195,4 +208,5 @@ def fit_skeleton(
     residuals = {
         name: np.linalg.norm(where[place][0] - spots[name], axis=1) for name, place in named.items()
     }
-    return SkeletonFit(body, motion, residuals, derived=True)
+    segments = {name: segment_of(body, place) for name, place in named.items()}
+    return SkeletonFit(body, motion, residuals, segments, derived=True)

@@ -1,13 +1,15 @@
 """Whole bodies in a capture's files: joints and markers that its sensors are only a part of."""
 
 import time
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
 
 from capar.body.capture_fitting import fit_capture
+from capar.body.fit_remarks import recorded_spine, remarks
 from capar.body.fitting import Fit
 from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import LEAST_EXACT, fit_markers
@@ -43,6 +45,12 @@ class Places:
 
     names: dict[str, BodyName]
 
+    stated: Mapping[str, str] = field(default_factory=dict)
+    """Places on the body that the capture itself states."""
+
+    faces: Float[np.ndarray, "frames 3"] | None = None
+    """Where the face looks, as a direction in the world [1]; None where it is not known."""
+
 
 def whole_body(place: str | Path) -> Places | None:
     """The joints or markers of the body that most names of a capture's files are of.
@@ -61,7 +69,9 @@ def whole_body(place: str | Path) -> Places | None:
         names = {name: each for name, each in found.items() if each.subject == first}
         times = file.marker_times if file.markers else next(iter(file.bodies.values())).times
         if _places_it(names, set(file.markers)) and (best is None or len(names) > len(best.names)):
-            best = Places(times - start_s, {name: points[name] for name in names}, names)
+            stated = {name: place for name, place in file.places.items() if name in points}
+            kept = {name: points[name] for name in {**names, **stated}}
+            best = Places(times - start_s, kept, names, stated)
     return best
 
 
@@ -92,7 +102,42 @@ def fit_body(place: str | Path, capture: Capture) -> Fit:
         CaparError: Neither joints, markers nor sensors place a body.
     """
     found = whole_body(place)
-    return fit_capture(capture) if found is None else fit_places(found, ground_m=ground(capture))
+    if found is None:
+        return fit_capture(capture)
+    seen = replace(found, faces=_faces(capture, found.times))
+    return fit_places(seen, ground_m=ground(capture))
+
+
+def _faces(
+    capture: Capture, times: Float[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames 3"] | None:
+    """Where the performer's face looks at times, by the sensor of the head; None without one."""
+    for sensor in capture.sensors:
+        if sensor.end_effector == "head" and capture.agent_of(sensor) == capture.agent.name:
+            nearest = np.abs(capture.times[None] - times[:, None]).argmin(axis=1)
+            out = np.full((len(times), 3), np.nan)
+            turns = sensor.stream.orientations[nearest]
+            known = np.isfinite(turns).all(axis=1)
+            ahead = np.array(sensor.gaze) / np.linalg.norm(sensor.gaze)
+            out[known] = geometry.rotations(turns[known]).apply(ahead)
+            return out
+    return None
+
+
+def remarks_on(place: str | Path, capture: Capture, made: Fit) -> list[str]:
+    """What a reader of the fitted body's pictures asks about.
+
+    Args:
+        place: Where the capture is described.
+        capture: The same, read.
+        made: The body fitted to it.
+
+    Raises:
+        CaparError: As of ``fit_body``.
+    """
+    found = whole_body(place)
+    spine = [] if found is None else recorded_spine(made, found.points)
+    return [*remarks(made, capture, ground(capture)), *spine]
 
 
 def ground(capture: Capture) -> float | None:
@@ -118,7 +163,9 @@ def fit_places(found: Places, *, ground_m: float | None = None) -> Fit:
     made = _skeleton(found, ground_m)
     seconds = time.perf_counter() - began
     lost = {name: np.isnan(found.points[name]).any(axis=1) for name in made.residuals_m}
-    return Fit(made.human, found.times, made.motion, lost, made.residuals_m, {}, seconds)
+    return Fit(
+        made.human, found.times, made.motion, lost, made.residuals_m, {}, seconds, made.segments
+    )
 
 
 def _skeleton(found: Places, ground_m: float | None) -> SkeletonFit:
@@ -126,7 +173,13 @@ def _skeleton(found: Places, ground_m: float | None) -> SkeletonFit:
     titles = {each.title for each in conventions().values() if each.markers}
     if not any(each.by in titles for each in found.names.values()):
         try:
-            return fit_joints(found.points, recognise(found.names), ground_m=ground_m)
+            return fit_joints(
+                found.points,
+                recognise(found.names),
+                ground_m=ground_m,
+                stated=found.stated,
+                faces=found.faces,
+            )
         except ConventionError:
             pass
     return fit_markers(found.points, found.names, ground_m=ground_m).skeleton

@@ -79,6 +79,14 @@ def observe(
             show_default=False,
         ),
     ] = None,
+    fit: Annotated[
+        bool,
+        typer.Option(
+            "--fit",
+            help="Fit a human body first: its head and feet can be touched, and hands without a "
+            "shape have its surface.",
+        ),
+    ] = False,
     wait: Wait = 0.0,
     new: New = False,
     live: Live = False,
@@ -105,8 +113,10 @@ def observe(
     if live or device:
         from capar.cli._live import LiveOptions, observe_live
 
-        if plot or set_ or on_unknown:
-            raise CaparError("--plot, --set and --on-unknown are not for --live; use its recording")
+        if plot or set_ or on_unknown or fit:
+            raise CaparError(
+                "--plot, --set, --fit and --on-unknown are not for --live; use its recording"
+            )
         options = LiveOptions(
             capture,
             device,
@@ -132,6 +142,11 @@ def observe(
 
     base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
+    if fit:
+        from capar.body.body_parts import with_body_parts
+        from capar.body.whole_bodies import fit_body
+
+        trial = with_body_parts(trial, fit_body(capture, trial))
 
     # A mistake in the capture is reported before these are loaded, which takes longer.
     from capar.pipelines.observation import observe_measured

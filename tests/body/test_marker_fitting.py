@@ -104,12 +104,26 @@ def test_recorded_walks_are_followed_and_told_by_marker(
 
 
 @pytest.mark.usefixtures("recordings")
+def test_clusters_with_few_joints_between_them_are_followed_by_their_markers(
+    tmp_path: Path,
+) -> None:
+    recording = read_recording(DATA / "foreign_files" / "propulsion.c3d")
+    (tmp_path / "capture.toml").write_text(draft([recording], tmp_path, "propulsion"))
+    made = fit_body(tmp_path, read_capture(tmp_path))
+    assert len(made.residuals_m) > 25
+    assert float(np.nanmedian(np.concatenate([*made.residuals_m.values()]))) < 0.02
+
+
+@pytest.mark.usefixtures("recordings")
 def test_a_body_of_poses_is_followed_from_its_capture() -> None:
     found = whole_body(EXAMPLES / "omomo_intermimic:sub3_largebox_003")
     assert found is not None
     short = {name: each[:60] for name, each in found.points.items()}
     made = fit_places(type(found)(found.times[:60], short, found.names))
-    assert float(np.nanmedian([*made.residuals_m.values()])) < 0.012
+    kinked = {"Pelvis", "Torso", "Spine", "Chest"}  # by up to 80 degrees at one joint
+    assert kinked < set(made.residuals_m)
+    rest = [each for name, each in made.residuals_m.items() if name not in kinked]
+    assert float(np.nanmedian(rest)) < 0.012
     assert made.motion.shape[0] == 60
 
 
@@ -135,6 +149,7 @@ def test_a_fit_is_exported_and_its_bvh_reads_back(walking: Path) -> None:
     asked = CliRunner().invoke(app, ["fit", str(walking), "--json", *options])
     assert asked.exit_code == 0, asked.output
     assert all(path.stat().st_size for path in files.values())
+    assert any("floor is assumed" in remark for remark in json.loads(asked.stdout)["remarks"])
     joints = read_recording(files["bvh"]).bodies
     markers = read_recording(walking / "walk.trc").markers
     ankles = (markers["RANK"][30], markers["LANK"][30])

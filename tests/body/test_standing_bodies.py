@@ -13,7 +13,7 @@ from virtual_bodies.moving import swinging
 
 from capar.body.anthropometry import ready_made
 from capar.body.fitting import Fit
-from capar.body.flat_feet import UprightTask, standing_flat
+from capar.body.flat_feet import GroundTask, UprightTask, standing_flat
 from capar.body.human import Human
 from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import fit_markers
@@ -76,6 +76,35 @@ def test_the_jacobian_of_an_upright_segment_is_that_of_finite_differences() -> N
         configuration.integrate_inplace(step, 1.0)
         change = (task.compute_error(configuration) - error) / 1e-6
         np.testing.assert_allclose(change, jacobian[:, dof], atol=1e-5)
+
+
+def test_places_are_kept_out_of_the_ground_and_are_free_above_it() -> None:
+    human, motion = swaying()
+    task = GroundTask(human.model, {"left_heel": 0.1, "right_toe_tip": -0.5}, 1.0)
+    configuration = mink.Configuration(human.model)
+    configuration.update(motion[-1])
+    error, jacobian = task.compute_error(configuration), task.compute_jacobian(configuration)
+    heel = human.sites(motion[-1:], ["left_heel"])["left_heel"][0][0, 2]
+    assert error == pytest.approx([heel - 0.1, 0.0])
+    assert not jacobian[1].any()
+    for dof in range(human.model.nv):
+        step = np.zeros(human.model.nv)
+        step[dof] = 1e-6
+        configuration.update(motion[-1])
+        configuration.integrate_inplace(step, 1.0)
+        change = (task.compute_error(configuration) - error) / 1e-6
+        np.testing.assert_allclose(change, jacobian[:, dof], atol=1e-5)
+
+
+def test_toes_and_heels_do_not_go_into_the_ground() -> None:
+    human, motion = swaying()
+    known = convention("smpl").points
+    where = human.sites(motion, set(known.values()))
+    points = {name: where[place][0].copy() for name, place in known.items()}
+    points["L_Toe"][30:40, 2] -= 0.12
+    made = fit_joints(points, convention("smpl"), ground_m=0.0)
+    tip = made.human.sites(made.motion, ["left_toe_tip"])["left_toe_tip"][0]
+    assert tip[:, 2].min() > 0.0
 
 
 def test_a_foot_stands_flat_while_it_is_on_the_ground_and_not_while_it_swings() -> None:

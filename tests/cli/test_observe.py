@@ -212,3 +212,19 @@ def test_a_mistyped_command_or_place_is_reported_before_anything_is_computed(
     printed = capsys.readouterr()
     assert re.search(message, printed.err)
     assert not printed.out
+
+
+def test_a_fitted_body_changes_nothing_where_its_parts_are_stated(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(monkeypatch, "observe", DEMO) == 0
+    plain = capsys.readouterr().out
+    assert run(monkeypatch, "observe", DEMO, "--fit") == 0
+    assert capsys.readouterr().out == plain
+
+
+def test_a_body_is_not_fitted_live(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(monkeypatch, "observe", DEMO, "--live", "--fit") != 0
+    assert "--fit" in capsys.readouterr().err

@@ -32,7 +32,8 @@ LOWEST_SHARE = 0.05
 def with_mannequin(shown: Stage, fit: Fit) -> Stage:
     """The same stage with a fitted body on it, at the frames of the fit nearest to those shown.
 
-    Where the recording has no floor, a ground under the lowest soles is added and named as assumed.
+    Segments of which nothing was recorded are faint. Where the recording has no floor, a ground
+    under the lowest soles is added and named as assumed.
     """
     nearest = np.abs(shown.times[:, None] - fit.times[None]).argmin(axis=1)
     poses = poses_of(fit.human, fit.motion[nearest])
@@ -41,14 +42,15 @@ def with_mannequin(shown: Stage, fit: Fit) -> Stage:
     segments = skeleton(fit.human.measures)
     for form in forms(fit.human.measures, segments):
         parts.setdefault(form.body, []).append(form_mesh(form))
-    bodies = []
+    bodies, unseen = [], set(fit.unrecorded)
     for number, name in enumerate(poses.names):
         if name in parts:
             mesh = joined(parts[name])
             shape = Shape(np.array(mesh.vertices), np.array(mesh.faces), description="mannequin")
             places = np.where(known[:, None], poses.positions[:, number], np.nan)
             at = places, poses.orientations[:, number]
-            bodies.append(StagedBody(f"body_{name}", "body", shape, *at))
+            one = StagedBody(f"body_{name}", "body", shape, *at, faint=name in unseen)
+            bodies.append(one)
     if not any(is_ground(body) for body in shown.bodies):
         bodies.append(_ground(bodies))
     return replace(shown, bodies=(*shown.bodies, *bodies))
@@ -73,7 +75,7 @@ def _ground(bodies: Sequence[StagedBody]) -> StagedBody:
     frames = len(bodies[0].positions)
     middle = np.array([*(low + high) / 2.0, top - THICK_M / 2.0])
     turns = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))
-    return StagedBody(GROUND, "fixed", shape, np.tile(middle, (frames, 1)), turns)
+    return StagedBody(GROUND, "fixed", shape, np.tile(middle, (frames, 1)), turns, faint=True)
 
 
 def _lowest(body: StagedBody) -> Float[np.ndarray, "frames"]:

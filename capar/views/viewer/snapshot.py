@@ -9,7 +9,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.model.errors import FileError
-from capar.views.viewer.stage import Stage, StagedBody, world_bounds
+from capar.views.viewer.stage import Stage, StagedBody, is_ground, world_bounds
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,8 +18,8 @@ EYE = np.array([0.9, -1.1, 0.7])
 """From where it is seen, in the world."""
 
 SUN = np.array([0.3, -0.5, 0.8])
-EDGE_M = 0.08
-"""Larger triangles of what stands fixed are divided, so that each is before or behind a thing."""
+EDGE_M = 0.04
+"""Larger triangles are divided, so that each is before or behind a thing [m]."""
 
 MOST_FACES = 6000
 """A surface of more is drawn as its convex hull [1]: leaving out faces would make holes."""
@@ -27,6 +27,9 @@ MOST_FACES = 6000
 SIZE_IN, DPI = (9.0, 7.0), 130
 PAINTED = 0.94
 """Share of the picture's height below its title."""
+
+FAINT = 0.3
+"""How opaque what is assumed or was not recorded is drawn [1]; floors are drawn as they are."""
 
 MARGIN = 1.08
 LEAST_M = 0.3
@@ -73,19 +76,21 @@ def _paint(axes: "Axes", shown: Stage, frame: int) -> None:
 
     across, up, towards = _view()
     known = [body for body in shown.bodies if not np.isnan(body.positions[frame, 0])]
-    patches, shades, depths = [np.zeros((0, 3, 2))], [np.zeros((0, 3))], [np.zeros(0)]
+    patches, shades, depths = [np.zeros((0, 3, 2))], [np.zeros((0, 4))], [np.zeros(0)]
     for body in known:
         triangles = _triangles(body, frame)
         patches.append(np.stack([triangles @ across, triangles @ up], axis=2))
         depths.append(triangles.mean(axis=1) @ towards)
-        shades.append(_shaded(body.colour, triangles))
+        opaque = FAINT if body.faint and not is_ground(body) else 1.0
+        shade = _shaded(body.colour, triangles)
+        shades.append(np.column_stack([shade, np.full(len(shade), opaque)]))
     order = np.argsort(np.concatenate(depths), kind="stable")
     colours = np.concatenate(shades)[order]
     axes.add_collection(
         PolyCollection(
             list(np.concatenate(patches)[order]),
             facecolors=colours,
-            edgecolors=colours,
+            edgecolors=np.where(colours[:, 3:] < 1.0, 0.0, colours),
             linewidths=0.2,
         )
     )
@@ -95,7 +100,7 @@ def _paint(axes: "Axes", shown: Stage, frame: int) -> None:
             continue
         place = body.positions[frame]
         axes.annotate(
-            body.name.replace("_", " "), (place @ across, place @ up), fontsize=7, ha="center",
+            body.label, (place @ across, place @ up), fontsize=7, ha="center",
             bbox={"boxstyle": "round,pad=0.15", "facecolor": "#ffffffb0", "linewidth": 0},
         )  # fmt: skip
     _frame(axes, shown, across, up)
@@ -119,10 +124,9 @@ def _triangles(body: StagedBody, frame: int) -> Float[np.ndarray, "triangles 3 3
         if len(faces) > MOST_FACES:
             hull = trimesh.Trimesh(vertices, faces, process=False).convex_hull
             vertices, faces = np.asarray(hull.vertices), np.asarray(hull.faces)
-    if body.kind == "fixed":
-        edge_m = max(EDGE_M, float(np.ptp(vertices, axis=0).max()) / 40.0)
-        divided = trimesh.remesh.subdivide_to_size(vertices, faces, edge_m)  # type: ignore[no-untyped-call]
-        vertices, faces = divided
+    edge_m = max(EDGE_M, float(np.ptp(vertices, axis=0).max()) / 40.0)
+    divided = trimesh.remesh.subdivide_to_size(vertices, faces, edge_m)  # type: ignore[no-untyped-call]
+    vertices, faces = divided
     turn = Rotation.from_quat(body.orientations[frame], scalar_first=True)
     return np.asarray((turn.apply(vertices) + body.positions[frame])[faces])
 

@@ -40,6 +40,16 @@ class StagedBody:
     orientations: Float[np.ndarray, "frames 4"]
     """Unit quaternions, scalar first; NaN where it was lost."""
 
+    faint: bool = False
+    """Whether it is drawn translucent: it is assumed, or nothing of it was recorded."""
+
+    @property
+    def label(self) -> str:
+        """Its name in words, and whether it is assumed."""
+        words = self.name.replace("_", " ")
+        told = self.faint and self.kind != "body" and "assumed" not in words
+        return f"{words} (assumed)" if told else words
+
     @property
     def colour(self) -> str:
         """As a hexadecimal number after ``#``."""
@@ -78,7 +88,8 @@ def shown_frames(capture: Capture) -> Int[np.ndarray, "frames"]:
 def _staged(body: Sensor | TagObject, frames: Int[np.ndarray, "frames"]) -> StagedBody:
     stream = body.stream
     at = stream.positions[frames], stream.orientations[frames]
-    return StagedBody(body.name, _kind(body), body.shape, *at)
+    faint = isinstance(body, TagObject) and bool(body.assumed)
+    return StagedBody(body.name, _kind(body), body.shape, *at, faint=faint)
 
 
 def _kind(body: Sensor | TagObject) -> str:

@@ -28,12 +28,12 @@ for (const body of data.bodies) {
   axes.visible = false;
   const name = document.createElement("div");
   name.className = "name";
-  name.textContent = body.name.replaceAll("_", " ");
+  name.textContent = body.label;
   if (body.kind !== "body") place.append(name);
   group.add(axes);
   scene.add(group);
   bodies.set(body.name, {
-    group, axes, name, kind: body.kind, colour: body.colour, surface: null, reach: 0,
+    group, axes, name, kind: body.kind, colour: body.colour, faint: body.faint, surface: null, reach: 0,
     positions: floats(body.positions), orientations: floats(body.orientations),
   });
 }
@@ -211,7 +211,8 @@ new THREE.GLTFLoader().parse(bytes(element("surfaces").textContent), "", (loaded
     const found = loaded.scene.getObjectByName(name);
     const material = new THREE.MeshStandardMaterial({
       color: body.colour, side: THREE.DoubleSide, flatShading: true, roughness: 0.8,
-      transparent: body.kind === "fixed", opacity: body.kind === "fixed" ? 0.6 : 1,
+      transparent: body.faint || body.kind === "fixed",
+      opacity: body.faint ? 0.35 : body.kind === "fixed" ? 0.6 : 1,
     });
     body.surface = found
       ? new THREE.Mesh((found.isMesh ? found : found.children[0]).geometry, material)

@@ -52,6 +52,8 @@ def _data(shown: Stage, observation: Observation | None) -> dict[str, Any]:
                 "name": body.name,
                 "kind": body.kind,
                 "colour": body.colour,
+                "label": body.label,
+                "faint": body.faint,
                 "positions": _packed(body.positions),
                 "orientations": _packed(body.orientations),
             }

@@ -23,6 +23,7 @@ from capar.model.capture import (
 from capar.model.errors import CaptureError, FileError
 from capar.model.geometry import runs
 from extractors.contact.own_hands import with_meeting_hands
+from extractors.readers.body_names.body_names import parts, without_side
 from extractors.readers.bundle.declared import Declared, declared
 from extractors.readers.bundle.grouping import grouped
 from extractors.readers.bundle.location import find_place, open_bundle, takes
@@ -160,12 +161,13 @@ def _read_file(document: "CaptureFile", name: str) -> WorldRecording:
     recording = replace(recording, source=replace(recording.source, path=entry.path))
     if entry.parents:
         recording = replace(recording, parents=_parents(entry, recording.names))
-    return to_world(
+    world = to_world(
         recording,
         unit_m=_unit_m(document, entry, recording.unit_m),
         up=_up(document, entry, recording.up),
         left_handed=(entry.handedness or document.handedness) == "left",
     )
+    return replace(world, places=_places(entry, recording.names)) if entry.places else world
 
 
 def _entry(document: "CaptureFile", name: str) -> "MotionFile":
@@ -215,6 +217,15 @@ def _parents(entry: "MotionFile", known: list[str]) -> dict[str, str]:
             if name not in known:
                 raise entry.unknown("body", name, known, f"parents.{joint}")
     return entry.parents
+
+
+def _places(entry: "MotionFile", known: list[str]) -> dict[str, str]:
+    for name, place in entry.places.items():
+        if name not in known:
+            raise entry.unknown("body", name, known, f"places.{name}")
+        if without_side(place) not in parts():
+            raise entry.unknown("place on the body", place, sorted(parts()), f"places.{name}")
+    return entry.places
 
 
 def _pivots(document: "CaptureFile", group: Declared) -> list[PivotContact]:

@@ -1,7 +1,7 @@
 """From a file's unit and axes to metres in a right-handed world whose z axis points up."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float
@@ -34,6 +34,9 @@ class WorldRecording:
     notices: tuple[Notice, ...]
     conventions: Conventions
     """By which it was brought there."""
+
+    places: Mapping[str, str] = field(default_factory=dict)
+    """Place on the body of joints and markers, where the capture states it."""
 
     @property
     def mirrored(self) -> bool:

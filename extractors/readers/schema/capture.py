@@ -70,6 +70,10 @@ class MotionFile(Entry):
     parents: Annotated[
         dict[str, str], key("Parent of each joint, where the file holds no skeleton.")
     ] = {}
+    places: Annotated[
+        dict[str, str],
+        key("Place on the body of joints or markers whose names do not tell it, or tell another."),
+    ] = {}
     time: Annotated[str | None, key("CSV, NPZ: column or array of times [s].")] = None
     rate_hz: Annotated[
         Positive | None,

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from capar.model.errors import CaptureError, FileError, UnknownNameError
-from extractors.readers.bundle.capture_toml import read_capture
+from extractors.readers.bundle.capture_toml import files_of, read_capture
 from extractors.readers.bundle.mesh import open_edges
 from extractors.readers.registry import read_recording
 
@@ -169,3 +169,27 @@ def test_a_bone_that_changes_its_length_is_no_bone(tmp_path: Path, apart_m: floa
     if apart_m:
         assert told["bone-stretches"].bodies == ("right_hand", "wrist", "finger")
         assert told["bone-stretches"]["longest_m"] == pytest.approx(0.29)
+
+
+@pytest.mark.parametrize(
+    ("places", "wrong"),
+    [
+        ('finger = "left_fingers"', ""),
+        ('fingre = "left_fingers"', "no body 'fingre'.*'finger'"),
+        ('finger = "left_fingre"', "no place on the body 'left_fingre'"),
+    ],
+)
+def test_a_capture_states_places_on_the_body_of_names_that_do_not_tell_them(
+    tmp_path: Path, places: str, wrong: str
+) -> None:
+    turns = np.tile([1.0, 0.0, 0.0, 0.0], (30, 2, 1))
+    names, spots = np.array(["wrist", "finger"]), np.zeros((30, 2, 3))
+    spots[:, 1, 0] = 0.1
+    np.savez(tmp_path / "m.npz", names=names, pos=spots, quat=turns, fps=30.0)
+    text = SKELETON.replace("[[sensor]]", f"[files.motion.places]\n{places}\n[[sensor]]")
+    (tmp_path / "capture.toml").write_text(text)
+    if wrong:
+        with pytest.raises(UnknownNameError, match=wrong):
+            files_of(tmp_path)
+    else:
+        assert files_of(tmp_path)[0]["motion"].places == {"finger": "left_fingers"}

@@ -1,0 +1,236 @@
+"""What readers of a fitted body's pictures ask about, said from the fit itself."""
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+
+import mujoco
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+from capar.body.fitting import Fit
+from capar.model.capture import Capture
+from extractors.readers.body_names.body_names import SIDES, without_side
+
+FAR_M = 0.03
+"""Residuals larger than this are reported [m]."""
+
+MOST_PLACES = 10
+"""So many places with such residuals are named at most."""
+
+BENT = np.radians(15.0)
+"""A knee that is never straighter than this is reported [rad]."""
+
+SPLAYED = np.radians(40.0)
+"""Feet that point farther apart than this in the median are reported [rad]."""
+
+FLOATING_M = 0.03
+"""A lower sole that is higher above the floor than this in the median is reported [m]."""
+
+ARCHED, BOWED = np.radians(-20.0), np.radians(60.0)
+"""A back that is bent backwards or forwards by more than this is reported [rad]."""
+
+INSIDE_M, NEAR_M = 0.01, 0.02
+"""A hand that is deeper in the thigh or trunk than the one, or as near as the other, is reported
+[m]."""
+
+SAMPLES = 60
+"""Frames in which hands are looked for in the body."""
+
+LIMBS = {"arm": "upper_arm", "forearm": "forearm", "hand": "hand", "leg": "thigh", "foot": "foot"}
+"""Parts that may be unrecorded, by their segment; a part of one that is named is not named."""
+
+SPINE = ("lumbar_lower", "lumbar_upper", "thorax_lower", "thorax_upper")
+BODY = ("right_thigh", "left_thigh", "pelvis", *SPINE)
+
+Points = Mapping[str, Float[np.ndarray, "frames 3"]]
+
+
+def remarks(made: Fit, capture: Capture, floor_m: float | None = None) -> list[str]:
+    """Sentences on what is far from its place, assumed, not recorded or of unusual posture.
+
+    Args:
+        made: The body fitted to the capture.
+        capture: What it was fitted to.
+        floor_m: Height of its floor [m]; None without one.
+    """
+    parts = (_far(made), _unrecorded(made), _assumed(capture, floor_m), _legs(made, floor_m))
+    return [line for part in (*parts, _back(made), _inside(made)) for line in part]
+
+
+def _far(made: Fit) -> Iterator[str]:
+    """Places whose distance from what is followed is large, the worst first."""
+    known = {n: each for n, each in made.residuals_m.items() if np.isfinite(each).any()}
+    peaks = {name: float(np.nanmax(each)) for name, each in known.items()}
+    worst = sorted((name for name in peaks if peaks[name] > FAR_M), key=lambda name: -peaks[name])
+    for name in worst[:MOST_PLACES]:
+        at = made.times[int(np.nanargmax(known[name]))]
+        share = float(np.mean(known[name] > FAR_M))
+        yield (
+            f"{name} is up to {1e3 * peaks[name]:.0f} mm from its place on the body, at {at:.2f} s;"
+            f" farther than {1e3 * FAR_M:.0f} mm for {share:.0%} of the time"
+        )
+    if len(worst) > MOST_PLACES:
+        more = len(worst) - MOST_PLACES
+        yield f"{more} more places are sometimes farther than {1e3 * FAR_M:.0f} mm from theirs"
+
+
+def _unrecorded(made: Fit) -> Iterator[str]:
+    """Limbs of which nothing is followed."""
+    unseen, named = set(made.unrecorded), []
+    for side in SIDES:
+        above = ""
+        for part, segment in LIMBS.items():
+            if f"{side}_{segment}" in unseen and not (above and part != "leg"):
+                named.append(f"{side} {part}")
+                above = part
+            if part == "hand":
+                above = ""
+            if part == "leg":
+                above = part if f"{side}_{segment}" in unseen else ""
+    named += [name for name in ("head", "pelvis") if name in unseen]
+    if named:
+        yield (
+            f"not recorded, and drawn faint: {', '.join(named)} (arms hang, legs stand, heads are "
+            "upright)"
+        )
+
+
+def _assumed(capture: Capture, floor_m: float | None) -> Iterator[str]:
+    """Things that no recording shows."""
+    for thing in capture.objects:
+        if thing.assumed:
+            yield f"{thing.name} is assumed: {thing.assumed}"
+    if floor_m is None:
+        yield "the recording has no floor; views draw one under the lowest soles, as assumed"
+
+
+def _legs(made: Fit, floor_m: float | None) -> Iterator[str]:
+    """Knees that never straighten, feet that point apart, soles that float."""
+    unseen = set(made.unrecorded)
+    for side in SIDES:
+        bend = made.motion[:, made.human.index(f"{side}_knee_flexion")]
+        if f"{side}_shank" not in unseen and bend.min() > BENT:
+            yield (
+                f"the {side} knee is never straighter than {np.degrees(bend.min()):.0f} degrees, as"
+                " hip, knee and ankle are recorded"
+            )
+    feet = [f"{side}_foot" for side in SIDES]
+    if unseen & set(feet):
+        return
+    where = made.human.sites(made.motion, [*feet, *(f"{side}_sole" for side in SIDES)])
+    ahead = [_ahead(where[name][1]) for name in feet]
+    between = np.abs(np.angle(np.exp(1j * (ahead[0] - ahead[1]))))
+    if np.median(between) > SPLAYED:
+        toed = {f"{side}_toes" for side in SIDES} <= set(made.segments.values())
+        yield (
+            f"the feet point {np.degrees(np.median(between)):.0f} degrees apart in the median"
+            f"{', as ankles and toes are recorded' if toed else ''}"
+        )
+    lower = np.minimum(*(where[f"{side}_sole"][0][:, 2] for side in SIDES))
+    if floor_m is not None and np.median(lower) - floor_m > FLOATING_M:
+        yield (
+            f"the lower sole is {1e3 * (np.median(lower) - floor_m):.0f} mm above the floor in the"
+            " median: so high are the recorded ankles"
+        )
+
+
+def _ahead(turns: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames"]:
+    """Where a segment's x axis points in the horizontal plane [rad]."""
+    axes = Rotation.from_quat(turns, scalar_first=True).apply([1.0, 0.0, 0.0])
+    return np.asarray(np.arctan2(axes[:, 1], axes[:, 0]))
+
+
+def _back(made: Fit) -> Iterator[str]:
+    """How far the back is bent, where that is far."""
+    bend = made.motion[:, [made.human.index(f"{name}_flexion") for name in SPINE]].sum(axis=1)
+    least, most = int(np.argmin(bend)), int(np.argmax(bend))
+    if bend[least] < ARCHED:
+        yield (
+            f"the back is arched backwards by up to {-np.degrees(bend[least]):.0f} degrees, at "
+            f"{made.times[least]:.2f} s"
+        )
+    if bend[most] > BOWED:
+        yield (
+            f"the back is bent forwards by up to {np.degrees(bend[most]):.0f} degrees, at "
+            f"{made.times[most]:.2f} s"
+        )
+
+
+def recorded_spine(made: Fit, points: Points) -> list[str]:
+    """What is said of a recorded spine that bends more than this body's can.
+
+    Args:
+        made: The body fitted to it.
+        points: What was followed, in the world [m]; NaN where lost.
+    """
+    order = ("pelvis", *SPINE, "neck")
+    on = {part: [name for name, own in made.segments.items() if own == part] for part in order}
+    chain = [names[0] for names in on.values() if names]
+    if len(chain) < 3 or max(map(len, on.values())) > 1:  # several on a segment: markers
+        return []
+    links = [points[below] - points[above] for above, below in pairwise(chain)]
+    own = max(np.degrees(made.human.ranges[made.human.index(f"{n}_flexion") - 7, 1]) for n in SPINE)
+    out = []
+    for name, (first, second) in zip(chain[1:], pairwise(links), strict=False):
+        turn = np.degrees(_angle(first, second))
+        if np.nanmax(turn) > 2.0 * own:
+            at = made.times[int(np.nanargmax(turn))]
+            out.append(
+                f"the recorded spine bends by up to {np.nanmax(turn):.0f} degrees at {name}, at "
+                f"{at:.2f} s; no joint of this body's spine bends by more than {own:.0f}"
+            )
+    return out
+
+
+def _angle(
+    first: Float[np.ndarray, "frames 3"], second: Float[np.ndarray, "frames 3"]
+) -> Float[np.ndarray, "frames"]:
+    """The angle between two directions [rad]."""
+    lengths = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
+    return np.asarray(np.arccos(np.clip((first * second).sum(axis=1) / lengths, -1.0, 1.0)))
+
+
+def _inside(made: Fit) -> Iterator[str]:
+    """Hands that are in the thigh or trunk, or nearly."""
+    model, data = made.human.model, mujoco.MjData(made.human.model)
+    frames = np.unique(np.linspace(0, len(made.times) - 1, SAMPLES).round().astype(int))
+    unseen = set(made.unrecorded)
+    for side in SIDES:
+        if f"{side}_hand" in unseen:
+            continue
+        hand, deepest = _forms(made, (f"{side}_hand", f"{side}_fingers")), (NEAR_M, 0.0, "")
+        for frame in frames:
+            data.qpos[:] = made.motion[frame]
+            mujoco.mj_kinematics(model, data)
+            for form in _forms(made, BODY):
+                for own in hand:
+                    apart = mujoco.mj_geomDistance(model, data, own, form, 0.05, None)
+                    segment = model.body(model.geom_bodyid[form]).name
+                    deepest = min(deepest, (apart, float(made.times[frame]), segment))
+        depth, at, segment = deepest
+        if depth < -INSIDE_M:
+            yield (
+                f"the {side} hand is up to {-1e3 * depth:.0f} mm inside the {_words(segment)}, at "
+                f"{at:.2f} s: limbs of this body are as thick as usual, the recording's are points"
+            )
+        elif segment:
+            yield (
+                f"the {side} hand comes as near as {max(1e3 * depth, 0.0):.0f} mm to the "
+                f"{_words(segment)}, at {at:.2f} s, and is not inside of it"
+            )
+
+
+def _forms(made: Fit, segments: tuple[str, ...]) -> list[int]:
+    """Numbers of the surfaces of segments."""
+    model = made.human.model
+    return [
+        number
+        for number in range(model.ngeom)
+        if model.body(model.geom_bodyid[number]).name in segments
+    ]
+
+
+def _words(segment: str) -> str:
+    trunk = without_side(segment) in SPINE
+    return "trunk" if trunk else segment.replace("_", " ")

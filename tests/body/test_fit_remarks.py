@@ -1,0 +1,102 @@
+"""What is said of a fit: large residuals, what is not recorded or assumed, unusual postures."""
+
+from dataclasses import replace
+
+import motions
+import numpy as np
+import pytest
+
+from capar.body.anthropometry import ready_made
+from capar.body.fit_remarks import recorded_spine, remarks
+from capar.body.fitting import Fit
+from capar.body.human import Human
+from capar.model.capture import Capture
+from capar.views.viewer.mannequin import with_mannequin
+from capar.views.viewer.stage import stage
+
+CAPTURE = motions.drink_from_mug(motions.WOMAN).capture
+BARE = replace(CAPTURE, objects=())
+WHOLE = {
+    "hips": "pelvis", "chest": "thorax_upper", "skull": "head",
+    **{f"{side} {n}": f"{side}_{n}" for side in ("right", "left") for n in ("hand", "foot")},
+}  # fmt: skip
+
+
+def fitted(segments: dict[str, str], **angles: float) -> Fit:
+    """A woman who stands with some joints bent [rad], followed at places of segments."""
+    human = Human.of(ready_made("woman"))
+    motion = np.tile(human.posture(angles), (len(CAPTURE.times), 1))
+    near = {name: np.full(len(motion), 0.002) for name in segments}
+    return Fit(human, CAPTURE.times, motion, {}, near, {}, 0.0, segments)
+
+
+def told(made: Fit, capture: Capture = BARE, floor_m: float | None = 0.0) -> str:
+    """All remarks as one text."""
+    return "\n".join(remarks(made, capture, floor_m))
+
+
+def test_of_a_body_that_stands_and_is_seen_everywhere_nothing_is_said() -> None:
+    assert told(fitted(WHOLE, right_shoulder_abduction=0.4, left_shoulder_abduction=0.4)) == ""
+
+
+def test_large_residuals_are_said_with_their_peak_its_time_and_their_share() -> None:
+    made = fitted(WHOLE)
+    off = np.full(len(made.times), 0.01)
+    off[-1] = 0.0451
+    far = replace(made, residuals_m={**made.residuals_m, "chest": off})
+    text = told(far)
+    assert "chest is up to 45 mm from its place on the body" in text
+    assert f"at {made.times[-1]:.2f} s" in text
+    assert "hips" not in text
+
+
+def test_limbs_that_are_not_recorded_are_named_and_drawn_faint() -> None:
+    segments = {
+        n: each for n, each in WHOLE.items() if n not in ("left hand", "right foot", "skull")
+    }
+    made = fitted(segments | {"right knee": "right_shank"})
+    assert "not recorded, and drawn faint: right foot, left arm, head" in told(made)
+    faint = {body.name for body in with_mannequin(stage(CAPTURE), made).bodies if body.faint}
+    assert {"body_left_upper_arm", "body_left_hand", "body_right_foot", "body_head"} <= faint
+    assert not {"body_right_shank", "body_right_hand", "body_left_foot"} & faint
+
+
+def test_assumed_things_and_a_missing_floor_are_said() -> None:
+    table = replace(CAPTURE.objects[0], assumed="a plate under the mug")
+    text = told(fitted(WHOLE), replace(CAPTURE, objects=(table,)), None)
+    assert f"{table.name} is assumed: a plate under the mug" in text
+    assert "the recording has no floor" in text
+    (shown,) = [
+        body for body in stage(replace(CAPTURE, objects=(table,))).bodies if body.name == table.name
+    ]
+    assert shown.faint
+    assert shown.label == f"{table.name} (assumed)".replace("_", " ")
+
+
+@pytest.mark.parametrize(
+    ("angles", "expected"),
+    [
+        ({"left_knee_flexion": 0.5}, "the left knee is never straighter than 29 degrees"),
+        ({"right_hip_rotation": -0.5, "left_hip_rotation": -0.5}, "feet point 57 degrees apart"),
+        ({"lumbar_upper_flexion": -0.3, "lumbar_lower_flexion": -0.2}, "backwards by up to 29"),
+        ({"right_shoulder_abduction": -0.2}, "right hand is up to"),
+    ],
+)
+def test_unusual_postures_are_said(angles: dict[str, float], expected: str) -> None:
+    assert expected in told(fitted(WHOLE, **angles))
+
+
+def test_soles_above_the_floor_are_said() -> None:
+    assert "the lower sole is 50 mm above the floor" in told(fitted(WHOLE), floor_m=-0.05)
+
+
+def test_a_recorded_spine_that_kinks_is_said_and_a_straight_one_is_not() -> None:
+    made = fitted({"P": "pelvis", "T": "lumbar_lower", "S": "thorax_lower", "N": "neck"})
+    heights = {"P": 0.9, "T": 1.0, "S": 1.2, "N": 1.4}
+    points = {n: np.tile([0.0, 0.0, z], (len(made.times), 1)) for n, z in heights.items()}
+    assert recorded_spine(made, points) == []
+    points["S"][-1], points["N"][-1] = [0.2, 0.0, 1.0], [0.4, 0.0, 1.0]
+    (line,) = recorded_spine(made, points)
+    assert line.startswith("the recorded spine bends by up to 90 degrees at T")
+    markers = replace(made, segments={**made.segments, "T2": "lumbar_lower"})
+    assert recorded_spine(markers, points) == []
