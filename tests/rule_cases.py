@@ -11,6 +11,8 @@ from functools import cache
 from pathlib import Path
 
 from capar.model.facts import Fact, read_fact
+from capar_rules.borders.border_numbers import number_borders
+from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import Profile, profile
 from capar_rules.engine.solver import solve, text_of
 
@@ -39,6 +41,11 @@ class Case:
         """Its facts as values."""
         atoms = solve([], self.facts).atoms
         return tuple(read_fact(text_of((name, *arguments))) for name, arguments in atoms)
+
+    def numbered(self) -> tuple[Fact, ...]:
+        """Its facts as the rules take them, with the numbers of their borders."""
+        facts = steady(self.measured()) if self.profile.steady else self.measured()
+        return (*facts, *number_borders(facts, crossings_only=self.profile.crossings_only))
 
     def __str__(self) -> str:
         """What a report calls it."""

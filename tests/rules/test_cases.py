@@ -10,9 +10,6 @@ from case_batches import solve_batch
 from rule_cases import HERE, Case, all_cases, read_cases
 
 from capar.model.errors import RuleError
-from capar.model.facts import Fact
-from capar_rules.borders.border_numbers import number_borders
-from capar_rules.borders.deflicker import steady
 from capar_rules.engine.solver import rule_file, solve, text_of
 
 SHOWN = HERE / "everything.lp"
@@ -28,16 +25,12 @@ CONCEPTS = sorted(
 _SEGMENT = re.compile(r"seg\(\w+,\d+\)")
 """What an expectation is about; of a segment that is not there nothing could be expected."""
 
-
-def facts_of(case: Case) -> tuple[Fact, ...]:
-    """The facts of a case as the rules take them, with the numbers of their borders."""
-    facts = steady(case.measured()) if case.profile.steady else case.measured()
-    return (*facts, *number_borders(facts, crossings_only=case.profile.crossings_only))
+_NAMED = re.compile(r"\bnamed\((seg\(\w+,\d+\)),")
 
 
 def solved_alone(case: Case) -> set[str]:
     """What the rules make of one case by itself, as of any capture."""
-    answer = solve((*case.profile.files, SHOWN), facts_of(case))
+    answer = solve((*case.profile.files, SHOWN), case.numbered())
     return {text_of((name, *arguments)) for name, arguments in answer.atoms}
 
 
@@ -54,7 +47,7 @@ def solved_together(chosen: frozenset[Case], profile: str) -> Mapping[Case, set[
     """What the rules make of the cases of a profile; nothing if they have no answer together."""
     cases = [case for case in all_cases() if case in chosen and case.profile.name == profile]
     try:
-        found = solve_batch((*cases[0].profile.files, SHOWN), [facts_of(case) for case in cases])
+        found = solve_batch((*cases[0].profile.files, SHOWN), [case.numbered() for case in cases])
     except RuleError:
         return {}
     return dict(zip(cases, found, strict=True))
@@ -71,6 +64,13 @@ def test_a_story_ends_as_expected(case: Case, chosen: frozenset[Case]) -> None:
             assert wanted.removeprefix("not ") not in answer
         else:
             assert wanted in answer
+
+
+@CASES
+def test_no_segment_has_two_names(case: Case, chosen: frozenset[Case]) -> None:
+    answer = solved_together(chosen, case.profile.name).get(case) or solved_alone(case)
+    named = _NAMED.findall(" ".join(sorted(answer)))
+    assert len(named) == len(set(named)), sorted(each for each in answer if "named(" in each)
 
 
 @pytest.mark.parametrize("case", all_cases()[::25], ids=str)
