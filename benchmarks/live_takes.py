@@ -106,10 +106,8 @@ class Agreement:
 
 
 def agreement(capture: Capture) -> Agreement:
-    """Observe a take live and offline."""
+    """Observe a take live, and then offline: what is kept of its shapes would serve live too."""
     known = calibrate(capture)
-    whole = observe_measured(capture, measure(capture, known))
-    offline = {_told(segment) for segment in whole.segments}
     observer = LiveObserver(capture, known)
     events: list[SegmentEvent] = []
     late_s: list[float] = []
@@ -126,6 +124,8 @@ def agreement(capture: Capture) -> Agreement:
     assert result is not None
     events += at_the_end
     spent_s = time.process_time() - start_s
+    whole = observe_measured(capture, measure(capture, known))
+    offline = {_told(segment) for segment in whole.segments}
     first: dict[tuple[str, int], Segment] = {}
     last: dict[tuple[str, int], Segment] = {}
     for event in events:

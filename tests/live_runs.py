@@ -33,6 +33,7 @@ CAPTURES: dict[str, Callable[[], Capture]] = {
     "kicked": lambda: kick(motions.WOMAN).capture,
     "sliding on and on": lambda: repeated(motions.slide_object(motions.WOMAN).capture, 5),
     "whisk and bottle": lambda: trial_of(f"{EXAMPLES}/bimacs_optitrack:take0"),
+    "bowl stirred twice": lambda: trial_of(f"{EXAMPLES}/bimacs_optitrack:take5"),
     "box carried": lambda: trial_of(
         f"{EXAMPLES}/omomo_intermimic/largebox_hands.toml:sub3_largebox_003"
     ),

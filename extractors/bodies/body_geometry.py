@@ -66,7 +66,7 @@ class BodyGeometry:
         """Its outermost points from its middle [m], in its own axes; one point without a shape."""
         if self.shape is None:
             return np.zeros((1, 3))
-        return _once(_CORNERS, self.shape, _corners)
+        return once(_CORNERS, self.shape, _corners)
 
     @cached_property
     def planes(self) -> Float[np.ndarray, "planes 4"] | None:
@@ -77,7 +77,7 @@ class BodyGeometry:
         """
         if self.shape is None:
             return None
-        return _once(_PLANES, self.shape, _planes)
+        return once(_PLANES, self.shape, _planes)
 
     @cached_property
     def boxes(self) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
@@ -126,9 +126,16 @@ _PLANES: WeakKeyDictionary[Shape, Float[np.ndarray, "planes 4"] | None] = WeakKe
 _Found = TypeVar("_Found")
 
 
-def _once(
+def once(
     known: WeakKeyDictionary[Shape, _Found], shape: Shape, find: Callable[[Shape], _Found]
 ) -> _Found:
+    """What is found of a shape: sought once, and kept as long as the shape is.
+
+    Args:
+        known: What was found of shapes before; it is kept there.
+        shape: The surface of a body, in the body's own frame.
+        find: What finds it by nothing but the shape.
+    """
     if shape not in known:
         known[shape] = find(shape)
     return known[shape]

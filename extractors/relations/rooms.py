@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import cast
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import trimesh
@@ -11,7 +12,7 @@ from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from capar.model.capture import Shape
 from capar.model.facts import Fact, Leans, Posture, Shapeless, Solid, Swings, Touching
-from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.body_geometry import BodyGeometry, once
 from extractors.thresholds import Thresholds
 
 RESOLUTION = 40
@@ -28,6 +29,13 @@ VESSELS = frozenset(
     )
 )
 """Kinds of what is hollow, also where its shape is modelled without its hollow, or closed."""
+
+_Pocket = tuple[Float[np.ndarray, "3"], float]
+"""A point in a body's largest hollow, in the body's own frame [m], and how large that is [m]."""
+
+_POCKETS: WeakKeyDictionary[Shape, _Pocket | None] = WeakKeyDictionary()
+_ENCLOSURES: WeakKeyDictionary[Shape, float] = WeakKeyDictionary()
+"""What was found of shapes: live windows ask about the same ones again and again."""
 
 
 def rooms(
@@ -77,10 +85,12 @@ def has_room(shape: Shape, thresholds: Thresholds) -> bool:
     Its surface is far from its convex hull there, and is seen from there in most directions: so a
     bowl has room, and a banana, which is only bent, has none.
     """
-    found = _pocket(shape)
+    found = once(_POCKETS, shape, _pocket)
     if found is None or found[1] <= thresholds.pocket_share * float(shape.size.max()):
         return False
-    return enclosure(shape, found[0]) > thresholds.enclosed_share
+    inside = found[0]
+    enclosed = once(_ENCLOSURES, shape, lambda body: enclosure(body, inside))
+    return enclosed > thresholds.enclosed_share
 
 
 def pocket_m(shape: Shape) -> float:
@@ -89,11 +99,11 @@ def pocket_m(shape: Shape) -> float:
     Of a bowl it is how far the middle of its opening is from its wall or bottom; of a box or a loaf
     nearly zero. It is known to a fortieth of the body's size. Zero for what has no volume.
     """
-    found = _pocket(shape)
+    found = once(_POCKETS, shape, _pocket)
     return 0.0 if found is None else found[1]
 
 
-def _pocket(shape: Shape) -> tuple[Float[np.ndarray, "3"], float] | None:
+def _pocket(shape: Shape) -> _Pocket | None:
     """Where the hull is furthest from the surface, half as far inside of it; and how far [m]."""
     vertices = np.asarray(shape.vertices)
     try:

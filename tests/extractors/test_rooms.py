@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 from measured_bodies import box, cup, shape, stream
+from scipy.spatial import ConvexHull
 
 from capar.model.capture import Shape, TagObject, TagType
 from capar.model.facts import Leans, Posture, Shapeless, Solid
@@ -64,3 +65,17 @@ def test_what_is_tipped_is_asked_about(
     things = {"thing": geometry_of(body, LIMITS)}
     assert list(rooms(things, {"thing": kind}, (), tipped, LIMITS)) == told
     assert list(rooms(things, {"thing": kind}, (), [], LIMITS)) == []
+
+
+def test_room_in_a_shape_is_sought_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    sought: list[int] = []
+
+    def hull(points: np.ndarray) -> ConvexHull:
+        sought.append(len(points))
+        return ConvexHull(points)
+
+    monkeypatch.setattr("extractors.relations.rooms.ConvexHull", hull)
+    mug, crate = cup(0.04, 0.1), box(0.1, 0.2, 0.3)
+    told = [(has_room(mug, LIMITS), has_room(crate, LIMITS)) for _ in range(3)]
+    assert told == [(True, False)] * 3
+    assert sought == [len(mug.vertices), len(crate.vertices)]

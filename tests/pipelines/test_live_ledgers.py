@@ -14,6 +14,7 @@ from measured_bodies import pick_and_place
 
 from capar.model.errors import CaparError, CaptureError, DeviceError, RuleError
 from capar.model.facts import (
+    Displaced,
     Gap,
     Moving,
     Observed,
@@ -291,7 +292,19 @@ def test_what_has_just_begun_to_move_is_undecided_since_it_is_touched() -> None:
     assert nameless(handling) == {"hand": 100}
     assert list(decided_at(handling)) == [411]
     assert undecided(replace(handling, moving=[Moving("cup", 370, 400)])) == {}
-    assert undecided(replace(handling, moving=[Moving("cup", 150, 200), *moves])) == {}
+
+
+def test_what_moves_again_is_undecided_since_it_set_off_until_it_goes_on() -> None:
+    own = Touching("hand", "cup", 100, 400)
+    moves = [Moving("cup", 150, 200), Moving("cup", 390, 400)]
+    ways = [Displaced("cup", 140, 210), Displaced("cup", 365, 400), Displaced("box", 380, 400)]
+    handling = Handling(
+        (own,), moves, {"cup"}, last=400, margin=15, longest=200, fresh=20, displaced=ways
+    )
+    assert undecided(handling) == nameless(handling) == {"hand": 365}
+    assert undecided(replace(handling, displaced=ways[:1])) == {"hand": 390}
+    later = replace(handling, last=410)
+    assert undecided(later) == nameless(later) == {}
 
 
 def test_the_rules_answer_the_same_from_one_process_after_the_other() -> None:

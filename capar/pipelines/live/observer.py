@@ -303,6 +303,7 @@ class LiveObserver:
             longest=self._frames(self.horizons.handing_s),
             lost=lost,
             swings=[fact for fact in facts if isinstance(fact, Swings)],
+            displaced=[fact for fact in facts if isinstance(fact, Displaced)],
             stroke=self._frames(thresholds_of(self.calibration).swing_s),
             fresh=self._frames(self.horizons.fresh_s),
             lingering=self._lingering(measurements, facts, lost, window),

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
-from capar.model.facts import Moving, Swings, Touching
+from capar.model.facts import Displaced, Moving, Swings, Touching
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +35,9 @@ class Handling:
 
     stroke: int = 0
     """How many frames one way of moving to and fro takes at most."""
+
+    displaced: Sequence[Displaced] = ()
+    """The motions from when things truly set off."""
 
     fresh: int = 0
     """Frames for which a motion that has just begun may yet turn out to be none."""
@@ -79,6 +82,7 @@ def undecided(handling: Handling) -> dict[str, int]:
         *_swinging(handling),
         *_lingering(handling),
         *_just_taken(handling),
+        *_just_set_off(handling),
     )
     for body, since in later:
         out[body] = min(since, out.get(body, since))
@@ -100,7 +104,8 @@ def nameless(handling: Handling) -> dict[str, int]:
     for own in _going(handling):
         if _may_be_blow(handling, own):
             out[own.body] = min(own.first, out.get(own.body, own.first))
-    for body, since in (*_lingering(handling), *_just_taken(handling)):
+    later = (*_lingering(handling), *_just_taken(handling), *_just_set_off(handling))
+    for body, since in later:
         out[body] = min(since, out.get(body, since))
     return out
 
@@ -192,6 +197,29 @@ def _just_taken(handling: Handling) -> Iterator[tuple[str, int]]:
         ]
         if moves and min(moves) > handling.last - handling.fresh:
             yield own.body, own.first
+
+
+def _just_set_off(handling: Handling) -> Iterator[tuple[str, int]]:
+    """End-effectors that touch what has just begun to move, and since when it has set off.
+
+    Where the motion turns out to be none, nothing began there.
+    """
+    for own in _going(handling):
+        for move in handling.moving:
+            if move.object == own.other and move.first > handling.last - handling.fresh:
+                yield own.body, _set_off(handling, move)
+
+
+def _set_off(handling: Handling, move: Moving) -> int:
+    """When what is seen to move truly set off."""
+    return max(
+        (
+            way.first
+            for way in handling.displaced
+            if way.object == move.object and way.first <= move.first <= way.last
+        ),
+        default=move.first,
+    )
 
 
 def _lingering(handling: Handling) -> Iterator[tuple[str, int]]:
