@@ -58,7 +58,7 @@ def remarks(made: Fit, capture: Capture, floor_m: float | None = None) -> list[s
         capture: What it was fitted to.
         floor_m: Height of its floor [m]; None without one.
     """
-    parts = (_far(made), _unrecorded(made), _assumed(capture, floor_m), _legs(made, floor_m))
+    parts = (_far(made), _unrecorded(made), _assumed(made, capture, floor_m), _legs(made, floor_m))
     return [line for part in (*parts, _back(made), _inside(made)) for line in part]
 
 
@@ -100,15 +100,17 @@ def _unrecorded(made: Fit) -> Iterator[str]:
         )
 
 
-def _assumed(capture: Capture, floor_m: float | None) -> Iterator[str]:
+def _assumed(made: Fit, capture: Capture, floor_m: float | None) -> Iterator[str]:
     """Things that no recording shows."""
     for thing in capture.objects:
         if thing.assumed:
             yield f"{thing.name} is assumed: {thing.assumed}"
     if floor_m is None:
+        soles = made.human.sites(made.motion, [f"{side}_sole" for side in SIDES])
+        lowest = min(float(np.quantile(where[:, 2], 0.05)) for where, _ in soles.values())
         yield (
-            "the recording has no floor; views draw one under the lowest soles, as assumed: stated "
-            "heights are the recording's own, and not over that floor"
+            "the recording has no floor; views draw one under the lowest soles, as assumed, which "
+            f"are at {lowest:.2f} m; stated heights are the recording's own, and not over it"
         )
 
 
