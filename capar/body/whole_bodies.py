@@ -144,9 +144,9 @@ def remarks_on(place: str | Path, capture: Capture, made: Fit) -> list[str]:
 
 
 def _stretching(capture: Capture) -> list[str]:
-    """The notices of bones that change their length, of which views draw rods."""
+    """The notices of bones that change their length, of which views draw no shape."""
     told = [one.message for one in capture.notices if one.code == "bone-stretches"]
-    return [f"{text}; views draw it as it is recorded" for text in dict.fromkeys(told)]
+    return [f"{text}; views draw its body as a point" for text in dict.fromkeys(told)]
 
 
 def ground(capture: Capture) -> float | None:

@@ -12,6 +12,7 @@ from capar.body.fitting import Fit
 from capar.body.human import Human
 from capar.body.marker_fitting import with_markers
 from capar.model.capture import Capture
+from capar.model.notices import notice
 from capar.views.viewer.mannequin import with_mannequin
 from capar.views.viewer.stage import stage
 from extractors.readers.body_names.body_names import BodyName
@@ -128,3 +129,11 @@ def test_a_marker_far_from_its_landmark_is_said_and_one_on_it_is_not() -> None:
         said.append(stand_off(replace(fitted({"M": "right_thigh"}), human=human), names))
     assert said[0] == []
     assert said[1][0].startswith("M rides 50 mm from where this body has that landmark")
+
+
+def test_a_body_whose_bone_changes_its_length_is_shown_as_a_point() -> None:
+    name = next(body.name for body in stage(CAPTURE).bodies if body.shape is not None)
+    said = notice("bone-stretches", name, "a", "b", shortest_m=0.1, longest_m=0.9)
+    shapes = {body.name: body.shape for body in stage(replace(CAPTURE, notices=(said,))).bodies}
+    assert shapes[name] is None
+    assert sum(shape is not None for shape in shapes.values()) > 1
