@@ -1,7 +1,7 @@
 """What readers of a fitted body's pictures ask about, said from the fit itself."""
 
 from collections.abc import Iterator, Mapping
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import mujoco
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from capar.body.fitting import Fit
 from capar.model.capture import Capture
-from extractors.readers.body_names.body_names import SIDES, without_side
+from extractors.readers.body_names.body_names import SIDES, BodyName, without_side
 
 FAR_M = 0.03
 """Residuals larger than this are reported [m]."""
@@ -26,6 +26,10 @@ SPLAYED = np.radians(40.0)
 
 FLOATING_M = 0.03
 """A lower sole that is higher above the floor than this in the median is reported [m]."""
+
+TILTED = 8.0
+"""A line between recorded points of a foot that lies steeper than this to its sole is reported
+[degrees]."""
 
 ARCHED, BOWED = np.radians(-20.0), np.radians(60.0)
 """A back that is bent backwards or forwards by more than this is reported [rad]."""
@@ -54,7 +58,7 @@ def remarks(made: Fit, capture: Capture, floor_m: float | None = None) -> list[s
         capture: What it was fitted to.
         floor_m: Height of its floor [m]; None without one.
     """
-    parts = (_far(made), _unrecorded(made), _assumed(capture, floor_m), _legs(made, floor_m))
+    parts = (_far(made), _unrecorded(made), _assumed(made, capture, floor_m), _legs(made, floor_m))
     return [line for part in (*parts, _back(made), _inside(made)) for line in part]
 
 
@@ -96,13 +100,18 @@ def _unrecorded(made: Fit) -> Iterator[str]:
         )
 
 
-def _assumed(capture: Capture, floor_m: float | None) -> Iterator[str]:
+def _assumed(made: Fit, capture: Capture, floor_m: float | None) -> Iterator[str]:
     """Things that no recording shows."""
     for thing in capture.objects:
         if thing.assumed:
             yield f"{thing.name} is assumed: {thing.assumed}"
     if floor_m is None:
-        yield "the recording has no floor; views draw one under the lowest soles, as assumed"
+        soles = made.human.sites(made.motion, [f"{side}_sole" for side in SIDES])
+        lowest = min(float(np.quantile(where[:, 2], 0.05)) for where, _ in soles.values())
+        yield (
+            "the recording has no floor; views draw one under the lowest soles, as assumed, which "
+            f"are at {lowest:.2f} m; stated heights are the recording's own, and not over it"
+        )
 
 
 def _legs(made: Fit, floor_m: float | None) -> Iterator[str]:
@@ -181,6 +190,64 @@ def recorded_spine(made: Fit, points: Points) -> list[str]:
                 f"{at:.2f} s; no joint of this body's spine bends by more than {own:.0f}"
             )
     return out
+
+
+def recorded_feet(made: Fit, points: Points) -> list[str]:
+    """At what angles to the soles the lines between the recorded points of feet lie.
+
+    Views draw such lines as bars, and they are not the soles.
+
+    Args:
+        made: The body fitted to them.
+        points: What was followed, in the world [m]; NaN where lost.
+    """
+    out = []
+    for side in SIDES:
+        on = (f"{side}_foot", f"{side}_toes")
+        names = [name for name, segment in made.segments.items() if segment in on]
+        if len(names) < 2:
+            continue
+        turns = made.human.sites(made.motion, on[:1])[on[0]][1]
+        back = Rotation.from_quat(turns, scalar_first=True).inv()
+        tilts = {}
+        for first, second in combinations(names, 2):
+            way = back.apply(points[second] - points[first])
+            tilts[first, second] = np.degrees(np.arctan2(way[:, 2], np.hypot(*way[:, :2].T)))
+        pair = max(tilts, key=lambda one: abs(np.nanmedian(tilts[one])))
+        up = np.sign(np.nanmedian(tilts[pair]))
+        low, middle, high = np.nanquantile(up * tilts[pair], [0.05, 0.5, 0.95])
+        if middle > TILTED:
+            out.append(
+                f"the line from {pair[0]} to {pair[1]} is not the {side} sole: it lies at "
+                f"{middle:.0f} degrees to it in the median ({low:.0f} to {high:.0f} "
+                "in nine of ten frames)"
+            )
+    return out
+
+
+def stand_off(made: Fit, names: Mapping[str, BodyName]) -> list[str]:
+    """Markers that ride far from the landmarks that they are named after, the worst of each part.
+
+    Args:
+        made: The body fitted to them, with a site for each.
+        names: What their names mean.
+    """
+    model = made.human.model
+    sites = {model.site(number).name: number for number in range(model.nsite)}
+    apart: dict[str, tuple[float, str]] = {}
+    for name, segment in made.segments.items():
+        own = sites.get(f"marker_{name}")
+        usual = sites.get(names[name].place) if name in names and names[name].exact else None
+        if own is not None and usual is not None:
+            metres = float(np.linalg.norm(model.site_pos[own] - model.site_pos[usual]))
+            same = model.site_bodyid[own] == model.site_bodyid[usual]
+            if same and metres > FAR_M:
+                apart[segment] = max(apart.get(segment, (0.0, "")), (metres, name))
+    return [
+        f"{name} rides {1e3 * metres:.0f} mm from where this body has that landmark on its "
+        f"{segment.replace('_', ' ')}; distances from its place on the body do not contain that"
+        for segment, (metres, name) in apart.items()
+    ]
 
 
 def _angle(

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.body.capture_fitting import fit_capture
-from capar.body.fit_remarks import recorded_spine, remarks
+from capar.body.fit_remarks import recorded_feet, recorded_spine, remarks, stand_off
 from capar.body.fitting import Fit
 from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import LEAST_EXACT, fit_markers
@@ -136,8 +136,17 @@ def remarks_on(place: str | Path, capture: Capture, made: Fit) -> list[str]:
         CaparError: As of ``fit_body``.
     """
     found = whole_body(place)
-    spine = [] if found is None else recorded_spine(made, found.points)
-    return [*remarks(made, capture, ground(capture)), *spine]
+    said = [*remarks(made, capture, ground(capture)), *_stretching(capture)]
+    if found is not None:
+        said += recorded_spine(made, found.points) + recorded_feet(made, found.points)
+        said += stand_off(made, found.names)
+    return said
+
+
+def _stretching(capture: Capture) -> list[str]:
+    """The notices of bones that change their length, of which views draw no shape."""
+    told = [one.message for one in capture.notices if one.code == "bone-stretches"]
+    return [f"{text}; views draw its body as a point" for text in dict.fromkeys(told)]
 
 
 def ground(capture: Capture) -> float | None:

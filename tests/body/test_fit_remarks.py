@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 
 from capar.body.anthropometry import ready_made
-from capar.body.fit_remarks import recorded_spine, remarks
+from capar.body.fit_remarks import recorded_feet, recorded_spine, remarks, stand_off
 from capar.body.fitting import Fit
 from capar.body.human import Human
+from capar.body.marker_fitting import with_markers
 from capar.model.capture import Capture
+from capar.model.notices import notice
 from capar.views.viewer.mannequin import with_mannequin
 from capar.views.viewer.stage import stage
+from extractors.readers.body_names.body_names import BodyName
 
 CAPTURE = motions.drink_from_mug(motions.WOMAN).capture
 BARE = replace(CAPTURE, objects=())
@@ -100,3 +103,37 @@ def test_a_recorded_spine_that_kinks_is_said_and_a_straight_one_is_not() -> None
     assert line.startswith("the recorded spine bends by up to 90 degrees at T")
     markers = replace(made, segments={**made.segments, "T2": "lumbar_lower"})
     assert recorded_spine(markers, points) == []
+
+
+def test_a_line_between_points_of_a_foot_that_is_not_its_sole_is_said_with_its_angle() -> None:
+    made = fitted({"ankle": "right_foot", "ball": "right_toes"})
+    here = made.human.sites(made.motion, ["right_foot"])["right_foot"][0]
+    drop = -0.1 * np.tan(np.radians(20.0))
+    ball = here + np.array([0.1, 0.0, drop])
+    (line,) = recorded_feet(made, {"ankle": here, "ball": ball})
+    assert line.startswith("the line from ankle to ball is not the right sole: it lies at 20 deg")
+    assert recorded_feet(made, {"ankle": here, "ball": here + np.array([0.1, 0.0, 0.0])}) == []
+
+
+def test_a_marker_far_from_its_landmark_is_said_and_one_on_it_is_not() -> None:
+    names = {"M": BodyName("M", "right_knee_lateral", exact=True, by="words")}
+    plain = Human.of(ready_made("woman"))
+    where = next(
+        plain.model.site_pos[number]
+        for number in range(plain.model.nsite)
+        if plain.model.site(number).name == "right_knee_lateral"
+    )
+    said = []
+    for aside in (0.0, 0.05):
+        human = with_markers(plain.measures, {"M": where + np.array([0.0, aside, 0.0])}, names)
+        said.append(stand_off(replace(fitted({"M": "right_thigh"}), human=human), names))
+    assert said[0] == []
+    assert said[1][0].startswith("M rides 50 mm from where this body has that landmark")
+
+
+def test_a_body_whose_bone_changes_its_length_is_shown_as_a_point() -> None:
+    name = next(body.name for body in stage(CAPTURE).bodies if body.shape is not None)
+    said = notice("bone-stretches", name, "a", "b", shortest_m=0.1, longest_m=0.9)
+    shapes = {body.name: body.shape for body in stage(replace(CAPTURE, notices=(said,))).bodies}
+    assert shapes[name] is None
+    assert sum(shape is not None for shape in shapes.values()) > 1

@@ -1,7 +1,7 @@
 """What is shown of a capture: each body with its surface and its way, thinned for the eye."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -72,9 +72,13 @@ class Stage:
 
 
 def stage(capture: Capture) -> Stage:
-    """A capture as it is shown."""
+    """A capture as it is shown; bodies of which a bone changes its length are only points."""
     frames = shown_frames(capture)
-    bodies = tuple(_staged(body, frames) for body in capture.bodies.values())
+    stretching = {one.bodies[0] for one in capture.notices if one.code == "bone-stretches"}
+    bodies = tuple(
+        replace(one, shape=None) if one.name in stretching else one
+        for one in (_staged(body, frames) for body in capture.bodies.values())
+    )
     return Stage(capture.name, capture.times[frames], bodies)
 
 
