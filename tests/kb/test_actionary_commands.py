@@ -90,7 +90,7 @@ def test_a_named_question_prints_a_table_csv_json_and_turtle(folder: Path) -> No
 def test_a_wrong_name_or_parameter_says_which_exist(folder: Path) -> None:
     wrong = capar("query", "hand", "akction=Reach", at=folder)
     assert (wrong.returncode, wrong.stdout) == (2, "")
-    assert "there are: action, capture, ee, " in wrong.stderr
+    assert "there are: action, address, capture, ee, " in wrong.stderr
     assert "Did you mean 'action'?" in wrong.stderr
     nowhere = capar("query", "hands", at=folder)
     assert nowhere.returncode == 2 and "Did you mean 'hand'?" in nowhere.stderr
