@@ -59,7 +59,8 @@ def remarks(made: Fit, capture: Capture, floor_m: float | None = None) -> list[s
         floor_m: Height of its floor [m]; None without one.
     """
     parts = (_far(made), _unrecorded(made), _assumed(made, capture, floor_m), _legs(made, floor_m))
-    return [line for part in (*parts, _back(made), _inside(made)) for line in part]
+    parts += (_back(made), _head(made, capture), _inside(made))
+    return [line for part in parts for line in part]
 
 
 def _far(made: Fit) -> Iterator[str]:
@@ -164,6 +165,30 @@ def _back(made: Fit) -> Iterator[str]:
             f"the back is bent forwards by up to {np.degrees(bend[most]):.0f} degrees, at "
             f"{made.times[most]:.2f} s"
         )
+
+
+def _head(made: Fit, capture: Capture) -> Iterator[str]:
+    """Where on the head the tracked point is that views draw, and how far the neck is bent."""
+    eyes, turns = made.human.sites(made.motion, ["between_eyes"])["between_eyes"]
+    for sensor in capture.sensors:
+        if sensor.end_effector != "head" or sensor.shape is not None or "head" in made.unrecorded:
+            continue
+        nearest = np.abs(capture.times[None] - made.times[:, None]).argmin(axis=1)
+        away = sensor.stream.positions[nearest] - eyes
+        back = Rotation.from_quat(turns, scalar_first=True).inv()
+        ahead, _, up = 1e3 * np.nanmedian(back.apply(away), axis=0)
+        yield (
+            f"{sensor.name} is drawn as a point where it is tracked, {abs(ahead):.0f} mm "
+            f"{'before' if ahead > 0.0 else 'behind'} and {abs(up):.0f} mm "
+            f"{'above' if up > 0.0 else 'below'} the middle between this body's eyes; its neck is "
+            f"{1e3 * np.linalg.norm(made.human.model.body('head').pos):.0f} mm long and bent "
+            f"forwards by {_range(made, 'neck')} degrees, the head on it by {_range(made, 'head')}"
+        )
+
+
+def _range(made: Fit, part: str) -> str:
+    bend = np.degrees(made.motion[:, made.human.index(f"{part}_flexion")])
+    return f"{bend.min():.0f} to {bend.max():.0f}"
 
 
 def recorded_spine(made: Fit, points: Points) -> list[str]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import motions
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from capar.body.anthropometry import ready_made
 from capar.body.fit_remarks import recorded_feet, recorded_spine, remarks, stand_off
@@ -137,3 +138,18 @@ def test_a_body_whose_bone_changes_its_length_is_shown_as_a_point() -> None:
     shapes = {body.name: body.shape for body in stage(replace(CAPTURE, notices=(said,))).bodies}
     assert shapes[name] is None
     assert sum(shape is not None for shape in shapes.values()) > 1
+
+
+def test_a_head_that_is_drawn_as_a_point_is_told_with_where_it_is_and_how_the_neck_is_bent() -> (
+    None
+):
+    made = fitted(WHOLE, neck_flexion=0.1, head_flexion=-0.2)
+    eyes, turns = made.human.sites(made.motion, ["between_eyes"])["between_eyes"]
+    below = Rotation.from_quat(turns, scalar_first=True).apply([-0.025, 0.0, -0.076])
+    head = next(sensor for sensor in CAPTURE.sensors if sensor.end_effector == "head")
+    tracked = replace(head, shape=None, stream=replace(head.stream, positions=eyes + below))
+    text = told(made, replace(BARE, sensors=(tracked,)))
+    assert f"{head.name} is drawn as a point" in text
+    assert "25 mm behind and 76 mm below the middle between this body's eyes" in text
+    assert "bent forwards by 6 to 6 degrees, the head on it by -11 to -11" in text
+    assert "drawn as a point" not in told(made)
