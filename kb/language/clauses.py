@@ -152,6 +152,7 @@ def _cases(
         "movable": scene.is_movable(other),
         "off": scene.goes_off(segment, thing, other),
         "back": scene.was_there(segment, thing, other),
+        "in": ("in", thing, other) in segment.prepositions and not scene.is_self(other),
     }
     return cases | {name for name, holds in hold.items() if holds}
 
@@ -164,9 +165,12 @@ def _stays(segment: Segment) -> bool:
 
 
 def _stands_on(segment: Segment, thing: str, other: str) -> bool:
-    """Whether the thing is on the other where the rules tell prepositions; else it may be."""
+    """Whether the thing is on the other where the rules tell prepositions; else it may be.
+
+    What is beside it as well leans on it at most.
+    """
     said = {word for word, body, place in segment.prepositions if (body, place) == (thing, other)}
-    return not said or bool(said & {"on", "onto"})
+    return not said or (bool(said & {"on", "onto"}) and "beside" not in said)
 
 
 def _clause(

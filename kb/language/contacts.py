@@ -10,8 +10,17 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from capar.model.facts import Flies, Lies, Link, Moving, OfAgent, Swings, Touching
-from capar.model.observation import Observation, ObservedLink, Segment
-from kb.language.thresholds import LEVEL_M, RISEN_M, RUNNING_MPS, STEADY_S, STILL_M, UNSEEN_S
+from capar.model.geometry import rotations
+from capar.model.observation import Observation, ObservedLink, ObservedObject, Segment
+from kb.language.thresholds import (
+    FLOOR_M,
+    LEVEL_M,
+    RISEN_M,
+    RUNNING_MPS,
+    STEADY_S,
+    STILL_M,
+    UNSEEN_S,
+)
 from kb.lexicon.english import the_agent
 
 HEAD = "head"
@@ -114,6 +123,27 @@ class Scene:
         there = {each.body for each in over if each.last == last}
         before = {each.body for each in over if each.first == 0}
         return there >= set(things) and before.isdisjoint(things)
+
+    def inside(
+        self, thing: str, container: ObservedObject, time_s: float, *, heaped: bool = False
+    ) -> bool:
+        """Whether a thing is within the shadow of an open box, and below its rim.
+
+        Args:
+            thing: The thing.
+            container: The box; one of which only the floor is known has no rim.
+            time_s: When [s].
+            heaped: Whether what lies higher than the rim counts, too.
+        """
+        places = self._places(thing, time_s, time_s)
+        if places is None:
+            return False
+        own = rotations(np.array(container.orientation)).inv()
+        offset = own.apply(places[-1] - np.array(container.position_m))
+        size = np.array(container.size_m)
+        above = bool(not heaped and size[2] >= FLOOR_M and offset[2] >= size[2])
+        around = bool((np.abs(offset[:2]) < 0.5 * size[:2]).all())
+        return around and bool(offset[2] > -size[2]) and not above
 
     def rises(self, segment: Segment) -> bool:
         """Whether the object is clearly higher when a segment ends."""

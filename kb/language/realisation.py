@@ -164,7 +164,9 @@ class Realiser:
             return purpose
         if step.start_s == step.end_s:
             return f"{purpose} ({step.start_s:.2f} s)"
-        return f"{purpose} ({step.start_s:.2f}–{step.end_s:.2f} s)"
+        spans = step.spans if step.name in SUSTAINED else ((step.start_s, step.end_s),)
+        when = joined([f"{start_s:.2f}–{end_s:.2f} s" for start_s, end_s in spans])
+        return f"{purpose} ({when})"
 
     def _verb_phrase(self, step: Clause) -> str:
         pattern = in_past(step.pattern)
