@@ -11,8 +11,10 @@ from kb.language.contacts import Scene
 from kb.language.holding import Handled, Holding
 from kb.language.lexicalisation import (
     GIVEN,
+    GOALS,
     HELPS,
     MOMENTARY,
+    PUT_IN,
     QUIET,
     SOMEONE,
     TO_A_SIDE,
@@ -183,6 +185,7 @@ def _clause(
     if not segment.known:
         return _unknown(segment)
     pattern = book.pattern(segment.name, segment.general, cases, len(segment.objects))
+    pattern = PUT_IN if "in" in cases and pattern.startswith(GOALS) else pattern
     pattern = purposeful(segment, before, cases, names) or pattern
     objects = segment.objects
     if _touches_several(segment) and "{2}" not in pattern:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from capar.model.observation import ObservedObject
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import DOWN, GROUNDS, LOWER
+from kb.language.lexicalisation import DOWN, GOALS, GROUNDS, LOWER
 from kb.language.thresholds import (
     FURTHER_M,
     HELD_M,
@@ -20,9 +20,6 @@ from kb.language.thresholds import (
     TURNED_RAD,
 )
 from kb.language.turning import Turning
-
-GOALS = ("put {1} on {2}", "bring {1} to {2}")
-"""How patterns begin of a thing that gets to another one."""
 
 CARRY, RISES = "carry {1}", frozenset({"lift {1}", "raise {1}"})
 
