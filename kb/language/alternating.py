@@ -60,7 +60,7 @@ def _helps(step: Clause, steps: Sequence[Clause]) -> bool:
     return any(
         set(other[0].ees).isdisjoint(step.ees)
         and other[0].start_s < step.start_s
-        and step.end_s < max(each.end_s for each in other)
+        and step.end_s < max(own.end_s for own in other)
         for other in _grips(steps)
         if other[0].objects[:1] == step.objects[:1]
     )

@@ -15,6 +15,7 @@ from capar.model.observation import Observation, ObservedLink, ObservedObject, S
 from kb.language.thresholds import (
     FLOOR_M,
     LEVEL_M,
+    REST_S,
     RISEN_M,
     RUNNING_MPS,
     STEADY_S,
@@ -231,6 +232,12 @@ class Scene:
         if self.is_self(support):
             return False
         return any(self._free(each, thing) for each in self._between(thing, support))
+
+    def stood_on(self, thing: str, support: str, time_s: float) -> bool:
+        """Whether the thing lay on the support from the beginning until about then."""
+        contacts = self._between(thing, support)
+        until_s = [contact.last * self._step_s for contact in contacts if contact.first == 0]
+        return self.rests_on(thing, support) and max(until_s, default=0.0) >= time_s - REST_S
 
     def was_there(self, segment: Segment, thing: str, goal: str) -> bool:
         """Whether the thing touched the goal before, and left it."""

@@ -27,10 +27,10 @@ def gathered(
     alike = all(step.changes and step.possessed for step in steps)
     if len(hands) != 1 or len(things) <= MOST_DEEDS or not alike:
         return tuple(steps)
-    goal = next((each for each in objects if _gathers(each, steps, things, scene)), None)
+    goal = next((place for place in objects if _gathers(place, steps, things, scene)), None)
     places = joined([f"{{{number}}}" for number in range(1, len(things) + 1)])
     if goal is not None and goal.kind in CONTAINERS:
-        source = [each.name for each in objects if _bore(each, things, scene)][:1]
+        source = [place.name for place in objects if _bore(place, things, scene)][:1]
         there = (*source, goal.name)
         number = len(things) + len(source)
         origin = f" from {{{number}}}" if source else ""
@@ -56,7 +56,7 @@ def _gathers(
         return False
     if scene.gathers(goal.name, things):
         return True
-    return goal.kind in CONTAINERS and all(_left_in(each, goal, steps, scene) for each in things)
+    return goal.kind in CONTAINERS and all(_left_in(thing, goal, steps, scene) for thing in things)
 
 
 def _left_in(thing: str, container: ObservedObject, steps: Sequence[Clause], scene: Scene) -> bool:

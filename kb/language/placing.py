@@ -21,6 +21,7 @@ from kb.language.thresholds import (
 )
 from kb.language.turning import Turning
 
+BRING = "bring {1} to {2}"
 CARRY, RISES = "carry {1}", frozenset({"lift {1}", "raise {1}"})
 
 
@@ -37,7 +38,7 @@ def placed(
     """
     grounds = {thing.name for thing in objects if thing.kind in GROUNDS}
     out: list[Clause] = []
-    for step in steps:
+    for at, step in enumerate(steps):
         if _puts(step) and grounds.intersection(step.objects[1:]):
             out.append(_on_the_ground(step, out, scene))
         elif step.pattern == CARRY:
@@ -47,8 +48,30 @@ def placed(
         elif step.pattern in RISES and scene.overhead(step.objects[0], step.end_s, step.end_s):
             out.append(replace(step, pattern=f"{step.pattern} overhead"))
         else:
-            out.append(_brought(step, out))
+            brought = _brought(step, out)
+            works = _works_there(step, steps[at + 1 :])
+            out.append(_taken(brought, objects, scene) if works else brought)
     return tuple(out)
+
+
+def _works_there(step: Clause, later: Sequence[Clause]) -> bool:
+    """Whether the hand next works with the thing where it is brought: that tells where to."""
+    following = next((other for other in later if set(other.ees) & set(step.ees)), None)
+    same = following is not None and (following.grip, following.objects) == (
+        step.grip,
+        step.objects,
+    )
+    return same and following is not None and following.goes_on and step.pattern == BRING
+
+
+def _taken(step: Clause, objects: Sequence[ObservedObject], scene: Scene) -> Clause:
+    """What is brought from where it stood all the time before, as taken from there."""
+    thing = step.objects[0]
+    fixed = (place.name for place in objects if place.tag == "fixed")
+    support = next((name for name in fixed if scene.stood_on(thing, name, step.start_s)), None)
+    if support is None:
+        return step
+    return replace(step, pattern="take {1} from {2}", objects=(thing, support))
 
 
 def _brought(step: Clause, before: list[Clause]) -> Clause:

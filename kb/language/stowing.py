@@ -42,7 +42,7 @@ def stowed(
     out = list(steps)
     for own in grips.values():
         way = _last_way(own)
-        goal = next((each for each in around if way and _gets_into(way, each, scene)), None)
+        goal = next((box for box in around if way and _gets_into(way, box, scene)), None)
         if goal is not None:
             out = [step for step in out if not any(step is part for part in way)]
             out.append(_as_one(way, goal.name))
