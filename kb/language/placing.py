@@ -49,7 +49,7 @@ def placed(
             out.append(replace(step, pattern=f"{step.pattern} overhead"))
         else:
             brought = _brought(step, out)
-            works = _works_there(step, steps[at + 1 :])
+            works = _works_there(step, steps[at + 1 :]) and not _has_it(step, out)
             out.append(_taken(brought, objects, scene) if works else brought)
     return tuple(out)
 
@@ -62,6 +62,12 @@ def _works_there(step: Clause, later: Sequence[Clause]) -> bool:
         step.objects,
     )
     return same and following is not None and following.goes_on and step.pattern == BRING
+
+
+def _has_it(step: Clause, before: Sequence[Clause]) -> bool:
+    """Whether it was told that the hand had the thing."""
+    grips = [(own.ees, own.grip, own.objects[:1]) for own in before if own.possessed]
+    return (step.ees, step.grip, step.objects[:1]) in grips
 
 
 def _taken(step: Clause, objects: Sequence[ObservedObject], scene: Scene) -> Clause:
