@@ -6,8 +6,9 @@ from dataclasses import replace
 from capar.model.observation import ObservedObject
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import CONTAINERS, ONE_BY_ONE
+from kb.language.lexicalisation import ONE_BY_ONE
 from kb.language.repeating import whole
+from kb.language.stowing import is_container
 from kb.language.thresholds import MOST_DEEDS
 from kb.lexicon.english import joined
 
@@ -29,7 +30,7 @@ def gathered(
         return tuple(steps)
     goal = next((place for place in objects if _gathers(place, steps, things, scene)), None)
     places = joined([f"{{{number}}}" for number in range(1, len(things) + 1)])
-    if goal is not None and goal.kind in CONTAINERS:
+    if goal is not None and is_container(goal):
         source = [place.name for place in objects if _bore(place, things, scene)][:1]
         there = (*source, goal.name)
         number = len(things) + len(source)
@@ -56,7 +57,7 @@ def _gathers(
         return False
     if scene.gathers(goal.name, things):
         return True
-    return goal.kind in CONTAINERS and all(_left_in(thing, goal, steps, scene) for thing in things)
+    return is_container(goal) and all(_left_in(thing, goal, steps, scene) for thing in things)
 
 
 def _left_in(thing: str, container: ObservedObject, steps: Sequence[Clause], scene: Scene) -> bool:
@@ -68,5 +69,5 @@ def _left_in(thing: str, container: ObservedObject, steps: Sequence[Clause], sce
 
 def _bore(support: ObservedObject, things: Sequence[str], scene: Scene) -> bool:
     """Whether all things stood on it at some time."""
-    fixed = support.tag == "fixed" and support.kind not in CONTAINERS
+    fixed = support.tag == "fixed" and not is_container(support)
     return fixed and all(scene.rests_on(thing, support.name) for thing in things)

@@ -17,7 +17,12 @@ ON_THE_WAY = TRANSPORT | STAYING | SETTLING
 
 def containers(objects: Sequence[ObservedObject]) -> tuple[ObservedObject, ...]:
     """The objects that are open above and stay where they are."""
-    return tuple(thing for thing in objects if thing.kind in CONTAINERS and thing.tag == "fixed")
+    return tuple(thing for thing in objects if is_container(thing) and thing.tag == "fixed")
+
+
+def is_container(thing: ObservedObject) -> bool:
+    """Whether it is open above by its kind, or by its name where the kind is a mere box."""
+    return not CONTAINERS.isdisjoint((thing.kind, thing.name))
 
 
 def stowed(

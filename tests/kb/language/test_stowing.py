@@ -59,7 +59,7 @@ def told(*pieces: Piece, end: tuple[float, float, float], kind: str = "carton") 
         ((1.0, 0.1, 0.05), "carton", True),
         ((1.0, 0.1, 0.25), "carton", False),
         ((1.0, 0.3, 0.05), "carton", False),
-        ((1.0, 0.1, 0.05), "box", False),
+        ((1.0, 0.1, 0.05), "box", True),
     ],
 )
 def test_what_ends_below_the_rim_of_an_open_box_is_put_in_it(
