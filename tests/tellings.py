@@ -13,12 +13,15 @@ WORDS = Vocabulary(primitive_words(primitive_files()))
 VERBS = {
     *(past(row["pattern"].split()[0]) for row in table("phrases")),
     past("crouch"),
+    past("pack"),
     past("stand"),
     *(in_progress(pattern).split()[0] for pattern in TURNED),
 }
 """Every verb that a telling may have, in the past, or of what goes on beside something else."""
 
-SPAN = re.compile(r"\((\d+\.\d\d)(?:–(\d+\.\d\d))? s\)")
+SPAN = re.compile(r"\((\d+\.\d\d)(?:–[^()]*?(\d+\.\d\d))? s\)")
+"""The time of a step, from its start to its end; pauses may stand between."""
+
 MEANWHILE = re.compile(r", turning [^,(]*\([^)]*\)")
 """What went on beside the step before it."""
 

@@ -248,7 +248,7 @@ KINDS: Mapping[str, NoticeKind] = {
     "assumed-support": NoticeKind(
         "{0!r} is assumed: {assumed}",
         "assumed supports",
-        "the recording does not tell where {names} stood; that is assumed from what rests there",
+        "the recording does not tell where {names} stood; that is assumed",
     ),
     "moving-ground": NoticeKind(
         "{0!r} goes by under the feet of {agent} at {speed_mps:.2f} m/s, as a treadmill does: feet "
@@ -271,7 +271,10 @@ KINDS: Mapping[str, NoticeKind] = {
         fault=True,
     ),
     "mount-gap": NoticeKind(
-        lambda each: mount_gap(each.bodies, each.fields), "bodies carried with a gap", fault=True
+        lambda each: mount_gap(each.bodies, each.fields),
+        "bodies carried with a gap",
+        "these go together without touching as measured: {names}",
+        fault=True,
     ),
     "no-mover": NoticeKind(
         lambda each: no_mover(each.bodies, each.fields),

@@ -1,6 +1,6 @@
 """What hands do in turn to one thing: with the right hand, then with the left, then with both."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import groupby
 
@@ -22,7 +22,11 @@ def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     Args:
         steps: What was done, in order of time.
     """
-    turning = [step for step in steps if step.pattern in {TURN, THIS_WAY} and step.changes]
+    turning = [
+        step
+        for step in steps
+        if step.pattern in {TURN, THIS_WAY} and step.changes and not _helps(step, steps)
+    ]
     turns = [list(part) for _, part in groupby(turning, key=lambda step: step.ees)]
     things = {step.objects[:1] for step in steps if step.objects}
     if (
@@ -41,10 +45,34 @@ def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
         in_turn=tuple(part[0].ees for part in turns[1:]),
     )
     before = [
-        step for step in steps if step.end_s <= first.start_s and not (lifted and _rises(step))
+        step
+        for step in steps
+        if step.end_s <= first.start_s
+        and not (lifted and _rises(step))
+        and not (step.pattern in {TURN, THIS_WAY} and _helps(step, steps))
     ]
     after = [step for step in steps if step.start_s >= last.end_s]
     return tuple(sorted((*before, main, *after), key=in_time))
+
+
+def _helps(step: Clause, steps: Sequence[Clause]) -> bool:
+    """Whether another hand has the thing in its grip before, meanwhile and afterwards."""
+    return any(
+        set(other[0].ees).isdisjoint(step.ees)
+        and other[0].start_s < step.start_s
+        and step.end_s < max(own.end_s for own in other)
+        for other in _grips(steps)
+        if other[0].objects[:1] == step.objects[:1]
+    )
+
+
+def _grips(steps: Sequence[Clause]) -> Iterable[Sequence[Clause]]:
+    """What each hand does each time that it has a thing and moves it."""
+    grips: dict[tuple[object, ...], list[Clause]] = {}
+    for step in steps:
+        if step.possessed and step.changes:
+            grips.setdefault((step.ees, step.grip, step.objects[:1]), []).append(step)
+    return grips.values()
 
 
 def _beside(turn: Sequence[Clause], steps: Sequence[Clause]) -> list[Clause]:

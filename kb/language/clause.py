@@ -34,6 +34,9 @@ class Clause:
     pauses: int = 0
     """How often it was interrupted for so long that people notice it."""
 
+    rests: tuple[tuple[float, float], ...] = ()
+    """From when to when it paused [s], where people notice that."""
+
     name: str = ""
     """The primitive that it says."""
 
@@ -88,6 +91,13 @@ class Clause:
     def signature(self) -> tuple[object, ...]:
         """What makes two clauses say the same but for hands and times."""
         return self.pattern, self.objects, self.purpose, self.count, self.often, self.pauses
+
+    @property
+    def spans(self) -> tuple[tuple[float, float], ...]:
+        """From when to when it went on, between its pauses [s]."""
+        own = [rest for rest in self.rests if self.start_s < rest[0] and rest[1] < self.end_s]
+        begins = (self.start_s, *(end_s for _, end_s in own))
+        return tuple(zip(begins, (*(start_s for start_s, _ in own), self.end_s), strict=True))
 
     def within(self, other: "Clause") -> bool:
         """Whether it is a turning of the same thing that is over before the other clause is."""

@@ -11,8 +11,10 @@ from kb.language.contacts import Scene
 from kb.language.holding import Handled, Holding
 from kb.language.lexicalisation import (
     GIVEN,
+    GOALS,
     HELPS,
     MOMENTARY,
+    PUT_IN,
     QUIET,
     SOMEONE,
     TO_A_SIDE,
@@ -152,6 +154,7 @@ def _cases(
         "movable": scene.is_movable(other),
         "off": scene.goes_off(segment, thing, other),
         "back": scene.was_there(segment, thing, other),
+        "in": ("in", thing, other) in segment.prepositions and not scene.is_self(other),
     }
     return cases | {name for name, holds in hold.items() if holds}
 
@@ -164,9 +167,12 @@ def _stays(segment: Segment) -> bool:
 
 
 def _stands_on(segment: Segment, thing: str, other: str) -> bool:
-    """Whether the thing is on the other where the rules tell prepositions; else it may be."""
+    """Whether the thing is on the other where the rules tell prepositions; else it may be.
+
+    What is beside it as well leans on it at most.
+    """
     said = {word for word, body, place in segment.prepositions if (body, place) == (thing, other)}
-    return not said or bool(said & {"on", "onto"})
+    return not said or (bool(said & {"on", "onto"}) and "beside" not in said)
 
 
 def _clause(
@@ -179,6 +185,7 @@ def _clause(
     if not segment.known:
         return _unknown(segment)
     pattern = book.pattern(segment.name, segment.general, cases, len(segment.objects))
+    pattern = PUT_IN if "in" in cases and pattern.startswith(GOALS) else pattern
     pattern = purposeful(segment, before, cases, names) or pattern
     objects = segment.objects
     if _touches_several(segment) and "{2}" not in pattern:

@@ -10,8 +10,18 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from capar.model.facts import Flies, Lies, Link, Moving, OfAgent, Swings, Touching
-from capar.model.observation import Observation, ObservedLink, Segment
-from kb.language.thresholds import LEVEL_M, RISEN_M, RUNNING_MPS, STEADY_S, STILL_M, UNSEEN_S
+from capar.model.geometry import rotations
+from capar.model.observation import Observation, ObservedLink, ObservedObject, Segment
+from kb.language.thresholds import (
+    FLOOR_M,
+    LEVEL_M,
+    REST_S,
+    RISEN_M,
+    RUNNING_MPS,
+    STEADY_S,
+    STILL_M,
+    UNSEEN_S,
+)
 from kb.lexicon.english import the_agent
 
 HEAD = "head"
@@ -115,6 +125,27 @@ class Scene:
         before = {each.body for each in over if each.first == 0}
         return there >= set(things) and before.isdisjoint(things)
 
+    def inside(
+        self, thing: str, container: ObservedObject, time_s: float, *, heaped: bool = False
+    ) -> bool:
+        """Whether a thing is within the shadow of an open box, and below its rim.
+
+        Args:
+            thing: The thing.
+            container: The box; one of which only the floor is known has no rim.
+            time_s: When [s].
+            heaped: Whether what lies higher than the rim counts, too.
+        """
+        places = self._places(thing, time_s, time_s)
+        if places is None:
+            return False
+        own = rotations(np.array(container.orientation)).inv()
+        offset = own.apply(places[-1] - np.array(container.position_m))
+        size = np.array(container.size_m)
+        above = bool(not heaped and size[2] >= FLOOR_M and offset[2] >= size[2])
+        around = bool((np.abs(offset[:2]) < 0.5 * size[:2]).all())
+        return around and bool(offset[2] > -size[2]) and not above
+
     def rises(self, segment: Segment) -> bool:
         """Whether the object is clearly higher when a segment ends."""
         places = self._places(segment.objects[0], segment.start_s, segment.end_s)
@@ -201,6 +232,12 @@ class Scene:
         if self.is_self(support):
             return False
         return any(self._free(each, thing) for each in self._between(thing, support))
+
+    def stood_on(self, thing: str, support: str, time_s: float) -> bool:
+        """Whether the thing lay on the support from the beginning until about then."""
+        contacts = self._between(thing, support)
+        until_s = [contact.last * self._step_s for contact in contacts if contact.first == 0]
+        return self.rests_on(thing, support) and max(until_s, default=0.0) >= time_s - REST_S
 
     def was_there(self, segment: Segment, thing: str, goal: str) -> bool:
         """Whether the thing touched the goal before, and left it."""

@@ -31,6 +31,7 @@ from kb.language.placing import placed
 from kb.language.planning import sentences
 from kb.language.realisation import Realiser
 from kb.language.repeating import as_segmented, deeds, whole
+from kb.language.stowing import stowed
 from kb.language.turning import Turning, turned, with_turning
 from kb.lexicon.english import PEOPLE, capital, the_agent
 from kb.lexicon.links import PrimitiveWords
@@ -91,6 +92,7 @@ def _story(
             steps = mostly_together(links, steps)
             steps = with_crouching(steps, observation.links, observation.tracks)
     if observation.profile != TO_THE_LETTER:
+        steps = stowed(steps, observation.objects, scene)
         there = placed(steps, observation.objects, scene, Turning(observation))
         steps = without_coming(there, scene)
     if detail == "summary":

@@ -9,7 +9,8 @@ from kb.lexicon.tables import table
 Cases = Collection[str]
 """What holds of a segment: held, there, tool, on, back, self, alone, turns, tilts, rises, steadies.
 
-``movable``: the second object can be moved, too; ``off``: it leaves the other at its edge;
+``in``: it is inside the second object at the end; ``movable``: that one can be moved, too; ``off``:
+it leaves the other at its edge;
 ``running``: the hand goes over a thing that stays; ``wrung``: it is turned this way and that.
 """
 
@@ -76,6 +77,18 @@ DOWN = "put {1} down"
 
 GROUNDS = frozenset({"floor", "ground"})
 """Kinds of what people walk on: that a thing is put on it says nothing of where."""
+
+GOALS = ("put {1} on {2}", "bring {1} to {2}")
+"""How patterns begin of a thing that gets to another one."""
+
+CONTAINERS = frozenset({"carton", "container", "crate", "basket", "bin", "drawer"})
+"""Kinds of what is open above: what is left within its shadow and below its rim is in it."""
+
+PUT_IN = "put {1} in {2}"
+"""The pattern of a thing that is left in a container."""
+
+SETTLING = frozenset({"PutDown", "Lower", "Slide", "Push", "Pull", "Turn", "Tilt"})
+"""Names of what is done with a thing until it stays where it is put."""
 
 RUNNING = "keep a hand on {1}"
 """The pattern of a hand that runs over a thing."""

@@ -9,7 +9,7 @@ from dataclasses import replace
 from capar.model.observation import ObservedObject
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import DOWN, GROUNDS, LOWER
+from kb.language.lexicalisation import DOWN, GOALS, GROUNDS, LOWER
 from kb.language.thresholds import (
     FURTHER_M,
     HELD_M,
@@ -21,9 +21,7 @@ from kb.language.thresholds import (
 )
 from kb.language.turning import Turning
 
-GOALS = ("put {1} on {2}", "bring {1} to {2}")
-"""How patterns begin of a thing that gets to another one."""
-
+BRING = "bring {1} to {2}"
 CARRY, RISES = "carry {1}", frozenset({"lift {1}", "raise {1}"})
 
 
@@ -40,7 +38,7 @@ def placed(
     """
     grounds = {thing.name for thing in objects if thing.kind in GROUNDS}
     out: list[Clause] = []
-    for step in steps:
+    for at, step in enumerate(steps):
         if _puts(step) and grounds.intersection(step.objects[1:]):
             out.append(_on_the_ground(step, out, scene))
         elif step.pattern == CARRY:
@@ -50,8 +48,36 @@ def placed(
         elif step.pattern in RISES and scene.overhead(step.objects[0], step.end_s, step.end_s):
             out.append(replace(step, pattern=f"{step.pattern} overhead"))
         else:
-            out.append(_brought(step, out))
+            brought = _brought(step, out)
+            works = _works_there(step, steps[at + 1 :]) and not _has_it(step, out)
+            out.append(_taken(brought, objects, scene) if works else brought)
     return tuple(out)
+
+
+def _works_there(step: Clause, later: Sequence[Clause]) -> bool:
+    """Whether the hand next works with the thing where it is brought: that tells where to."""
+    following = next((other for other in later if set(other.ees) & set(step.ees)), None)
+    same = following is not None and (following.grip, following.objects) == (
+        step.grip,
+        step.objects,
+    )
+    return same and following is not None and following.goes_on and step.pattern == BRING
+
+
+def _has_it(step: Clause, before: Sequence[Clause]) -> bool:
+    """Whether it was told that the hand had the thing."""
+    grips = [(own.ees, own.grip, own.objects[:1]) for own in before if own.possessed]
+    return (step.ees, step.grip, step.objects[:1]) in grips
+
+
+def _taken(step: Clause, objects: Sequence[ObservedObject], scene: Scene) -> Clause:
+    """What is brought from where it stood all the time before, as taken from there."""
+    thing = step.objects[0]
+    fixed = (place.name for place in objects if place.tag == "fixed")
+    support = next((name for name in fixed if scene.stood_on(thing, name, step.start_s)), None)
+    if support is None:
+        return step
+    return replace(step, pattern="take {1} from {2}", objects=(thing, support))
 
 
 def _brought(step: Clause, before: list[Clause]) -> Clause:

@@ -108,6 +108,7 @@ class Realiser:
             bodily = step.pattern in BODILY
             told = step.ees == self._ees or "{ee}" in step.pattern or bodily
             hand = "" if told else self._with_hands(step)
+            text += self._then(step) if told else ""
             if "{with}" in text:
                 text = text.replace("{with}", f"{hand} " if hand else "")
             elif hand:
@@ -120,11 +121,14 @@ class Realiser:
         """The hand as what is used, or where the tool is that was just named."""
         *_, word, last = step.pattern.split(" ") if " with {" in step.pattern else ("", "")
         tool = word == "with" and last.startswith("{")
+        return f"{'in' if tool else 'with'} {self._hands(step.ees)}{self._then(step)}"
+
+    def _then(self, step: Clause) -> str:
+        """The hands that do it afterwards, one after the other."""
         then = [f"with {self._hands(ees)}" for ees in step.in_turn]
         if then and step.in_turn[-1] in (step.ees, *step.in_turn[:-1]):
             then[-1] += " again"
-        after = f", then {joined(then)}" if then else ""
-        return f"{'in' if tool else 'with'} {self._hands(step.ees)}{after}"
+        return f", then {joined(then)}" if then else ""
 
     def _of_hand(self, steps: Sequence[Clause], topic: str) -> str:
         """The clauses with their hand as the subject, after something was spoken of."""
@@ -164,7 +168,9 @@ class Realiser:
             return purpose
         if step.start_s == step.end_s:
             return f"{purpose} ({step.start_s:.2f} s)"
-        return f"{purpose} ({step.start_s:.2f}–{step.end_s:.2f} s)"
+        spans = step.spans if step.name in SUSTAINED else ((step.start_s, step.end_s),)
+        when = joined([f"{start_s:.2f}–{end_s:.2f} s" for start_s, end_s in spans])
+        return f"{purpose} ({when})"
 
     def _verb_phrase(self, step: Clause) -> str:
         pattern = in_past(step.pattern)

@@ -100,13 +100,18 @@ def _continued(deed: Clause, pause: Sequence[Clause], following: Clause) -> Clau
     So was what is poured after the vessel was upright; while it is held tipped, it is poured from.
     """
     tipped = deed.pattern in TIPPED
-    noticed = 0 if tipped else sum(each.end_s - each.start_s >= REST_S for each in pause)
+    rests = tuple(
+        (each.start_s, each.end_s)
+        for each in pause
+        if not tipped and each.end_s - each.start_s >= REST_S
+    )
     anew = deed.rights if tipped else deed.changes and not deed.goes_on
     again = following.count if anew else 0
     return replace(
         deed,
         end_s=following.end_s,
-        pauses=deed.pauses + noticed + following.pauses,
+        pauses=deed.pauses + len(rests) + following.pauses,
+        rests=(*deed.rests, *rests, *following.rests),
         count=deed.count + again,
         rights=following.rights,
     )
@@ -268,6 +273,7 @@ def whole(run: Sequence[Clause], *, count: int = 1, pattern: str = "") -> Clause
         changes=any(each.changes for each in run),
         count=count,
         pauses=0,
+        rests=(),
     )
 
 

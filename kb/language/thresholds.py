@@ -43,6 +43,9 @@ about a step."""
 LEVEL_M = 0.03
 """What is let go at this height [m], more or less, stood there already: a finger's width."""
 
+FLOOR_M = 0.03
+"""A box that is stated to be lower than this [m] is only the floor of one."""
+
 STEADY_S = 0.5
 """A hand that stays at a thing for so long [s] while another works in it steadies it."""
 

@@ -55,6 +55,8 @@ def _window_at(cursor: Cursor) -> Window | None:
             cursor.at = start
             moment = _seconds(cursor)
             span = None if moment is None else (moment, moment)
+        while span and _joined(cursor) and (more := _span(cursor, "–", "-")):
+            span = (span[0], more[1])
         return span if span and cursor.accept(")") else None
     if cursor.accept("between"):
         return _span(cursor, "and")
@@ -66,6 +68,11 @@ def _window_at(cursor: Cursor) -> Window | None:
     if cursor.accept("from"):
         return _span(cursor, "to", "until", "till")
     return _one_sided(cursor)
+
+
+def _joined(cursor: Cursor) -> bool:
+    """Whether another time of the same deed follows: ``(1–2 s and 3–4 s)``."""
+    return cursor.accept(",", "and") or cursor.accept(",") or cursor.accept("and")
 
 
 def _one_sided(cursor: Cursor) -> Window | None:

@@ -66,6 +66,20 @@ def test_who_turns_a_thing_in_turn_is_told_in_order() -> None:
     assert hands == [("Turn", "right_hand"), ("Turn", "left_hand"), ("Turn", "right_hand")]
 
 
+def test_a_hand_that_helps_meanwhile_has_no_turn_of_its_own() -> None:
+    text = turned(
+        ("right_hand", 50, 600),
+        ("left_hand", 150, 400),
+        ("right_hand", 650, 900),
+        ("left_hand", 950, 1200),
+        ("right_hand", 1250, 1500),
+    )
+    assert text == (
+        "The agent turned the mug about with the right hand, then with the left hand and with the "
+        "right hand again."
+    )
+
+
 def test_what_each_lifts_and_turns_is_lifted_and_turned() -> None:
     assert turned(*IN_TURN, lifts=True).startswith("The agent lifted and turned the mug about with")
 

@@ -157,6 +157,24 @@ def test_short_lifting_and_carrying_goes_with_bringing_a_thing_somewhere(
     assert told(Piece("Reach", begun, ("mug",)), *pieces, way=way) == text
 
 
+@pytest.mark.parametrize(
+    ("contact", "words"),
+    [
+        (Touching("mug", "table", 0, 105), "took the mug from the table with the right hand"),
+        (Touching("mug", "table", 0, 20), "brought the mug to the tray with the right hand"),
+    ],
+)
+def test_what_is_worked_with_is_taken_from_where_it_stood_until_then(
+    contact: Touching, words: str
+) -> None:
+    way = (*TAKEN, (0.8, 0.0, 1.0), (1.6, 0.0, 1.0))
+    brought = Piece("MoveObjTo", 250, ("mug", "tray"), features=PLACED)
+    works = FeatureSet("101", "101", "10", "hand", "00")
+    stirred = Piece("Stir", 390, ("mug", "tray"), features=works)
+    done = told(REACHED, brought, stirred, way=way, facts=(contact,))
+    assert done == f"{words} and stirred in the tray."
+
+
 @pytest.mark.parametrize(("moves_m", "words"), [(0.0, " and put it down"), (0.5, " and let go")])
 def test_what_is_up_in_the_hand_and_let_go_where_it_stays_is_put_down(
     moves_m: float, words: str

@@ -12,13 +12,16 @@ from tellings import steps_of
 
 from capar.model.facts import Moving
 from capar.model.par import FeatureSet
+from kb.language import Instruction, parse
 from kb.language.describe import describe
 from kb.lexicon.english import past
 
 MANY = ("Lift", "Raise", "Lower", "Tilt", "Shake", "Turn")
 
 
-def _handled(*names: str, detail: Literal["steps", "summary"] = "steps") -> str:
+def _handled(
+    *names: str, detail: Literal["steps", "summary"] = "steps", timed: bool = False
+) -> str:
     """What is told of a mug that is handled so once the hand has reached for it."""
     own = FeatureSet("1", "1", "1", "hand", "0")
     features = dict.fromkeys((*MANY, "MoveObj"), own)
@@ -37,7 +40,7 @@ def _handled(*names: str, detail: Literal["steps", "summary"] = "steps") -> str:
     right_hand = seen.links[0]
     own_grip = tuple(replace(each, possessed=each.index > 0) for each in right_hand.segments)
     seen = replace(seen, links=(replace(right_hand, segments=own_grip),))
-    return describe(seen, detail=detail)
+    return describe(seen, detail=detail, timed=timed)
 
 
 def test_verbs_of_one_thing_share_it() -> None:
@@ -61,6 +64,14 @@ def test_a_deed_that_was_only_paused_is_one_with_its_pauses() -> None:
     )
     paused = _handled("Shake", "Touch", "Shake", "Touch", "Shake")
     assert paused == "The agent shook the mug with the right hand, with two pauses."
+
+
+def test_a_deed_that_was_paused_has_a_time_for_each_part() -> None:
+    paused = _handled("Shake", "Touch", "Shake", timed=True)
+    assert paused == ("The agent shook the mug with the right hand (0.50–1.00 s and 1.50–2.00 s).")
+    read = parse(paused)
+    assert isinstance(read, Instruction)
+    assert read.circumstances.window == (0.5, 2.0)
 
 
 def test_a_motion_that_goes_on_is_one_deed_however_many_segments_it_has() -> None:
