@@ -58,8 +58,10 @@ def remarks(made: Fit, capture: Capture, floor_m: float | None = None) -> list[s
         capture: What it was fitted to.
         floor_m: Height of its floor [m]; None without one.
     """
-    parts = (_far(made), _unrecorded(made), _assumed(made, capture, floor_m), _legs(made, floor_m))
-    parts += (_back(made), _head(made, capture), _inside(made))
+    parts = (
+        _far(made), _unrecorded(made), _assumed(made, capture, floor_m), _legs(made, floor_m),
+        _back(made), _head(made, capture), _inside(made),
+    )  # fmt: skip
     return [line for part in parts for line in part]
 
 

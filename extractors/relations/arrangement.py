@@ -8,7 +8,6 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from capar.model import geometry
-from capar.model.bodies import ShapeSource
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.signals.filters import derivative
 from extractors.thresholds import Thresholds
@@ -59,8 +58,7 @@ class Pair:
 
         The points are its outermost ones, those halfway to its middle, and its middle. Well inside
         is deeper than bodies that touch cut each other; for this those a quarter of the way count
-        beside the outermost, as these touch the bottom of what the body stands in. An assumed
-        support is a slab in which nothing lies.
+        beside the outermost, as these touch the bottom of what the body stands in.
         """
         corners = self.body.corners
         points = np.concatenate([corners, 0.5 * corners, np.zeros((1, 3)), 0.75 * corners])
@@ -69,7 +67,7 @@ class Pair:
         planes = self.other.planes
         with np.errstate(invalid="ignore"):
             frames = np.flatnonzero(self.gap <= 0.0)
-        if planes is not None and not self._other_is_assumed:
+        if planes is not None:
             length = max(1, BLOCK_VALUES // len(points))
             for start in range(0, len(frames), length):
                 some = frames[start : start + length]
@@ -78,11 +76,6 @@ class Pair:
                 ends = np.concatenate([height[:, : len(corners)], height[:, count:]], axis=1)
                 deep[some] = (ends <= -self.give_m).mean(axis=1)
         return within, deep
-
-    @property
-    def _other_is_assumed(self) -> bool:
-        shape = self.other.shape
-        return shape is not None and shape.source is ShapeSource.ASSUMED
 
     def _heights(
         self,

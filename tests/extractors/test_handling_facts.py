@@ -1,7 +1,5 @@
 """What is measured of handled bodies is what their closed forms say."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,7 +8,7 @@ from motions import shapes
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
-from capar.model.capture import Shape, ShapeSource, Stream, TagObject, TagType
+from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.model.facts import SweptAzimuth
 from extractors.bodies.body_geometry import BodyGeometry, geometry_of
 from extractors.contact.normals import contact_normal
@@ -209,14 +207,6 @@ def test_what_sticks_out_by_half_is_inside_and_what_stands_on_top_is_not() -> No
     other = body(np.zeros(3), shape=shapes.box(0.4, 0.4, 0.4))
     assert inside(Pair(body(np.array([0.0, 0.0, 0.34])), other, LIMITS)).all()
     assert not inside(Pair(body(np.array([0.0, 0.0, 0.4])), other, LIMITS)).any()
-
-
-def test_nothing_lies_in_an_assumed_support() -> None:
-    slab = shapes.box(0.4, 0.4, 0.4)
-    thing = body(np.array([0.0, 0.0, 0.1]))
-    for source, within in ((ShapeSource.MESH, True), (ShapeSource.ASSUMED, False)):
-        pair = Pair(thing, body(np.zeros(3), shape=replace(slab, source=source)), LIMITS)
-        assert inside(pair).all() == within == dips(pair).all()
 
 
 def test_between_is_on_the_way_from_one_to_the_other() -> None:
