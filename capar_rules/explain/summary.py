@@ -91,6 +91,8 @@ class Briefs:
         pairs = merged_contacts(nodes, self.clock)
         told: list[str] = []
         courses = any(each.atom.startswith(COURSES) for each in nodes)
+        aside = any(each.atom.startswith("travels(") for each in nodes)
+        nodes = [each for each in nodes if aside or not each.atom.startswith("not sliding(")]
         for each in nodes:
             pair = pairs.get(each.atom)
             if pair is not None:
@@ -177,15 +179,16 @@ def summary(
     own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
     subjects = _subjects(nodes, briefs)
     fresh = [each for each in against if each.clause not in clauses]
+    alike = [other for each in against if each not in fresh for other in each.names]
     apart = bool(generals and own) and all(each.by_features or each.failing > 1 for each in fresh)
-    against = fresh or against
     if apart:
         more = _by_subject([each for each in clauses if each not in own], subjects)
         told = f"{name}, and not just {_listed(generals, 'or')}, because "
         told += _by_subject(own, subjects) + f". Also, {more}" * bool(more)
     else:
-        told = f"{name}, because {_by_subject(clauses, subjects)}"
-        for number, contrast in enumerate(against):
+        beside = "" if fresh or not alike else f", and not {_listed(alike, 'or')}"
+        told = f"{name}{beside}, because {_by_subject(clauses, subjects)}"
+        for number, contrast in enumerate(fresh):
             told += f"{';' if number else '.'} {'n' if number else 'N'}ot {contrast.sentence}"
     return f"{told}." + briefs.touching(nodes)
 
