@@ -27,6 +27,9 @@ APART = ("no_contact", "uncounted")
 BESIDE_BORDERS = ("met_gently(", "met_hard(", "newly_met(", "lets_go(", "takes(")
 """Prefixes of atoms that say themselves when a contact began or ended."""
 
+CLEAR = "not sliding("
+"""Prefix of atoms that say that a body was clear of others; told of what goes aside."""
+
 COURSES = ("rises", "comes_down", "travels", "stays_near")
 """Predicates that tell how a body moved, so that its motion need not be told again."""
 
@@ -60,6 +63,8 @@ class Briefs:
     def first(self, reason: Reason) -> list[str]:
         """What the first node says, at or below one, that has something to say in a summary."""
         for each in _resting_on([reason], set()):
+            if each.atom.startswith(CLEAR):
+                continue  # what decides against a name is what the thing did
             predicate, arguments = _parsed(each.atom)
             told = self.sentences.tell(predicate, arguments, self.clock, mood="despite")
             if told or (each.leading and _rank(each)):
@@ -92,7 +97,7 @@ class Briefs:
         told: list[str] = []
         courses = any(each.atom.startswith(COURSES) for each in nodes)
         aside = any(each.atom.startswith("travels(") for each in nodes)
-        nodes = [each for each in nodes if aside or not each.atom.startswith("not sliding(")]
+        nodes = [each for each in nodes if aside or not each.atom.startswith(CLEAR)]
         for each in nodes:
             pair = pairs.get(each.atom)
             if pair is not None:
@@ -186,7 +191,7 @@ def summary(
         told = f"{name}, and not just {_listed(generals, 'or')}, because "
         told += _by_subject(own, subjects) + f". Also, {more}" * bool(more)
     else:
-        beside = "" if fresh or not alike else f", and not {_listed(alike, 'or')}"
+        beside = f", and not {_listed(alike, 'or')}" if alike else ""
         told = f"{name}{beside}, because {_by_subject(clauses, subjects)}"
         for number, contrast in enumerate(fresh):
             told += f"{';' if number else '.'} {'n' if number else 'N'}ot {contrast.sentence}"
