@@ -92,21 +92,34 @@ def explain(
         _draw(told, svg)
     _print(told, seen, json=json, tree=alone)
     if not json:
-        _print_notices(chosen, seen)
+        _print_notices(chosen, seen, told if alone else ())
 
 
-def _notices(segments: "Sequence[Segment]", seen: "Explained") -> "tuple[Notice, ...]":
-    """What of the bodies that the segments are about is known with reservations."""
+def _notices(
+    segments: "Sequence[Segment]", seen: "Explained", told: "Sequence[Explanation]" = ()
+) -> "tuple[Notice, ...]":
+    """Reservations about the bodies of segments, and about what touches there by explanations."""
     from capar.views.notices import reservations
+    from capar_rules.engine.syntax import split_arguments
 
     about = {name for each in segments for name in (each.ee, *each.objects)}
+    contacts = (
+        node.atom
+        for each in told
+        for node in each.reason.walk()
+        if node.atom.startswith("touching(")
+    )
+    others = {each.ee for each in seen.observation.segments}
+    about |= {body for atom in contacts for body in split_arguments(atom)[:2]} - others
     return reservations(seen.observation.notices, about=about)
 
 
-def _print_notices(segments: "Sequence[Segment]", seen: "Explained") -> None:
+def _print_notices(
+    segments: "Sequence[Segment]", seen: "Explained", told: "Sequence[Explanation]" = ()
+) -> None:
     from capar.views.notices import reservation_lines
 
-    for line in reservation_lines(_notices(segments, seen)):
+    for line in reservation_lines(_notices(segments, seen, told)):
         typer.echo(line)
 
 
@@ -189,7 +202,7 @@ def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
     from dataclasses import asdict, replace
 
     segments = [e for e in seen.observation.segments if (e.ee, e.index) == (told.ee, told.index)]
-    notices = [each.document() for each in _notices(segments, seen)]
+    notices = [each.document() for each in _notices(segments, seen, [told])]
     whole = replace(told, reason=told.reason.expanded_once())
     return _placed(asdict(whole), seen) | {"notices": notices}
 

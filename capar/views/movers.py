@@ -9,15 +9,19 @@ from capar.model.observation import Observation
 from capar.views.rows import spoken
 
 WORDS: Mapping[str, str] = {
-    "carried": "carried by {0}",
-    "pushed": "pushed, pulled or struck by {0}",
+    "carried": "moved by {0}",
+    "pushed": "moved by {0}",
     "along": "carried along by {0}",
     "through": "moved through {0}",
     "set_going": "going on with no contact measured",
     "body": "moved with the body ({0})",
     "unknown": "moved by nothing that is recorded",
 }
-"""How each kind of mover is told, of the mover's name."""
+"""How each kind of mover is told, of the mover's name.
+
+What a hand does is told in one way, whether the thing was steady in its frame or slipped: noise
+decides between the two, and the segment's name says how it was moved.
+"""
 
 
 WITHOUT_MOVER = frozenset({"set_going", "unknown"})
@@ -61,17 +65,23 @@ def mover_lines(
     )
 
 
-def _line(thing: str, movers: Mapping[int, Collection[tuple[str, str]]]) -> str:
+def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
     """What moves a thing: one plain statement, or each mover with its share of the time."""
-    was = "were" if is_plural(thing) else "was"
+    was, it = ("were", "them") if is_plural(thing) else ("was", "it")
+    touching = _touching(frames.values())
+    movers = {
+        frame: [(how, mover) for how, mover in found if mover not in touching]
+        for frame, found in frames.items()
+    }
+    who = [f"the {spoken(mover)}" for mover in sorted(touching)]
+    beside = f"; {_few(who)} touched {it} meanwhile" if who else ""
     ways = Counter(_together(found) for found in movers.values()).most_common(1)
     (together, count) = ways[0]
     if 100.0 * count >= ALL_BUT * len(movers):
-        return f"The {thing} {was} {together}."
+        return f"The {thing} {was} {together}{beside}."
     shares = Counter(mover for found in movers.values() for mover in _movers(found))
     if not shares:
         return f"The {thing} {was} {' or '.join(_without_mover(movers.values()))}."
-    verb = "carried" if _only_carried(movers.values()) else "moved"
     most = sorted(shares.items(), key=lambda share: (-share[1], share[0]))[:MOST_TOLD]
     alike: dict[str, list[str]] = {}
     for mover, count in most:
@@ -80,16 +90,24 @@ def _line(thing: str, movers: Mapping[int, Collection[tuple[str, str]]]) -> str:
     others = len(shares) - len(most)
     told += [f"by {others} other{'s' * (others > 1)}"] if others else []
     remainder = _remainder(movers.values(), it="they were" if is_plural(thing) else "it was")
-    return f"The {thing} {was} {verb} {joined(told)}{remainder}."
+    return f"The {thing} {was} moved {joined(told)}{remainder}{beside}."
 
 
 def _movers(found: Collection[tuple[str, str]]) -> set[str]:
-    return {mover for how, mover in found if how not in WITHOUT_MOVER}
+    """Who moves a thing: where one holds it steadily, who merely touches it does not."""
+    holding = {mover for how, mover in found if how == "carried"}
+    return holding or {mover for how, mover in found if how not in WITHOUT_MOVER}
 
 
-def _only_carried(frames: Collection[Collection[tuple[str, str]]]) -> bool:
-    hows = {how for found in frames for how, _ in found}
-    return hows - WITHOUT_MOVER == {"carried"}
+def _touching(frames: Collection[Collection[tuple[str, str]]]) -> set[str]:
+    """Who touched a thing in its motion and never held it, while another one moved it."""
+    shares = Counter(mover for found in frames for mover in _movers(found))
+    least = ALL_BUT / 100.0 * len(frames)
+    throughout = {mover for mover, count in shares.items() if count >= least}
+    moving = {(how, mover) for found in frames for how, mover in found}
+    slipping = {mover for how, mover in moving if how == "pushed"}
+    held = {mover for how, mover in moving if how not in ("pushed", *WITHOUT_MOVER)}
+    return slipping - throughout - held if throughout else set()
 
 
 def _without_mover(frames: Collection[Collection[tuple[str, str]]]) -> list[str]:
@@ -110,13 +128,14 @@ def _how_long(count: int, total: int) -> str:
 
 
 def _together(movers: Collection[tuple[str, str]]) -> str:
-    """What several movers do at once, those that do the same together; who carries does no more."""
+    """What several movers do at once, those that do the same together."""
     found: dict[str, list[str]] = defaultdict(list)
-    carrying = {mover for how, mover in movers if how == "carried"}
+    moving = _movers(movers)
     for how, mover in sorted(movers):
-        if how == "carried" or mover not in carrying:
-            found[how].append(f"the {spoken(mover)}")
-    return joined([WORDS[how].format(_few(who)) for how, who in found.items()])
+        if not moving or mover in moving:
+            found[WORDS[how]].append(f"the {spoken(mover)}")
+    told = {words: list(dict.fromkeys(who)) for words, who in found.items()}
+    return joined([words.format(_few(who)) for words, who in told.items()])
 
 
 def _few(who: Sequence[str]) -> str:

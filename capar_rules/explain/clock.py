@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from capar.model.body_names import is_plural
-from capar.model.facts import Fact, Moving, Place, Posture, Tag, Touching
+from capar.model.facts import Fact, Moving, Place, Posture, Resting, Tag, Touching
 from capar_rules.explain.quantities import Way
 from capar_rules.explain.reaches import Reach
 
@@ -26,6 +26,9 @@ class Measured:
 
     moving: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
     """First and last frames of the measured motions, by object."""
+
+    rests: Mapping[str, Sequence[int]] = field(default_factory=dict)
+    """The frames at which end-effectors came to rest, by end-effector."""
 
     places: Mapping[tuple[str, int], tuple[int, int, int]] = field(default_factory=dict)
     """Where bodies were, by name and frame [mm]."""
@@ -58,11 +61,14 @@ class Measured:
 def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
     """What is known of bodies, with what facts say of their motions, places and postures."""
     moving: dict[str, list[tuple[int, int]]] = defaultdict(list)
+    rests: dict[str, list[int]] = defaultdict(list)
     places, postures, touched = {}, {}, False
     for fact in facts:
         match fact:
             case Moving():
                 moving[fact.object].append((fact.first, fact.last))
+            case Resting():
+                rests[fact.ee].append(fact.first)
             case Place():
                 places[fact.body, fact.frame] = fact.x, fact.y, fact.z
             case Posture():
@@ -71,7 +77,8 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
                 touched = True
             case _:
                 pass
-    return replace(known, moving=moving, places=places, postures=postures, tracked=touched)
+    found = replace(known, moving=moving, rests=rests, places=places, postures=postures)
+    return replace(found, tracked=touched)
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,6 @@ OF_BODIES = (
     "lean",
     "far_over",
     "turn",
-    "until",
     "none",
     "little",
     "still",
@@ -85,6 +84,11 @@ class Argument:
             "not_shaken": self._not_shaken,
             "blow": lambda: f"{constants()['blow_mm_s']} mm/s",
             "met": self._met,
+            "from_rest": self._from_rest,
+            "elsewhere": self._elsewhere,
+            "rest_s": self._rest_s,
+            "long": self._long,
+            "when": self._when,
         }
         if form in of_itself:
             return of_itself[form]()
@@ -140,6 +144,37 @@ class Argument:
         found = self.clock.met.get((self.text, self.beside[1], thing), ())
         return " and ".join(f"the {self.clock.called(each)}" for each in found) or UNBOUND
 
+    def _long(self) -> str:
+        """That a rest is longer than a rest has to be."""
+        span, least = self._span_beside("long"), constants()["rest_ms"]
+        long = span is not None and span[1] - span[0] > in_frames(least, self.clock.rate_hz)
+        return f", longer than the {self._rest_s()} of a rest" * long
+
+    def _when(self) -> str:
+        """A time, and whether it lies before or after the segment that is explained."""
+        frame = int(self.text)
+        span, at = self.clock.span(self.clock.own), self.clock.at(frame)
+        if span is not None and frame < span[0]:
+            return f"before this, at {at}"
+        return f"after this, at {at}" if span is not None and frame > span[1] else f"at {at}"
+
+    def _from_rest(self) -> str:
+        """What the segment's object left in it, if it touched anything."""
+        thing = self.clock.objects.get(self.text, "")
+        met, at_end = (self.clock.met.get((self.text, at, thing), ()) for at in ("start", "end"))
+        left = [f"the {self.clock.called(each)}" for each in met if each not in at_end]
+        return f"left {' and '.join(left)}" if left else "started from rest"
+
+    def _elsewhere(self) -> str:
+        """That the end-effector did not come back to a rest, or had none to come back to."""
+        span, rests = self.clock.span(self.text), self.clock.measured.rests.get(self._hand, ())
+        if span is None or any(first < span[0] for first in rests):
+            return "did not come back to where it had rested before"
+        return "had not rested before"
+
+    def _rest_s(self) -> str:
+        return f"{constants()['rest_ms'] / 1000.0:.2f} s"
+
     def _features(self, form: str) -> str:
         """The bodies for which a string of features has a one."""
         segment = self.beside[0]
@@ -184,15 +219,15 @@ class Argument:
         if form in (*SHIFTS, "lean", "far_over", "turn"):
             return self._between(form, body, span)
         moving = self.clock.motion(body, span)
-        if form == "until":
-            late = span[1] - moving[1] > in_frames(times().merge_ms, self.clock.rate_hz)
-            return f" until {self.clock.at(moving[1])}" if late else ""
         moved = self._moved(body, moving if form == "way" else span)
-        return "" if moved is None else _brief(form, moved)
+        if moved is None or form != "way":
+            return "" if moved is None else _brief(form, moved)
+        late = span[1] - moving[1] > in_frames(times().merge_ms, self.clock.rate_hz)
+        return quantities.way(moved, f" until {self.clock.at(moving[1])}" * late)
 
     def _span_beside(self, form: str) -> tuple[int, int] | None:
-        """The span of the segment, or, for ``still``, of the two ticks, beside this argument."""
-        if form == "still":
+        """The span of the segment, or, of a rest, of the two ticks, beside this argument."""
+        if form in ("still", "long"):
             first, last = (int(each) for each in self.beside[1:3])
             frames = self.clock.frames[self.beside[0]]
             return frames[first], frames[last]
@@ -243,8 +278,6 @@ class Argument:
 
 
 def _brief(form: str, moved: Way) -> str:
-    if form == "way":
-        return quantities.way(moved)
     if form == "little":
         shifted = f"{1e3 * moved.straight_m:.0f} mm, too little to count as motion"
         return f" (it shifted by {shifted})" if moved.straight_m >= DRIFT_M else ""

@@ -46,13 +46,14 @@ def length(metres: float) -> str:
     return f"{metres:.1f} m"
 
 
-def way(moved: Way) -> str:
-    """How far a body moved, to stand after ``moved``."""
+def way(moved: Way, until: str = "") -> str:
+    """How far a body moved, and until when if that is told, to stand after ``moved``."""
     if moved.winding:
-        return f"along a path of {length(moved.path_m)} and ended {_from_start(moved.straight_m)}"
+        path = f"along a path of {length(moved.path_m)}{until}"
+        return f"{path} and ended {_from_start(moved.straight_m)}"
     if moved.path_m < TURNING_M:
-        return "by turning"
-    return length(moved.straight_m)
+        return f"by turning{until}"
+    return f"{length(moved.straight_m)}{until}"
 
 
 def place(x_mm: float, y_mm: float, z_mm: float) -> str:
@@ -61,7 +62,8 @@ def place(x_mm: float, y_mm: float, z_mm: float) -> str:
 
 
 def _from_start(metres: float) -> str:
-    return "where it began" if metres < LEAST_M else f"{length(metres)} from where it began"
+    least = metres < LEAST_M
+    return f"{'less than ' * least}{length(LEAST_M if least else metres)} from where it began"
 
 
 def spread(metres: float) -> str:

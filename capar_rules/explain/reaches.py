@@ -13,8 +13,8 @@ class Between(StrEnum):
     SURFACES = "between their surfaces"
     ORIGINS = "between their origins, as not both have a shape"
     POINTS = (
-        "between the points of them that were steadily together, estimated from the recording, as "
-        "not both have a shape"
+        "between a point of each body, estimated from how the two moved together, and not between "
+        "their origins, as not both have a shape"
     )
 
 

@@ -3,6 +3,9 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+JOINT = "joins_in("
+"""Prefix of atoms of which the tree of sentences has the first alone."""
+
 
 @dataclass(frozen=True)
 class Reason:
@@ -59,11 +62,23 @@ def _expanded_once(reason: Reason, known: set[str]) -> Reason:
 
 def _with_sentences(reason: Reason, known: set[str]) -> Reason:
     """The tree of sentences; a repeated sentence has nothing below it."""
+    reason = _with_one_joint_action(reason)
     below: list[Reason] = []
     if reason.sentence not in known:
         known.add(reason.sentence)
         below = [_with_sentences(each, known) for each in _nearest(reason)]
     return replace(reason, because=tuple(below))
+
+
+def _with_one_joint_action(reason: Reason) -> Reason:
+    """The node with the first segment that it is one action with, and the number of the others."""
+    joint = [each for each in reason.because if each.atom.startswith(JOINT)]
+    if len(joint) < 2:
+        return reason
+    told = f"{joint[0].sentence}, and with what {len(joint) - 1} more do"
+    first = replace(joint[0], sentence=told)
+    below = (each for each in reason.because if each not in joint)
+    return replace(reason, because=(*below, first))
 
 
 def _nearest(reason: Reason) -> list[Reason]:

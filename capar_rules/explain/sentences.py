@@ -90,6 +90,7 @@ class Sentences:
         for each in clock.several:
             told = re.sub(rf"{_NO_SUBJECT}\bthe {each} (was|is|has|does)\b", _of_several, told)
             told = re.sub(rf"(\bthe {each} (?:moved|ended) .*where) it ", r"\1 they ", told)
+            told = re.sub(rf"(\bthe {each} stayed where) it was\b", r"\1 they were", told)
         return told
 
     def nearness(self, predicate: str, arguments: Sequence[str], clock: Clock) -> float:

@@ -27,6 +27,9 @@ APART = ("no_contact", "uncounted")
 BESIDE_BORDERS = ("met_gently(", "met_hard(", "newly_met(", "lets_go(", "takes(")
 """Prefixes of atoms that say themselves when a contact began or ended."""
 
+CLEAR = "not sliding("
+"""Prefix of atoms that say that a body was clear of others; told of what goes aside."""
+
 COURSES = ("rises", "comes_down", "travels", "stays_near")
 """Predicates that tell how a body moved, so that its motion need not be told again."""
 
@@ -60,6 +63,8 @@ class Briefs:
     def first(self, reason: Reason) -> list[str]:
         """What the first node says, at or below one, that has something to say in a summary."""
         for each in _resting_on([reason], set()):
+            if each.atom.startswith(CLEAR):
+                continue  # what decides against a name is what the thing did
             predicate, arguments = _parsed(each.atom)
             told = self.sentences.tell(predicate, arguments, self.clock, mood="despite")
             if told or (each.leading and _rank(each)):
@@ -91,6 +96,8 @@ class Briefs:
         pairs = merged_contacts(nodes, self.clock)
         told: list[str] = []
         courses = any(each.atom.startswith(COURSES) for each in nodes)
+        aside = any(each.atom.startswith("travels(") for each in nodes)
+        nodes = [each for each in nodes if aside or not each.atom.startswith(CLEAR)]
         for each in nodes:
             pair = pairs.get(each.atom)
             if pair is not None:
@@ -177,15 +184,16 @@ def summary(
     own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
     subjects = _subjects(nodes, briefs)
     fresh = [each for each in against if each.clause not in clauses]
+    alike = [other for each in against if each not in fresh for other in each.names]
     apart = bool(generals and own) and all(each.by_features or each.failing > 1 for each in fresh)
-    against = fresh or against
     if apart:
         more = _by_subject([each for each in clauses if each not in own], subjects)
         told = f"{name}, and not just {_listed(generals, 'or')}, because "
         told += _by_subject(own, subjects) + f". Also, {more}" * bool(more)
     else:
-        told = f"{name}, because {_by_subject(clauses, subjects)}"
-        for number, contrast in enumerate(against):
+        beside = f", and not {_listed(alike, 'or')}" if alike else ""
+        told = f"{name}{beside}, because {_by_subject(clauses, subjects)}"
+        for number, contrast in enumerate(fresh):
             told += f"{';' if number else '.'} {'n' if number else 'N'}ot {contrast.sentence}"
     return f"{told}." + briefs.touching(nodes)
 

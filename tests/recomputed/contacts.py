@@ -134,7 +134,11 @@ FORMS = (
         rf"the {NAME} had not simply borne the {NAME} since before the {NAME} touched it",
         no_support,
     ),
-    (rf"the {NAME} had come to touch the {NAME} only at {TIME}, in the {NAME}", newly_met),
-    (rf"the {NAME} had the {NAME} already, and let go of it at {TIME}", let_go),
-    (rf"the {NAME} took the {NAME} at {TIME}", took),
+    (
+        rf"the {NAME} had come to touch the {NAME} (?:before this, )?at {TIME}, while held by "
+        rf"the {NAME}",
+        newly_met,
+    ),
+    (rf"the {NAME} had the {NAME} already, and let go of it (?:after this, )?at {TIME}", let_go),
+    (rf"the {NAME} took the {NAME} (?:before this, )?at {TIME}", took),
 )

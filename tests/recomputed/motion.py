@@ -162,7 +162,11 @@ def came_back(known: Known, what: str) -> bool:
 
 
 def came_elsewhere(known: Known, what: str) -> bool:
-    return not came_back(known, what)
+    return not came_back(known, what) and not never_rested(known, what)
+
+
+def never_rested(known: Known, what: str) -> bool:
+    return not any(each.first < known.segment.first for each in known.resting(what))
 
 
 def came_to_rest(known: Known, what: str, at: str) -> bool:
@@ -243,6 +247,17 @@ def _turning_points(values: np.ndarray) -> int:
 
 def swung(known: Known, what: str) -> bool:
     return to_and_fro(known, what, known.segment.first, known.segment.last)
+
+
+def swung_within(known: Known, what: str) -> bool:
+    """It is moved to and fro in the segment for longer than before, or long enough to turn back."""
+    first, last = known.segment.first, known.segment.last
+    return any(
+        each.first >= first
+        or min(each.last, last) - first >= min(first - each.first, 0.9 * known.rate)
+        for each in known.of(Swings)
+        if each.body == what.replace(" ", "_") and each.first < last and each.last >= first
+    )
 
 
 def swing_border(known: Known, what: str, sense: str, at: str) -> bool:
@@ -357,6 +372,7 @@ FORMS = (
     (rf"rest of the {NAME} was measured from {TIME} to {TIME}", measured_rest),
     (rf"the {NAME} turned as it went, without slipping", rolled),
     (rf"the {NAME} was moved to and fro", swung),
+    (rf"the {NAME} was not moved to and fro mainly before it", swung_within),
     (rf"the {NAME}, long and thin, went along its own length", went_lengthwise),
     (
         rf"lengthwise motion of the {NAME} was measured from {TIME} to {TIME}",
@@ -377,7 +393,8 @@ FORMS = (
     ),
     (rf"the {NAME} came to rest at {TIME}", came_to_rest),
     (rf"it ended where the {NAME} had rested before", came_back),
-    (rf"it did not end where the {NAME} had rested before", came_elsewhere),
+    (rf"the {NAME} did not come back to where it had rested before", came_elsewhere),
+    (rf"the {NAME} had not rested before", never_rested),
     (rf"the {NAME} began to move at {TIME}", left_rest),
     (rf"the {NAME} turned back at {TIME}", turned_back),
     (rf"the {NAME} reversed its direction at {TIME}", turned_round),

@@ -310,6 +310,7 @@ FORMS = (
         borne,
     ),
     (rf"the {NAME} (?:met|struck) the {NAME} at (\d+) mm/s", met_at),
+    (rf"the {NAME} and the {NAME} approached each other at (\d+) mm/s, as measured", met_at),
     (
         rf"the {NAME} pressed on the {NAME} along \((-?\d+), (-?\d+), level\) thousandths,"
         rf" at {TIME}",

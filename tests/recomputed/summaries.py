@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from capar.model.body_names import body_names
-from capar.model.facts import ClosingSpeed, Moving, Posture
+from capar.model.facts import ClosingSpeed, Moving, Posture, Resting
 from capar_rules.engine.solver import rule_file
 from recomputed.doors import NUMBER, slid, swung
 from recomputed.known import NAME, TIME, Known, covers, name, near
@@ -27,7 +27,7 @@ SHORT_M = 0.01
 
 VERBS = (
     "met|rose|sank|took|counts|bore|touched|moved|ended|leant|turned|stayed|kept|did|was|had|came|went|"
-    "then|lay|dipped|started"
+    "then|lay|dipped|started|slid|left"
 )
 
 
@@ -113,14 +113,38 @@ def moved(known: Known, body: str, far: str) -> bool:
     return _is(_length(_displaced(known, body, span)), far, slack_m=SMOOTHED_M + blur)
 
 
-def wound(known: Known, body: str, path: str, far: str) -> bool:
+def wound(known: Known, body: str, path: str, at: str | None, less: str | None, far: str) -> bool:
     """Its steps sum to the path, and it ends so far from where its motion began."""
+    if at and not until(known, body, at):
+        return False
     span = _motion(known, body)
     track = known.track(body, *span)
     steps = float(np.linalg.norm(np.diff(track, axis=0), axis=1).sum())
     way = _length(_displaced(known, body, span))
-    ended = _is(way, far) if far else way < SHORT_M + SMOOTHED_M
+    ended = way < _metres(far) + SMOOTHED_M if less else _is(way, far)
     return ended and _is(steps, path, slack_m=0.03)
+
+
+def _metres(told: str) -> float:
+    number, unit = told.split(" ")
+    return float(number) * UNITS[unit][0]
+
+
+def ended_there(known: Known, body: str, far: str) -> bool:
+    """It ends nearer than that to where it began, which is as near as is told in metres."""
+    return _metres(far) == SHORT_M and _length(_shifted(known, body)) < SHORT_M + SMOOTHED_M
+
+
+def rest_lasts(known: Known, _: str, told: str) -> bool:
+    return _asked("rest_ms", told)
+
+
+def rests_longer(known: Known, body: str, told: str) -> bool:
+    """A rest as long as a rest takes at least."""
+    return rest_lasts(known, body, told) and any(
+        each.ee == body and (each.last - each.first) / known.rate > float(told)
+        for each in known.of(Resting)
+    )
 
 
 def ended_away(known: Known, body: str, far: str) -> bool:
@@ -142,6 +166,8 @@ def _asked(name: str, told: str) -> bool:
     (asked,) = re.findall(rf"#const {name} = (\d+)\.", text)
     if name.endswith("mrad"):
         return abs(math.degrees(int(asked) / 1000.0) - float(told)) <= 0.6
+    if name.endswith("_ms"):
+        return math.isclose(int(asked) / 1000.0, float(told))
     return _is(int(asked) / 1000.0, told, slack_m=0.0)
 
 
@@ -333,10 +359,15 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"met the {NAME} at (\d+) mm/s, less than the 1000 mm/s of a blow", met_gently),
     (rf"met the {NAME} at (\d+) mm/s, fast enough for a blow \(1000 mm/s\)", met_hard),
-    (rf"had come to touch the {NAME} only at {TIME}", met_first),
-    (rf"had the {NAME} already, and let go of it at {TIME}", let_go),
-    (rf"took the {NAME} at {TIME}", took),
-    (rf"moved along a path of {LENGTH} and ended (?:{LENGTH} from )?where it began", wound),
+    (rf"had come to touch the {NAME} (?:before this, )?at {TIME}", met_first),
+    (rf"had the {NAME} already, and let go of it (?:after this, )?at {TIME}", let_go),
+    (rf"took the {NAME} (?:before this, )?at {TIME}", took),
+    (
+        rf"moved along a path of {LENGTH}(?: until {TIME})? and ended (less than )?{LENGTH} from "
+        "where it began",
+        wound,
+    ),
+    (rf"ended less than {LENGTH} from where it began", ended_there),
     (rf"moved {LENGTH}", moved),
     (rf"ended {LENGTH} from where it began", ended_away),
     (rf"ended {LENGTH} (higher|lower)(?: and {LENGTH} to the side)?", ended),
@@ -356,9 +387,15 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"leant {DEGREES} from upright at the start and {DEGREES} at the end", leant),
     (rf"turned by {DEGREES} about the vertical", spun),
     (rf"it shifted by {LENGTH}, too little to count as motion", shifted),
-    (rf"kept still \(within {LENGTH}\) and touched [\w ]+ from {TIME} to {TIME}", kept_within),
+    (
+        rf"kept still \(within {LENGTH} of its median place\) and touched [\w ]+ from {TIME} to "
+        rf"{TIME}",
+        kept_within,
+    ),
+    (r"longer than the (\d\.\d\d) s of a rest", rests_longer),
+    (r"for as long as a rest lasts \((\d\.\d\d) s\)", rest_lasts),
     (rf"touched the {NAME} at {TIME}", touched_at),
-    (rf"stayed within {LENGTH} of one place", kept_within),
+    (rf"stayed within {LENGTH} of its median place", kept_within),
     (rf"too little to count as motion \({LENGTH} or more\)", counts_from),
     (rf"at the start \({TIME}\)", starts),
     (rf"at the end \({TIME}\)", ends),
