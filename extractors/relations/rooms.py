@@ -93,6 +93,12 @@ def has_room(shape: Shape, thresholds: Thresholds) -> bool:
     return enclosed > thresholds.enclosed_share
 
 
+def seek_rooms(shapes: Iterable[Shape], thresholds: Thresholds) -> None:
+    """Seek the hollows of shapes beforehand, which takes up to a second each, and keep them."""
+    for shape in shapes:
+        has_room(shape, thresholds)
+
+
 def pocket_m(shape: Shape) -> float:
     """The largest distance of a body's convex hull from its own surface [m].
 

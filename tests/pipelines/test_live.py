@@ -2,8 +2,10 @@
 
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
+import motions
 import numpy as np
 import pytest
 from live_runs import live_run
@@ -11,6 +13,10 @@ from live_runs import live_run
 from capar.model.json_form import to_json
 from capar.model.observation import Segment
 from capar.pipelines.live.events import SegmentEvent, Status
+from capar.pipelines.live.frames import replayed
+from capar.pipelines.live.observer import LiveObserver
+from extractors.calibration import calibrate
+from extractors.relations import rooms
 
 pytestmark = pytest.mark.long
 
@@ -163,3 +169,23 @@ def test_in_a_long_noisy_recording_no_settled_segment_differs_and_99_in_100_are_
     ] == final
     assert np.percentile([each.late_s for each in settled(run.events)], 99) <= 1.0
     assert to_json(run.result) == to_json(run.offline)
+
+
+def test_no_room_of_a_shape_is_sought_while_frames_come(monkeypatch: pytest.MonkeyPatch) -> None:
+    drunk = motions.drink_from_mug(motions.WOMAN).capture
+    unknown = tuple(
+        replace(thing, kind="", shape=thing.shape and replace(thing.shape))
+        for thing in drunk.objects
+    )
+    capture = replace(drunk, objects=unknown)
+    observer = LiveObserver(capture, calibrate(capture))
+
+    def refused(*_: object) -> None:
+        raise AssertionError("a room was sought late")
+
+    monkeypatch.setattr(rooms, "_pocket", refused)
+    monkeypatch.setattr(rooms, "enclosure", refused)
+    for frame in replayed(capture):
+        observer.push([frame])
+    _, result = observer.finish()
+    assert result is not None

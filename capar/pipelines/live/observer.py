@@ -40,6 +40,7 @@ from capar_rules.pars.inference import Inference
 from extractors.calibration import thresholds_of
 from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.measure import Measurements, measured
+from extractors.relations.rooms import seek_rooms
 from extractors.relations.weight_bearing import PART
 
 EDGES = ("starts_moving", "stops_moving")
@@ -112,6 +113,8 @@ class LiveObserver:
             else None
         )
         self._teller = Teller(rig, self.rules) if sentences else None
+        shapes = (thing.shape for thing in rig.objects if thing.shape is not None)
+        seek_rooms(shapes, thresholds_of(calibration))
         self._answers = EarlierAnswers()
         self._first_motion = FirstMotion(calibration, self._buffer.streams)
         self._stirs = False
