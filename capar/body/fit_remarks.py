@@ -34,6 +34,9 @@ TILTED = 8.0
 ARCHED, BOWED = np.radians(-20.0), np.radians(60.0)
 """A back that is bent backwards or forwards by more than this is reported [rad]."""
 
+TWISTED = np.radians(20.0)
+"""A back that is bent sideways or turned by more than this is reported [rad]."""
+
 INSIDE_M, NEAR_M = 0.01, 0.02
 """A hand that is deeper in the thigh or trunk than the one, or as near as the other, is reported
 [m]."""
@@ -44,8 +47,9 @@ SAMPLES = 60
 LIMBS = {"arm": "upper_arm", "forearm": "forearm", "hand": "hand", "leg": "thigh", "foot": "foot"}
 """Parts that may be unrecorded, by their segment; a part of one that is named is not named."""
 
+NECK = ("neck", "head")
 SPINE = ("lumbar_lower", "lumbar_upper", "thorax_lower", "thorax_upper")
-BODY = ("right_thigh", "left_thigh", "pelvis", *SPINE)
+BODY = ("right_thigh", "left_thigh", "pelvis", *SPINE, "neck", "head")
 
 Points = Mapping[str, Float[np.ndarray, "frames 3"]]
 
@@ -154,8 +158,8 @@ def _ahead(turns: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames"]:
 
 
 def _back(made: Fit) -> Iterator[str]:
-    """How far the back is bent, where that is far."""
-    bend = made.motion[:, [made.human.index(f"{name}_flexion") for name in SPINE]].sum(axis=1)
+    """How far the back is bent and turned, where that is far."""
+    bend = _summed(made, SPINE, "flexion")
     least, most = int(np.argmin(bend)), int(np.argmax(bend))
     if bend[least] < ARCHED:
         yield (
@@ -167,6 +171,14 @@ def _back(made: Fit) -> Iterator[str]:
             f"the back is bent forwards by up to {np.degrees(bend[most]):.0f} degrees, at "
             f"{made.times[most]:.2f} s"
         )
+
+    for way, done in (("bend", "bent sideways"), ("turn", "turned")):
+        angle = np.abs(_summed(made, SPINE, way))
+        if angle.max() > TWISTED:
+            yield (
+                f"the back is {done} by up to {np.degrees(angle.max()):.0f} degrees, at "
+                f"{made.times[int(np.argmax(angle))]:.2f} s"
+            )
 
 
 def _head(made: Fit, capture: Capture) -> Iterator[str]:
@@ -183,14 +195,22 @@ def _head(made: Fit, capture: Capture) -> Iterator[str]:
             f"{sensor.name} is drawn as a point where it is tracked, {abs(ahead):.0f} mm "
             f"{'before' if ahead > 0.0 else 'behind'} and {abs(up):.0f} mm "
             f"{'above' if up > 0.0 else 'below'} the middle between this body's eyes; its neck is "
-            f"{1e3 * np.linalg.norm(made.human.model.body('head').pos):.0f} mm long and bent "
-            f"forwards by {_range(made, 'neck')} degrees, the head on it by {_range(made, 'head')}"
+            f"{1e3 * np.linalg.norm(made.human.model.body('head').pos):.0f} mm long and, with the "
+            f"head on it, bent forwards by {_range(made, NECK, 'flexion')} degrees, sideways by "
+            f"{_range(made, NECK, 'bend')} and turned by {_range(made, NECK, 'turn')}"
         )
 
 
-def _range(made: Fit, part: str) -> str:
-    bend = np.degrees(made.motion[:, made.human.index(f"{part}_flexion")])
-    return f"{bend.min():.0f} to {bend.max():.0f}"
+def _range(made: Fit, parts: tuple[str, ...], way: str) -> str:
+    angle = np.degrees(_summed(made, parts, way))
+    return f"{angle.min():.0f} to {angle.max():.0f}"
+
+
+def _summed(made: Fit, parts: tuple[str, ...], way: str) -> Float[np.ndarray, "frames"]:
+    """The sum of some joints' angles [rad]."""
+    return np.asarray(
+        made.motion[:, [made.human.index(f"{part}_{way}") for part in parts]].sum(axis=1)
+    )
 
 
 def recorded_spine(made: Fit, points: Points) -> list[str]:

@@ -151,5 +151,19 @@ def test_a_head_that_is_drawn_as_a_point_is_told_with_where_it_is_and_how_the_ne
     text = told(made, replace(BARE, sensors=(tracked,)))
     assert f"{head.name} is drawn as a point" in text
     assert "25 mm behind and 76 mm below the middle between this body's eyes" in text
-    assert "bent forwards by 6 to 6 degrees, the head on it by -11 to -11" in text
+    assert "with the head on it, bent forwards by -6 to -6 degrees, sideways by 0 to 0" in text
     assert "drawn as a point" not in told(made)
+
+
+def test_a_back_that_is_bent_sideways_or_turned_far_is_said() -> None:
+    text = told(
+        fitted(
+            WHOLE,
+            lumbar_lower_bend=0.2,
+            thorax_lower_bend=0.2,
+            thorax_lower_turn=0.2,
+            thorax_upper_turn=0.2,
+        )
+    )
+    assert "the back is bent sideways by up to 23 degrees" in text
+    assert "the back is turned by up to 23 degrees" in text

@@ -1,6 +1,5 @@
 """Hands, heads and spines of other skeletons are turned and placed as their points tell."""
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +18,6 @@ from extractors.readers.body_names.body_names import SIDES
 from extractors.readers.body_names.conventions import convention
 from extractors.readers.bundle.capture_toml import read_capture
 
-DATA = Path(os.environ.get("CAPAR_DATA", Path(__file__).parents[3] / "shared" / "data"))
-recorded_people = pytest.mark.skipif(not DATA.exists(), reason=f"no recordings at {DATA}")
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 TIMES = np.arange(0.0, 1.5, 1.0 / 30.0)
@@ -138,7 +135,7 @@ def test_rigid_places_of_a_body_are_its_own() -> None:
     np.testing.assert_allclose(found["right_index"], index, atol=1e-6)
 
 
-@recorded_people
+@pytest.mark.usefixtures("recordings")
 @pytest.mark.parametrize("clip", ["sub2_largetable_000", "sub2_woodchair_005"])
 def test_recorded_eyes_are_in_the_head_and_recorded_knuckles_in_the_hands(clip: str) -> None:
     place = f"{EXAMPLES / 'omomo_intermimic'}:{clip}"
@@ -149,7 +146,7 @@ def test_recorded_eyes_are_in_the_head_and_recorded_knuckles_in_the_hands(clip: 
         assert np.median(made.residuals_m[knuckle]) < 0.01
 
 
-@recorded_people
+@pytest.mark.usefixtures("recordings")
 def test_a_take_with_other_names_is_followed_by_its_convention_alone() -> None:
     place = f"{EXAMPLES / 'omomo_intermimic'}:sub3_largebox_003"
     made = fit_body(place, read_capture(place))
