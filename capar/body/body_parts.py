@@ -43,8 +43,8 @@ def with_body_parts(capture: Capture, made: Fit) -> Capture:
         made: The body fitted to it.
     """
     nearest = np.abs(made.times[None] - capture.times[:, None]).argmin(axis=1)
-    taken = {each.name for each in capture.objects} | {
-        _place(each) for each in capture.acting if _is_own(capture, each)
+    taken = {thing.name for thing in capture.objects} | {
+        _place(sensor) for sensor in capture.acting if _is_own(capture, sensor)
     }
     parts = {name: segments for name, segments in (HEAD | FEET).items() if name not in taken}
     unseen = set(made.unrecorded)
@@ -53,7 +53,7 @@ def with_body_parts(capture: Capture, made: Fit) -> Capture:
         for name, segments in parts.items()
         if name not in unseen
     ]
-    sensors = tuple(_with_surface(capture, made, each, nearest) for each in capture.sensors)
+    sensors = tuple(_with_surface(capture, made, sensor, nearest) for sensor in capture.sensors)
     shaped = sensors != capture.sensors or bool(added)
     tolerance = max(capture.contact_tolerance_m or 0.0, FITTED_M) if shaped else None
     return replace(
@@ -84,7 +84,7 @@ def _part(
 ) -> TagObject:
     """A part of the body that is touched; with the sensor of its name where there is one."""
     surface = segment_surface(made.human.measures, segments, name)
-    worn = next((each for each in capture.sensors if each.name == name), None)
+    worn = next((sensor for sensor in capture.sensors if sensor.name == name), None)
     if worn is not None:
         moved = _in_frame(made, name, worn.stream, nearest)
         return TagObject(name, TagType.SELF, worn.stream, _moved(surface, moved), name)
@@ -120,7 +120,7 @@ def _in_frame(
     made: Fit, segment: str, stream: Stream, nearest: Int[np.ndarray, "frames"]
 ) -> RigidTransform:
     """A segment in the frame of what rides on it: mean turn, median place of all frames."""
-    spots, turns = (each[nearest] for each in made.human.sites(made.motion, [segment])[segment])
+    spots, turns = (rows[nearest] for rows in made.human.sites(made.motion, [segment])[segment])
     known = ~stream.lost & ~_lost(made)[nearest]
     worn = geometry.transforms(stream.positions[known], stream.orientations[known])
     relative = worn.inv() * geometry.transforms(spots[known], turns[known])

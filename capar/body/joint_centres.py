@@ -69,10 +69,10 @@ def joint_centre(
     both = first.seen & second.seen & np.isfinite(guess).all(axis=1)
     if both.sum() < LEAST_FRAMES:
         return None
-    poses = [each.poses[both[each.seen]] for each in (first, second)]
-    usual = [np.median(each.inv().apply(guess[both]), axis=0) for each in poses]
+    poses = [shape.poses[both[shape.seen]] for shape in (first, second)]
+    usual = [np.median(pose.inv().apply(guess[both]), axis=0) for pose in poses]
     frames = int(both.sum())
-    turns = [each.rotation.as_matrix() for each in poses]
+    turns = [pose.rotation.as_matrix() for pose in poses]
     matrix = np.concatenate([turns[0], -turns[1]], axis=2).reshape(3 * frames, 6)
     rest = (poses[1].translation - poses[0].translation).reshape(-1)
     weight = TRUST * np.sqrt(frames)

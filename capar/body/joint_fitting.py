@@ -91,7 +91,7 @@ def fit_joints(
     shaped = rigid_places(Human.of(measures), sampled, places, known.at(frames).faces)
     names |= {name: replace(names[name], place=part_of(places[name])) for name in shaped}
     early = {name: weight * _early(name, names, places) for name, weight in weights.items()}
-    own = {n: each for n, each in names.items() if n not in shaped and _differs(each)}
+    own = {name: body for name, body in names.items() if name not in shaped and _differs(body)}
     local: Local = shaped
     for _ in range(ROUNDS):
         first = _fit(sampled, measures, local, names, early, known.at(frames))
@@ -131,7 +131,7 @@ def _early(name: str, names: Mapping[str, BodyName], places: Mapping[str, str]) 
     place = names[name].place
     if parts().get(without_side(place)) in {"trunk", "pelvis"} and place != "neck":
         return 0.0
-    eyed = any(each.endswith("_eye") for each in places.values())
+    eyed = any(place.endswith("_eye") for place in places.values())
     return EARLY_SHARE if place == "neck" or (place == "head" and not eyed) else 1.0
 
 
@@ -195,7 +195,7 @@ def _fit(
     guidance: Guidance,
 ) -> SkeletonFit:
     """The body fitted to points, some of which have places of their own on it."""
-    found = {n: f"marker_{n}" if n in local else each.place for n, each in names.items()}
+    found = {n: f"marker_{n}" if n in local else body.place for n, body in names.items()}
     own = file_convention(found, {place: weights[name] for name, place in found.items()})
     human = with_markers(measures, local, names)
     return fit_skeleton(points, own, human=human, guidance=guidance)

@@ -9,10 +9,11 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.body.capture_fitting import fit_capture
-from capar.body.fit_remarks import recorded_feet, recorded_spine, remarks, stand_off
+from capar.body.fit_remarks import remarks
 from capar.body.fitting import Fit
 from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import LEAST_EXACT, fit_markers
+from capar.body.recording_remarks import recorded_feet, recorded_spine, stand_off
 from capar.body.skeleton_fitting import SkeletonFit
 from capar.model import geometry
 from capar.model.capture import Capture, TagType

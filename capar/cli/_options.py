@@ -49,9 +49,15 @@ Assume = Annotated[
         metavar="FILE",
         help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
         "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'; "
+        "[hand.SIDE] fingers, palm = [X, Y, Z]; "
         "[assumed_size] OBJECT = [X, Y].",
         show_default=False,
     ),
+]
+
+NewBundle = Annotated[
+    Path | None,
+    typer.Option(help="A new folder for the capture bundle.", show_default=False),
 ]
 
 Beside = Annotated[

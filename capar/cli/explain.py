@@ -102,14 +102,14 @@ def _notices(
     from capar.views.notices import reservations
     from capar_rules.engine.syntax import split_arguments
 
-    about = {name for each in segments for name in (each.ee, *each.objects)}
+    about = {name for segment in segments for name in (segment.ee, *segment.objects)}
     contacts = (
         node.atom
-        for each in told
-        for node in each.reason.walk()
+        for explanation in told
+        for node in explanation.reason.walk()
         if node.atom.startswith("touching(")
     )
-    others = {each.ee for each in seen.observation.segments}
+    others = {segment.ee for segment in seen.observation.segments}
     about |= {body for atom in contacts for body in split_arguments(atom)[:2]} - others
     return reservations(seen.observation.notices, about=about)
 

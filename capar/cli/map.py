@@ -1,11 +1,10 @@
 """The command that maps a recorded performance directly to another body."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from capar.cli._options import Assume
+from capar.cli._options import Assume, NewBundle
 
 app = typer.Typer()
 
@@ -19,10 +18,7 @@ def map_command(
     agent: Annotated[
         str, typer.Option(help="Who performs: man, woman, child, or same for the one recorded.")
     ] = "same",
-    output: Annotated[
-        Path | None,
-        typer.Option(help="A new folder for the capture bundle.", show_default=False),
-    ] = None,
+    output: NewBundle = None,
     cutoff: Annotated[
         float,
         typer.Option(

@@ -130,7 +130,7 @@ def _given(parameters: list[str], asked: str) -> dict[str, str]:
         name, equals, value = parameter.partition("=")
         if not equals:
             taken = questions()[asked].parameters if asked in questions() else ()
-            names = f": {', '.join(each.name for each in taken)}" if taken else ""
+            names = f": {', '.join(parameter.name for parameter in taken)}" if taken else ""
             raise CaparError(f"{parameter!r} is no parameter; one is written NAME=VALUE{names}")
         given[name] = value
     return given

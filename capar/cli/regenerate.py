@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._options import Assume, Place, Rules
+from capar.cli._options import Assume, NewBundle, Place, Rules
 
 app = typer.Typer()
 
@@ -41,10 +41,7 @@ def regenerate(
             show_default=False,
         ),
     ] = None,
-    output: Annotated[
-        Path | None,
-        typer.Option(help="A new folder for the capture bundle.", show_default=False),
-    ] = None,
+    output: NewBundle = None,
     style: Annotated[
         str,
         typer.Option(

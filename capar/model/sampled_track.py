@@ -58,7 +58,7 @@ class SampledTrack:
         """
         lost = np.isnan(self.positions).any(axis=1)
         at = time_s / self.step_s if self.step_s else 0.0
-        before, after = (min(int(each(at)), len(lost) - 1) for each in (np.floor, np.ceil))
+        before, after = (min(int(whole(at)), len(lost) - 1) for whole in (np.floor, np.ceil))
         if not (lost[before] or lost[after]):
             return None
         seen = np.flatnonzero(~lost)

@@ -127,7 +127,7 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
         ways(measurements),
         names=body_names(observation),
         reaches=reaches(measurements),
-        floors={each.name: each.motion_floor_m for each in measurements.calibration.objects},
+        floors={thing.name: thing.motion_floor_m for thing in measurements.calibration.objects},
         stand_ins={
             body: str(notice["shape"])
             for notice in observation.notices

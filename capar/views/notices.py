@@ -27,29 +27,30 @@ def reservations(
 
 def note_lines(notices: Iterable[Notice], *, most: int = MOST) -> tuple[str, ...]:
     """Notices one a line; those of a code that has more of them than most as one line."""
-    alike: dict[str, list[Notice]] = {}
-    for notice in notices:
-        alike.setdefault(notice.code, []).append(notice)
     return tuple(
         f"note [{code}]: {text}"
-        for code, group in alike.items()
+        for code, group in _by_code(notices).items()
         for text in _texts(code, group, most)
     )
 
 
 def reservation_lines(notices: Sequence[Notice]) -> tuple[str, ...]:
     """What follows a text whose reservations those are: a gap, a heading, and the notes."""
+    lines = (line for code, group in _by_code(notices).items() for line in _plain(code, group))
+    return ("", HEADING, *lines) if notices else ()
+
+
+def _by_code(notices: Iterable[Notice]) -> dict[str, list[Notice]]:
     alike: dict[str, list[Notice]] = {}
     for notice in notices:
         alike.setdefault(notice.code, []).append(notice)
-    lines = (line for code, group in alike.items() for line in _plain(code, group))
-    return ("", HEADING, *lines) if notices else ()
+    return alike
 
 
 def _plain(code: str, group: Sequence[Notice]) -> Iterable[str]:
     """What notices of one code mean to whoever reads what was done."""
     if KINDS[code].plain:
-        names = [*dict.fromkeys(_about(each) for each in group)]
+        names = [*dict.fromkeys(_about(notice) for notice in group)]
         named = joined([*names[:NAMED], "others"] if len(names) > NAMED else names)
         return [f"note: {KINDS[code].plain.format(names=named)}"]
     return [f"note: {text}" for text in _texts(code, group, most=1)]
@@ -62,8 +63,8 @@ def _about(notice: Notice) -> str:
 
 def _texts(code: str, group: Sequence[Notice], most: int) -> Iterable[str]:
     if len(group) <= most:
-        return [each.message for each in group]
-    names = list(dict.fromkeys(" and ".join(each.bodies).replace("_", " ") for each in group))
+        return [notice.message for notice in group]
+    names = list(dict.fromkeys(" and ".join(notice.bodies).replace("_", " ") for notice in group))
     named = ", ".join(filter(None, names[:NAMED]))
     more = " and others (--json tells all)" if len(names) > NAMED else ""
     what = KINDS[code].several or "alike"

@@ -40,6 +40,6 @@ class RuleBase:
         """
         if measured not in self.programs:
             fired = {id(rule) for rule in firing(self.statements, measured)}
-            kept = (each for each in self.statements if each.kind != "rule" or id(each) in fired)
-            self.programs[measured] = "\n".join(each.text for each in asked_for(tuple(kept)))
+            kept = (part for part in self.statements if part.kind != "rule" or id(part) in fired)
+            self.programs[measured] = "\n".join(part.text for part in asked_for(tuple(kept)))
         return self.programs[measured]

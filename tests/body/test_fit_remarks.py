@@ -8,10 +8,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from capar.body.anthropometry import ready_made
-from capar.body.fit_remarks import recorded_feet, recorded_spine, remarks, stand_off
+from capar.body.fit_remarks import remarks
 from capar.body.fitting import Fit
 from capar.body.human import Human
 from capar.body.marker_fitting import with_markers
+from capar.body.recording_remarks import recorded_feet, recorded_spine, stand_off
 from capar.model.capture import Capture
 from capar.model.notices import notice
 from capar.views.viewer.mannequin import with_mannequin

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from exit_codes import exit_code
 
 from capar.body.bundles import write_bundle
 from capar.body.recording import Truth
 from capar.body.scripted_actions import action_capture
-from capar.cli import main
 from capar.model.capture import Capture, Sensor, Stream
 from capar.model.errors import CaparError, FileError
 from capar.pipelines.observation import observe
@@ -176,15 +176,6 @@ def test_the_directions_of_hands_are_read_and_told(tmp_path: Path) -> None:
     assert "left hand's fingers point to (0, 1, 0) and its palm faces (0, 0.1, -1)" in note
 
 
-def _run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr("sys.argv", ["capar", *arguments])
-    try:
-        main()
-    except SystemExit as end:
-        return int(end.code or 0)
-    return 0
-
-
 @pytest.mark.parametrize("command", ["regenerate", "roundtrip"])
 def test_what_is_assumed_is_read_by_both_commands(
     command: str,
@@ -195,14 +186,15 @@ def test_what_is_assumed_is_read_by_both_commands(
     folder, assumed = tmp_path / "take", tmp_path / "assumed.toml"
     write_bundle(_carried(), Truth((), (), (), ()), folder)
     assumed.write_text("from_s = 50\nto_s = 60\n")
-    assert _run(monkeypatch, command, str(folder), "--assume", str(assumed)) == 2
+    assert exit_code(monkeypatch, command, str(folder), "--assume", str(assumed)) == 2
     assert "is between 50 and 60 s; it lasts" in capsys.readouterr().err
-    assert _run(monkeypatch, command, str(folder), "--assume", str(tmp_path / "none.toml")) == 2
+    missing = str(tmp_path / "none.toml")
+    assert exit_code(monkeypatch, command, str(folder), "--assume", missing) == 2
     assert "none.toml" in capsys.readouterr().err
 
 
 def test_a_force_that_there_is_not_is_refused_with_those_that_are(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert _run(monkeypatch, "regenerate", "somewhere", "--force", "hard") == 2
+    assert exit_code(monkeypatch, "regenerate", "somewhere", "--force", "hard") == 2
     assert "similar" in capsys.readouterr().err

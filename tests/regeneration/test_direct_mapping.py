@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from exit_codes import exit_code
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -12,7 +13,6 @@ from hypothesis.extra.numpy import arrays
 from capar.body.bundles import write_bundle
 from capar.body.recording import Truth
 from capar.body.scripted_actions import action_capture
-from capar.cli import main
 from capar.pipelines.round_trips import body, observed_source
 from capar.regeneration import Source, map_directly
 from capar.regeneration.departures import departures
@@ -92,26 +92,17 @@ def test_a_child_takes_the_mug_where_it_was_taken_and_drinks_at_its_own_mouth() 
     assert higher[2] > 0.2
 
 
-def _run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr("sys.argv", ["capar", *arguments])
-    try:
-        main()
-    except SystemExit as end:
-        return int(end.code or 0)
-    return 0
-
-
 @pytest.mark.long
 def test_the_command_prints_gates_and_departures_and_writes_a_capture(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     recorded, out = tmp_path / "man", tmp_path / "same"
     write_bundle(action_capture("touch", rate_hz=RATE_HZ), Truth((), (), (), ()), recorded)
-    assert _run(monkeypatch, "map", str(recorded), "--output", str(out)) == 0
+    assert exit_code(monkeypatch, "map", str(recorded), "--output", str(out)) == 0
     printed = capsys.readouterr().out
     assert "penetration" in printed
     assert "from the recorded way: 0." in printed
     again = observed_source(out).observation
     assert again.complex_par.signature == _source("touch").observation.complex_par.signature
-    assert _run(monkeypatch, "map", str(recorded), "--output", str(out)) == 2
+    assert exit_code(monkeypatch, "map", str(recorded), "--output", str(out)) == 2
     assert "not an empty folder" in capsys.readouterr().err

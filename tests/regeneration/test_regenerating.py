@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from exit_codes import exit_code
 
 from capar.body.bundles import write_bundle
 from capar.body.recording import Truth
 from capar.body.scripted_actions import action_capture
-from capar.cli import main
 from capar.model.capture import Capture
 from capar.pipelines.round_trips import body, observed_source, round_trips
 from capar.regeneration import Motion, PlanError, Quality, Source, regenerate
@@ -151,22 +151,13 @@ def _written(capture: Capture, folder: Path) -> Path:
     return folder
 
 
-def _run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr("sys.argv", ["capar", *arguments])
-    try:
-        main()
-    except SystemExit as end:
-        return int(end.code or 0)
-    return 0
-
-
 def test_a_regenerated_bundle_is_observed_as_the_same_action(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = _written(action_capture("touch", rate_hz=RATE_HZ), tmp_path / "man")
     child = tmp_path / "child"
-    code = _run(monkeypatch, "regenerate", str(folder), "--agent", "child", "--output", str(child))
-    assert code == 0
+    asked = ("regenerate", str(folder), "--agent", "child", "--output", str(child))
+    assert exit_code(monkeypatch, *asked) == 0
     table = capsys.readouterr().out
     assert "event position" in table
     assert "penetration" in table
@@ -174,7 +165,7 @@ def test_a_regenerated_bundle_is_observed_as_the_same_action(
     first = _source("touch").observation.complex_par
     assert again.complex_par.signature == first.signature
     assert again.agent.kind == "child"
-    assert _run(monkeypatch, "regenerate", str(folder), "--output", str(child)) == 2
+    assert exit_code(monkeypatch, "regenerate", str(folder), "--output", str(child)) == 2
     assert "not an empty folder" in capsys.readouterr().err
 
 
@@ -186,7 +177,7 @@ def test_what_cannot_be_done_ends_with_2_and_a_sentence_and_writes_nothing(
     scene.write_text("[stance]\nplace = [0.3, 0.0]\n")
     out = tmp_path / "out"
     arguments = ("regenerate", str(folder), "--scene", str(scene), "--output", str(out))
-    assert _run(monkeypatch, *arguments) == 2
+    assert exit_code(monkeypatch, *arguments) == 2
     assert "inside 'table'" in capsys.readouterr().err
     assert not out.exists()
 

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import observations
 import pytest
+from exit_codes import exit_code
 from spoken_worlds import DEMO, RATE_HZ, spoken, words, world
 
 from capar.body.bundles import write_bundle
 from capar.body.recording import Truth
 from capar.body.scripted_actions import action_capture
-from capar.cli import main
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from capar.pipelines.recordings import Recording, observed_recording
@@ -104,15 +104,6 @@ def test_the_requests_were_written_for_three_worlds() -> None:
             assert np.isfinite(world(each.world).thing(thing).place).all()
 
 
-def _run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr("sys.argv", ["capar", "regenerate", *arguments])
-    try:
-        main()
-    except SystemExit as end:
-        return int(end.code or 0)
-    return 0
-
-
 @pytest.mark.long
 def test_what_is_asked_for_is_performed_in_the_scene_or_refused_and_nothing_is_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -121,10 +112,10 @@ def test_what_is_asked_for_is_performed_in_the_scene_or_refused_and_nothing_is_w
     touch = action_capture("touch", rate_hz=RATE_HZ)
     write_bundle(touch, Truth((), (), (), ()), tmp_path / "own")
     where = ("--scene", str(DEMO), "--agent", "child", "--output", str(out))
-    assert _run(monkeypatch, own, "--say", "touch the apple", *where) == 2
+    assert exit_code(monkeypatch, "regenerate", own, "--say", "touch the apple", *where) == 2
     assert "there are mug, table" in capsys.readouterr().err
     assert not out.exists()
-    assert _run(monkeypatch, own, "--say", "touch the mug", *where) == 0
+    assert exit_code(monkeypatch, "regenerate", own, "--say", "touch the mug", *where) == 0
     told = capsys.readouterr().out
     assert "'mug' has the part of 'crate'" in told
     assert "penetration" in told

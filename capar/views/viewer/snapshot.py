@@ -1,7 +1,7 @@
 """One moment of a capture as a picture: bodies from obliquely above, in parallel projection."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 import trimesh
@@ -125,8 +125,9 @@ def _triangles(body: StagedBody, frame: int) -> Float[np.ndarray, "triangles 3 3
             hull = trimesh.Trimesh(vertices, faces, process=False).convex_hull
             vertices, faces = np.asarray(hull.vertices), np.asarray(hull.faces)
     edge_m = max(EDGE_M, float(np.ptp(vertices, axis=0).max()) / 40.0)
-    divided = trimesh.remesh.subdivide_to_size(vertices, faces, edge_m)  # type: ignore[no-untyped-call]
-    vertices, faces = divided
+    whole = trimesh.Trimesh(vertices, faces, process=False)
+    divided = cast(trimesh.Trimesh, whole.subdivide_to_size(edge_m))
+    vertices, faces = np.asarray(divided.vertices), np.asarray(divided.faces)
     turn = Rotation.from_quat(body.orientations[frame], scalar_first=True)
     return np.asarray((turn.apply(vertices) + body.positions[frame])[faces])
 
