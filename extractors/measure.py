@@ -73,6 +73,17 @@ class Track:
     """Frames at which its acceleration crosses zero."""
 
 
+@dataclass(frozen=True, slots=True)
+class Arriving:
+    """A rest that has just begun: later frames tell its place, and by it when it began."""
+
+    first: int
+    """Its first frame, as far as it is known."""
+
+    missing: int
+    """Frames of it that are still to be seen [1]."""
+
+
 @dataclass(frozen=True, eq=False)
 class Measurements:
     """What was measured in a capture; no word of what was done."""
@@ -99,6 +110,9 @@ class Measurements:
     lingering: Mapping[tuple[str, str], int] = field(default_factory=dict)
     """Bodies that have stayed so near each other, since the last frame of their contact, that it
     lasts if they touch again; with that frame."""
+
+    arriving: Mapping[str, Arriving] = field(default_factory=dict)
+    """Objects whose last rest is not seen for so long yet that its place is told."""
 
 
 def measure(
@@ -191,6 +205,7 @@ def measured(
         bodies.without_caches(),
         guides,
         {(each.first, each.second): each.interval[1] for each in near if each.lingers},
+        dict(_arriving(capture, bodies, calibration, limits)),
     )
 
 
@@ -277,6 +292,19 @@ def _moving(
                 partners = _touched(thing.name, interval, touches, bodies)
                 edges = motion_edges(pose, interval, rests, floor, thresholds, partners)
                 yield Displaced(thing.name, *edges)
+
+
+def _arriving(
+    capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
+) -> Iterator[tuple[str, Arriving]]:
+    """The mobile objects that have come to rest so recently that its place is not told yet."""
+    for thing in capture.objects:
+        if thing.tag is TagType.MOBILE:
+            known = calibration.tag_object(thing.name)
+            floor = Floor(known.motion_floor_m, known.motion_floor_rad)
+            rests = rest_poses(bodies.objects[thing.name].poses, floor, thresholds)
+            if rests and rests[-1].missing:
+                yield thing.name, Arriving(rests[-1].interval[0], rests[-1].missing)
 
 
 def _touched(

@@ -37,6 +37,9 @@ class RestPose:
     came: "RestPose | None" = None
     """The same rest at the place where it began; None where the object creeps."""
 
+    missing: int = 0
+    """By how many frames more the place where it began is to be told, as it has just begun [1]."""
+
     @property
     def at_first(self) -> "RestPose":
         """The rest at the place to which the object came, which is known soon after it did."""
@@ -242,7 +245,10 @@ def slopes(
 def _stay(streams: tuple[Stream, Stream], seed: Interval, floor: Floor, begins: int) -> RestPose:
     stream, recorded = streams
     first, last = seed
-    stay = RestPose(seed, *median_pose(stream, slice(first, last + 1)), last + 1 - first)
+    missing = max(0, first + begins - last - 1) if last + 1 == len(stream.times) else 0
+    stay = RestPose(
+        seed, *median_pose(stream, slice(first, last + 1)), last + 1 - first, missing=missing
+    )
     gone = partial(_gone, stream, stay, floor)
     middle = _middle(~gone(slice(first, last + 1)), seed)
     before, after = last_where(gone, middle - 1), first_where(gone, middle + 1, len(stream.times))

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from capar.model.capture import Stream, TagObject, TagType
 from extractors.bodies.poses import poses_of
 from extractors.measure import _track
-from extractors.motion.object_motion import motion_floor, moving, rest_poses
+from extractors.motion.object_motion import RestPose, motion_floor, moving, rest_poses
 from extractors.signals.filters import speed
 from extractors.signals.gaps import fill_gaps, long_gaps
 from extractors.signals.noise import noise_at_rest
@@ -31,6 +31,12 @@ def motions(of: Stream, floor_m: float | None = None) -> tuple[tuple[int, int], 
     rate_hz = 1.0 / float(np.median(np.diff(of.times)))
     floor = motion_floor(pose.noise, rate_hz, own_m=floor_m, thresholds=LIMITS)
     return moving(pose, rest_poses(pose, floor, LIMITS), floor, LIMITS)
+
+
+def last_rest(of: Stream) -> RestPose:
+    pose = poses_of(TagObject("thing", TagType.MOBILE, of), LIMITS)
+    floor = motion_floor(pose.noise, 100.0, own_m=None, thresholds=LIMITS)
+    return rest_poses(pose, floor, LIMITS)[-1]
 
 
 def reach(rate_hz: float, *, shift_s: float = 0.0, scale: float = 1.0) -> Stream:
@@ -124,6 +130,26 @@ def test_the_end_of_a_landing_belongs_to_the_stay() -> None:
     assert away[last + 1] <= LIMITS.motion_floor_m + 1e-3
     assert away[last] > LIMITS.motion_floor_m - 1e-3
     assert np.linalg.norm(plain.positions[first]) > LIMITS.motion_floor_m - 1e-3
+
+
+@given(st.floats(0.05, 0.4), st.floats(0.002, 0.008))
+@settings(max_examples=15, deadline=None)
+def test_when_a_thing_came_to_rest_is_final_once_no_frame_of_its_place_is_missing(
+    creeps_s: float, creeps_m: float
+) -> None:
+    times = np.arange(400) / 100.0
+    way = 0.3 * eased(times, 0.5, 1.5)
+    way += np.where(times > 1.5, creeps_m * (1.0 - np.exp((1.5 - times) / creeps_s)), 0.0)
+    whole = stream(np.outer(way, [1.0, 0.0, 0.0]))
+    (final,) = motions(whole)
+    told = 0
+    for count in range(180, 400, 3):
+        part = stream(whole.positions[:count])
+        rest = last_rest(part)
+        if rest.interval[0] > 100 and not rest.missing:
+            told += 1
+            assert motions(part) == (final,)
+    assert told > 30
 
 
 def test_a_turn_on_the_spot_is_motion_and_a_displacement_below_an_own_floor_is_none() -> None:

@@ -24,13 +24,15 @@ SHORT = ("demo", "slide", "both hands", "one leg")
 SET_GOING = ("thrown", "kicked")
 """A thing that is let go in motion, and one that is struck."""
 
-OTHERS = ("whisk and bottle", "box carried")
-"""A bottle that is out of sight for a second as it is lifted; a box that is raised, carried for
-longer than settling takes, and put down."""
 LONG = "sliding on and on"
 NOISY = "drinking on and on"
 STIRRED = "bowl stirred twice"
-"""A whisk that is held still between, in which it seems to set off for a fifteenth of a second."""
+"""A whisk that is held still between, in which it seems to set off for a fifteenth of a second; as
+it is laid down, it is slow some frames after it has come within the floor of its place."""
+
+OTHERS = ("whisk and bottle", "box carried", STIRRED)
+"""A bottle that is out of sight for a second as it is lifted; a box that is raised, carried for
+longer than settling takes, and put down; and the whisk."""
 
 
 def settled(events: tuple[SegmentEvent, ...]) -> list[SegmentEvent]:

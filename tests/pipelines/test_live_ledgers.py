@@ -46,7 +46,7 @@ from capar.pipelines.live.undecided import (
 from capar_rules.engine.profiles import profile
 from extractors.calibration import calibrate
 from extractors.devices.tracker import Description, Frame
-from extractors.measure import measure
+from extractors.measure import Arriving, measure
 from extractors.relations.running_sums import summed
 
 FRAMES = 400
@@ -305,6 +305,21 @@ def test_what_moves_again_is_undecided_since_it_set_off_until_it_goes_on() -> No
     assert undecided(replace(handling, displaced=ways[:1])) == {"hand": 390}
     later = replace(handling, last=410)
     assert undecided(later) == nameless(later) == {}
+
+
+def test_what_has_just_come_to_rest_is_undecided_until_its_place_is_told() -> None:
+    own = Touching("hand", "cup", 100, 392)
+    moves = [Moving("cup", 150, 389)]
+    landed = {"cup": Arriving(390, 34)}
+    handling = Handling(
+        (own,), moves, {"cup"}, last=400, margin=15, longest=200, fresh=20, arriving=landed
+    )
+    assert undecided(handling) == nameless(handling) == {"hand": 390}
+    assert handling.sure == 374
+    assert 434 in decided_at(handling)
+    let_go = replace(handling, touching=(replace(own, last=300),))
+    assert undecided(let_go) == {}
+    assert undecided(replace(handling, arriving={})) == {}
 
 
 def test_the_rules_answer_the_same_from_one_process_after_the_other() -> None:

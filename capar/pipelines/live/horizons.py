@@ -21,10 +21,6 @@ class LiveHorizons:
     """Between two measurements of the short window at most [s], in which segments are found; it is
     measured once more as soon as one that was found is to be settled."""
 
-    gathering_s: float = 0.05
-    """So much later than one that ends with a start or a stop could be [s] every segment is settled
-    at the latest, with those that end soon after."""
-
     grain_s: float = 1.0
     """Short windows begin at multiples of this [s]: what is measured at their first frame is then
     the same several times in a row, and is known."""
@@ -43,8 +39,7 @@ class LiveHorizons:
 
     edge_s: float = 0.75
     """After its end a segment is settled at whose end a thing starts or stops [s], and so late
-    facts are kept: where the thing came to rest is the middle of its poses in so much of its rest,
-    and when it started is told by how its way grew until it was well beyond its floor."""
+    facts are kept: when it started is told by how its way grew until it was well beyond its floor."""
 
     lasts_s: float = 0.1
     """So much later than a rule asks for, what has to last for some time has lasted it [s]: by then

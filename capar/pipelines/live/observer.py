@@ -170,9 +170,8 @@ class LiveObserver:
         since = self.frames - self._measured
         if since >= self._frames(self.horizons.watch_s if self._stirs else self.horizons.stride_s):
             return True
-        late_s = self.horizons.settle_s + self.horizons.gathering_s
         waits = self._segments.next_due(self._frontier)
-        if waits is not None and waits + self._frames(late_s) < self.frames:
+        if waits is not None and waits + self._frames(self.horizons.settle_s) < self.frames:
             return True
         return self._lasting is not None and self._lasting < self.frames
 
@@ -310,6 +309,10 @@ class LiveObserver:
             stroke=self._frames(thresholds_of(self.calibration).swing_s),
             fresh=self._frames(self.horizons.fresh_s),
             lingering=self._lingering(measurements, facts, lost, window),
+            arriving={
+                thing: replace(rest, first=window.first + rest.first)
+                for thing, rest in measurements.arriving.items()
+            },
             fast={
                 (fact.body, fact.other, fact.first)
                 for fact in facts

@@ -5,6 +5,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
 from capar.model.facts import Displaced, Moving, Swings, Touching
+from extractors.measure import Arriving
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +47,9 @@ class Handling:
     """Bodies that may be said to have touched on, as they are near each other, or one is out of
     sight, and the last frame in which they were seen to touch."""
 
+    arriving: Mapping[str, Arriving] = field(default_factory=dict)
+    """Objects that have just come to rest, where and when is not told yet."""
+
     fast: AbstractSet[tuple[str, str, int]] = frozenset()
     """Contacts that began as fast as a blow: end-effector, object, first frame."""
 
@@ -59,7 +63,8 @@ class Handling:
     def sure(self) -> int:
         """The last frame before which no contact ends that may yet go on, and no motion."""
         lost = (since for since in self.lost.values() if since > self.last - self.longest)
-        open_ = (*lost, *self.lingering.values())
+        stops = (rest.first - self.margin for rest in self.arriving.values())
+        open_ = (*lost, *self.lingering.values(), *stops)
         return min((since - 1 for since in open_), default=self.last)
 
     def with_margin(self, since: Mapping[str, int]) -> dict[str, int]:
@@ -83,6 +88,7 @@ def undecided(handling: Handling) -> dict[str, int]:
         *_lingering(handling),
         *_just_taken(handling),
         *_just_set_off(handling),
+        *_arriving(handling),
     )
     for body, since in later:
         out[body] = min(since, out.get(body, since))
@@ -104,7 +110,12 @@ def nameless(handling: Handling) -> dict[str, int]:
     for own in _going(handling):
         if _may_be_blow(handling, own):
             out[own.body] = min(own.first, out.get(own.body, own.first))
-    later = (*_lingering(handling), *_just_taken(handling), *_just_set_off(handling))
+    later = (
+        *_lingering(handling),
+        *_just_taken(handling),
+        *_just_set_off(handling),
+        *_arriving(handling),
+    )
     for body, since in later:
         out[body] = min(since, out.get(body, since))
     return out
@@ -177,11 +188,15 @@ def _swinging(handling: Handling) -> Iterator[tuple[str, int]]:
 
 
 def decided_at(handling: Handling) -> Iterator[int]:
-    """The frames at which it is known whether what is swung, or has begun to move, goes on."""
+    """The frames at which it is known whether what is swung, or has begun to move, goes on, and
+    where something came to rest.
+    """
     for swing in handling.swings:
         yield swing.last + handling.stroke + 1
     for move in handling.moving:
         yield move.first + handling.fresh + 1
+    for rest in handling.arriving.values():
+        yield handling.last + rest.missing
 
 
 def _just_taken(handling: Handling) -> Iterator[tuple[str, int]]:
@@ -208,6 +223,14 @@ def _just_set_off(handling: Handling) -> Iterator[tuple[str, int]]:
         for move in handling.moving:
             if move.object == own.other and move.first > handling.last - handling.fresh:
                 yield own.body, _set_off(handling, move)
+
+
+def _arriving(handling: Handling) -> Iterator[tuple[str, int]]:
+    """End-effectors that touch what has just come to rest, and since when that is open."""
+    for thing, rest in handling.arriving.items():
+        for touch in handling.touching:
+            if touch.other == thing and touch.last >= rest.first - handling.margin:
+                yield touch.body, rest.first
 
 
 def _set_off(handling: Handling, move: Moving) -> int:
