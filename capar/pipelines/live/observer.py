@@ -98,6 +98,7 @@ class LiveObserver:
         self._poses = CarriedPoses(calibration, self._frames(self.horizons.rest_s))
         self._memory = RuleMemory()
         self._asked = RuleProcess(self.rules)
+        self._asked.warm((Frames(0, 1), RateMhz(self._rate_mhz)))
         later = self._frames(self.horizons.edge_s) - self._frames(self.horizons.settle_s)
         self._segments = SegmentLedger(self.horizons.segments, dict.fromkeys(EDGES, later))
         self._result = (

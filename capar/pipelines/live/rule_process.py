@@ -31,7 +31,7 @@ AHEAD = 40
 """The next worker is started so many questions before [1]: in twenty seconds or so."""
 
 WARMING = 3
-"""A worker that has answered so often has read the rules for good [1]."""
+"""Who has answered so often has read the rules for good [1]."""
 
 
 _START = (
@@ -67,6 +67,15 @@ class RuleProcess:
     def worker(self) -> int | None:
         """The number of the worker's process; None while this process answers itself."""
         return self._worker.process.pid if self._worker else None
+
+    def warm(self, facts: Sequence[Fact]) -> None:
+        """Read the rules for good, so that no later question waits for it; the answers are left.
+
+        Raises:
+            RuleError: The rules have a fault.
+        """
+        for _ in range(WARMING):
+            inferred(facts, self._rules)
 
     def ask(self, facts: Sequence[Fact]) -> Inference:
         """What the rules say of facts.
