@@ -39,7 +39,8 @@ class LiveHorizons:
 
     edge_s: float = 0.75
     """After its end a segment is settled at whose end a thing starts or stops [s], and so late
-    facts are kept: when it started is told by how its way grew until it was well beyond its floor."""
+    facts are kept: when it started is told by how its way grew until it was well beyond its
+    floor."""
 
     lasts_s: float = 0.1
     """So much later than a rule asks for, what has to last for some time has lasted it [s]: by then

@@ -188,9 +188,7 @@ def _swinging(handling: Handling) -> Iterator[tuple[str, int]]:
 
 
 def decided_at(handling: Handling) -> Iterator[int]:
-    """The frames at which it is known whether what is swung, or has begun to move, goes on, and
-    where something came to rest.
-    """
+    """The frames at which it is known whether motions go on, and where something came to rest."""
     for swing in handling.swings:
         yield swing.last + handling.stroke + 1
     for move in handling.moving:
