@@ -40,7 +40,8 @@ def seat(
     Bodies touch within a tolerance, so that a contact begins before the body has come down and
     lasts after it has risen. It is down until it begins to rise to where the contact ends: until
     its lowest point was last no more than a hair above its level before that, as far back as it was
-    no higher than a hair above the lowest; and likewise at the beginning.
+    no higher than a hair above the lowest; and likewise at the beginning. What rises as soon as it
+    has come down is down where it was lowest.
 
     Args:
         body: What lies on the other.
@@ -59,7 +60,12 @@ def seat(
     end = last - _settled(height[first : last + 1][::-1], height[last + 1 :], least, most, lies)
     coming = max((m[1] for m in motions if m[0] <= first <= m[1]), default=first)
     going = min((m[0] for m in motions if m[0] <= last <= m[1]), default=last)
-    return min(begin, coming), max(end, going)
+    begin, end = min(begin, coming), max(end, going)
+    if begin <= end:
+        return begin, end
+    # It rose as soon as it had come down.
+    lowest = end + int(np.nanargmin(height[end : begin + 1]))
+    return lowest, lowest
 
 
 def _settled(

@@ -82,6 +82,20 @@ def test_a_loss_earlier_in_a_contact_moves_no_lift_off(lost: int, frames: int) -
     assert seat(geometry(places), base, contact, [(200, 300)], LIMITS)[1] == whole[1]
 
 
+@given(st.floats(0.05, 0.3), st.floats(0.0, 0.5), st.floats(0.2, 1.2), st.floats(-0.004, 0.004))
+def test_what_rises_as_soon_as_it_has_come_down_is_down_in_an_instant_of_its_contact(
+    depth_m: float, stays_s: float, lasts_s: float, sags_m: float
+) -> None:
+    down, up = 2.0 + stays_s, 2.0 - lasts_s
+    height = depth_m * (1.0 - smooth_step(up, 2.0) + smooth_step(down, down + lasts_s))
+    height += sags_m * np.sin(np.pi * np.clip((TIMES - up) / (down + lasts_s - up), 0.0, 1.0))
+    inside = np.flatnonzero(height <= height.min() + 0.012)
+    contact = int(inside[0]), int(inside[-1])
+    base, thing = geometry(np.tile(-0.1 * UP, (len(TIMES), 1))), geometry(height[:, None] * UP)
+    first, last = seat(thing, base, contact, [(0, 499)], LIMITS)
+    assert contact[0] <= first <= last <= contact[1]
+
+
 @given(st.floats(0.6, 1.2), st.floats(0.6, 1.2), st.floats(0.0, 0.01))
 def test_a_hand_has_arrived_when_the_distance_no_longer_shrinks(
     comes_s: float, goes_s: float, near_m: float
