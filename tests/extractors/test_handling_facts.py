@@ -28,7 +28,7 @@ from extractors.relations.arrangement import (
     inside,
     sides,
 )
-from extractors.relations.places import distances
+from extractors.relations.places import distances, without_small_sweeps
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()
@@ -258,3 +258,35 @@ def test_what_turns_above_a_thing_goes_about_nothing() -> None:
         going = distances(body(radius * round_ + np.array([0.0, 0.0, 0.3])), thing, whole)
         wound = [each.milliradians for each in going if isinstance(each, SweptAzimuth)]
         assert wound[-1] - wound[0] == pytest.approx(expected, abs=15)
+
+
+@pytest.mark.parametrize(
+    ("sweep_rad", "told"), [(-1.5, False), (1.5, False), (1.65, True), (-4, True)]
+)
+def test_an_angle_is_told_of_a_whole_recording_where_it_spans_a_quarter_of_a_turn(
+    sweep_rad: float, told: bool
+) -> None:
+    thing, way = (
+        body(np.zeros(3), shape=shapes.box(0.1, 0.1, 0.1)),
+        np.linspace(2.0, 2.0 + sweep_rad, len(TIMES)),
+    )
+    goes = body(np.stack([0.5 * np.cos(way), 0.5 * np.sin(way), 0.0 * way], axis=1))
+    frames = (*range(0, len(TIMES), 20), len(TIMES) - 1)
+    part, whole = (list(distances(goes, thing, frames, whole=each)) for each in (False, True))
+    angles = [fact for fact in part if isinstance(fact, SweptAzimuth)]
+    assert len(angles) == len(frames)
+    assert whole == [fact for fact in part if told or not isinstance(fact, SweptAzimuth)]
+    assert without_small_sweeps(angles) == (angles if told else [])
+
+
+def test_low_passed_poses_that_were_forgotten_are_the_same_again() -> None:
+    places = np.random.default_rng(3).normal(0.0, 0.01, (len(TIMES), 3)) + TIMES[:, None]
+    places[100:130] = np.nan
+    poses = body(places).poses
+    before = poses.smooth.positions, poses.smooth.orientations
+    assert np.nanmax(np.abs(before[0] - poses.filled.positions)) > 0.005
+    poses.forget()
+    after = poses.smooth.positions, poses.smooth.orientations
+    assert after[0] is not before[0]
+    for one, other in zip(before, after, strict=True):
+        np.testing.assert_array_equal(one, other)
