@@ -79,6 +79,8 @@ def handling(
     thresholds: Thresholds,
     guides: Mapping[str, Guide],
     since: Sums = FROM_THE_BEGINNING,
+    *,
+    whole: bool = False,
 ) -> tuple[Fact, ...]:
     """Rest, turning points, leaning, falls, arrangements and places of handled bodies.
 
@@ -92,6 +94,7 @@ def handling(
         thresholds: What the measurements decide by.
         guides: The hinge or rail of each object that moves on one.
         since: Ways and turns before, of which this capture is the continuation.
+        whole: Whether this is a whole recording, and no part of one.
     """
     seen = list(known)
     touches = [fact for fact in seen if isinstance(fact, Touching)]
@@ -125,7 +128,7 @@ def handling(
         out += _openings(one.name, guides, frames)
         for other in things.values():
             if other.name != one.name:
-                out += distances(one, other, frames, since)
+                out += distances(one, other, frames, since, whole=whole)
                 out += _arranged(one, other, touches, thresholds)
         out += _between(one, [other for other in things.values() if other is not one], thresholds)
     for touch in touches:

@@ -65,12 +65,17 @@ ANY = "any"
 class Track:
     """The low-passed motion of one tracking sensor."""
 
-    positions: Float[np.ndarray, "frames 3"]
-    """World positions [m]; NaN where lost."""
+    poses: Poses
+    """Of the sensor."""
 
     speed_mps: Float[np.ndarray, "frames"]
     crossings: Int[np.ndarray, "crossings"]
     """Frames at which its acceleration crosses zero."""
+
+    @property
+    def positions(self) -> Float[np.ndarray, "frames 3"]:
+        """World positions [m]; NaN where lost."""
+        return self.poses.smooth.positions
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +141,8 @@ def measure(
     else:
         check_clock(capture, calibration)
         bodies = bodies_of(capture, thresholds_of(calibration), calibration)
-    return measured(capture, calibration, bodies, since)
+    whole = since is FROM_THE_BEGINNING
+    return measured(capture, calibration, bodies, since, whole=whole)
 
 
 def measured(
@@ -147,6 +153,7 @@ def measured(
     *,
     answers: EarlierAnswers | None = None,
     notices: bool = True,
+    whole: bool = False,
 ) -> Measurements:
     """The same with bodies that were made by the calibration.
 
@@ -157,6 +164,7 @@ def measured(
         since: Ways and turns before, where the capture is a later part of a recording.
         answers: Contacts that were asked about in an earlier part that overlaps.
         notices: Whether losses and faults are sought, too.
+        whole: Whether this is a whole recording: angles that stay small in it are left out.
     """
     limits = thresholds_of(calibration)
     tracks = {
@@ -191,7 +199,7 @@ def measured(
     ]
     facts += company(capture, bodies, calibration, limits)
     guides = dict(_guides(capture, bodies, calibration, limits))
-    facts += handling(capture, bodies, facts, calibration, limits, guides, since)
+    facts += handling(capture, bodies, facts, calibration, limits, guides, since, whole=whole)
     own = [notice for notice in capture.notices if notice.code != LOSS]
     if notices:
         own += notices_of(capture, calibration, limits)
@@ -219,7 +227,7 @@ def _track(poses: Poses, highest_mps: float, thresholds: Thresholds) -> Track:
         highest_mps=highest_mps,
         thresholds=thresholds,
     )
-    return Track(stream.positions, pace, crossings)
+    return Track(poses, pace, crossings)
 
 
 def _scene(capture: Capture) -> Iterator[Fact]:

@@ -5,7 +5,8 @@ Run by hand, from the root, with maps of what tests execute (``executed.py``) wh
 rules and the extractors, as often from the ones as from the others. Each is put into a copy of the
 tree. Of an extractor those tests run that execute what is changed; of a rule file the rule cases,
 its own first. With ``--thorough`` all others run as well. A fault is caught by the first test that
-fails. Results are kept, one JSON object a line, and a run goes on where one with the same file of
+fails. Tests have 4 GB of memory: a fault that makes a loop endless fails there, and harms nothing
+else. Results are kept, one JSON object a line, and a run goes on where one with the same file of
 results stopped.
 """
 
@@ -15,6 +16,7 @@ import os
 import random
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -39,6 +41,16 @@ UNLIKELY = ("tests/extractors/devices", "tests/body", "tests/kb/test_kills.py")
 
 CAUGHT, SURVIVED, TIMEOUT = "caught", "survived", "timeout"
 NEVER = "no test executes it"
+
+MEMORY_BYTES = 4 << 30
+"""Most memory that a process of tests may have [bytes]."""
+
+LIMITED_PYTEST = f"""
+import resource, sys, pytest
+resource.setrlimit(resource.RLIMIT_DATA, ({MEMORY_BYTES}, {MEMORY_BYTES}))
+sys.exit(pytest.console_main())
+"""
+"""Pytest within that memory. Address space that browsers merely reserve is not counted."""
 
 FAILED, NOT_FOUND, NO_TESTS = 1, 4, 5
 """Exit codes of pytest: a test failed, there is none of a name, and none was selected."""
@@ -157,20 +169,23 @@ def _run(tree: Path, tests: Sequence[str], *, until: float) -> tuple[int | None,
     """The exit code of tests, None where they ran out of time, and what they said."""
     unlikely = [each for each in UNLIKELY if not any(test.startswith(each) for test in tests)]
     left_out = [part for each in (*NOT_RUN, *unlikely) for part in ("--ignore", each)]
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "-rfE", "-p", "no:cacheprovider"]
+    options = ["-x", "-q", "-rfE", "-p", "no:cacheprovider"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", LIMITED_PYTEST, *options, *tests, *left_out],
+        cwd=tree,
+        env={**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
+    )
     try:
-        done = subprocess.run(
-            [*command, *tests, *left_out],
-            cwd=tree,
-            env={**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"},
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=max(until - time.monotonic(), 0.1),
-        )
+        output, _ = process.communicate(timeout=max(until - time.monotonic(), 0.1))
     except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)  # processes that the tests have started, too
+        process.communicate()
         return None, ""
-    return done.returncode, done.stdout
+    return process.returncode, output
 
 
 def results_in(path: Path) -> dict[str, Result]:

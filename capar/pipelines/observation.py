@@ -84,7 +84,11 @@ def observe_measured(
     limits = thresholds_of(measurements.calibration)
     action = name or capture.name
     facts = steady(measurements.facts) if base.steady else measurements.facts
+    # The solver takes the most memory, and needs no poses; styles and places, which do, come later.
+    measurements.bodies.forget_smooth_poses()
+    return_freed_memory()
     inference = infer(facts, profile=base)
+    return_freed_memory()
     moved = () if base.crossings_only else movers(facts)
     measured = dict(_measured(capture, measurements, inference, limits))
     frames = len(capture.times) - 1
@@ -143,9 +147,7 @@ def facts_program(
 
 
 def _measurements(capture: Capture, thresholds: Thresholds | None) -> Measurements:
-    found = measure(capture, calibration_of(capture, thresholds) if thresholds else None)
-    return_freed_memory()
-    return found
+    return measure(capture, calibration_of(capture, thresholds) if thresholds else None)
 
 
 def _segments(inference: Inference) -> Iterable[Segment]:

@@ -35,6 +35,11 @@ class Bodies:
             self.parts,
         )
 
+    def forget_smooth_poses(self) -> None:
+        """Keep no low-passed poses until they are asked for again."""
+        for poses in self.poses.values():
+            poses.forget()
+
     def named(self, name: str) -> BodyGeometry:
         """The object of that name, or else the sensor."""
         return self.objects[name] if name in self.objects else self.sensors[name]

@@ -1,6 +1,7 @@
 """A body's pose at every frame as extraction uses it: gaps filled, noise taken out, fixed held."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,50 @@ from extractors.signals.filters import lowpass, lowpass_orientations
 from extractors.signals.gaps import fill_gaps
 from extractors.signals.noise import Noise, noise_at_rest
 from extractors.thresholds import Thresholds
+
+
+class LowPassed(Stream):
+    """A stream without what is faster than the cutoff.
+
+    It is filtered when its poses are asked for, and again after they were forgotten.
+    """
+
+    _source: Stream
+    _thresholds: Thresholds
+
+    def __init__(self, source: Stream, thresholds: Thresholds) -> None:
+        """Filter a stream when that is asked for.
+
+        Args:
+            source: The stream, not lost throughout.
+            thresholds: The cutoff.
+        """
+        object.__setattr__(self, "times", source.times)
+        object.__setattr__(self, "_source", source)
+        object.__setattr__(self, "_thresholds", thresholds)
+
+    @property
+    def positions(self) -> Float[np.ndarray, "frames 3"]:
+        """Origin of the body in the world [m]; NaN where it was lost."""
+        return self._filtered.positions
+
+    @property
+    def orientations(self) -> Float[np.ndarray, "frames 4"]:
+        """Unit quaternions w x y z, body to world, of continuous sign; NaN where it was lost."""
+        return self._filtered.orientations
+
+    def forget(self) -> None:
+        """Keep no poses until they are asked for again."""
+        vars(self).pop("_filtered", None)
+
+    @cached_property
+    def _filtered(self) -> Stream:
+        source = self._source
+        return Stream(
+            source.times,
+            lowpass(source.positions, source.times, self._thresholds),
+            lowpass_orientations(source.orientations, source.times, self._thresholds),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +89,11 @@ class Poses:
     def rests(self) -> bool:
         """Whether ``settled`` is one pose throughout."""
         return self.still or self.fixed is not None
+
+    def forget(self) -> None:
+        """Keep no low-passed poses until they are asked for again."""
+        if isinstance(self.smooth, LowPassed):
+            self.smooth.forget()
 
     @property
     def lost(self) -> Bool[np.ndarray, "frames"]:
@@ -97,13 +147,7 @@ def median_pose(
 
 
 def _smooth(stream: Stream, thresholds: Thresholds) -> Stream:
-    if stream.lost.all():
-        return stream
-    return Stream(
-        stream.times,
-        lowpass(stream.positions, stream.times, thresholds),
-        lowpass_orientations(stream.orientations, stream.times, thresholds),
-    )
+    return stream if stream.lost.all() else LowPassed(stream, thresholds)
 
 
 def _fixed_pose(body: Sensor | TagObject, stream: Stream) -> FixedPose | None:
@@ -117,10 +161,15 @@ def _fixed_pose(body: Sensor | TagObject, stream: Stream) -> FixedPose | None:
 
 
 def _held(stream: Stream, pose: FixedPose) -> Stream:
+    """That pose in every frame of a stream: one row, repeated without memory of its own."""
     frames = len(stream.times)
-    positions = np.broadcast_to(pose.position_m, (frames, 3))
-    orientations = np.broadcast_to(pose.orientation, (frames, 4))
-    return Stream(stream.times, positions, orientations)
+    positions, orientations = np.array([pose.position_m]), np.array([pose.orientation])
+    two = Stream(stream.times[:2], positions.repeat(2, axis=0), orientations.repeat(2, axis=0))
+    return Stream.of_checked(
+        stream.times,
+        np.broadcast_to(two.positions[0], (frames, 3)),
+        np.broadcast_to(two.orientations[0], (frames, 4)),
+    )
 
 
 def _still(stream: Stream) -> bool:

@@ -1,6 +1,7 @@
 """Where bodies are, how far they have gone and turned, at the frames that matter."""
 
-from collections.abc import Iterable, Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from jaxtyping import Float
@@ -12,6 +13,10 @@ from extractors.bodies.trunk import from_trunk
 from extractors.motion.leaning import lean, spin_steps
 from extractors.relations.arrangement import beyond_shadow
 from extractors.relations.running_sums import FROM_THE_BEGINNING, Sums, summed
+
+LEAST_SWEEP_RAD = 0.5 * np.pi
+"""A body that never sweeps so large an angle about another [rad] goes about it nowhere: a quarter
+of a turn. For every two bodies and frame there would be an azimuth else, half of all facts."""
 
 
 def places(
@@ -71,8 +76,18 @@ def distances(
     other: BodyGeometry,
     frames: tuple[int, ...],
     since: Sums = FROM_THE_BEGINNING,
+    *,
+    whole: bool = False,
 ) -> Iterator[Fact]:
-    """Distance of two bodies' middles, and the angle by which one has gone about the other."""
+    """Distance of two bodies' middles, and the angle by which one has gone about the other.
+
+    Args:
+        body: The body.
+        other: The other one.
+        frames: Frames, ascending; those at which either is lost are left out.
+        since: By how much it had gone about the other before.
+        whole: Whether this is a whole recording: angles that stay small in it are left out.
+    """
     if not frames:
         return
     gone_about = wound(body, other, since)
@@ -80,9 +95,31 @@ def distances(
     apart = np.linalg.norm((body.middles - other.middles)[at], axis=1)
     known = ~np.isnan(apart)
     values = _thousandths(np.stack([apart[known], gone_about[at[known]]], axis=1))
+    swept = [milliradians for _, milliradians in values]
+    sweeps = not whole or _sweeps(swept)
     for frame, (millimetres, milliradians) in zip(at[known].tolist(), values, strict=True):
         yield Distance(body.name, other.name, frame, millimetres)
-        yield SweptAzimuth(body.name, other.name, frame, milliradians)
+        if sweeps:
+            yield SweptAzimuth(body.name, other.name, frame, milliradians)
+
+
+def without_small_sweeps(facts: Iterable[SweptAzimuth]) -> list[SweptAzimuth]:
+    """Angles of a whole recording without those of bodies that go about each other nowhere.
+
+    Args:
+        facts: The angles of every two bodies, in any order, which is kept.
+    """
+    known = list(facts)
+    angles: dict[tuple[str, str], list[int]] = defaultdict(list)
+    for fact in known:
+        angles[fact.body, fact.other].append(fact.milliradians)
+    large = {pair for pair, swept in angles.items() if _sweeps(swept)}
+    return [fact for fact in known if (fact.body, fact.other) in large]
+
+
+def _sweeps(milliradians: Sequence[int]) -> bool:
+    """Whether angles of one body about another span a part of a turn that counts."""
+    return max(milliradians, default=0) - min(milliradians, default=0) >= 1000.0 * LEAST_SWEEP_RAD
 
 
 def turned_and_gone(

@@ -92,6 +92,21 @@ def test_a_thing_that_was_let_go_in_the_air_has_no_damping() -> None:
     np.testing.assert_allclose(found.velocity, [2.0, 0.0, 1.0], atol=1e-4)
 
 
+@pytest.mark.parametrize(("slides_s", "told"), [(0.07, False), (0.3, True)])
+def test_a_slide_of_less_than_a_tenth_of_a_second_says_nothing_of_damping(
+    slides_s: float, told: bool
+) -> None:
+    falls_s = np.sqrt(2.0 * 0.3 / 9.81)
+    times = np.arange(0.0, falls_s + slides_s, 1.0 / RATE_HZ)
+    path = free_motion(
+        np.array([0.0, 0.0, HALF[2] + 0.3]), np.array([1.0, 0.0, 0.0]), times, half=HALF,
+        surfaces=[GROUND], resistance=Resistance((1.0, 1.0), 0.0),
+    )  # fmt: skip
+    found = fit_free_motion(times, path.positions, rested=None, half=HALF, surfaces=[GROUND])
+    assert found is not None
+    assert (found.damping is not None) == told
+
+
 def test_the_thesis_slope_vanishes_where_the_damping_is_constant() -> None:
     times = np.linspace(0.0, 1.0, 200)
     constant = np.outer(np.exp(-3.0 * times), [1.0, 0.5, 0.0])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from motions import shapes
 from scipy.spatial.transform import Rotation
@@ -28,7 +28,7 @@ from extractors.relations.arrangement import (
     inside,
     sides,
 )
-from extractors.relations.places import distances
+from extractors.relations.places import distances, without_small_sweeps
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()
@@ -132,6 +132,17 @@ def leant(angle: np.ndarray, *, speed_mps: float = 0.0) -> tuple[int, int]:
 
 
 OVER_AND_BACK = np.interp(TIMES, [0.2, 1.2, 2.2], [0.0, np.radians(60.0), 0.0])
+
+
+@given(tilt_rad=st.floats(0.9, 1.5), begin_s=st.floats(0.2, 0.8), end_s=st.floats(2.0, 2.8))
+@settings(deadline=None, max_examples=20)
+def test_a_leaning_played_backwards_begins_where_it_ended(
+    tilt_rad: float, begin_s: float, end_s: float
+) -> None:
+    knots = [begin_s, begin_s + 0.8, end_s, end_s + 0.8]
+    angle = np.interp(TIMES, knots, [0.0, tilt_rad, tilt_rad, 0.0])
+    (first, last), (begin, end) = leant(angle), leant(angle[::-1])
+    assert (len(TIMES) - 1 - end, len(TIMES) - 1 - begin) == (first, last)
 
 
 def test_an_object_leans_from_when_it_begins_to_lean_over_until_it_is_upright() -> None:
@@ -258,3 +269,62 @@ def test_what_turns_above_a_thing_goes_about_nothing() -> None:
         going = distances(body(radius * round_ + np.array([0.0, 0.0, 0.3])), thing, whole)
         wound = [each.milliradians for each in going if isinstance(each, SweptAzimuth)]
         assert wound[-1] - wound[0] == pytest.approx(expected, abs=15)
+
+
+@pytest.mark.parametrize(
+    ("sweep_rad", "told"), [(-1.5, False), (1.5, False), (1.65, True), (-4, True)]
+)
+def test_an_angle_is_told_of_a_whole_recording_where_it_spans_a_quarter_of_a_turn(
+    sweep_rad: float, told: bool
+) -> None:
+    thing, way = (
+        body(np.zeros(3), shape=shapes.box(0.1, 0.1, 0.1)),
+        np.linspace(2.0, 2.0 + sweep_rad, len(TIMES)),
+    )
+    goes = body(np.stack([0.5 * np.cos(way), 0.5 * np.sin(way), 0.0 * way], axis=1))
+    frames = (*range(0, len(TIMES), 20), len(TIMES) - 1)
+    part, whole = (list(distances(goes, thing, frames, whole=each)) for each in (False, True))
+    angles = [fact for fact in part if isinstance(fact, SweptAzimuth)]
+    assert len(angles) == len(frames)
+    assert whole == [fact for fact in part if told or not isinstance(fact, SweptAzimuth)]
+    assert without_small_sweeps(angles) == (angles if told else [])
+
+
+def test_low_passed_poses_that_were_forgotten_are_the_same_again() -> None:
+    places = np.random.default_rng(3).normal(0.0, 0.01, (len(TIMES), 3)) + TIMES[:, None]
+    places[100:130] = np.nan
+    poses = body(places).poses
+    before = poses.smooth.positions, poses.smooth.orientations
+    assert np.nanmax(np.abs(before[0] - poses.filled.positions)) > 0.005
+    poses.forget()
+    after = poses.smooth.positions, poses.smooth.orientations
+    assert after[0] is not before[0]
+    for one, other in zip(before, after, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize(("height_m", "level"), [(0.5, True), (-0.5, True), (0.53125, False)])
+def test_what_just_reaches_the_height_of_a_thing_is_beside_it(height_m: float, level: bool) -> None:
+    block = shapes.box(0.5, 0.5, 0.5)
+    thing = body(np.zeros(3), shape=block)
+    there = body(np.array([0.5625, 0.0, height_m]), shape=block)
+    assert beside(Pair(there, thing, LIMITS)).all() == level
+    assert beside(Pair(there, thing, LIMITS)).any() == level
+
+
+@pytest.mark.parametrize(("aside_m", "over"), [(0.75, True), (0.765625, False)])
+def test_what_is_at_45_degrees_from_the_shadow_of_a_thing_is_still_above_it(
+    aside_m: float, over: bool
+) -> None:
+    block = shapes.box(0.5, 0.5, 0.5)
+    there, thing = (body(np.array([x, 0.0, z]), shape=block) for x, z in ((aside_m, 0.75), (0, 0)))
+    pair = Pair(there, thing, LIMITS)
+    assert above(pair).all() == over
+    assert above(pair).any() == over
+
+
+def test_a_place_of_rest_lasts_from_the_first_frame_and_to_the_last() -> None:
+    floor = Floor(LIMITS.motion_floor_m, LIMITS.motion_floor_rad)
+    first, last = rest_poses(body(along_x(0.0, 1.0)).poses, floor, LIMITS)
+    assert first.interval[0] == 0
+    assert last.interval[1] == len(TIMES) - 1

@@ -10,10 +10,10 @@ from motions import shapes
 
 from capar.model.capture import Stream, TagObject, TagType
 from extractors.bodies.body_geometry import BodyGeometry, geometry_of
-from extractors.motion.motion_edges import motion_edges
+from extractors.motion.motion_edges import GROWN, motion_edges
 from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.motion.phases import LEVEL, RISING, SINKING, Phase, phases, turns_of_height
-from extractors.motion.seats import seat
+from extractors.motion.seats import POWERS, before_seen, seat
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()
@@ -143,6 +143,15 @@ def edges_are_right(
     begin, end = (each / rate_hz for each in edges)
     assert begin == pytest.approx(0.5, abs=0.05 + 1.0 / rate_hz)
     assert end == pytest.approx(0.5 + lasts_s, abs=0.05 + 1.0 / rate_hz)
+
+
+@pytest.mark.parametrize("power", POWERS)
+@pytest.mark.parametrize("frames", [3, 8, 20])
+def test_a_displacement_that_grows_by_a_power_is_known_to_begin_before_it_shows(
+    power: float, frames: int
+) -> None:
+    grows = ((frames + np.arange(10.0 * frames)) / frames) ** power
+    assert before_seen(grows, GROWN, 100) == pytest.approx(frames, abs=1)
 
 
 def test_a_box_is_down_until_it_rises_and_no_longer_where_it_merely_touches_by_tolerance() -> None:

@@ -104,8 +104,11 @@ def test_a_hand_that_only_rests_at_home_touches_nothing() -> None:
     bowl = TagObject("bowl", TagType.MOBILE, still((0.1, 0.0, 0.0), 300))
     capture = Capture("home", (hand(np.zeros((300, 3)), None),), (bowl,))
     measured = measure(capture)
-    assert measured.calibration.pair("right_hand", "bowl").found is Found.NEVER
+    pair = measured.calibration.pair("right_hand", "bowl")
+    assert pair.found is Found.NEVER
     assert {"no-shape"} <= {each.code for each in measured.notices}
+    stated = set_values(measured.calibration, ["touch_m:right_hand,bowl=0.12"])
+    assert stated.pair("right_hand", "bowl").pivots
 
 
 @pytest.mark.parametrize(("stated_m", "contradicted"), [(0.05, True), (0.13, False), (0.3, True)])
@@ -153,6 +156,14 @@ def test_one_value_is_set_for_a_run_and_no_other() -> None:
     assert (
         set_values(plain, ["motion_floor_m:thing=0.02"]).tag_object("thing").motion_floor_m == 0.02
     )
+
+
+def test_a_stated_distance_is_that_of_surfaces_where_surfaces_were_measured() -> None:
+    plain = calibrate(pick_and_place())
+    pair = plain.pair("right_hand", "thing")
+    assert (pair.found, pair.pivots) == (Found.TOLERANCE, False)
+    changed = set_values(plain, ["touch_m:thing,right_hand=0.01"]).pair("right_hand", "thing")
+    assert (changed.found, changed.pivots) == (Found.STATED, False)
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from capar import __version__
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Notice, notice
 from capar.model.errors import CaptureError
-from capar.model.facts import MEASURED, Fact, Frames, Observed, RateMhz
+from capar.model.facts import MEASURED, Fact, Frames, Observed, RateMhz, SweptAzimuth
 from capar.model.observation import Observation, ObservedObject, Segment
 from capar.model.sampled_track import SampledTrack
 from capar.pipelines.flicker import flicker_notices
@@ -41,6 +41,7 @@ from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.forces.force_styles import force_styles
 from extractors.measure import Measurements, measured
 from extractors.relations.guide_locations import guide_location
+from extractors.relations.places import without_small_sweeps
 from extractors.segments.sampled_tracks import track_of
 
 
@@ -242,6 +243,8 @@ class LiveResult:
         groups: dict[type[Fact], set[Fact]] = {}
         for fact in (*always, *self._facts):
             groups.setdefault(type(fact), set()).add(fact)
+        sweeps = (fact for fact in groups.get(SweptAzimuth, ()) if isinstance(fact, SweptAzimuth))
+        groups[SweptAzimuth] = set(without_small_sweeps(sweeps))
         return [each for kind in MEASURED for each in sorted(groups.get(kind, ()))]
 
     def _sampled(

@@ -36,6 +36,15 @@ def test_every_format_arrives_whole_at_the_highest_rate(form: str, transport: st
         assert each.accepted == each.sent
 
 
+def test_a_server_that_sends_seldom_is_waited_for() -> None:
+    with (
+        MotionStarSimulator(SmoothMotion(2)) as simulator,
+        tracker(simulator, "birds=2&rate=1.25") as motionstar,
+    ):
+        assert len(tracked.take(motionstar, 3)) == 3
+    assert motionstar.events == []
+
+
 def test_lost_packets_are_counted_and_the_others_kept() -> None:
     log: list[SentPacket] = []
     with (

@@ -125,6 +125,16 @@ def test_the_times_of_a_bundle_are_free_of_the_delays_on_the_way(
     np.testing.assert_allclose(np.diff(frame_times(got)), 0.01, atol=2e-5)
 
 
+@pytest.mark.parametrize(("count", "straight"), [(19, False), (20, True)])
+def test_twenty_frames_of_a_connection_lie_on_a_line_of_time_and_fewer_as_they_arrived(
+    count: int, straight: bool, tmp_path: Path
+) -> None:
+    got = read_live_recording(recorded(tmp_path / "a.live", frames(count)))
+    times = got.host_s - got.host_s[0]
+    assert np.allclose(np.diff(frame_times(got), 2), 0.0, atol=1e-9) == straight
+    assert np.array_equal(frame_times(got), times) == (not straight)
+
+
 def test_a_bundle_reads_as_the_capture_that_was_recorded(tmp_path: Path) -> None:
     made = frames(200)
     made[50].positions[2] = np.nan

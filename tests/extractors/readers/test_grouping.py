@@ -67,6 +67,13 @@ def test_a_palm_and_a_finger_are_one_hand_that_is_called_so(tmp_path: Path) -> N
     assert told.bodies == ("right_hand",)
 
 
+def test_a_hand_whose_name_says_nothing_is_the_hand_beside_its_fingers(tmp_path: Path) -> None:
+    text = PALM.replace("right_palm", "tracker_b") + INDEX
+    capture = read_capture(bundle(tmp_path, text))
+    (hand,) = capture.acting
+    assert [each.name for each in capture.parts_of(hand.name)] == [hand.name, "right_index"]
+
+
 def test_a_distance_stated_for_the_palm_is_the_hands(tmp_path: Path) -> None:
     capture = read_capture(bundle(tmp_path, PALM + INDEX + PIVOT))
     assert [(each.first, each.second) for each in capture.pivot_contacts] == [("right_hand", "mug")]
