@@ -114,7 +114,7 @@ def test_a_loss_is_counted_in_words_and_told_once(bundle: Callable[[int, int], s
     told = run("describe", bundle(20, 60))
     (line,) = [each for each in told.splitlines() if "lost" in each]
     assert line == (
-        "note: 'box' was lost once for long, from 0.19 to 0.57 s; a contact before "
+        "note: 'box' was lost from 0.19 to 0.57 s; contact before "
         "and after is assumed to have lasted"
     )
 
