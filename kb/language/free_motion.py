@@ -63,6 +63,8 @@ def reaches(
         for link in hands
         if link.ee in moved and moved[link.ee][0] > link.segments[0].start_s
     ]
+    if not free:
+        return ()
     middle = np.mean([tracks[link.ee].positions[0] for link in hands], axis=0)
     ways = (_reached(ee, tracks[ee], moved[ee], ahead, middle, head) for ee in free)
     found = [each for each in ways if each is not None]

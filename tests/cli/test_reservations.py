@@ -13,7 +13,8 @@ from typer.testing import CliRunner
 from write_demo import write_tables
 
 from capar.cli import app
-from capar.model.capture import Capture, Stream
+from capar.model.capture import Capture, Stream, notice
+from capar.views.notices import reservation_lines
 
 HEADING = "Known with reservations:"
 BUNDLE = """\
@@ -91,6 +92,19 @@ def test_stand_ins_are_told_after_the_text(bundle: Callable[[int, int], str]) ->
     assert notes == (
         "note: the recording does not tell the shape of the box and the post; a rough one is "
         "assumed\n"
+    )
+
+
+def test_what_is_left_out_is_listed_as_people_call_it() -> None:
+    left = notice(
+        "objects-left-out",
+        "100 half egg carton(Clone)-18146",
+        "102 tooth_brush(Clone)-7",
+        objects=9,
+    )
+    assert reservation_lines((left,))[-1] == (
+        "note: the recording does not tell the shape of the half egg carton and the tooth brush; "
+        "nothing is told of that"
     )
 
 
