@@ -147,14 +147,13 @@ def _long_gap(each: Notice) -> str:
         return f"{body} is lost {span}" + ("" if each.end_s is None else f" to {each.end_s:.2f} s")
     if each.start_s is None:
         return f"{body!r} was lost throughout; no contact of it is known"
-    times = values["times"]
-    often = {1: "once", 2: "twice"}.get(int(times), f"{times} times")
-    most = " at most" if times != 1 else ""
+    times = int(values["times"])
+    often = "" if times == 1 else f"{'twice' if times == 2 else f'{times} times'}, for longest "
     follows = "it is held to stay" if values["fixed"] else (
-        "a contact before and after is assumed to have lasted"
+        "contact before and after is assumed to have lasted"
     )  # fmt: skip
     span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
-    return f"{body!r} was lost {often} for long,{most} from {span}; {follows}"
+    return f"{body!r} was lost {often}from {span}; {follows}"
 
 
 def _objects_left_out(each: Notice) -> str:
@@ -223,9 +222,15 @@ class NoticeKind:
     fault: bool = False
     """Whether it tells of a fault of the recording, or of what was stated of it."""
 
+    listed: bool = False
+    """Whether it is about each of its bodies by itself, not about one with another."""
+
 
 KINDS: Mapping[str, NoticeKind] = {
-    "long-gap": NoticeKind(_long_gap, "bodies lost for long"),
+    "long-gap": NoticeKind(
+        _long_gap,
+        "bodies that were lost for some time",
+    ),
     "markers-not-rigid": NoticeKind(
         "{0}: {frames} frames in which its markers are not rigid are taken as lost",
         "bodies whose markers are not rigid",
@@ -244,11 +249,16 @@ KINDS: Mapping[str, NoticeKind] = {
     "no-shape": NoticeKind(
         "{0!r} has no shape, so no contact of it is known", "bodies without a shape"
     ),
-    "objects-left-out": NoticeKind(_objects_left_out, "groups of objects left out"),
+    "objects-left-out": NoticeKind(
+        _objects_left_out,
+        "groups of objects left out",
+        "the recording does not tell the shape of {names}; nothing is told of that",
+        listed=True,
+    ),
     "assumed-support": NoticeKind(
         "{0!r} is assumed: {assumed}",
         "assumed supports",
-        "the recording does not tell where {names} stood; that is assumed",
+        "the place of {names} is assumed: the recording does not have it",
     ),
     "moving-ground": NoticeKind(
         "{0!r} goes by under the feet of {agent} at {speed_mps:.2f} m/s, as a treadmill does: feet "
@@ -258,12 +268,12 @@ KINDS: Mapping[str, NoticeKind] = {
     "pivot-distance": NoticeKind(
         _pivot_distance,
         "pairs that touch by the distance of their origins",
-        "when these touch is judged by how far apart they are: {names}",
+        "contact of {names} is judged by distance alone",
     ),
     "touch-estimated": NoticeKind(
         _touch_estimated,
         "pairs that touch by a distance estimated from the recording",
-        "when these touch is judged by how close they come: {names}",
+        "contact of {names} is judged by distance alone",
     ),
     "distance-contradicted": NoticeKind(
         lambda each: distance_contradicted(each.bodies, each.fields),
@@ -273,12 +283,13 @@ KINDS: Mapping[str, NoticeKind] = {
     "mount-gap": NoticeKind(
         lambda each: mount_gap(each.bodies, each.fields),
         "bodies carried with a gap",
-        "these go together without touching as measured: {names}",
+        "as measured, there is a gap between these while they move as one: {names}",
         fault=True,
     ),
     "no-mover": NoticeKind(
         lambda each: no_mover(each.bodies, each.fields),
         "objects that move and nothing moves them",
+        "not all of the motion of {names} is explained by what was recorded",
         fault=True,
     ),
     "up-contradicted": NoticeKind(

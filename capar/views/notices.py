@@ -1,5 +1,6 @@
 """Notices as people read them: one a line, many alike as one, reservations by themselves."""
 
+import re
 from collections.abc import Collection, Iterable, Sequence
 
 from capar.model.notices import KINDS, Notice
@@ -9,6 +10,9 @@ HEADING = "Known with reservations:"
 
 MOST = 5
 """So many notices of one code are listed one by one."""
+
+_NUMBERED = re.compile(r"^\d+ +([A-Za-z][^(]*)\(.*$")
+"""What a game's export calls a thing: ``100 half egg carton(Clone)-18146``."""
 
 NAMED = 3
 """Of more, so many are named."""
@@ -50,15 +54,21 @@ def _by_code(notices: Iterable[Notice]) -> dict[str, list[Notice]]:
 def _plain(code: str, group: Sequence[Notice]) -> Iterable[str]:
     """What notices of one code mean to whoever reads what was done."""
     if KINDS[code].plain:
-        names = [*dict.fromkeys(_about(notice) for notice in group)]
+        names = [*dict.fromkeys(name for notice in group for name in _about(notice))]
         named = joined([*names[:NAMED], "others"] if len(names) > NAMED else names)
         return [f"note: {KINDS[code].plain.format(names=named)}"]
     return [f"note: {text}" for text in _texts(code, group, most=1)]
 
 
-def _about(notice: Notice) -> str:
-    """The bodies that it is about, as people call them."""
-    return " with ".join(f"the {body.replace('_', ' ')}" for body in notice.bodies)
+def _about(notice: Notice) -> Iterable[str]:
+    """What it is about, as people call it: each of its bodies, or one with another."""
+    called = [f"the {_called(body)}" for body in notice.bodies]
+    return called if KINDS[notice.code].listed else (" with ".join(called),)
+
+
+def _called(body: str) -> str:
+    """A body's name without numbers of a file's before it, and what stands in brackets after it."""
+    return _NUMBERED.sub(r"\1", body).replace("_", " ").strip()
 
 
 def _texts(code: str, group: Sequence[Notice], most: int) -> Iterable[str]:

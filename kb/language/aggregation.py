@@ -113,7 +113,9 @@ def _again(told: Sequence[Clause]) -> tuple[Clause, ...]:
     for clause in told:
         own = [each for each in out if each.ees == clause.ees][-RECALLED:]
         once = clause.changes and clause.known and clause.count == 1 and not clause.often
-        again = once and any(_same_deed(each, clause) for each in own)
+        again = (
+            once and clause.pattern != THIS_WAY and any(_same_deed(each, clause) for each in own)
+        )
         out.append(replace(clause, often="again") if again else clause)
     return tuple(out)
 

@@ -5,12 +5,15 @@ from dataclasses import replace
 from itertools import groupby
 
 from kb.language.clause import Clause, in_time
-from kb.language.lexicalisation import JOINT, THIS_WAY, TURN
+from kb.language.lexicalisation import BY_TURNS, JOINT, THIS_WAY, TURN
 from kb.language.repeating import whole
 from kb.language.thresholds import MOSTLY
 
 FEWEST_TURNS = 3
 """So many times one hand after another has the thing, where the turns are told as one deed."""
+
+MOST_TURNS = 3
+"""Of more turns, it is told that there were several, and not which."""
 
 
 def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
@@ -39,11 +42,12 @@ def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     rises = sum(any(map(_rises, _beside(part, steps))) for part in turns)
     lifted = rises >= len(turns) - 1
     verbs = f"lift{JOINT}turn {{1}} about" if lifted else THIS_WAY
-    main = replace(
-        whole(turning, pattern=verbs),
-        ees=first.ees,
-        in_turn=tuple(part[0].ees for part in turns[1:]),
-    )
+    main = whole(turning, pattern=verbs)
+    if len(turns) > MOST_TURNS:
+        hands = {ee for part in turns for ee in part[0].ees}
+        main = replace(main, ees=tuple(sorted(hands)), often=BY_TURNS)
+    else:
+        main = replace(main, ees=first.ees, in_turn=tuple(part[0].ees for part in turns[1:]))
     before = [
         step
         for step in steps

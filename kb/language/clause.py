@@ -37,6 +37,9 @@ class Clause:
     rests: tuple[tuple[float, float], ...] = ()
     """From when to when it paused [s], where people notice that."""
 
+    apart: tuple[tuple[float, float], ...] = ()
+    """From when to when each of several objects was so handled, one after the other [s]."""
+
     name: str = ""
     """The primitive that it says."""
 

@@ -154,7 +154,7 @@ def _cases(
         "movable": scene.is_movable(other),
         "off": scene.goes_off(segment, thing, other),
         "back": scene.was_there(segment, thing, other),
-        "in": ("in", thing, other) in segment.prepositions and not scene.is_self(other),
+        "in": ("in", thing, other) in segment.prepositions and scene.is_open(other),
     }
     return cases | {name for name, holds in hold.items() if holds}
 

@@ -5,13 +5,14 @@ down", "put it back"), reads measured contacts alone, and names, splits or drops
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 
 from capar.model.facts import Flies, Lies, Link, Moving, OfAgent, Swings, Touching
 from capar.model.geometry import rotations
 from capar.model.observation import Observation, ObservedLink, ObservedObject, Segment
+from kb.language.lexicalisation import OPEN
 from kb.language.thresholds import (
     FLOOR_M,
     LEVEL_M,
@@ -36,16 +37,19 @@ class Scene:
         effectors |= {fact.ee for fact in observation.facts if isinstance(fact, Link)}
         touching = [fact for fact in observation.facts if isinstance(fact, Touching)]
         self._step_s = observation.duration_s / max(observation.frames - 1, 1)
+        self._last = observation.frames - 1
         self._hands = [each for each in touching if each.body in effectors]
         self._pairs = [each for each in touching if each.body not in effectors]
         lies = [fact for fact in observation.facts if isinstance(fact, Lies)]
         self._aside = [fact for fact in lies if fact.how in {"beside", "below"}]
+        self._within = [fact for fact in lies if fact.how in {"inside", "dips"}]
         self._over = [fact for fact in lies if fact.how in {"above", "inside"}]
         self._moving = [fact for fact in observation.facts if isinstance(fact, Moving)]
         flights = [(each.object, each) for each in observation.facts if isinstance(each, Flies)]
         swings = [(each.body, each) for each in observation.facts if isinstance(each, Swings)]
         self._by_itself: list[tuple[str, Flies | Swings]] = [*flights, *swings]
         self._tags = {thing.name: thing.tag for thing in observation.objects}
+        self._objects = {thing.name: thing.kind for thing in observation.objects}
         owners = [fact for fact in observation.facts if isinstance(fact, OfAgent)]
         self._owners = {each.body: each.agent for each in owners}
         self._kinds = {each.name: each.kind for each in (observation.agent, *observation.others)}
@@ -81,12 +85,19 @@ class Scene:
         ways = np.linalg.norm(places[:, :2] - places[0, :2], axis=1)
         return float(ways[-1]), float(ways.max())
 
-    def overhead(self, body: str, start_s: float, end_s: float) -> bool:
-        """Whether a body's middle is above the head all that time, for most of it at least."""
-        places, head = self._places(body, start_s, end_s), self._places(HEAD, start_s, end_s)
-        if places is None or head is None:
+    def overhead(self, body: str, ees: Collection[str], start_s: float, end_s: float) -> bool:
+        """Whether a body's middle is above the head for most of a time, and the hands are as well.
+
+        Hands whose ways were not kept are taken to be where the body is.
+        """
+        head = self._places(HEAD, start_s, end_s)
+        places = self._places(body, start_s, end_s)
+        if head is None or places is None:
             return False
-        return bool(np.median(places[:, 2]) > np.median(head[:, 2]) + RISEN_M)
+        head_m = float(np.median(head[:, 2]))
+        hands = [found for ee in ees if (found := self._places(ee, start_s, end_s)) is not None]
+        above = all(float(np.median(hand[:, 2])) > head_m for hand in hands)
+        return above and float(np.median(places[:, 2])) > head_m + RISEN_M
 
     def stays(self, body: str, start_s: float, end_s: float) -> bool:
         """Whether a body stays where it is for a time; not where that was not kept."""
@@ -117,6 +128,20 @@ class Scene:
         ways = np.linalg.norm(places[[0, -1], :2] - there[-1, :2], axis=1)
         return bool(ways[0] - ways[1] > by_m)
 
+    def leads_m(self, body: str, thing: str, start_s: float, end_s: float) -> float:
+        """How far a body is mostly ahead of a thing that goes over the ground, where it goes [m].
+
+        Negative behind it; 0 where the thing goes nowhere, or that was not kept.
+        """
+        hands, places = self._places(body, start_s, end_s), self._places(thing, start_s, end_s)
+        if hands is None or places is None or len(hands) != len(places):
+            return 0.0
+        way = (places[-1] - places[0])[:2]
+        way_m = float(np.linalg.norm(way))
+        if way_m < RISEN_M:
+            return 0.0
+        return float(np.median((hands - places)[:, :2] @ (way / way_m)))
+
     def gathers(self, goal: str, things: Sequence[str]) -> bool:
         """Whether all things are over a place in the end, and none was at first."""
         over = [each for each in self._over if each.other == goal]
@@ -125,16 +150,46 @@ class Scene:
         before = {each.body for each in over if each.first == 0}
         return there >= set(things) and before.isdisjoint(things)
 
-    def inside(
-        self, thing: str, container: ObservedObject, time_s: float, *, heaped: bool = False
-    ) -> bool:
-        """Whether a thing is within the shadow of an open box, and below its rim.
+    def inside(self, thing: str, container: ObservedObject, time_s: float) -> bool:
+        """Whether a thing is in an open box, or heaped on what is in it.
+
+        Where it was measured what lies in a box that has walls, or dips into it, that tells; else
+        whether the thing's middle is within the shadow of the box, and below its rim.
 
         Args:
             thing: The thing.
             container: The box; one of which only the floor is known has no rim.
             time_s: When [s].
-            heaped: Whether what lies higher than the rim counts, too.
+        """
+        within = [each for each in self._within if each.other == container.name]
+        if within and container.size_m[2] >= FLOOR_M:
+            frame = min(round(time_s / self._step_s), self._last)
+            there = {each.body for each in within if each.first <= frame <= each.last}
+            return thing in there or self._heaped(thing, there, container.name, frame)
+        return self.over(thing, container, time_s, below_rim=True)
+
+    def _heaped(self, thing: str, there: Collection[str], container: str, frame: int) -> bool:
+        """Whether a thing lies above a box and touches what is in it."""
+        above = any(
+            (each.body, each.how, each.other) == (thing, "above", container)
+            and each.first <= frame <= each.last
+            for each in self._over
+        )
+        return above and any(
+            each.body == thing and each.other in there and each.first <= frame <= each.last
+            for each in self._pairs
+        )
+
+    def over(
+        self, thing: str, container: ObservedObject, time_s: float, *, below_rim: bool = False
+    ) -> bool:
+        """Whether a thing's middle is within the shadow of a box, and above its floor.
+
+        Args:
+            thing: The thing.
+            container: The box.
+            time_s: When [s].
+            below_rim: Whether it is to be below the rim of the box, too, where it has one.
         """
         places = self._places(thing, time_s, time_s)
         if places is None:
@@ -142,7 +197,7 @@ class Scene:
         own = rotations(np.array(container.orientation)).inv()
         offset = own.apply(places[-1] - np.array(container.position_m))
         size = np.array(container.size_m)
-        above = bool(not heaped and size[2] >= FLOOR_M and offset[2] >= size[2])
+        above = bool(below_rim and size[2] >= FLOOR_M and offset[2] >= size[2])
         around = bool((np.abs(offset[:2]) < 0.5 * size[:2]).all())
         return around and bool(offset[2] > -size[2]) and not above
 
@@ -215,6 +270,7 @@ class Scene:
         if track is None or track.step_s == 0.0:
             return None
         first, last = round(start_s / track.step_s), round(end_s / track.step_s)
+        first = min(first, len(track.positions) - 1)
         places = track.positions[first : last + 1]
         places = places[~np.isnan(places).any(axis=1)]
         return places if len(places) else None
@@ -222,6 +278,10 @@ class Scene:
     def is_self(self, name: str) -> bool:
         """Whether an object is of the agent's own body."""
         return self._tags.get(name) == "self"
+
+    def is_open(self, name: str) -> bool:
+        """Whether an object is open above by its kind or its name, so that things can be in it."""
+        return not OPEN.isdisjoint((name, self._objects.get(name, "")))
 
     def is_movable(self, name: str) -> bool:
         """Whether an object can be moved."""

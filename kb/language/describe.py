@@ -20,12 +20,14 @@ from kb.language.hands import (
     as_the_other_hand,
     by_fingers,
     fingers_of,
+    in_sequence,
     mostly_together,
     spoken_links,
     told_in_order,
 )
 from kb.language.holding import Holding
 from kb.language.lexicalisation import FREE, STEP, Phrasebook
+from kb.language.listing import listed
 from kb.language.omitting import without_coming
 from kb.language.placing import placed
 from kb.language.planning import sentences
@@ -94,11 +96,13 @@ def _story(
     if observation.profile != TO_THE_LETTER:
         steps = stowed(steps, observation.objects, scene)
         there = placed(steps, observation.objects, scene, Turning(observation))
-        steps = without_coming(there, scene)
+        steps = in_sequence(without_coming(there, scene))
     if detail == "summary":
         steps = chosen(gathered(in_turns(steps), observation.objects, scene))
     if not timed:
         steps = edited(steps)
+    if observation.profile != TO_THE_LETTER:
+        steps = listed(steps)
     subject = _subject(observation)
     realiser = Realiser(links, observation.objects, timed=timed)
     if not steps:
@@ -132,7 +136,7 @@ def _deeds(
     if to_the_letter:
         return [], [as_segmented(each) for each in told]
     ways = [turned(each, turning) for each in as_the_other_hand(links, told)]
-    seen = [with_turning(deeds(rest, scene), found) for rest, found in ways]
+    seen = [with_turning(deeds(rest, scene, turning), found) for rest, found in ways]
     for place, link in enumerate(links):
         ways = [
             turned(tuple(replace(step, ees=(link.ee,)) for step in part), turning)
@@ -141,7 +145,7 @@ def _deeds(
                 for finger in fingers_of(link, observation.links)
             )
         ]
-        found = [with_turning(deeds(rest, scene), turns) for rest, turns in ways]
+        found = [with_turning(deeds(rest, scene, turning), turns) for rest, turns in ways]
         seen[place] = by_fingers(seen[place], found)
     return seen, as_one_body(links, seen, observation.objects, scene)
 

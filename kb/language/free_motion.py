@@ -63,7 +63,10 @@ def reaches(
         for link in hands
         if link.ee in moved and moved[link.ee][0] > link.segments[0].start_s
     ]
-    ways = (_reached(ee, tracks[ee], moved[ee], ahead, head) for ee in free)
+    if not free:
+        return ()
+    middle = np.mean([tracks[link.ee].positions[0] for link in hands], axis=0)
+    ways = (_reached(ee, tracks[ee], moved[ee], ahead, middle, head) for ee in free)
     found = [each for each in ways if each is not None]
     furthest_m = max((way for _, way in found), default=0.0)
     return tuple(each for each, way in found if way >= SWAYING * furthest_m)
@@ -88,6 +91,7 @@ def _reached(
     track: SampledTrack,
     span: tuple[float, float],
     ahead: Float[np.ndarray, "3"] | None,
+    middle: Float[np.ndarray, "3"],
     head: SampledTrack | None,
 ) -> tuple[Reached, float] | None:
     """Where one hand gets that moves in that time, and how far [m]; None where it gets nowhere."""
@@ -97,7 +101,8 @@ def _reached(
         return None
     ways = np.linalg.norm(places - places[0], axis=1)
     furthest_m = float(ways.max())
-    where = _direction(places[int(ways.argmax())] - places[0], ahead)
+    furthest = places[int(ways.argmax())]
+    where = _direction(furthest - places[0], furthest - middle, ahead)
     if furthest_m < REACHED_M or not where:
         return None
     if head is not None:
@@ -134,16 +139,32 @@ def _stops(places: Float[np.ndarray, "frames 3"], brief: int) -> int:
     return home + int(still[0]) if len(still) else len(places) - 1
 
 
-def _direction(way: Float[np.ndarray, "3"], ahead: Float[np.ndarray, "3"] | None) -> str:
-    """A way in words of the person; empty where it goes aside and it is not known where that is."""
+def _direction(
+    way: Float[np.ndarray, "3"],
+    place: Float[np.ndarray, "3"],
+    ahead: Float[np.ndarray, "3"] | None,
+) -> str:
+    """A way in words of the person; empty where it goes aside and it is not known where that is.
+
+    Args:
+        way: How far the hand goes [m].
+        place: Where it gets to, from the middle between both hands at rest [m].
+        ahead: The direction in which the person looks.
+    """
     unit = way / np.linalg.norm(way)
-    words = []
-    if ahead is not None:
-        on, left = float(unit @ ahead), float(unit @ np.cross((0.0, 0.0, 1.0), ahead))
-        name, share = ("forward", on) if on > 0.0 else ("back", -on)
-        if abs(left) > share:
-            name, share = ("to the left", left) if left > 0.0 else ("to the right", -left)
-        words += [name] if share > ASIDE_SHARE else []
-    if abs(unit[2]) > ASIDE_SHARE:
-        words.append("up" if unit[2] > 0.0 else "down")
-    return " and ".join(words)
+    upward = ["up" if unit[2] > 0.0 else "down"] if abs(unit[2]) > ASIDE_SHARE else []
+    far = float(np.linalg.norm(unit[:2])) > ASIDE_SHARE
+    level = {} if ahead is None or not far else _level(place, ahead)
+    aside = [max(level, key=level.__getitem__)] if upward and level else list(level)
+    return " and ".join([" ".join(aside), *upward] if aside else upward)
+
+
+def _level(place: Float[np.ndarray, "3"], ahead: Float[np.ndarray, "3"]) -> dict[str, float]:
+    """Where a place is around the person, in at most two words, with how far it is that way [m]."""
+    on, left = float(place @ ahead), float(place @ np.cross((0.0, 0.0, 1.0), ahead))
+    words = {
+        "forward" if on > 0.0 else "backward": abs(on),
+        "to the left" if left > 0.0 else "to the right": abs(left),
+    }
+    least_m = ASIDE_SHARE * float(np.hypot(on, left))
+    return {word: way_m for word, way_m in words.items() if way_m > least_m}

@@ -8,29 +8,55 @@ from kb.language.clause import Clause
 from kb.language.contacts import Scene
 from kb.language.lexicalisation import ONE_BY_ONE
 from kb.language.repeating import whole
-from kb.language.stowing import is_container
+from kb.language.stowing import containers, is_container
 from kb.language.thresholds import MOST_DEEDS
 from kb.lexicon.english import joined
+
+FEWEST_PACKED = 3
+"""So many things that are put into one box are packed."""
 
 
 def gathered(
     steps: Sequence[Clause], objects: Sequence[ObservedObject], scene: Scene
 ) -> tuple[Clause, ...]:
-    """The clauses of a summary; where one hand moves more things than can be told, that as one.
+    """The clauses of a summary; where one hand packs things, or moves too many, that as one.
+
+    What is only moved within the box is left out beside that.
 
     Args:
         steps: What was done, in order of time.
         objects: The objects.
         scene: Measured contacts and places.
     """
+    boxes = containers(objects)
+    packing = [step for step in steps if not _moved_within(step, boxes, scene)]
+    one = _as_one(packing, objects, scene)
+    if one is not None and len(packing) < len(steps) and not one.pattern.startswith("pack"):
+        one = _as_one(steps, objects, scene)
+    return tuple(steps) if one is None else (one,)
+
+
+def _moved_within(step: Clause, boxes: Sequence[ObservedObject], scene: Scene) -> bool:
+    """Whether a thing is moved that was in a box before."""
+    thing = step.objects[:1]
+    return bool(thing) and any(scene.inside(thing[0], box, step.start_s) for box in boxes)
+
+
+def _as_one(
+    steps: Sequence[Clause], objects: Sequence[ObservedObject], scene: Scene
+) -> Clause | None:
+    """All clauses as packing, or as moving many things; None where they are told one by one."""
     hands = {step.ees for step in steps}
     things = tuple(dict.fromkeys(step.objects[0] for step in steps if step.objects))
     alike = all(step.changes and step.possessed for step in steps)
-    if len(hands) != 1 or len(things) <= MOST_DEEDS or not alike:
-        return tuple(steps)
+    if len(hands) != 1 or len(things) < FEWEST_PACKED or not alike:
+        return None
     goal = next((place for place in objects if _gathers(place, steps, things, scene)), None)
+    packed = goal is not None and is_container(goal)
+    if len(things) <= MOST_DEEDS and not packed:
+        return None
     places = joined([f"{{{number}}}" for number in range(1, len(things) + 1)])
-    if goal is not None and is_container(goal):
+    if goal is not None and packed:
         source = [place.name for place in objects if _bore(place, things, scene)][:1]
         there = (*source, goal.name)
         number = len(things) + len(source)
@@ -40,13 +66,12 @@ def gathered(
         there = (goal.name,) if goal is not None else ()
         to_there = f" to {{{len(things) + 1}}}" if goal is not None else ""
         pattern = f"move {places}{to_there} {{with}}{ONE_BY_ONE}"
-    one = replace(
+    return replace(
         whole(steps, pattern=pattern),
         objects=(*things, *there),
         name="MoveObjTo" if goal is not None else "MoveObj",
         general=(),
     )
-    return (one,)
 
 
 def _gathers(
@@ -64,7 +89,7 @@ def _left_in(thing: str, container: ObservedObject, steps: Sequence[Clause], sce
     """Whether the last that is told of a thing leaves it at the container, or heaped in it."""
     own = [step for step in steps if step.objects[:1] == (thing,)]
     named = any(container.name in step.objects[1:] for step in own)
-    return named or scene.inside(thing, container, own[-1].end_s, heaped=True)
+    return named or scene.over(thing, container, own[-1].end_s)
 
 
 def _bore(support: ObservedObject, things: Sequence[str], scene: Scene) -> bool:

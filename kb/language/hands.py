@@ -73,6 +73,23 @@ def told_in_order(
     return tuple(sorted(every, key=in_time))
 
 
+def in_sequence(steps: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses, each ended as the same hands do the next to the same thing.
+
+    That is where hands that do the same begin and end it not quite at once.
+    """
+    out: list[Clause] = []
+    for step in sorted(steps, key=in_time):
+        at = next((at for at in range(len(out))[::-1] if out[at].ees == step.ees), None)
+        last = None if at is None else out[at]
+        if last is not None and at is not None and last.objects[:1] == step.objects[:1]:
+            over_s = last.end_s - step.start_s
+            if last.start_s < step.start_s and last.end_s < step.end_s and 0.0 < over_s < REST_S:
+                out[at] = replace(last, end_s=step.start_s)
+        out.append(step)
+    return tuple(out)
+
+
 def mostly_together(links: Sequence[ObservedLink], steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses; what two hands do alike for most of the time of either is one, while both do.
 

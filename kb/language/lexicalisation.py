@@ -29,6 +29,9 @@ GIVEN = "hand {1} over"
 TO_A_SIDE = {side: f"hand {{1}} over to the {side} hand" for side in ("left", "right", "other")}
 """The same, where that is the other hand of the agent, by the side of it."""
 
+HANDED_OVER = frozenset(TO_A_SIDE.values())
+"""Patterns of a thing that the other hand takes."""
+
 MOMENTARY = frozenset({"let go of {1}", GIVEN, *TO_A_SIDE.values(), "hand {1} to someone"})
 """Patterns of what is done in a moment: the rest of the segment is the hand's way back."""
 
@@ -40,6 +43,9 @@ HELPS = frozenset({"steady {1}"})
 
 ONE_BY_ONE = "one after the other"
 """How several things are moved."""
+
+BY_TURNS = "by turns"
+"""How hands do something one after the other several times."""
 
 BIT_BY_BIT = "bit by bit"
 """How something else is done that pauses interrupt."""
@@ -53,7 +59,10 @@ What else has pauses is done bit by bit.
 MOVING = frozenset({"MoveObj", "MoveObjTo"})
 """Names, and kinds of names, of a thing that is moved."""
 
-SHIFTED = frozenset({"Slide", "Push", "Pull", "MoveObj"})
+SLID = frozenset({"Slide", "Push", "Pull"})
+"""Names of what moves a thing on what it stands on."""
+
+SHIFTED = SLID | {"MoveObj"}
 """Names of what moves a thing a little as it is put somewhere."""
 
 PICKED_UP = "Lift"
@@ -69,8 +78,8 @@ FREE = "move {ee}"
 """The pattern of what a hand does that is of no object."""
 
 
-LOWER = "lower {1}"
-"""The pattern of a thing that goes down, wherever to."""
+RAISE, LOWER = "raise {1}", "lower {1}"
+"""Patterns of a thing that goes up or down, wherever to."""
 
 DOWN = "put {1} down"
 """The pattern of a thing that stands somewhere then."""
@@ -84,6 +93,25 @@ GOALS = ("put {1} on {2}", "bring {1} to {2}")
 CONTAINERS = frozenset({"carton", "container", "crate", "basket", "bin", "drawer"})
 """Kinds of what is open above: what is left within its shadow and below its rim is in it."""
 
+OPEN = CONTAINERS | {
+    *(
+        "bag",
+        "basin",
+        "bottle",
+        "bowl",
+        "box",
+        "bucket",
+        "cup",
+        "dish",
+        "glass",
+        "jar",
+        "jug",
+        "mug",
+    ),
+    *("pan", "pot", "shelf", "sink", "tin", "tray", "vase"),
+}
+"""Kinds of what may hold something inside; what dips into anything else is not in it."""
+
 PUT_IN = "put {1} in {2}"
 """The pattern of a thing that is left in a container."""
 
@@ -93,8 +121,11 @@ SETTLING = frozenset({"PutDown", "Lower", "Slide", "Push", "Pull", "Turn", "Tilt
 RUNNING = "keep a hand on {1}"
 """The pattern of a hand that runs over a thing."""
 
-TURN = "turn {1}"
-"""The pattern of a thing that is turned."""
+TURN, TILT = "turn {1}", "tilt {1}"
+"""Patterns of a thing that is turned, and that is leant."""
+
+BY_A_QUARTER = "turn {1} by about a quarter"
+"""The pattern of a thing that is made to face aside."""
 
 THIS_WAY = "turn {1} about"
 """The pattern of a thing that is turned about in the hand."""
@@ -105,7 +136,7 @@ UPSIDE_DOWN, AROUND = "turn {1} upside down", "turn {1} around"
 UPRIGHT, BACK_UPRIGHT = "turn {1} upright", "turn {1} back upright"
 """Patterns of a thing that is set on its base; the second where the hand had turned it over."""
 
-TURNED = frozenset({UPSIDE_DOWN, AROUND, UPRIGHT, BACK_UPRIGHT})
+TURNED = frozenset({TURN, BY_A_QUARTER, UPSIDE_DOWN, AROUND, UPRIGHT, BACK_UPRIGHT})
 """Patterns of how a thing is turned, which goes on beside what else is done to it."""
 
 LET_GO = "let go of {1}"
@@ -123,7 +154,7 @@ WALK, STEP = "walk", "take a step"
 WALK_UP = "walk up to {1}"
 """The same, to the thing that a hand takes next."""
 
-CROUCH, STAND_UP = "crouch", "stand up"
+CROUCH, STAND_UP = "crouch", "straighten up"
 """Patterns of a body that goes down with bent knees, and comes up again."""
 
 BODILY = frozenset({WALK, STEP, WALK_UP, CROUCH, STAND_UP})

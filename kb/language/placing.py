@@ -9,18 +9,20 @@ from dataclasses import replace
 from capar.model.observation import ObservedObject
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import DOWN, GOALS, GROUNDS, LOWER
+from kb.language.lexicalisation import DOWN, GOALS, GROUNDS, LOWER, TURN
 from kb.language.thresholds import (
     FURTHER_M,
     HELD_M,
+    LEADS_M,
+    LEANT_RAD,
     OVER_RAD,
     PLACE_M,
     REST_S,
     SETTLING_S,
-    TURNED_RAD,
 )
 from kb.language.turning import Turning
 
+SLIDE = "slide {1}"
 BRING = "bring {1} to {2}"
 CARRY, RISES = "carry {1}", frozenset({"lift {1}", "raise {1}"})
 
@@ -45,13 +47,29 @@ def placed(
             out.append(_carried(step, scene, turning))
         elif step.pattern == LOWER and scene.left_there(step.objects[0], step.end_s):
             out.append(replace(step, pattern=DOWN))
-        elif step.pattern in RISES and scene.overhead(step.objects[0], step.end_s, step.end_s):
+        elif step.pattern == TURN and step.possessed and not step.pauses:
+            out.append(replace(step, pattern=turning.seen_to_turn(step) or TURN))
+        elif step.pattern.startswith(SLIDE):
+            out.append(_drawn(step, scene))
+        elif step.pattern in RISES and scene.overhead(
+            step.objects[0], step.ees, step.end_s, step.end_s
+        ):
             out.append(replace(step, pattern=f"{step.pattern} overhead"))
         else:
             brought = _brought(step, out)
             works = _works_there(step, steps[at + 1 :]) and not _has_it(step, out)
             out.append(_taken(brought, objects, scene) if works else brought)
     return tuple(out)
+
+
+def _drawn(step: Clause, scene: Scene) -> Clause:
+    """What is slid as pulled by hands that are ahead of it, and as pushed by those behind it."""
+    ahead_m = [scene.leads_m(ee, step.objects[0], step.start_s, step.end_s) for ee in step.ees]
+    for name, leads in (("Pull", min(ahead_m) > LEADS_M), ("Push", max(ahead_m) < -LEADS_M)):
+        if leads:
+            verb = step.pattern.replace("slide", name.lower(), 1)
+            return replace(step, pattern=verb, name=name, general=("Slide", *step.general))
+    return step
 
 
 def _works_there(step: Clause, later: Sequence[Clause]) -> bool:
@@ -83,7 +101,7 @@ def _taken(step: Clause, objects: Sequence[ObservedObject], scene: Scene) -> Cla
 def _brought(step: Clause, before: list[Clause]) -> Clause:
     """What is put or brought to another thing, with the short lifting and carrying before it.
 
-    Those are taken from what is told before.
+    So it is with what it is brought to on the way. Those are taken from what is told before.
     """
     if not step.pattern.startswith(GOALS):
         return step
@@ -95,8 +113,8 @@ def _brought(step: Clause, before: list[Clause]) -> Clause:
 
 def _leads_to(step: Clause, goal: Clause) -> bool:
     own = (step.ees, step.objects[:1]) == (goal.ees, goal.objects[:1])
-    plain = step.pattern in {CARRY, *RISES}
-    return own and plain and step.end_s - step.start_s < SETTLING_S
+    brief = step.pattern in {CARRY, *RISES} and step.end_s - step.start_s < SETTLING_S
+    return own and (brief or step.pattern == BRING)
 
 
 def _carried(step: Clause, scene: Scene, turning: Turning) -> Clause:
@@ -104,14 +122,14 @@ def _carried(step: Clause, scene: Scene, turning: Turning) -> Clause:
     thing, span = step.objects[0], (step.start_s, step.end_s)
     gone_m, strays_m = scene.over_ground_m(thing, *span)
     if gone_m < HELD_M and strays_m < 2.0 * HELD_M:
-        where = "overhead" if scene.overhead(thing, *span) else "up"
+        where = "overhead" if scene.overhead(thing, step.ees, *span) else "up"
         return replace(step, pattern=f"hold {{1}} {where}")
     if step.end_s - step.start_s < SETTLING_S:
         return step
     leant = turning.leant(thing, *span)
     if leant > OVER_RAD:
         return replace(step, pattern=f"{CARRY} upside down")
-    return replace(step, pattern=f"{CARRY} tilted to one side") if leant > TURNED_RAD else step
+    return replace(step, pattern=f"{CARRY} tilted to one side") if leant > LEANT_RAD else step
 
 
 def _on_the_ground(step: Clause, before: Sequence[Clause], scene: Scene) -> Clause:

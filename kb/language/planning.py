@@ -5,12 +5,13 @@ of what the sentence tells was done during that. What stands beside the first ha
 ``while``, was done during them, too.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from kb.language.clause import Clause, in_time
-from kb.language.lexicalisation import REACH
+from kb.language.lexicalisation import HANDED_OVER, REACH
 from kb.language.repeating import repetition
+from kb.language.thresholds import REST_S
 from kb.lexicon.english import times
 
 LONGEST = 6
@@ -46,8 +47,14 @@ Streams = dict[tuple[str, ...], list[Clause]]
 class Part:
     """The content of one sentence; what is repeated stands once, with how often and until when."""
 
-    steps: tuple[Clause, ...]
-    """The first hand's clauses, then those of each that stands beside it."""
+    told: tuple[Clause, ...]
+    """What the first hand did."""
+
+    passed: tuple[tuple[Clause, ...], ...] = ()
+    """What each hand then did to which the thing was handed over, one after the other."""
+
+    beside: tuple[Clause, ...] = ()
+    """What other hands did meanwhile."""
 
     often: str = ""
     end_s: float = 0.0
@@ -56,6 +63,11 @@ class Part:
     opening: str = ""
     more: bool = False
     """Whether the next sentence tells what is counted here once more."""
+
+    @property
+    def steps(self) -> tuple[Clause, ...]:
+        """Every clause."""
+        return (*self.told, *(step for part in self.passed for step in part), *self.beside)
 
 
 def sentences(steps: Sequence[Clause], *, lead: tuple[str, ...] = ()) -> list[Part]:
@@ -77,7 +89,7 @@ def sentences(steps: Sequence[Clause], *, lead: tuple[str, ...] = ()) -> list[Pa
         if opening == ONCE_MORE:
             out[-1] = replace(out[-1], more=True)
         afterwards = afterwards + 1 if opening in OPENINGS else 0
-        out.append(Part(part.steps, part.often, part.end_s, opening))
+        out.append(replace(part, opening=opening))
         end_s = max(end_s, part.end_s)
     return out
 
@@ -109,18 +121,57 @@ def _next_part(streams: Streams, lead: tuple[str, ...]) -> Part:
     if count > 1:
         block, end_s = own[:size], own[size * count - 1].end_s
         del own[: size * count]
-        return Part(tuple(block), times(count), end_s)
-    taken = [own.pop(0)]
-    while own and not _ends(taken, streams, ees):
-        taken.append(own.pop(0))
+        return Part(tuple(block), often=times(count), end_s=end_s)
+    taken = _taken(streams, ees)
     beside = [
         clause
         for other, rest in streams.items()
         if rest and not set(other) & set(ees)
         for clause in _beside(taken, rest, streams)
     ]
-    steps = (*taken, *beside)
-    return Part(steps, end_s=max(each.end_s for each in steps))
+    part = Part(tuple(taken), beside=tuple(beside))
+    passed = () if beside else tuple(map(tuple, _passed(taken, streams)))
+    part = replace(part, passed=passed)
+    return replace(part, end_s=max(each.end_s for each in part.steps))
+
+
+def _taken(streams: Streams, ees: tuple[str, ...]) -> list[Clause]:
+    """What one sentence tells of some hand; it is taken from what is still to be told."""
+    own = streams[ees]
+    taken = [own.pop(0)]
+    while own and not _ends(taken, streams, ees):
+        taken.append(own.pop(0))
+    return taken
+
+
+def _passed(taken: Sequence[Clause], streams: Streams) -> Iterator[list[Clause]]:
+    """What hands do to which a thing is handed over, as long as that is what comes next."""
+    last = taken[-1]
+    while (ees := _receiver(last, streams)) is not None:
+        stream = _taken(streams, ees)
+        yield stream
+        last = stream[-1]
+
+
+def _receiver(giving: Clause, streams: Streams) -> tuple[str, ...] | None:
+    """The other hand of which nothing earlier is to be told than that it has what is handed over.
+
+    None where the thing is not handed over, or something else is to be told first.
+    """
+    if giving.pattern not in HANDED_OVER:
+        return None
+    waiting = {ees: rest[0] for ees, rest in streams.items() if rest}
+    takes = [
+        ees
+        for ees, following in waiting.items()
+        if len(ees) == 1
+        and ees != giving.ees
+        and following.objects[:1] == giving.objects[:1]
+        and following.possessed
+        and giving.start_s - REST_S < following.start_s < giving.end_s + REST_S
+        and all(in_time(following) <= in_time(other) for other in waiting.values())
+    ]
+    return takes[0] if takes else None
 
 
 def _goes_first(leading: Clause, earliest: Clause) -> bool:
@@ -145,7 +196,8 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
     """Whether a sentence ends before the next clause of its first hand.
 
     It does when it is long, when the hand has let go, when it turns to another thing after enough
-    was told of the first, and when as much was done meanwhile as can stand beside it.
+    was told of the first, when another hand helped with it meanwhile, and when as much was done
+    meanwhile as can stand beside it.
     """
     last, following = taken[-1], streams[ees][0]
     if _leads_to(last, following) or any(following.within(each) for each in taken):
@@ -154,7 +206,7 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
         return False
     long = len(taken) >= LONGEST and following.objects and not _soon_over(streams[ees])
     left = last.frees and bool(following.objects)
-    if left or _turns_away(taken, following) or long:
+    if left or _turns_away(taken, following) or long or _crowded(taken, following):
         return True
     manual = [each for each in taken if each.objects]
     if following.objects and last.grip != following.grip and len(manual) >= ENOUGH_OF_ONE:
@@ -170,7 +222,15 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
         if each.end_s <= following.start_s
     ]
     apart = any(not _during(each, taken) for each in waiting)
-    return apart or len(waiting) >= ENOUGH_BESIDE
+    helped = any(each.objects[:1] == last.objects[:1] for each in waiting)
+    return apart or helped or len(waiting) >= ENOUGH_BESIDE
+
+
+def _crowded(taken: Sequence[Clause], following: Clause) -> bool:
+    """Whether lists of things would be too long for one sentence."""
+    several = [clause for clause in (*taken, following) if clause.apart]
+    things = sum(max(len(clause.apart), 1) for clause in (*taken, following))
+    return bool(several) and things > LONGEST
 
 
 def _soon_over(rest: Sequence[Clause]) -> bool:

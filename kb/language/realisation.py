@@ -42,17 +42,19 @@ class Realiser:
         steps, often = part.steps, part.often
         self._spans = self._timed and not often
         streams: dict[tuple[str, ...], list[Clause]] = {}
-        for step in steps:
+        for step in part.beside:
             streams.setdefault(step.ees, []).append(step)
-        if len(streams) > 1:
+        if streams:
             self._ees = ()
-        main, *others = streams.values()
-        text = self._of_agent(main)
-        if others:
+        text = self._of_agent(part.told)
+        for taken in part.passed:
+            text = f"{text}, which {self._of_hand(taken, taken[0].objects[0])}"
+        if streams:
             comma = "," if len(steps) > 2 else ""
-            told, meanwhile = list(main), []
-            for stream in others:
-                meanwhile.append(self._of_hand(stream, _shared_topic(told)))
+            told, meanwhile = list(part.told), []
+            for stream in streams.values():
+                hand = self._hands(stream[0].ees)
+                meanwhile.append(f"{hand} {self._of_hand(stream, _shared_topic(told))}")
                 told += stream
             text = f"{text}{comma} while {joined(meanwhile)}"
         if not often:
@@ -91,7 +93,7 @@ class Realiser:
         verb = f"took the {kind} back"
         if reached.down:
             verb = f"lowered the {kind} again"
-        elif reached.where.startswith("back"):
+        elif reached.where == "backward":
             verb = f"brought the {kind} forward again"
         return [*parts, f"{verb}{back}"] if reached.back else parts
 
@@ -118,10 +120,14 @@ class Realiser:
         return joined(parts)
 
     def _with_hands(self, step: Clause) -> str:
-        """The hand as what is used, or where the tool is that was just named."""
+        """The hand as what is used, or where the tool is that was just named.
+
+        What goes along with a thing is named by ``with``, and then the hand is what is used.
+        """
         *_, word, last = step.pattern.split(" ") if " with {" in step.pattern else ("", "")
         tool = word == "with" and last.startswith("{")
-        return f"{'in' if tool else 'with'} {self._hands(step.ees)}{self._then(step)}"
+        how = "using" if "{1} with {" in step.pattern else "in" if tool else "with"
+        return f"{how} {self._hands(step.ees)}{self._then(step)}"
 
     def _then(self, step: Clause) -> str:
         """The hands that do it afterwards, one after the other."""
@@ -131,11 +137,10 @@ class Realiser:
         return f", then {joined(then)}" if then else ""
 
     def _of_hand(self, steps: Sequence[Clause], topic: str) -> str:
-        """The clauses with their hand as the subject, after something was spoken of."""
+        """The clauses with their hand as the subject before them, after something was spoken of."""
         parts: list[str] = []
         self._begin(topic)
         last: Clause | None = None
-        hand = self._hands(steps[0].ees)
         self._ees = ()
         for step in steps:
             if last is not None and step.within(last):
@@ -145,7 +150,7 @@ class Realiser:
             own = replace(step, pattern="move away") if "{ee}" in step.pattern else step
             text = self._verb_phrase(own).replace("{with}", "")
             parts.append(f"{text}{self._end(step)}")
-        return f"{hand} {joined(parts)}"
+        return joined(parts)
 
     def _begin(self, topic: str) -> None:
         """Begin to tell what one hand did, after something was spoken of."""
@@ -164,13 +169,12 @@ class Realiser:
             pauses = "a pause" if step.pauses == 1 else f"{number(step.pauses)} pauses"
             often += f", with {pauses}"
         purpose = f"{often} to {_with_it(step.purpose)}" if step.purpose else often
-        if not self._spans:
+        if not self._spans or step.apart:
             return purpose
         if step.start_s == step.end_s:
             return f"{purpose} ({step.start_s:.2f} s)"
         spans = step.spans if step.name in SUSTAINED else ((step.start_s, step.end_s),)
-        when = joined([f"{start_s:.2f}–{end_s:.2f} s" for start_s, end_s in spans])
-        return f"{purpose} ({when})"
+        return f"{purpose} ({joined([*map(_span, spans)])})"
 
     def _verb_phrase(self, step: Clause) -> str:
         pattern = in_past(step.pattern)
@@ -185,8 +189,10 @@ class Realiser:
         self._several = step.objects if _ALL_PLACES.search(pattern) else ()
         filled = pattern.replace("{ee}", self._moved_away(step))
         self._rivals -= set(_named(pattern, step.objects))
+        spans = [*map(_span, step.apart)] if self._spans else []
         for place, name in enumerate(step.objects, 1):
-            filled = filled.replace(f"{{{place}}}", self._mention(name, place))
+            when = f" ({spans[place - 1]})" if place <= len(spans) else ""
+            filled = filled.replace(f"{{{place}}}", f"{self._mention(name, place)}{when}")
         if "{" in pattern:
             self._rivals = set(_named(pattern, step.objects[1:], first=2)) - self._fixed
         if step.pauses and step.name not in SUSTAINED:
@@ -239,6 +245,11 @@ def _shared_topic(steps: Sequence[Clause]) -> str:
     """What every clause is about first; empty if that differs."""
     things = {step.objects[:1] for step in steps}
     return "".join(things.pop()) if len(things) == 1 else ""
+
+
+def _span(span: tuple[float, float]) -> str:
+    """From when to when: ``1.20–3.50 s``."""
+    return f"{span[0]:.2f}–{span[1]:.2f} s"
 
 
 def _with_it(purpose: str) -> str:

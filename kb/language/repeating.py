@@ -6,15 +6,32 @@ from itertools import accumulate
 
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import LOWER, MOVING, RUNNING, THIS_WAY, TIPPED, TURN
-from kb.language.thresholds import REST_S, SCRAP_M, SCRAP_S, SETTLING_S, UNSEEN_S
+from kb.language.lexicalisation import (
+    LOWER,
+    MOVING,
+    RAISE,
+    RUNNING,
+    SHIFTED,
+    THIS_WAY,
+    TILT,
+    TIPPED,
+    TURN,
+)
+from kb.language.thresholds import REST_S, SCRAP_M, SCRAP_S, SETTLING_S, TO_AND_FRO_RAD, UNSEEN_S
+from kb.language.turning import Turning
 
 
-def deeds(told: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
-    """The clauses of one hand, with segments of one deed as one clause."""
+def deeds(told: Sequence[Clause], scene: Scene, turning: Turning) -> tuple[Clause, ...]:
+    """The clauses of one hand, with segments of one deed as one clause.
+
+    Args:
+        told: What the hand did, segment by segment.
+        scene: Measured contacts and places.
+        turning: How things are turned.
+    """
     joined = _resumed(leading_up(_specialised(_resumed(told))))
     found = _resumed(leading_up(_reached(_without_scraps(joined, scene))))
-    return _gripped(_turned_on(_steadied(found)))
+    return _gripped(_turned_on(_steadied(found), scene, turning))
 
 
 def as_segmented(told: Sequence[Clause]) -> tuple[Clause, ...]:
@@ -41,23 +58,41 @@ def _steadied(told: Sequence[Clause]) -> list[Clause]:
     return out
 
 
-def _turned_on(told: Sequence[Clause]) -> list[Clause]:
-    """The clauses, with what is turned about and then turned on as turned about all the time."""
+def _turned_on(told: Sequence[Clause], scene: Scene, turning: Turning) -> list[Clause]:
+    """The clauses, with what turns a thing just before or after it is turned about as that, too."""
     out: list[Clause] = []
     for clause in told:
-        last = out[-1] if out else None
-        turns = clause.pattern == TURN and clause.changes and clause.possessed
-        if (
-            last is not None
-            and turns
-            and last.pattern == THIS_WAY
-            and last.objects == clause.objects
-            and clause.start_s - last.end_s < SETTLING_S
-        ):
-            out[-1] = replace(last, end_s=clause.end_s, rights=clause.rights)
+        if out and _turns_on(out[-1], clause, scene, turning):
+            out[-1] = replace(
+                out[-1],
+                pattern=THIS_WAY,
+                name="Turn",
+                end_s=clause.end_s,
+                rights=clause.rights,
+            )
         else:
             out.append(clause)
     return out
+
+
+def _turns_on(last: Clause, clause: Clause, scene: Scene, turning: Turning) -> bool:
+    """Whether both turn the same thing in one grip, and one of them turns it about."""
+    moved = all(step.changes and step.possessed for step in (last, clause))
+    soon = clause.start_s - last.end_s < SETTLING_S
+    if not (moved and soon) or last.objects != clause.objects:
+        return False
+    others = [step for step in (last, clause) if step.pattern != THIS_WAY]
+    return len(others) < 2 and all(_turns(step, scene, turning) for step in others)
+
+
+def _turns(step: Clause, scene: Scene, turning: Turning) -> bool:
+    """Whether it is turning or tilting, or goes up or down and turns the thing much meanwhile."""
+    thing = step.objects[0]
+    if step.pattern == LOWER and scene.left_there(thing, step.end_s):
+        return False
+    turned_rad = turning.turned_rad(thing, step.start_s, step.end_s)
+    rises = step.pattern in {RAISE, LOWER} and turned_rad > TO_AND_FRO_RAD
+    return rises or step.pattern in {TURN, TILT}
 
 
 def _resumed(told: Sequence[Clause], *, over_pauses: bool = True) -> list[Clause]:
@@ -193,14 +228,15 @@ def _only_there(told: Sequence[Clause], at: int) -> bool:
 
 
 def _short_hold(told: Sequence[Clause], at: int) -> bool:
-    """Whether it holds for a moment what it moves before or afterwards."""
+    """Whether it holds for a moment what it moves before or afterwards, as in taking hold of it."""
     clause = told[at]
     if not _pauses(clause, clause):
         return False
-    beside = [*told[max(at - 1, 0) : at], *told[at + 1 : at + 2]]
-    changing = sum(each.changes and _one_grip(each, clause) for each in beside)
+    before, after = told[max(at - 1, 0) : at], told[at + 1 : at + 2]
+    changing = [each.changes and _one_grip(each, clause) for each in (*before, *after)]
+    grasps = not any(_one_grip(each, clause) for each in before) and any(changing)
     lasts_s = clause.end_s - clause.start_s
-    return lasts_s < (SETTLING_S if changing == 2 else SCRAP_S) and changing > 0
+    return lasts_s < (SETTLING_S if grasps or sum(changing) == 2 else SCRAP_S) and any(changing)
 
 
 def _scrap(clause: Clause, following: Clause | None, scene: Scene) -> bool:
@@ -233,7 +269,8 @@ def _unseen(clause: Clause) -> bool:
 
 def _takes_up(scrap: Clause, following: Clause) -> bool:
     """Whether a motion goes on with what a scrap began; working at a place does not."""
-    works = following.goes_on and len(following.objects) > 1
+    slid = following.name in SHIFTED
+    works = following.goes_on and len(following.objects) > 1 and not slid
     return following.changes and not works and _one_grip(scrap, following)
 
 

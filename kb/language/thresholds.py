@@ -36,6 +36,10 @@ PLACE_M = 0.2
 """What is put down less far than this [m] from where it was taken is back in its place: less than a
 step."""
 
+LEADS_M = 0.1
+"""A hand that is mostly so far [m] before or behind the middle of what slides pulls or pushes it: a
+hand's width."""
+
 FURTHER_M = 0.5
 """What is put down further than this [m] from where it was taken is somewhere else on the ground:
 about a step."""
@@ -55,6 +59,10 @@ SETTLING_S = 1.0
 UPRIGHT_RAD = 0.79
 """What leans less than this [rad] stands upright: 45 degrees."""
 
+LEANT_RAD = 0.52
+"""What leans more than this [rad] while it is carried is carried tilted: 30 degrees, beside which
+the sway of carrying is not noticed."""
+
 OVER_RAD = 2.36
 """What leans more than this [rad] is upside down: 135 degrees."""
 
@@ -68,6 +76,10 @@ TURNED_RAD = 0.35
 SOMEWHAT_RAD = 0.7
 """What is only moved, and turned about the vertical by more than this [rad], is turned: 40 degrees,
 twice what happens in carrying."""
+
+QUARTER_RAD = 1.05
+"""What is turned about the vertical by more than this [rad], and does not face another way, is
+turned by about a quarter: 60 degrees."""
 
 TO_AND_FRO_RAD = 3.14
 """What turns by more than this [rad] along its way, and ends turned by less than half of that, is

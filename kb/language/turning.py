@@ -16,8 +16,11 @@ from kb.language.clause import Clause
 from kb.language.lexicalisation import (
     AROUND,
     BACK_UPRIGHT,
+    BY_A_QUARTER,
     SHIFTED,
+    SLID,
     THIS_WAY,
+    TURN,
     UPRIGHT,
     UPSIDE_DOWN,
     moves_only,
@@ -25,6 +28,7 @@ from kb.language.lexicalisation import (
 from kb.language.thresholds import (
     AROUND_RAD,
     OVER_RAD,
+    QUARTER_RAD,
     REST_S,
     SCRAP_S,
     SETTLING_S,
@@ -73,12 +77,35 @@ class Turning:
         net = abs(seen[-1].lean - seen[0].lean) + abs(seen[-1].spin - seen[0].spin)
         return net < 0.5 * turned or turned > 2.0 * TO_AND_FRO_RAD
 
-    def seen_to_turn(self, clause: Clause) -> bool:
-        """Whether it is turned about the vertical while it is moved, and stands upright."""
+    def turned_rad(self, thing: str, start_s: float, end_s: float) -> float:
+        """How far it turns along its way in a time [rad]; 0 where that was not measured."""
+        turns = self._turns[thing]
+        first, last = (round(time_s / self._step_s) for time_s in (start_s, end_s))
+        measured = first in turns and last in turns
+        return (turns[last] - turns[first]) / 1000.0 if measured else 0.0
+
+    def seen_to_turn(self, clause: Clause) -> str:
+        """How to say that it is turned about the vertical while it is moved, and stands upright.
+
+        Empty where it is not.
+        """
         seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
         if not seen or max(seen[0].lean, seen[-1].lean) > UPRIGHT_RAD:
-            return False
-        return abs(seen[-1].spin - seen[0].spin) > SOMEWHAT_RAD
+            return ""
+        spin = abs(seen[-1].spin - seen[0].spin)
+        if spin > AROUND_RAD or spin < SOMEWHAT_RAD:
+            return AROUND if spin > AROUND_RAD else ""
+        return BY_A_QUARTER if spin > QUARTER_RAD else TURN
+
+    def beside(self, grip: Sequence[Clause]) -> Iterator[Clause]:
+        """Clauses of how a thing turns that a hand slides."""
+        for clause in grip:
+            pattern = self.seen_to_turn(clause) if clause.name in SLID else ""
+            if pattern in {TURN, BY_A_QUARTER}:
+                seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
+                since, until = _course(seen)
+                if until.time_s < clause.end_s:
+                    yield _turned((clause,), pattern, since, until)
 
     def leant(self, thing: str, start_s: float, end_s: float) -> float:
         """How far it leans from upright most of that time [rad]; 0 where that is not known."""
@@ -174,6 +201,7 @@ def turned(told: Sequence[Clause], turning: Turning) -> tuple[list[Clause], list
         moved = [each for each in grip if each.changes]
         wrung = any(each.pattern == THIS_WAY for each in grip)
         ways = list(turning.told(moved)) if moved and grip[0].possessed and not wrung else []
+        ways += [] if ways else turning.beside(moved)
         rest += (step for step in (_turn(each, ways, turning) for each in grip) if step)
         found += ways
     return rest, found
@@ -186,7 +214,7 @@ def _turn(clause: Clause, ways: Sequence[Clause], turning: Turning) -> Clause | 
     if any(clause.overlap_s(way) > 0.0 for way in ways):
         return None
     turns = turning.seen_to_turn(clause)
-    return replace(clause, pattern="turn {1}", name="Turn") if turns else clause
+    return replace(clause, pattern=TURN, name="Turn") if turns else clause
 
 
 def with_turning(told: Sequence[Clause], ways: Sequence[Clause]) -> tuple[Clause, ...]:

@@ -49,9 +49,11 @@ def noun(name: str) -> str:
 
 
 def the(name: str) -> str:
-    """A name as a definite noun phrase; a proper name stays alone."""
+    """A name as a definite noun phrase; a proper name stays alone, and so does a numbered one."""
     spoken = noun(name)
-    return spoken if spoken[:1].isupper() else f"the {spoken}"
+    *named, last = spoken.split(" ")
+    alone = spoken[:1].isupper() or (named and last.isdigit())
+    return spoken if alone else f"the {spoken}"
 
 
 def the_agent(name: str, kind: str = "") -> str:

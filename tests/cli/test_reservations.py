@@ -13,7 +13,8 @@ from typer.testing import CliRunner
 from write_demo import write_tables
 
 from capar.cli import app
-from capar.model.capture import Capture, Stream
+from capar.model.capture import Capture, Stream, notice
+from capar.views.notices import reservation_lines
 
 HEADING = "Known with reservations:"
 BUNDLE = """\
@@ -94,6 +95,19 @@ def test_stand_ins_are_told_after_the_text(bundle: Callable[[int, int], str]) ->
     )
 
 
+def test_what_is_left_out_is_listed_as_people_call_it() -> None:
+    left = notice(
+        "objects-left-out",
+        "100 half egg carton(Clone)-18146",
+        "102 tooth_brush(Clone)-7",
+        objects=9,
+    )
+    assert reservation_lines((left,))[-1] == (
+        "note: the recording does not tell the shape of the half egg carton and the tooth brush; "
+        "nothing is told of that"
+    )
+
+
 def test_json_lists_them_by_code(bundle: Callable[[int, int], str]) -> None:
     found = json.loads(run("describe", bundle(0, 0), "--json"))
     assert [each["code"] for each in found["notices"]] == ["stand-in-shape"] * 2
@@ -114,7 +128,7 @@ def test_a_loss_is_counted_in_words_and_told_once(bundle: Callable[[int, int], s
     told = run("describe", bundle(20, 60))
     (line,) = [each for each in told.splitlines() if "lost" in each]
     assert line == (
-        "note: 'box' was lost once for long, from 0.19 to 0.57 s; a contact before "
+        "note: 'box' was lost from 0.19 to 0.57 s; contact before "
         "and after is assumed to have lasted"
     )
 

@@ -172,20 +172,20 @@ def test_what_is_assumed_lost_or_stood_in_for_is_told() -> None:
 @pytest.mark.parametrize(
     ("gaps", "tag", "told"),
     [
-        (((50, 99),), TagType.MOBILE, "once for long, from 0.50 to 0.99 s; {lasts}"),
+        (((50, 99),), TagType.MOBILE, "from 0.50 to 0.99 s; {lasts}"),
         (
             ((20, 39), (50, 99)),
             TagType.MOBILE,
-            "twice for long, at most from 0.50 to 0.99 s; {lasts}",
+            "twice, for longest from 0.50 to 0.99 s; {lasts}",
         ),
         (
             ((0, 19), (50, 99), (150, 199)),
             TagType.MOBILE,
-            "3 times for long, at most from 0.50 to 0.99 s; {lasts}",
+            "3 times, for longest from 0.50 to 0.99 s; {lasts}",
         ),
         (((0, 199),), TagType.MOBILE, "throughout; {unknown}"),
         (((0, 199),), TagType.FIXED, "throughout; {unknown}"),
-        (((50, 99),), TagType.FIXED, "once for long, from 0.50 to 0.99 s; it is held to stay"),
+        (((50, 99),), TagType.FIXED, "from 0.50 to 0.99 s; it is held to stay"),
     ],
 )
 def test_each_loss_is_told_once_in_words(
@@ -200,7 +200,7 @@ def test_each_loss_is_told_once_in_words(
     found = measure(Capture("x", (hand,), (thing,), notices=(read,))).notices
     (loss,) = [each.message for each in found if each.code == "long-gap"]
     unknown = "no contact of it is known"
-    lasts = "a contact before and after is assumed to have lasted"
+    lasts = "contact before and after is assumed to have lasted"
     assert loss == f"'thing' was lost {told.format(unknown=unknown, lasts=lasts)}"
 
 

@@ -32,10 +32,17 @@ def window_at(cursor: Cursor) -> Window | None:
     return found
 
 
+def around(one: Window | None, other: Window | None) -> Window | None:
+    """The time from the beginning of the first to the end of the last [s]."""
+    if one is None or other is None:
+        return one or other
+    return min(one[0], other[0]), max(one[1], other[1])
+
+
 def _window(cursor: Cursor, found: Adjuncts) -> bool:
     window = window_at(cursor)
     if window is not None:
-        found.window = window
+        found.window = around(found.window, window)
         return True
     start = cursor.at
     if cursor.accept("for"):

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, replace
 
+from kb.language.instruction import Window
+from kb.language.reading.adjuncts import around, window_at
 from kb.language.reading.function_words import first_words, is_next, of_class
 from kb.language.reading.reader import RELATIVES, Reader
 from kb.language.tokens import ARTICLES
@@ -33,6 +35,9 @@ class Noun:
     unknown: bool = False
     """Whether objects are known, and this is none of them."""
 
+    window: Window | None = None
+    """In which time those of several things were handled that stand before the last [s]."""
+
     @property
     def is_person(self) -> bool:
         """Whether it is about somebody."""
@@ -47,27 +52,36 @@ def noun_phrase(reader: Reader, *, coordinate: bool = True) -> Noun | None:
         reader.cursor.at = start
         return None
     while coordinate and found.things and (more := _another(reader)) is not None:
-        found = Noun((*found.things, *more.things), at=found.at)
+        window = around(found.window, more.window)
+        found = Noun((*found.things, *more.things), at=found.at, window=window)
     if len(found.things) > 1:
         reader.several = found.things
     return found
 
 
 def _another(reader: Reader) -> Noun | None:
-    """What is joined with a noun phrase by ``and``, where no new clause begins there."""
+    """What is joined with a noun phrase by ``and``, where no new clause begins there.
+
+    It has the time that stands before that.
+    """
     cursor = reader.cursor
     start = cursor.at
+    window = window_at(cursor) if cursor.peek() == "(" else None
     comma = cursor.accept(",")
     joined = cursor.accept("and") or cursor.accept("or")
-    if joined and reader.verb_forms() and cursor.peek() not in ARTICLES:
+    if joined and reader.verb_forms() and not _begins_item(reader):
         cursor.at = start
         return None
-    if joined or (comma and cursor.peek() in {"the", "a"}):
+    if joined or (comma and _begins_item(reader)):
         found = _single(reader)
         if found is not None and found.things and not reader.finite_ahead():
+            end = cursor.at
+            _skip_time(reader)
             more_to_come = joined or cursor.peek() in {",", "and"}
-            if more_to_come and (not comma or joined or _list_goes_on(reader)):
-                return found
+            goes_on = more_to_come and (not comma or joined or _list_goes_on(reader))
+            cursor.at = end
+            if goes_on:
+                return replace(found, window=window)
     cursor.at = start
     return None
 
@@ -78,13 +92,27 @@ def _list_goes_on(reader: Reader) -> bool:
     start = cursor.at
     comma = cursor.accept(",")
     if cursor.accept("and"):
-        ends = cursor.peek() in ARTICLES
+        ends = _begins_item(reader)
     else:
-        found = _single(reader) if comma and cursor.peek() in ARTICLES else None
+        found = _single(reader) if comma and _begins_item(reader) else None
+        _skip_time(reader)
         goes_on = found is not None and bool(found.things) and not reader.finite_ahead()
         ends = goes_on and _list_goes_on(reader)
     cursor.at = start
     return ends
+
+
+def _begins_item(reader: Reader) -> bool:
+    """Whether one of several things comes next, with an article or with a number: ``mug 2``."""
+    cursor = reader.cursor
+    counted = cursor.peek(2) in {"times", "time", *(words[0] for words in of_class("unit"))}
+    return cursor.peek() in ARTICLES or (cursor.peek(1).isdigit() and not counted)
+
+
+def _skip_time(reader: Reader) -> None:
+    """Read past the time of one of several things: ``the mug (1.2–3.5 s)``."""
+    if reader.cursor.peek() == "(":
+        window_at(reader.cursor)
 
 
 def _single(reader: Reader) -> Noun | None:  # noqa: PLR0911 (each is one kind of noun phrase)

@@ -60,6 +60,11 @@ def _sentence(reader: Reader, told: _Told) -> None:
             if cursor.done:
                 cursor.at = start
                 raise cursor.error("the sentence ends here", ())
+            if (taker := _taker(reader, told.parts[-1][-1][-1])) is not None:
+                told.about = taker
+                value = predicate(reader, taker)
+                told.parts[-1][-1].append(replace(value, agent=told.parts[-1][-1][-1].agent))
+                continue
             again = _in_turn(reader, told.parts[-1][-1][-1])
             told.parts[-1][-1].append(again or _clause(reader, told))
             continue
@@ -76,6 +81,13 @@ def _in_turn(reader: Reader, last: Instruction) -> Instruction | None:
         return replace(last, ee=noun.limb)
     cursor.at = start
     return None
+
+
+def _taker(reader: Reader, last: Instruction) -> Noun | None:
+    """The hand to which a thing was handed, of which more is told: ``which turned it about``."""
+    limbs = {f"to the {' '.join(words)}": limb for words, limb in reader.words.limbs.items()}
+    taken = [limbs[said] for said in last.circumstances.manner if said in limbs]
+    return Noun(limb=taken[-1]) if taken and reader.cursor.accept("which") else None
 
 
 def _accept_all(reader: Reader, words: Sequence[str]) -> bool:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 
 from kb.language.instruction import GAP
-from kb.language.reading.adjuncts import Adjuncts, adjunct
+from kb.language.reading.adjuncts import Adjuncts, adjunct, around
 from kb.language.reading.function_words import is_next, of_class, prepositions
 from kb.language.reading.noun_phrases import Noun, begins_noun, noun_phrase
 from kb.language.reading.reader import CONNECTIVES, RELATIVES, Reader
@@ -254,6 +254,7 @@ def _object(reader: Reader, phrase: VerbPhrase) -> bool:
     if noun is None:
         return False
     phrase.objects.append(noun)
+    phrase.adjuncts.window = around(phrase.adjuncts.window, noun.window)
     _skip_relative_clause(reader)
     return True
 

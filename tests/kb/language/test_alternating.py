@@ -80,6 +80,15 @@ def test_a_hand_that_helps_meanwhile_has_no_turn_of_its_own() -> None:
     )
 
 
+def test_of_more_turns_than_can_be_told_it_is_said_that_hands_took_turns() -> None:
+    hands = ("right_hand", "left_hand", "right_hand", "left_hand")
+    spans = [(hand, 400 * at + 50, 400 * at + 350) for at, hand in enumerate(hands)]
+    text = turned(*spans)
+    assert text == "The agent turned the mug about with both hands by turns."
+    (step,) = steps_of(text)
+    assert (step.ee, step.circumstances.manner) == ("both_hands", ("by turns",))
+
+
 def test_what_each_lifts_and_turns_is_lifted_and_turned() -> None:
     assert turned(*IN_TURN, lifts=True).startswith("The agent lifted and turned the mug about with")
 

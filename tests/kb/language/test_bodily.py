@@ -97,7 +97,7 @@ def crouching(*heights_m: float) -> str:
 
 def test_who_goes_down_beside_what_the_hands_do_crouches_and_stands_up() -> None:
     assert crouching(1.0, 1.0, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 1.0) == (
-        "The agent crouched, lifted the mug with the right hand, let go, and stood up."
+        "The agent crouched, lifted the mug with the right hand, let go, and straightened up."
     )
 
 

@@ -48,19 +48,21 @@ def told(way: Sequence[float], facing: float = 0.0, *, back: bool = True) -> str
     ("way", "words"),
     [
         ((0.5, 0.0, 0.0), "forward"),
-        ((-0.5, 0.0, 0.0), "back"),
+        ((-0.5, 0.0, 0.0), "backward"),
         ((0.0, 0.5, 0.0), "to the left"),
         ((0.0, -0.5, 0.0), "to the right"),
         ((0.0, 0.0, 0.6), "up"),
         ((0.0, 0.0, -0.6), "down"),
         ((0.4, 0.0, 0.5), "forward and up"),
         ((0.0, -0.4, -0.4), "to the right and down"),
+        ((0.5, 0.6, 0.0), "forward to the left"),
+        ((-0.4, -0.4, 0.0), "backward to the right"),
     ],
 )
 def test_a_reach_has_its_direction(way: tuple[float, ...], words: str) -> None:
     text = told(way)
     assert text.startswith(f"The agent reached {words} with the right hand (0.50–")
-    back = "brought the hand forward again" if words == "back" else "took the hand back"
+    back = "brought the hand forward again" if words == "backward" else "took the hand back"
     back = "lowered the hand again" if way[2] > 0.0 else back
     assert f" and {back} (" in text
     assert text.endswith(" s) without touching anything.")

@@ -7,8 +7,14 @@ from capar.pipelines.observation import observe
 from kb.language.describe import describe
 
 TOLD = {
-    "carry_a_carton_with_a_ball": ("lifted it with the ball", "put it back on the table"),
-    "push_with_a_stick": ("held the stick with the right hand", "pushed the box with it"),
+    "carry_a_carton_with_a_ball": (
+        "lifted the carton with the ball using both hands",
+        "put it back on the table",
+    ),
+    "push_with_a_stick": (
+        "brought the stick to the box with the right hand",
+        "pushed the box with it",
+    ),
     "hit_a_block_away": ("struck the block with the right hand",),
 }
 

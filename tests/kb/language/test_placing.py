@@ -201,3 +201,25 @@ def test_a_hand_that_only_comes_and_leaves_is_told_to() -> None:
     assert told(REACHED, gone, way=way) == (
         "reached for the mug with the right hand and took the hand away."
     )
+
+
+@pytest.mark.parametrize(
+    ("ahead_m", "words"), [(0.3, "pulled"), (-0.3, "pushed"), (0.05, "slid"), (-0.05, "slid")]
+)
+def test_what_is_slid_by_a_hand_before_it_is_pulled_and_behind_it_pushed(
+    ahead_m: float, words: str
+) -> None:
+    seconds = np.arange(301) / 100.0
+    way = np.column_stack([np.interp(seconds, (1.0, 3.0), (0.0, 1.0)), *np.zeros((2, 301))])
+    pieces = (REACHED, Piece("Slide", 300, ("mug",), features=OWN))
+    made = observation("Slid", {"right_hand": pieces}, (MUG,), frames=301, rate_hz=100.0)
+    (link,) = made.links
+    own = tuple(replace(each, possessed=each.name == "Slide") for each in link.segments)
+    tracks = (
+        sampled_track("mug", 0.01, way),
+        sampled_track("right_hand", 0.01, way + np.array((ahead_m, 0.1, 0.0))),
+    )
+    text = describe(replace(made, links=(replace(link, segments=own),), tracks=tracks))
+    assert text == f"The agent {words} the mug with the right hand."
+    (step,) = steps_of(text)
+    assert step.call.action == {"pulled": "Pull", "pushed": "Push", "slid": "Slide"}[words]

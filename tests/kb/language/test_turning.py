@@ -57,8 +57,45 @@ def test_what_lay_is_turned_upright() -> None:
 
 def test_what_faces_another_way_is_turned_around_and_what_is_moved_aside_is_turned() -> None:
     assert "turned the mug around" in told("MoveObj", (0.0, 0.0), (0.0, 1.5), (0.0, 3.0))
-    assert told("MoveObj", (0.0, 0.0), (0.0, 1.0)).startswith("turned the mug with")
+    assert told("MoveObj", (0.0, 0.0), (0.0, 0.9)).startswith("turned the mug with")
+    assert told("MoveObj", (0.0, 0.0), (0.0, 1.5)).startswith("turned the mug by about a quarter")
     assert told("MoveObj", (0.0, 0.0), (0.0, 0.2)).startswith("moved the mug with")
+
+
+def test_what_turns_while_it_is_slid_is_told_beside_that() -> None:
+    text = told("Slide", (0.0, 0.0), (0.0, 0.1), (0.0, 1.4), (0.0, 1.5), (0.0, 1.5))
+    assert text == (
+        "slid the mug with the right hand (0.00–4.00 s), turning it by about a quarter "
+        "(1.00–2.00 s)."
+    )
+    assert [step.call.action for step in steps_of(f"The agent {text}")] == ["Slide", "Turn"]
+    assert "turning" not in told("Slide", (0.0, 0.0), (0.0, 0.3), (0.0, 0.5), (0.0, 0.5))
+
+
+def test_what_goes_up_and_turns_much_beside_turning_about_is_turned_about() -> None:
+    """Each segment ends as it turned so far along its way [rad]."""
+    for up_rad, words in ((4.0, "turned the mug about with"), (1.0, "raised it")):
+        frames = (0, 200, 300)
+        pieces = (
+            Piece("Turn", 200, ("mug",), features=OWN),
+            Piece("Raise", 300, ("mug",), features=OWN),
+        )
+        turns = (0.0, 5.0, 5.0 + up_rad)
+        facts = (
+            *(Posture("mug", frame, 0, 0) for frame in frames),
+            *(
+                Travelled("mug", frame, 300, round(1000 * turn))
+                for frame, turn in zip(frames, turns, strict=True)
+            ),
+        )
+        made = observation(
+            "Turned", {"right_hand": pieces}, (MUG,), facts=facts, frames=301, rate_hz=100.0
+        )
+        (link,) = made.links
+        own = tuple(replace(each, possessed=True) for each in link.segments)
+        text = describe(replace(made, links=(replace(link, segments=own),)))
+        assert words in text
+        assert ("raised" in text) is (up_rad < 2.0)
 
 
 def test_what_is_lifted_and_turned_over_is_both() -> None:

@@ -1,0 +1,89 @@
+"""What a hand puts on end in or on one thing is told as lists, in which each has its own time."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from observations import MUG, TABLE, Piece, observation
+from tellings import against_time, spans, steps_of
+
+from capar.model.facts import Touching
+from capar.model.par import FeatureSet
+from kb.language.describe import describe
+
+PLACED = FeatureSet("100", "101", "10", "hand", "00")
+NAMES = ("mug", "bowl", "bottle", "plate", "spoon", "jar", "cup_2", "fork", "cup")
+SHELF = replace(TABLE, name="shelf", kind="shelf")
+
+
+def told(*places: str, timed: bool = True) -> str:
+    """What is told of a hand that puts one thing after another on places, each in two seconds."""
+    pieces: list[Piece] = []
+    facts: list[Touching] = []
+    for at, (name, place) in enumerate(zip(NAMES, places, strict=False)):
+        first = 200 * at
+        pieces.append(Piece("Reach", first + 50, (name,)))
+        pieces.append(Piece("MoveObjTo", first + 150, (name, place), features=PLACED))
+        pieces.append(Piece("ResumePosture", first + 200, (name,)))
+        facts += [
+            Touching(name, place, first + 149, 200 * len(places)),
+            Touching("right_hand", name, first + 50, first + 155),
+        ]
+    things = tuple(replace(MUG, name=name, kind=name) for name in NAMES)
+    made = observation(
+        "Put",
+        {"right_hand": tuple(pieces)},
+        (*things, TABLE, SHELF),
+        facts=tuple(facts),
+        frames=200 * len(places) + 1,
+        rate_hz=100.0,
+    )
+    (link,) = made.links
+    own = tuple(replace(each, possessed=each.name == "MoveObjTo") for each in link.segments)
+    return describe(replace(made, links=(replace(link, segments=own),)), timed=timed)
+
+
+def test_things_that_are_put_on_one_place_are_one_list() -> None:
+    assert told("table", "table", "table", timed=False) == (
+        "The agent put the mug, the bowl, and the bottle on the table with the right hand."
+    )
+    assert told("table", "table") == (
+        "The agent put the mug (0.50–1.50 s) and the bowl (2.50–3.50 s) on the table with the "
+        "right hand."
+    )
+
+
+def test_another_place_begins_another_list() -> None:
+    text = told("table", "table", "shelf", timed=False)
+    assert text == (
+        "The agent put the mug and the bowl on the table with the right hand and put the bottle on "
+        "the shelf."
+    )
+    goals = [step.call.objects for step in steps_of(text)]
+    assert goals == [("mug", "bowl", "table"), ("bottle", "shelf")]
+
+
+@pytest.mark.parametrize("timed", [True, False])
+def test_a_list_names_six_things_at_most_and_a_numbered_thing_without_article(
+    timed: bool,
+) -> None:
+    text = told(*["table"] * 8, timed=timed)
+    first, second = steps_of(text)
+    assert first.call.objects == (*NAMES[:6], "table")
+    assert second.call.objects == ("cup_2", "fork", "table")
+    assert " cup 2 " in text
+    assert "the cup 2" not in text
+    if timed:
+        assert first.circumstances.window == (0.5, 11.5)
+
+
+@given(st.lists(st.sampled_from(["table", "shelf"]), min_size=1, max_size=9))
+def test_each_thing_is_told_once_with_its_place_and_time(places: list[str]) -> None:
+    text = told(*places)
+    found = [
+        (name, step.call.objects[-1]) for step in steps_of(text) for name in step.call.objects[:-1]
+    ]
+    assert found == list(zip(NAMES, places, strict=False))
+    assert spans(text) == [(2.0 * at + 0.5, 2.0 * at + 1.5) for at in range(len(places))]
+    assert against_time(text) == []
