@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -14,7 +14,7 @@ from capar.views.lettering import Span
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
 from capar_rules.explain.claims import Measure, Quantity
-from capar_rules.explain.quantities import degrees, length
+from capar_rules.explain.quantities import LEAST_M, degrees, length, spread
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.calibration import thresholds_of
 from extractors.contact.contacts import points_apart
@@ -107,17 +107,20 @@ def _way(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
     middles = known.body(name).middles
     away = np.linalg.norm(middles - middles[told.first], axis=1)
-    marks = [Mark(known.at(told.last), CENTI * away[told.last], length(away[told.last]))]
     curves = [known.curve(CENTI * away, "straight")]
-    steps = np.nan_to_num(np.linalg.norm(np.diff(middles, axis=0), axis=1))
-    path = np.concatenate([[0.0], np.cumsum(steps)])
-    path -= path[told.first]
     moved = known.seen.explainer.measured.ways
-    if moved is not None and "way" in forms and moved(name, told.first, told.last).winding:
+    winding = moved is not None and "way" in forms and moved(name, told.first, told.last).winding
+    end = float(away[told.last])
+    short = end < LEAST_M and (winding or "way" not in forms)
+    label = f"less than {length(LEAST_M)}" if short else length(end)
+    marks = [Mark(known.at(told.last), CENTI * end, label)]
+    if winding:
+        steps = np.nan_to_num(np.linalg.norm(np.diff(middles, axis=0), axis=1))
+        path = np.concatenate([[0.0], np.cumsum(steps)])
+        path -= path[told.first]
         inside = np.where(np.arange(len(path)) < told.first, np.nan, path)
         curves.append(known.curve(CENTI * inside, "along its path"))
-        end = path[told.last]
-        marks.append(Mark(known.at(told.last), CENTI * end, length(end)))
+        marks.append(Mark(known.at(told.last), CENTI * path[told.last], length(path[told.last])))
     limits = [known.floor(name)] if "way" in forms and known.is_object(name) else []
     for form in sorted(forms & set(WAYS)):
         constant, label = WAYS[form]
@@ -137,6 +140,8 @@ WAYS = {
     "place": ("aside_mm", "near is within {}"),
     "not_near": ("aside_mm", "near is within {}"),
     "not_slid": ("slide_mm", "a slide takes {}"),
+    "elsewhere": ("aside_mm", "back there is within {}"),
+    "back": ("aside_mm", "back there is within {}"),
 }
 """By the format of a way: the constant of the rules that it is compared with, and how it reads."""
 
@@ -158,7 +163,7 @@ def _spread(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         "cm",
         (known.curve(CENTI * away),),
         (known.floor(name),) if known.is_object(name) else (),
-        (Mark(known.at(far), CENTI * away[far], f"at most {length(away[far])}"),),
+        (Mark(known.at(far), CENTI * away[far], f"at most {spread(away[far])}"),),
         known.bars(Moving, object=name),
         "counts as moving",
     )
@@ -228,13 +233,20 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     measurements = known.seen.measurements
     upright = np.array(measurements.calibration.body(name).upright)
     angle = np.degrees(lean(known.body(name).orientations, upright))
-    limits = []
+    limits, labels = [], [f"{angle[frame]:.0f}°" for frame in (told.first, told.last)]
+    marks = [
+        Mark(known.at(frame), float(angle[frame]), label)
+        for frame, label in zip((told.first, told.last), labels, strict=True)
+    ]
     if "far_over" in forms:
         far = math.degrees(thresholds_of(measurements.calibration).lean_rad)
-        limits.append(Limit(far, f"leans far over from {far:.0f}°"))
+        limits.append(Limit(far, f"far over is {far:.0f}° or more"))
+        most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
+        marks.append(Mark(known.at(most), float(angle[most]), f"{angle[most]:.0f}° at most"))
     if forms & {"lean", "not_leant"}:
         change = math.degrees(constants()["turn_mrad"] / 1000.0)
-        start = float(angle[told.first])
+        start, by = float(angle[told.first]), abs(float(np.diff(angle[[told.first, told.last]])[0]))
+        marks[1] = replace(marks[1], label=f"{labels[1]} (a change of {by:.0f}°)")
         limits += [
             Limit(value, f"{change:.0f}° {sense} than at the start")
             for value, sense in ((start + change, "more"), (start - change, "less"))
@@ -245,10 +257,7 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         "°",
         (known.curve(angle),),
         tuple(limits),
-        tuple(
-            Mark(known.at(frame), float(angle[frame]), f"{angle[frame]:.0f}°")
-            for frame in (told.first, told.last)
-        ),
+        tuple(marks),
         known.bars(Leans, object=name),
         "leans far over",
     )
@@ -375,8 +384,9 @@ def _to_and_fro(known: Recording, told: Quantity, forms: frozenset[str]) -> Pane
     places = stream.positions[:, axis]
     places = CENTI * (places - np.nanmean(places[told.first : told.last + 1]))
     sense = ("along the x axis", "along the y axis", "up and down")[axis]
+    least = length(limits.swing_m)
     return Panel(
-        f"{known.called(name)}: place {sense}, where it turns back most",
+        f"{known.called(name)}: place {sense}; red: turns back after {least} or more",
         "cm",
         (known.curve(places),),
         marks=tuple(Mark(known.at(int(at)), float(places[at])) for at in turns),

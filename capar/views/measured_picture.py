@@ -129,7 +129,9 @@ def _strip(
                 (start, 0.0), end - start, 1.0, **look, linewidth=0.8, alpha=1.0 if own else 0.45
             )
         )
-        label = shortened(segment.label, points=9.0, widest_in=max((end - start) * scale - 0.06, 0.0))
+        label = shortened(
+            segment.label, points=9.0, widest_in=max((end - start) * scale - 0.06, 0.0)
+        )
         if len(label) > 2 or own:
             axes.text(
                 (start + end) / 2.0,

@@ -56,6 +56,8 @@ FORMS: Mapping[str, tuple[Measure, ...]] = {
     "place": (Measure.WAY,),
     "not_near": (Measure.WAY,),
     "not_slid": (Measure.WAY,),
+    "elsewhere": (Measure.WAY,),
+    "back": (Measure.WAY,),
     "spread": (Measure.SPREAD,),
     "still": (Measure.SPREAD,),
     "course": (Measure.HEIGHT, Measure.ASIDE),

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from capar.model.body_names import is_plural
 from capar.model.facts import (
+    Displaced,
     Fact,
     Link,
     Moving,
@@ -44,8 +45,11 @@ class Measured:
     moving: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
     """First and last frames of the measured motions, by object."""
 
-    rests: Mapping[str, Sequence[int]] = field(default_factory=dict)
-    """The frames at which end-effectors came to rest, by end-effector."""
+    displaced: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
+    """First and last frames at which objects truly left and reached a place, by object."""
+
+    rests: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
+    """First and last frames of the measured rests, by end-effector."""
 
     places: Mapping[tuple[str, int], tuple[int, int, int]] = field(default_factory=dict)
     """Where bodies were, by name and frame [mm]."""
@@ -96,7 +100,8 @@ class Measured:
 def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
     """What is known of bodies, with what facts say of their motions, places and postures."""
     moving: dict[str, list[tuple[int, int]]] = defaultdict(list)
-    rests: dict[str, list[int]] = defaultdict(list)
+    displaced: dict[str, list[tuple[int, int]]] = defaultdict(list)
+    rests: dict[str, list[tuple[int, int]]] = defaultdict(list)
     swings: dict[str, list[tuple[int, int]]] = defaultdict(list)
     held: dict[str, list[tuple[str, int, int]]] = defaultdict(list)
     places, postures, travelled, touched = {}, {}, {}, False
@@ -106,8 +111,10 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
         match fact:
             case Moving():
                 moving[fact.object].append((fact.first, fact.last))
+            case Displaced():
+                displaced[fact.object].append((fact.first, fact.last))
             case Resting():
-                rests[fact.ee].append(fact.first)
+                rests[fact.ee].append((fact.first, fact.last))
             case Place():
                 places[fact.body, fact.frame] = fact.x, fact.y, fact.z
             case Posture():
@@ -125,7 +132,9 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
             case _:
                 pass
     found = replace(known, moving=moving, rests=rests, places=places, postures=postures)
-    return replace(found, swings=swings, travelled=travelled, held=held, tracked=touched)
+    return replace(
+        found, displaced=displaced, swings=swings, travelled=travelled, held=held, tracked=touched
+    )
 
 
 @dataclass(frozen=True)
@@ -180,12 +189,12 @@ class Clock:
 
     def motion(self, name: str, span: tuple[int, int]) -> tuple[int, int]:
         """From when to when an object was measured to move within a span; the span if never."""
-        parts = [
-            (max(first, span[0]), min(last, span[1]))
-            for first, last in self.measured.moving.get(name, ())
-        ]
-        parts = [each for each in parts if each[0] < each[1]]
-        return (min(parts)[0], max(last for _, last in parts)) if parts else span
+        return _within(self.measured.moving.get(name, ()), span)
+
+    def displacement(self, name: str, span: tuple[int, int]) -> tuple[int, int]:
+        """The same from when it truly left its place until it truly reached another."""
+        found = self.measured.displaced.get(name) or self.measured.moving.get(name, ())
+        return _within(found, span)
 
     def span(self, segment: str) -> tuple[int, int] | None:
         """First and last frame of the segment that a term names."""
@@ -206,3 +215,10 @@ class Clock:
         if tick < int(found[2]):
             return "before"
         return "end" if self.ends.get((ee, int(found[2]))) == tick else ""
+
+
+def _within(spans: Sequence[tuple[int, int]], span: tuple[int, int]) -> tuple[int, int]:
+    """From the first to the last frame of what lies within a span; the span if nothing does."""
+    parts = [(max(first, span[0]), min(last, span[1])) for first, last in spans]
+    parts = [part for part in parts if part[0] < part[1]]
+    return (min(parts)[0], max(last for _, last in parts)) if parts else span

@@ -88,6 +88,7 @@ class Argument:
             "met": self._met,
             "from_rest": self._from_rest,
             "elsewhere": self._elsewhere,
+            "back": self._back,
             "keeper": self._keeper,
             "not_at_rest": self._not_at_rest,
             "rest_s": self._rest_s,
@@ -197,11 +198,51 @@ class Argument:
         return f"left {' and '.join(left)}" if left else "started from rest"
 
     def _elsewhere(self) -> str:
-        """That the end-effector did not come back to a rest, or had none to come back to."""
-        span, rests = self.clock.span(self.text), self.clock.measured.rests.get(self._hand, ())
-        if span is None or any(first < span[0] for first in rests):
+        """How far from where it had rested the end-effector ended, or that it had not rested."""
+        if not self._earlier_rests():
+            return "had not rested before"
+        found = self._nearest_rest()
+        if found is None or found[0] < constants()["aside_mm"] / 1000.0:
             return "did not come back to where it had rested before"
-        return "had not rested before"
+        near = quantities.length(constants()["aside_mm"] / 1000.0)
+        far = quantities.length(found[0])
+        return f"ended {far} from the nearest place where it had rested before ({near} is near)"
+
+    def _back(self) -> str:
+        """How near to where it had rested the end-effector came back."""
+        found, near_mm = self._nearest_rest(), constants()["aside_mm"]
+        if found is None or found[0] >= near_mm / 1000.0:
+            return "came back to where it had rested before"
+        far, near = quantities.length(found[0]), quantities.length(near_mm / 1000.0)
+        return f"ended {far} from where it had rested before, and within {near} it is back there"
+
+    def _earlier_rests(self) -> list[int]:
+        """The last frames of the rests before the segment in which it touched nothing."""
+        span, known = self.clock.span(self.text), self.clock.measured
+        touching = [
+            (first, last)
+            for contacts in known.held.values()
+            for ee, first, last in contacts
+            if ee == self._hand
+        ]
+        least = in_frames(constants()["rest_ms"], self.clock.rate_hz)
+        rests = known.rests.get(self._hand, ())
+        return [
+            last
+            for first, last in rests
+            if span is not None
+            and last <= span[0]
+            and last - first >= least
+            and not any(begin <= last and end >= first for begin, end in touching)
+        ]
+
+    def _nearest_rest(self) -> tuple[float, int] | None:
+        """How far it ended from the nearest of its places of rest before [m], and that frame."""
+        span, rests = self.clock.span(self.text), self._earlier_rests()
+        if span is None or not rests:
+            return None
+        ways = ((self._moved(self._hand, (first, span[1])), first) for first in rests)
+        return min(((way.straight_m, first) for way, first in ways if way), default=None)
 
     def _rest_s(self) -> str:
         return f"{constants()['rest_ms'] / 1000.0:.2f} s"
@@ -257,7 +298,7 @@ class Argument:
 
     def _motion(self, form: str, body: str, span: tuple[int, int]) -> str:
         """How far a body moved, or within what it stayed."""
-        moving = self.clock.motion(body, span)
+        moving = self.clock.displacement(body, span)
         moved = self._moved(body, moving if form == "way" else span)
         if moved is None or form != "way":
             return "" if moved is None else _brief(form, moved)
@@ -281,7 +322,10 @@ class Argument:
     def measured_between(self, form: str) -> tuple[int, int] | None:
         """The frames between which what such a format tells of a body was measured."""
         span = self._span_beside(form)
-        return self.clock.motion(self.body, span) if span and form == "way" else span
+        if form in ("elsewhere", "back"):
+            nearest = self._nearest_rest()
+            return (nearest[1], span[1]) if nearest and span else None
+        return self.clock.displacement(self.body, span) if span and form == "way" else span
 
     def nearness(self, form: str) -> float:
         """How near the body came to what such a format says that it falls short of."""
@@ -315,9 +359,11 @@ class Argument:
         first, last = (known.postures.get((body, frame)) for frame in span)
         if first is None or last is None:
             return "by an unknown angle"
+        least = f" ({quantities.degrees(constants()['turn_mrad'])} or more count)"
         if form == "turn":
-            return quantities.degrees(last[1] - first[1])
-        return _leant(first[0], last[0])
+            return f"{quantities.degrees(last[1] - first[1])} about the vertical{least}"
+        change = f", a change of {quantities.degrees(last[0] - first[0])}"
+        return f"{_leant(first[0], last[0])}{change}{least}"
 
     def _far_over(self, body: str, span: tuple[int, int]) -> str:
         """How far a body leant, and from where on that is far over."""
@@ -327,7 +373,7 @@ class Argument:
             return "far over"
         most = quantities.degrees(round(1000.0 * known.leans(body, *span)))
         least = quantities.degrees(round(1000.0 * known.far_over_rad))
-        return f"{_leant(first[0], last[0])}, {most} at most, where {least} and more are far over"
+        return f"{_leant(first[0], last[0])} ({most} at most; far over is {least} or more)"
 
     def _turns_back(self, body: str, span: tuple[int, int]) -> str:
         """How often it turned back within the span, and in the motion of which that is a part."""

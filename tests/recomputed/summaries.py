@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from capar.model.body_names import body_names
-from capar.model.facts import ClosingSpeed, Moving, Posture, Resting
+from capar.model.facts import ClosingSpeed, Displaced, Posture, Resting, Touching
 from capar_rules.engine.solver import rule_file
 from recomputed.doors import NUMBER, slid, swung
 from recomputed.known import NAME, TIME, Known, covers, name, near
@@ -77,12 +77,12 @@ def _is(metres: float, told: str, *, slack_m: float = SMOOTHED_M) -> bool:
 
 
 def _motion(known: Known, body: str) -> tuple[int, int]:
-    """From when to when it was measured to move in the segment; the segment if it never was."""
+    """From when to when it truly moved in the segment; the segment if it never did."""
     first, last = known.segment.first, known.segment.last
     spans = [
         (max(each.first, first), min(each.last, last))
         for each in known.seen.observation.facts
-        if isinstance(each, Moving) and each.object == body
+        if isinstance(each, Displaced) and each.object == body
     ]
     inside = [each for each in spans if each[0] < each[1]]
     ends = (min(start for start, _ in inside), max(end for _, end in inside)) if inside else None
@@ -294,6 +294,18 @@ def spun(known: Known, body: str, told: str) -> bool:
     return abs(abs(math.degrees((after - before) / 1000.0)) - float(told)) <= 0.6
 
 
+def leant_by(known: Known, body: str, before: str, after: str, change: str, asked: str) -> bool:
+    return (
+        leant(known, body, before, after)
+        and abs(abs(float(before) - float(after)) - float(change)) <= 1.0
+        and _asked("turn_mrad", asked)
+    )
+
+
+def spun_enough(known: Known, body: str, told: str, asked: str) -> bool:
+    return spun(known, body, told) and _asked("turn_mrad", asked)
+
+
 def kept_within(known: Known, body: str, far: str, first: str = "", last: str = "") -> bool:
     """It is never further from the middle of where it is."""
     begin = known.frame(first) if first else known.segment.first
@@ -399,6 +411,33 @@ def too_brief(known: Known, _: str, took: str, asked: str) -> bool:
     return lasted(known, took) and _asked("rest_ms", asked) and float(took) < float(asked)
 
 
+def rested_elsewhere(known: Known, body: str, far: str, asked: str) -> bool:
+    away = _from_rest(known, body)
+    return _asked("aside_mm", asked) and _is(away, far) and away > 0.1 - SMOOTHED_M
+
+
+def rested_there(known: Known, body: str, far: str, asked: str) -> bool:
+    return _asked("aside_mm", asked) and _is(_from_rest(known, body), far)
+
+
+def _from_rest(known: Known, body: str) -> float:
+    """How far it ends from the nearest place where it came to rest before [m]."""
+    rests = [
+        each
+        for each in known.of(Resting)
+        if each.ee == body and (each.last - each.first) / known.rate >= 0.4
+    ]
+    touched = [each for each in known.of(Touching) if each.body == body]
+    end = known.track(body, known.segment.last, known.segment.last)[0]
+    places = [
+        known.track(body, rest.last, rest.last)[0]
+        for rest in rests
+        if rest.last <= known.segment.first
+        and not any(each.first <= rest.last and each.last >= rest.first for each in touched)
+    ]
+    return min(_length(end - place) for place in places)
+
+
 def held_since(known: Known, body: str, other: str, at: str) -> bool:
     """The other end-effector touches the thing from then until the segment ends, or longer."""
     return any(
@@ -436,6 +475,14 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"ended less than {LENGTH} from where it began", ended_there),
     (rf"moved {LENGTH}", moved),
+    (
+        rf"ended {LENGTH} from the nearest place where it had rested before \({LENGTH} is near\)",
+        rested_elsewhere,
+    ),
+    (
+        rf"ended {LENGTH} from where it had rested before, and within {LENGTH} it is back there",
+        rested_there,
+    ),
     (rf"ended {LENGTH} from where it began", ended_away),
     (rf"ended {LENGTH} (higher|lower)(?: and {LENGTH} to the side)?", ended),
     (rf"ended (at the same height)() and {LENGTH} to the side",
@@ -463,13 +510,17 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
     (rf"was held by the {NAME} already \(since {TIME}\)", held_since),
     (
-        rf"leant {DEGREES} from upright at the start and {DEGREES} at the end, {DEGREES} at most, "
-        rf"where {DEGREES} and more are far over",
+        rf"leant {DEGREES} from upright at the start and {DEGREES} at the end \({DEGREES} at most; "
+        rf"far over is {DEGREES} or more\)",
         far_over,
     ),
     (rf"it lasted {TIME}", lambda known, _, told: lasted(known, told)),
-    (rf"leant {DEGREES} from upright at the start and {DEGREES} at the end", leant),
-    (rf"turned by {DEGREES} about the vertical", spun),
+    (
+        rf"leant {DEGREES} from upright at the start and {DEGREES} at the end, a change of "
+        rf"{DEGREES} \({DEGREES} or more count\)",
+        leant_by,
+    ),
+    (rf"turned by {DEGREES} about the vertical \({DEGREES} or more count\)", spun_enough),
     (rf"stayed in place \(within {LENGTH} of its median place\)", kept_within),
     (
         rf"kept still \(within {LENGTH} of its median place\) and touched [\w ]+ from {TIME} to "
