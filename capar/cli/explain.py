@@ -50,6 +50,13 @@ def explain(
     steady: Steady = None,
     json: Annotated[bool, typer.Option("--json", help="Print the whole tree as JSON.")] = False,
     svg: Annotated[Path | None, typer.Option(help="Draw the tree to this file.")] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            help="Draw what the summary of SEGMENT speaks of over time to this .png, .svg or .pdf: "
+            "each distance, way, angle and speed with its threshold, and the numbers told."
+        ),
+    ] = None,
 ) -> None:
     """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
     from capar.cli._output import check_writable
@@ -60,6 +67,10 @@ def explain(
 
     if svg:
         check_writable(svg, suffixes=(".svg",))
+    if plot:
+        from capar.views.picture import SUFFIXES
+
+        check_writable(plot, suffixes=tuple(SUFFIXES))
     base = rule_base(profile, rules, actionary, steady=steady)
     seen = explained(read_capture(capture), rules=base)
     every_one = seen.observation.segments
@@ -90,6 +101,8 @@ def explain(
     told = list(seen.explainer.explain_all(chosen))
     if svg:
         _draw(told, svg)
+    if plot:
+        _plot(told, seen, plot)
     _print(told, seen, json=json, tree=alone)
     if not json:
         _print_notices(chosen, seen, told if alone else ())
@@ -231,4 +244,20 @@ def _draw(told: "list[Explanation]", path: Path) -> None:
 
     with written(path) as draft:
         draft.write_text(reasons_svg(told), encoding="utf-8")
+    typer.echo(f"drew {path}", err=True)
+
+
+def _plot(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
+    from capar.cli._output import written
+    from capar.pipelines.claimed_measures import draw_claims
+    from capar.views.movers import mover_lines
+
+    if len(told) != 1:
+        raise typer.BadParameter(
+            "draws one segment: name one, such as right_hand/3.", param_hint="--plot"
+        )
+    (one,) = told
+    movers = mover_lines(seen.observation, one.ee, one.index, staying=_staying(one))
+    with written(path) as draft:
+        draw_claims(seen, one, draft, beside=movers)
     typer.echo(f"drew {path}", err=True)

@@ -213,6 +213,14 @@ class Calibration:
         """
         return _named("object", name, self.objects)
 
+    def body(self, name: str) -> BodyCalibration:
+        """That of the sensor of a name, or else of the object.
+
+        Raises:
+            UnknownNameError: There is neither.
+        """
+        return _named("body", name, (*self.sensors, *self.objects))
+
     def pair(self, first: str, second: str) -> PairCalibration:
         """That of two bodies.
 

@@ -14,13 +14,16 @@ from capar.model.segment_address import SegmentAddress, find_segment
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.explain.clock import Measured, Ways
+from capar_rules.explain.clock import Leans, Measured, TurnsBack, Ways
 from capar_rules.explain.explanation import Explainer, Explanation
-from capar_rules.explain.quantities import Way
+from capar_rules.explain.quantities import Turns, Way
 from capar_rules.explain.reaches import Between, Reach
 from capar_rules.explain.why_not import Alternative
 from capar_rules.explain.why_not import why_not as alternatives
+from extractors.calibration import thresholds_of
 from extractors.measure import Measurements, measure
+from extractors.motion.leaning import lean
+from extractors.motion.turning_points import most_turns
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
@@ -31,6 +34,7 @@ class Explained:
 
     observation: Observation
     explainer: Explainer
+    measurements: Measurements
 
 
 def explained(capture: Capture, *, rules: Profile) -> Explained:
@@ -43,7 +47,7 @@ def explained(capture: Capture, *, rules: Profile) -> Explained:
     observation = observe_measured(capture, measurements, rules=rules)
     measured = measured_of(observation, measurements)
     explainer = Explainer(observation.facts, profile=rules, measured=measured)
-    return Explained(observation, explainer)
+    return Explained(observation, explainer, measurements)
 
 
 def explain(
@@ -125,6 +129,9 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
     """What explanations say of bodies beside the facts: ways, names and distances of touch."""
     return Measured(
         ways(measurements),
+        leans=_leans(measurements),
+        far_over_rad=thresholds_of(measurements.calibration).lean_rad,
+        turns=_turns(measurements),
         names=body_names(observation),
         reaches=reaches(measurements),
         floors={thing.name: thing.motion_floor_m for thing in measurements.calibration.objects},
@@ -152,6 +159,28 @@ def ways(measurements: Measurements) -> Ways:
         return Way(straight, float(np.nansum(steps)), float(np.nanmax(away)))
 
     return moved
+
+
+def _leans(measurements: Measurements) -> Leans:
+    """How far bodies lean at most between two frames."""
+
+    def most(name: str, first: int, last: int) -> float:
+        orientations = measurements.bodies.named(name).orientations[first : last + 1]
+        upright = np.array(measurements.calibration.body(name).upright)
+        return float(np.nanmax(lean(orientations, upright)))
+
+    return most
+
+
+def _turns(measurements: Measurements) -> TurnsBack:
+    """How often bodies turn back between two frames."""
+    limits = thresholds_of(measurements.calibration)
+
+    def turned(name: str, first: int, last: int) -> Turns:
+        stream = measurements.bodies.named(name).poses.smooth
+        return Turns(len(most_turns(stream, (first, last), limits)[1]), limits.swing_m)
+
+    return turned
 
 
 def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:

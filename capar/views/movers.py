@@ -30,6 +30,8 @@ WITHOUT_MOVER = frozenset({"set_going", "unknown"})
 ALL_BUT = 95.0
 """What has this share of a motion is told of all of it [%]."""
 
+OF_TIME = " of the time it moved"
+
 MOST_TOLD = 3
 """The most movers of one thing that are named, those with the greatest shares [1]."""
 
@@ -87,6 +89,7 @@ def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
     for mover, count in most:
         alike.setdefault(_how_long(count, len(movers)), []).append(f"the {spoken(mover)}")
     told = [f"by {joined(who)}{how_long}" for how_long, who in alike.items()]
+    told = [each.removesuffix(OF_TIME) for each in told[:-1]] + told[-1:]
     others = len(shares) - len(most)
     told += [f"by {others} other{'s' * (others > 1)}"] if others else []
     remainder = _remainder(movers.values(), it="they were" if is_plural(thing) else "it was")
@@ -124,7 +127,7 @@ def _remainder(frames: Collection[Collection[tuple[str, str]]], *, it: str) -> s
 
 def _how_long(count: int, total: int) -> str:
     share = 100.0 * count / total
-    return " throughout" if share >= ALL_BUT else f" for {share:.0f} % of the time it moved"
+    return " throughout" if share >= ALL_BUT else f" for {share:.0f} %{OF_TIME}"
 
 
 def _together(movers: Collection[tuple[str, str]]) -> str:

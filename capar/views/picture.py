@@ -1,6 +1,6 @@
 """A picture of an observation: named segments, contacts, crossings and speed over time."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -88,6 +88,11 @@ def svg(observation: Observation) -> str:
 def _save(
     observation: Observation, content: Sequence[Row], where: Path | BytesIO, suffix: str
 ) -> None:
+    save(lambda: _figure(observation, content), where, suffix)
+
+
+def save(figure: "Callable[[], Figure]", where: Path | BytesIO, suffix: str) -> None:
+    """Make a figure with the settings of every picture, and write it in the format of a suffix."""
     import matplotlib as mpl
 
     settings: dict[Any, Any] = {
@@ -97,8 +102,7 @@ def _save(
         "text.parse_math": False,
     }
     with mpl.rc_context(rc={**dict(mpl.rcParamsDefault), **settings, "backend": "agg"}):
-        figure = _figure(observation, content)
-        figure.savefig(where, dpi=DPI, metadata=SUFFIXES[suffix], format=suffix.removeprefix("."))
+        figure().savefig(where, dpi=DPI, metadata=SUFFIXES[suffix], format=suffix.removeprefix("."))
 
 
 def _figure(observation: Observation, content: Sequence[Row]) -> "Figure":

@@ -7,14 +7,32 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from capar.model.body_names import is_plural
-from capar.model.facts import Fact, Moving, Place, Posture, Resting, Tag, Touching
-from capar_rules.explain.quantities import Way
+from capar.model.facts import (
+    Displaced,
+    Fact,
+    Link,
+    Moving,
+    Place,
+    Posture,
+    Resting,
+    Swings,
+    Tag,
+    Touching,
+    Travelled,
+)
+from capar_rules.explain.quantities import Turns, Way
 from capar_rules.explain.reaches import Reach
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
 Ways = Callable[[str, int, int], Way]
 """How a body moved between two frames."""
+
+Leans = Callable[[str, int, int], float]
+"""How far a body leant at most between two frames [rad]."""
+
+TurnsBack = Callable[[str, int, int], Turns]
+"""How often a body turned back between two frames."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +45,11 @@ class Measured:
     moving: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
     """First and last frames of the measured motions, by object."""
 
-    rests: Mapping[str, Sequence[int]] = field(default_factory=dict)
-    """The frames at which end-effectors came to rest, by end-effector."""
+    displaced: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
+    """First and last frames at which objects truly left and reached a place, by object."""
+
+    rests: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
+    """First and last frames of the measured rests, by end-effector."""
 
     places: Mapping[tuple[str, int], tuple[int, int, int]] = field(default_factory=dict)
     """Where bodies were, by name and frame [mm]."""
@@ -48,6 +69,24 @@ class Measured:
     floors: Mapping[str, float] = field(default_factory=dict)
     """From what distance on a body counts as moved, by body [m]."""
 
+    leans: Leans | None = None
+    """How far bodies leant; None where that is not known."""
+
+    far_over_rad: float = 0.0
+    """From what angle on a body leans far over [rad]; zero where that is not known."""
+
+    turns: TurnsBack | None = None
+    """How often bodies turned back; None where that is not known."""
+
+    swings: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
+    """First and last frames of the measured motions to and fro, by object."""
+
+    travelled: Mapping[tuple[str, int], tuple[int, int]] = field(default_factory=dict)
+    """How far bodies had gone [mm] and turned in all [1/1000 rad], by name and frame."""
+
+    held: Mapping[str, Sequence[tuple[str, int, int]]] = field(default_factory=dict)
+    """Which end-effectors touched an object from when to when, by object."""
+
     tracked: bool = True
     """Whether there is an object that could be touched."""
 
@@ -61,24 +100,41 @@ class Measured:
 def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
     """What is known of bodies, with what facts say of their motions, places and postures."""
     moving: dict[str, list[tuple[int, int]]] = defaultdict(list)
-    rests: dict[str, list[int]] = defaultdict(list)
-    places, postures, touched = {}, {}, False
-    for fact in facts:
+    displaced: dict[str, list[tuple[int, int]]] = defaultdict(list)
+    rests: dict[str, list[tuple[int, int]]] = defaultdict(list)
+    swings: dict[str, list[tuple[int, int]]] = defaultdict(list)
+    held: dict[str, list[tuple[str, int, int]]] = defaultdict(list)
+    places, postures, travelled, touched = {}, {}, {}, False
+    every = list(facts)
+    acting = {fact.ee for fact in every if isinstance(fact, Link)}
+    for fact in every:
         match fact:
             case Moving():
                 moving[fact.object].append((fact.first, fact.last))
+            case Displaced():
+                displaced[fact.object].append((fact.first, fact.last))
             case Resting():
-                rests[fact.ee].append(fact.first)
+                rests[fact.ee].append((fact.first, fact.last))
             case Place():
                 places[fact.body, fact.frame] = fact.x, fact.y, fact.z
             case Posture():
                 postures[fact.body, fact.frame] = fact.lean, fact.spin
-            case Touching() | Tag(type="mobile"):
+            case Swings():
+                swings[fact.body].append((fact.first, fact.last))
+            case Travelled():
+                travelled[fact.body, fact.frame] = fact.way, fact.turn
+            case Touching():
+                touched = True
+                if fact.body in acting:
+                    held[fact.other].append((fact.body, fact.first, fact.last))
+            case Tag(type="mobile"):
                 touched = True
             case _:
                 pass
     found = replace(known, moving=moving, rests=rests, places=places, postures=postures)
-    return replace(found, tracked=touched)
+    return replace(
+        found, displaced=displaced, swings=swings, travelled=travelled, held=held, tracked=touched
+    )
 
 
 @dataclass(frozen=True)
@@ -133,12 +189,12 @@ class Clock:
 
     def motion(self, name: str, span: tuple[int, int]) -> tuple[int, int]:
         """From when to when an object was measured to move within a span; the span if never."""
-        parts = [
-            (max(first, span[0]), min(last, span[1]))
-            for first, last in self.measured.moving.get(name, ())
-        ]
-        parts = [each for each in parts if each[0] < each[1]]
-        return (min(parts)[0], max(last for _, last in parts)) if parts else span
+        return _within(self.measured.moving.get(name, ()), span)
+
+    def displacement(self, name: str, span: tuple[int, int]) -> tuple[int, int]:
+        """The same from when it truly left its place until it truly reached another."""
+        found = self.measured.displaced.get(name) or self.measured.moving.get(name, ())
+        return _within(found, span)
 
     def span(self, segment: str) -> tuple[int, int] | None:
         """First and last frame of the segment that a term names."""
@@ -159,3 +215,10 @@ class Clock:
         if tick < int(found[2]):
             return "before"
         return "end" if self.ends.get((ee, int(found[2]))) == tick else ""
+
+
+def _within(spans: Sequence[tuple[int, int]], span: tuple[int, int]) -> tuple[int, int]:
+    """From the first to the last frame of what lies within a span; the span if nothing does."""
+    parts = [(max(first, span[0]), min(last, span[1])) for first, last in spans]
+    parts = [part for part in parts if part[0] < part[1]]
+    return (min(parts)[0], max(last for _, last in parts)) if parts else span

@@ -1,5 +1,6 @@
 """Which neighbouring names a segment comes nearest to, and which condition decided."""
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,7 +20,7 @@ from capar_rules.explain.neighbours import (
     neighbours,
 )
 from capar_rules.explain.rule_base import RuleBase
-from capar_rules.explain.rule_forms import VARIABLE
+from capar_rules.explain.rule_forms import VARIABLE, Form
 
 MOST_FAILING = 2
 """A name whose rules all lack more conditions than that is not near."""
@@ -33,12 +34,26 @@ LEAST_NEARNESS = 0.25
 HALF = 0.5
 """How near a condition that has no number is taken to come to being otherwise [1]."""
 
+SEEN = ("leans_over", "spins")
+"""Predicates of how a thing was turned: one sees it of a segment also where it does not decide."""
+
+LEAST_TOLD = 0.01
+"""Where no name is near, the nearest is told if it has a number, however small its share [1]."""
+
 MOST_TOLD = 2
 """So many conditions are told at most."""
 
-Tell = Callable[[str], Sequence[str]]
-"""What is told of why an atom holds, the clauses of a summary; of a bit of the features, what
-it says: ``feature(Segment,Side,Position)``."""
+
+@dataclass(frozen=True)
+class Wording:
+    """How contrasts are told."""
+
+    holding: Callable[[str], Sequence[str]]
+    """The clauses of why an atom holds; of a bit of the features, what it says:
+    ``feature(Segment,Side,Position)``."""
+
+    clause: Callable[[str, Sequence[str], str], str]
+    """The clause for a predicate with its arguments in a mood of the templates."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +61,7 @@ class Contrast:
     """Neighbouring names of which the same condition decided."""
 
     names: tuple[str, ...]
-    clause: str
+    clauses: tuple[str, ...]
     """What kept the segment from them."""
 
     rule: str
@@ -58,11 +73,25 @@ class Contrast:
     failing: int = 1
     """How many conditions keep the segment from the first name."""
 
+    though: tuple[str, ...] = ()
+    """What would have been seen of the names, and was so."""
+
+    @property
+    def clause(self) -> str:
+        """The clauses as one."""
+        return _joined(self.clauses)
+
     @property
     def sentence(self) -> str:
         """Why the segment has none of the names."""
+        return f"{self.called}, because {self.clause}"
+
+    @property
+    def called(self) -> str:
+        """The names, and what was so though the segment has none of them."""
         *before, last = self.names
-        return f"{', '.join(before)}{' or ' * bool(before)}{last}, because {self.clause}"
+        though = f", though {_joined(self.though)}" if self.though else ""
+        return f"{', '.join(before)}{' or ' * bool(before)}{last}{though}"
 
 
 @dataclass(frozen=True)
@@ -80,7 +109,7 @@ class _Found:
 
 
 def contrasts(
-    base: RuleBase, name: str, derived: Derivations, clock: Clock, tell: Tell
+    base: RuleBase, name: str, derived: Derivations, clock: Clock, tell: Wording
 ) -> tuple[Contrast, ...]:
     """The neighbours that the fewest conditions keep from fitting, and what decided.
 
@@ -91,7 +120,7 @@ def contrasts(
         name: The segment's name.
         derived: What follows from the facts around it.
         clock: Times and distances of the segment.
-        tell: What is told of why an atom holds.
+        tell: How what decided is told.
     """
     read = {node[0].split()[0] for node in conditions_of_neighbours(base, name)}
     facts = (str(each) for each in derived.facts if type(each).predicate in read)
@@ -101,19 +130,21 @@ def contrasts(
         for neighbour in neighbours(base, name)
         for one in _of_neighbour(base, neighbour, atoms, clock, tell)
     ]
-    own = list(_nearest([each for each in found if not each.contrast.by_features]))
+    own_found = [each for each in found if not each.contrast.by_features]
+    own = list(_nearest(own_found)) or list(_nearest(own_found, least=LEAST_TOLD, most=1))
     features = [each for each in found if each.contrast.by_features]
     indirect = list(_nearest([each for each in features if not each.direct], most=1))
     direct = list(_nearest([each for each in features if each.direct], most=1))
-    supported = list(_supported(base, derived, atoms, clock))
+    supported = list(_supported(base, derived, atoms, clock, tell))
     return tuple((supported + own or indirect or direct)[:MOST_TOLD])
 
 
-def _nearest(found: Sequence[_Found], *, most: int = MOST_TOLD) -> Iterator[Contrast]:
+def _nearest(
+    found: Sequence[_Found], *, most: int = MOST_TOLD, least: float = LEAST_NEARNESS
+) -> Iterator[Contrast]:
     """The nearest of some neighbours, each with those of which the same condition decided."""
-    waiting = sorted(
-        (each for each in found if each.nearness >= LEAST_NEARNESS), key=lambda each: each.order
-    )
+    near = (each for each in found if each.nearness >= least)
+    waiting = sorted(near, key=lambda each: each.order)
     told: set[str] = set()
     for _ in range(most):
         waiting = [each for each in waiting if each.contrast.names[0] not in told]
@@ -124,12 +155,13 @@ def _nearest(found: Sequence[_Found], *, most: int = MOST_TOLD) -> Iterator[Cont
         alike = [each for each in waiting if each.contrast.clause == first.contrast.clause]
         names = tuple(dict.fromkeys(each.contrast.names[0] for each in alike))[:MOST_NAMES]
         told |= {*names}
-        yield replace(first.contrast, names=names)
+        though = (clause for each in alike for clause in each.contrast.though)
+        yield replace(first.contrast, names=names, though=tuple(dict.fromkeys(though)))
         waiting = [each for each in waiting if each.contrast.clause != first.contrast.clause]
 
 
 def _supported(
-    base: RuleBase, derived: Derivations, atoms: Atoms, clock: Clock
+    base: RuleBase, derived: Derivations, atoms: Atoms, clock: Clock, tell: Wording
 ) -> Iterator[Contrast]:
     """The names that it would have were what bore the object all along one of its objects."""
     own = {side: string for term, side, string in atoms.rows[FEATURE] if term == clock.own}
@@ -139,15 +171,18 @@ def _supported(
         side: string.strip('"') + ("01" if side in ("start", "end") else "0")
         for side, string in own.items()
     }
-    for term, other in derived.holding("support"):
-        names = names_of_strings(base, beside) if term == clock.own else ()
-        if names:
-            clause = base.sentences.tell("support", [term, other], clock, mood="brief")
-            yield Contrast(names, clause, "", by_features=False)
+    names = names_of_strings(base, beside)
+    clauses = tuple(
+        tell.clause("support", [term, other], "brief")
+        for term, other in derived.holding("support")
+        if term == clock.own
+    )
+    if names and clauses:
+        yield Contrast(names, clauses, "", by_features=False)
 
 
 def _of_neighbour(
-    base: RuleBase, other: Neighbour, atoms: Atoms, clock: Clock, tell: Tell
+    base: RuleBase, other: Neighbour, atoms: Atoms, clock: Clock, tell: Wording
 ) -> Iterator[_Found]:
     matches = [
         (form, atoms.nearest(form, clock.own, most=MOST_FAILING, may_fail=base.sentences.tellable))
@@ -158,45 +193,68 @@ def _of_neighbour(
     for form, match in matches:
         if match is None:
             continue
-        clauses = [_clause(base, each, match, atoms, clock, tell) for each in match.failing]
+        clauses = [_clauses(base, each, match, atoms, tell) for each in match.failing]
         if not all(clauses):
             continue
-        place = next((at for at, each in enumerate(clauses) if any(map(str.isdigit, each))), 0)
+        numbered = (at for at, each in enumerate(clauses) if re.search(r"\d", "".join(each)))
+        place = next(numbered, 0)
         near = min(_nearness(base, each, match, clock) for each in match.failing)
+        though = _though(other, form, match, tell)
+        near = max(near, HALF) if though else near
         read = {each.atoms[0].signature for each in match.failing}
         featured, direct = bool(read & {FITS, FEATURE}), FEATURE in read
         where = f"{Path(form.rule.place.file).name}:{form.rule.place.line}"
         contrast = Contrast(
-            (other.name,), clauses[place], where, by_features=featured, failing=len(clauses)
+            (other.name,),
+            clauses[place],
+            where,
+            by_features=featured,
+            failing=len(clauses),
+            though=though,
         )
         order = len(match.failing), -round(near, 1), other.steps, *other.distance(form)
         yield _Found(direct, near, order, contrast)
 
 
-def _clause(
-    base: RuleBase, literal: Literal, match: Match, atoms: Atoms, clock: Clock, tell: Tell
-) -> str:
-    """What holds instead of a condition; empty if no sentence says it."""
+def _though(other: Neighbour, form: Form, match: Match, tell: Wording) -> tuple[str, ...]:
+    """What a rule asks for of how a thing was turned, and the own name does not, and was so."""
+    holding = [
+        literal
+        for literal in form.body
+        if literal.kind == "atom"
+        and not literal.sign
+        and literal not in match.failing
+        and literal.atoms[0].signature[0] in SEEN
+        and (literal.atoms[0].signature, literal.sign) not in other.shared
+    ]
+    told = (
+        tell.clause(literal.atoms[0].signature[0], _known(literal, match), "brief")
+        for literal in holding
+    )
+    return tuple(clause for clause in told if clause and UNBOUND not in clause)
+
+
+def _clauses(
+    base: RuleBase, literal: Literal, match: Match, atoms: Atoms, tell: Wording
+) -> tuple[str, ...]:
+    """What holds instead of a condition; none if no sentence says all of it."""
     if literal.kind != "atom":
-        return ""
-    atom = valued(literal.atoms[0].text, match.bound)
-    arguments = split_arguments(atom)
+        return ()
+    arguments = split_arguments(valued(literal.atoms[0].text, match.bound))
     if literal.sign:
         holding = atoms.matching(literal, match.bound)
-        return _known_text(_joined(tell(holding))) if holding else ""
+        return _known_clauses(tell.holding(holding)) if holding else ()
     if literal.atoms[0].signature == FEATURE:
         return _feature(arguments, atoms, tell)
     if literal.atoms[0].signature == FITS:
         return _row(base, arguments, atoms, tell)
-    told = base.sentences.tell(
-        literal.atoms[0].signature[0], _known(literal, match), clock, mood="lacks"
-    )
-    return _known_text(told)
+    predicate = literal.atoms[0].signature[0]
+    return _known_clauses([tell.clause(predicate, _known(literal, match), "lacks")])
 
 
-def _known_text(told: str) -> str:
-    """A clause; empty if part of it is not known."""
-    return "" if UNBOUND in told else told
+def _known_clauses(told: Sequence[str]) -> tuple[str, ...]:
+    """Clauses; none if part of one is not known."""
+    return () if any(not each or UNBOUND in each for each in told) else tuple(told)
 
 
 def _nearness(base: RuleBase, literal: Literal, match: Match, clock: Clock) -> float:
@@ -215,7 +273,7 @@ def _known(literal: Literal, match: Match) -> list[str]:
     ]
 
 
-def _row(base: RuleBase, arguments: Sequence[str], atoms: Atoms, tell: Tell) -> str:
+def _row(base: RuleBase, arguments: Sequence[str], atoms: Atoms, tell: Wording) -> tuple[str, ...]:
     """What holds instead of the one string in which a row of another name differs."""
     segment, name = arguments
     own = {side: string for term, side, string in atoms.rows[FEATURE] if term == segment}
@@ -223,19 +281,19 @@ def _row(base: RuleBase, arguments: Sequence[str], atoms: Atoms, tell: Tell) -> 
         differing = [side for side, string in row.items() if own.get(side) != string]
         if len(differing) == 1:
             return _feature((segment, differing[0], row[differing[0]]), atoms, tell)
-    return ""
+    return ()
 
 
-def _feature(arguments: Sequence[str], atoms: Atoms, tell: Tell) -> str:
+def _feature(arguments: Sequence[str], atoms: Atoms, tell: Wording) -> tuple[str, ...]:
     """What the segment's own string for a side says where another one says something else."""
     segment, side, other = arguments
     for term, own_side, own in atoms.rows[FEATURE]:
         if (term, own_side) == (segment, side) and len(own) == len(other):
             bits = zip(own.strip('"'), other.strip('"'), strict=True)
             places = [place for place, (ours, theirs) in enumerate(bits) if ours != theirs]
-            told = [tell(f"feature({segment},{side},{place})") for place in places]
-            return _joined([clause for clauses in told for clause in clauses])
-    return ""
+            told = [tell.holding(f"feature({segment},{side},{place})") for place in places]
+            return tuple(clause for clauses in told for clause in clauses)
+    return ()
 
 
 def _joined(clauses: Sequence[str]) -> str:

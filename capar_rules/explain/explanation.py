@@ -14,8 +14,9 @@ from capar.model.par import UNKNOWN
 from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.syntax import Place, Statement, parse_text
+from capar_rules.explain.claims import Claim
 from capar_rules.explain.clock import Clock, Measured, measured_by
-from capar_rules.explain.contrasts import Contrast, contrasts
+from capar_rules.explain.contrasts import Contrast, Wording, contrasts
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.instants import corrected, frames_of
 from capar_rules.explain.near_misses import more_specific, near_misses, preceding
@@ -45,6 +46,9 @@ class Explanation:
     start_s: float
     end_s: float
     summary: str
+    claims: tuple[Claim, ...]
+    """The clauses of the summary, with what was measured for each."""
+
     reason: Reason
 
 
@@ -155,18 +159,18 @@ class Explainer:
         clock = self.clock(derived, f"seg({segment.ee},{ticks[0]})")
         done: dict[str, Reason] = {}
         reasons = [self._reason(derived.why(each), clock, done) for each in roots]
-        against = self._against(segment.name, derived, reasons[0], clock) if segment.known else ()
         briefs = Briefs(self.base.sentences, clock)
+        against = self._against(segment.name, derived, reasons[0], briefs) if segment.known else ()
         fitting = {name for term, name in derived.holding("fits") if term == clock.own}
         generals = generals_of(self.base, segment.name)
         generals = [each for each in generals if each in fitting] or generals
         return _explanation(segment, reasons, briefs, against, generals)
 
     def _against(
-        self, name: str, derived: Derivations, top: Reason, clock: Clock
+        self, name: str, derived: Derivations, top: Reason, briefs: Briefs
     ) -> tuple[Contrast, ...]:
         """The neighbouring names that the segment comes nearest to."""
-        briefs = Briefs(self.base.sentences, clock)
+        clock = briefs.clock
 
         @cache
         def tell(atom: str) -> list[str]:
@@ -176,7 +180,7 @@ class Explainer:
                 return []  # it was measured
             return briefs.first(self._reason(derived.why(atom), clock, {}))
 
-        return contrasts(self.base, name, derived, clock, tell)
+        return contrasts(self.base, name, derived, clock, Wording(tell, briefs.tell))
 
     def ticks(self, segment: Segment) -> tuple[int, int]:
         """The numbers of the frames between which a segment lies.
@@ -289,7 +293,14 @@ def _explanation(
         top = Reason(top.sentence, top.atom, top.rule, top.frames, top.leading, below)
     told = summary(segment.name, top, briefs, against, generals)
     return Explanation(
-        segment.ee, segment.index, segment.name, segment.start_s, segment.end_s, told, top
+        segment.ee,
+        segment.index,
+        segment.name,
+        segment.start_s,
+        segment.end_s,
+        told.text,
+        told.claims,
+        top,
     )
 
 

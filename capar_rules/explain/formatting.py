@@ -39,6 +39,8 @@ OF_BODIES = (
     "none",
     "little",
     "still",
+    "turns_back",
+    "turned_in_all",
 )
 """Formats of a body, that tell of the segment beside it, or else of the one that is explained."""
 
@@ -86,6 +88,9 @@ class Argument:
             "met": self._met,
             "from_rest": self._from_rest,
             "elsewhere": self._elsewhere,
+            "back": self._back,
+            "keeper": self._keeper,
+            "not_at_rest": self._not_at_rest,
             "rest_s": self._rest_s,
             "long": self._long,
             "when": self._when,
@@ -123,7 +128,7 @@ class Argument:
     def _floor(self) -> str:
         """From where on a body's motion counts, if it is known."""
         floor_m = self.clock.measured.floors.get(self.text)
-        return f" ({quantities.length(floor_m)} or more)" if floor_m else ""
+        return f" (more than {quantities.length(floor_m)} from where it rests)" if floor_m else ""
 
     def _not_shaken(self) -> str:
         """How often the segment's object turned back, and how often what is shaken does."""
@@ -132,11 +137,38 @@ class Argument:
             return UNBOUND
         count = self.clock.strokes.get(self.text, 0)
         lasted = (span[1] - span[0]) / self.clock.rate_hz
-        often = {0: "never", 1: "once", 2: "twice"}.get(count, f"{count} times")
+        stroke = quantities.length(constants()["stroke_mm"] / 1000.0)
         return (
-            f"turned back {often} in {lasted:.2f} s, and what is shaken does so "
-            f"{constants()['fast_strokes']} times in 10 s or more"
+            f"turned back {quantities.often(count)} at halts of the hand {stroke} or more "
+            f"apart, in {lasted:.2f} s, and what is shaken does so {constants()['fast_strokes']} "
+            "times in 10 s or more"
         )
+
+    def _keeper(self) -> str:
+        """Which other end-effector has the segment's object since before this one touched it."""
+        thing, span = self.clock.objects.get(self.text, ""), self.clock.span(self.text)
+        contacts = self.clock.measured.held.get(thing, ())
+        if span is None:
+            return UNBOUND
+        own = [first for ee, first, last in contacts if ee == self._hand and first <= span[0]]
+        before = [
+            (first, self.clock.called(ee))
+            for ee, first, last in contacts
+            if ee != self._hand and own and first <= max(own) and last >= span[1]
+        ]
+        if not before:
+            return UNBOUND
+        since, keeper = min(before)
+        return f"was held by the {keeper} already (since {self.clock.at(since)})"
+
+    def _not_at_rest(self) -> str:
+        """Why the segment is no rest: it lasted too briefly, or its end-effector moved."""
+        span = self.clock.span(self.text)
+        lasted = (span[1] - span[0]) / self.clock.rate_hz if span else float("inf")
+        if 1000.0 * lasted < constants()["rest_ms"]:
+            return f"it lasted {lasted:.2f} s, and a rest lasts {self._rest_s()} or more"
+        hand = self.clock.called(self._hand)
+        return f"the {hand} did not keep still for as long as a rest lasts ({self._rest_s()})"
 
     def _met(self) -> str:
         """What the segment's object touches at the side of the segment that stands second."""
@@ -166,11 +198,51 @@ class Argument:
         return f"left {' and '.join(left)}" if left else "started from rest"
 
     def _elsewhere(self) -> str:
-        """That the end-effector did not come back to a rest, or had none to come back to."""
-        span, rests = self.clock.span(self.text), self.clock.measured.rests.get(self._hand, ())
-        if span is None or any(first < span[0] for first in rests):
+        """How far from where it had rested the end-effector ended, or that it had not rested."""
+        if not self._earlier_rests():
+            return "had not rested before"
+        found = self._nearest_rest()
+        if found is None or found[0] < constants()["aside_mm"] / 1000.0:
             return "did not come back to where it had rested before"
-        return "had not rested before"
+        near = quantities.length(constants()["aside_mm"] / 1000.0)
+        far = quantities.length(found[0])
+        return f"ended {far} from the nearest place where it had rested before ({near} is near)"
+
+    def _back(self) -> str:
+        """How near to where it had rested the end-effector came back."""
+        found, near_mm = self._nearest_rest(), constants()["aside_mm"]
+        if found is None or found[0] >= near_mm / 1000.0:
+            return "came back to where it had rested before"
+        far, near = quantities.length(found[0]), quantities.length(near_mm / 1000.0)
+        return f"ended {far} from where it had rested before, and within {near} it is back there"
+
+    def _earlier_rests(self) -> list[int]:
+        """The last frames of the rests before the segment in which it touched nothing."""
+        span, known = self.clock.span(self.text), self.clock.measured
+        touching = [
+            (first, last)
+            for contacts in known.held.values()
+            for ee, first, last in contacts
+            if ee == self._hand
+        ]
+        least = in_frames(constants()["rest_ms"], self.clock.rate_hz)
+        rests = known.rests.get(self._hand, ())
+        return [
+            last
+            for first, last in rests
+            if span is not None
+            and last <= span[0]
+            and last - first >= least
+            and not any(begin <= last and end >= first for begin, end in touching)
+        ]
+
+    def _nearest_rest(self) -> tuple[float, int] | None:
+        """How far it ended from the nearest of its places of rest before [m], and that frame."""
+        span, rests = self.clock.span(self.text), self._earlier_rests()
+        if span is None or not rests:
+            return None
+        ways = ((self._moved(self._hand, (first, span[1])), first) for first in rests)
+        return min(((way.straight_m, first) for way, first in ways if way), default=None)
 
     def _rest_s(self) -> str:
         return f"{constants()['rest_ms'] / 1000.0:.2f} s"
@@ -210,15 +282,23 @@ class Argument:
         """What was measured of the body that this argument, or the segment in it, names."""
         if form == "none":
             return "none of the tracked objects" if self.clock.measured.tracked else "nothing"
-        body = self._hand if self.text.startswith("seg(") else self.text
-        span = self._span_beside(form)
+        body, span = self.body, self._span_beside(form)
         if span is None:
             return ""
         if form in SHORTFALLS:
             return self._shortfall(form, body, span).text or UNBOUND
-        if form in (*SHIFTS, "lean", "far_over", "turn"):
+        if form in (*SHIFTS, "lean", "turn"):
             return self._between(form, body, span)
-        moving = self.clock.motion(body, span)
+        turning = {
+            "far_over": self._far_over,
+            "turns_back": self._turns_back,
+            "turned_in_all": self._turned_in_all,
+        }
+        return turning[form](body, span) if form in turning else self._motion(form, body, span)
+
+    def _motion(self, form: str, body: str, span: tuple[int, int]) -> str:
+        """How far a body moved, or within what it stayed."""
+        moving = self.clock.displacement(body, span)
         moved = self._moved(body, moving if form == "way" else span)
         if moved is None or form != "way":
             return "" if moved is None else _brief(form, moved)
@@ -234,11 +314,23 @@ class Argument:
         terms = [*self.beside, self.clock.own]
         return next((found for each in terms if (found := self.clock.span(each))), None)
 
+    @property
+    def body(self) -> str:
+        """The body that this argument names; of a segment, its end-effector."""
+        return self._hand if self.text.startswith("seg(") else self.text
+
+    def measured_between(self, form: str) -> tuple[int, int] | None:
+        """The frames between which what such a format tells of a body was measured."""
+        span = self._span_beside(form)
+        if form in ("elsewhere", "back"):
+            nearest = self._nearest_rest()
+            return (nearest[1], span[1]) if nearest and span else None
+        return self.clock.displacement(self.body, span) if span and form == "way" else span
+
     def nearness(self, form: str) -> float:
         """How near the body came to what such a format says that it falls short of."""
-        body = self._hand if self.text.startswith("seg(") else self.text
         span = self._span_beside(form)
-        return 0.0 if span is None else self._shortfall(form, body, span).nearness
+        return 0.0 if span is None else self._shortfall(form, self.body, span).nearness
 
     def _shortfall(self, form: str, body: str, span: tuple[int, int]) -> Shortfall:
         known = self.clock.measured
@@ -265,22 +357,70 @@ class Argument:
             shift = [after - before for before, after in zip(start, end, strict=True)]
             return SHIFTS[form](*shift)
         first, last = (known.postures.get((body, frame)) for frame in span)
-        if form == "far_over" and (first is None or last is None):
-            return "far over"
         if first is None or last is None:
             return "by an unknown angle"
+        least = f" ({quantities.degrees(constants()['turn_mrad'])} or more count)"
         if form == "turn":
-            return quantities.degrees(last[1] - first[1])
-        return (
-            f"{quantities.degrees(first[0])} from upright at the start and "
-            f"{quantities.degrees(last[0])} at the end"
+            return f"{quantities.degrees(last[1] - first[1])} about the vertical{least}"
+        change = f", a change of {quantities.degrees(last[0] - first[0])}"
+        return f"{_leant(first[0], last[0])}{change}{least}"
+
+    def _far_over(self, body: str, span: tuple[int, int]) -> str:
+        """How far a body leant, and from where on that is far over."""
+        known = self.clock.measured
+        first, last = (known.postures.get((body, frame)) for frame in span)
+        if first is None or last is None or known.leans is None:
+            return "far over"
+        most = quantities.degrees(round(1000.0 * known.leans(body, *span)))
+        least = quantities.degrees(round(1000.0 * known.far_over_rad))
+        return f"{_leant(first[0], last[0])} ({most} at most; far over is {least} or more)"
+
+    def _turns_back(self, body: str, span: tuple[int, int]) -> str:
+        """How often it turned back within the span, and in the motion of which that is a part."""
+        turns = self.clock.measured.turns
+        if turns is None:
+            return ""
+        within = turns(body, *span)
+        whole = [
+            (turns(body, *motion), motion)
+            for motion in self.clock.measured.swings.get(body, ())
+            if motion[0] < span[1]
+            and motion[1] > span[0]
+            and not span[0] <= motion[0] <= motion[1] <= span[1]
+        ]
+        parts = "".join(
+            f", of {motion.count} between {self.clock.at(first)} and {self.clock.at(last)}"
+            for motion, (first, last) in whole[:1]
+            if motion.count > within.count
         )
+        return f" (it {within}{parts})"
+
+    def _turned_in_all(self, body: str, span: tuple[int, int]) -> str:
+        """By what angle it turned, and how far a wrist takes what turns so far."""
+        start, end = (self.clock.measured.travelled.get((body, frame)) for frame in span)
+        if start is None or end is None:
+            return UNBOUND
+        angle = end[1] - start[1]
+        way = quantities.length(angle * constants()["wrist_mm"] / 1e6)
+        return (
+            f"turned by {quantities.degrees(angle)} in all (half a turn, "
+            f"{quantities.degrees(constants()['half_turn_mrad'])}, is asked for) on a path of "
+            f"{quantities.length((end[0] - start[0]) / 1000.0)} (turned so far about the wrist it "
+            f"would go up to {way})"
+        )
+
+
+def _leant(first_mrad: int, last_mrad: int) -> str:
+    return (
+        f"{quantities.degrees(first_mrad)} from upright at the start and "
+        f"{quantities.degrees(last_mrad)} at the end"
+    )
 
 
 def _brief(form: str, moved: Way) -> str:
     if form == "little":
-        shifted = f"{1e3 * moved.straight_m:.0f} mm, too little to count as motion"
-        return f" (it shifted by {shifted})" if moved.straight_m >= DRIFT_M else ""
+        within = f" (within {quantities.spread(moved.spread_m)} of its median place)"
+        return within if moved.spread_m >= DRIFT_M else ""
     return quantities.spread(moved.spread_m)
 
 

@@ -34,14 +34,15 @@ class Way:
     @property
     def winding(self) -> bool:
         """Whether the path is so much longer than the straight way that both are to be told."""
-        return self.path_m > max(LONGER * self.straight_m, self.straight_m + LONGER_M)
+        back = self.straight_m < LEAST_M and self.path_m >= 2.0 * LEAST_M
+        return back or self.path_m > max(LONGER * self.straight_m, self.straight_m + LONGER_M)
 
 
 def length(metres: float) -> str:
     """A length in the unit in which it has two or three digits."""
-    if metres < LEAST_M:
+    if round(1000.0 * metres) < 1000.0 * LEAST_M:
         return f"{1000.0 * metres:.0f} mm"
-    if metres < 1.0:
+    if round(100.0 * metres) < 100:
         return f"{100.0 * metres:.0f} cm"
     return f"{metres:.1f} m"
 
@@ -95,6 +96,24 @@ def slope(x_mm: int, y_mm: int, z_mm: int) -> str:
     if abs(z_mm) >= aside:
         return f"{sense} more than to the side"
     return f"more to the side than {sense}"
+
+
+@dataclass(frozen=True, slots=True)
+class Turns:
+    """How often a body turns back on the axis of the world on which it does so most."""
+
+    count: int
+    least_m: float
+    """The way before and after each [m]."""
+
+    def __str__(self) -> str:
+        """To stand after ``it``."""
+        return f"turned back {often(self.count)} after ways of {length(self.least_m)} or more"
+
+
+def often(count: int) -> str:
+    """A number of times."""
+    return {1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
 @dataclass(frozen=True, slots=True)

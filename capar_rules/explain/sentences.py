@@ -4,6 +4,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from string import Formatter
 
 from capar_rules.engine.syntax import Literal, Statement
 from capar_rules.explain.clock import Clock
@@ -92,6 +93,14 @@ class Sentences:
             told = re.sub(rf"(\bthe {each} (?:moved|ended) .*where) it ", r"\1 they ", told)
             told = re.sub(rf"(\bthe {each} stayed where) it was\b", r"\1 they were", told)
         return told
+
+    def formats(
+        self, predicate: str, arguments: Sequence[str], *, mood: str = ""
+    ) -> list[tuple[str, str]]:
+        """The arguments that the sentence for an atom tells, each with its format."""
+        template = self.template(predicate, arguments, mood=mood)
+        parts = Formatter().parse(template.text) if template else ()
+        return [(arguments[int(place)], form or "") for _, place, form, _ in parts if place]
 
     def nearness(self, predicate: str, arguments: Sequence[str], clock: Clock) -> float:
         """How near a condition that fails came to holding: a share of what it asks for.

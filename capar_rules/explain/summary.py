@@ -1,9 +1,10 @@
 """The summary of an explanation: the name's conditions, and what decided against neighbours."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 from capar_rules.engine.syntax import split_arguments
+from capar_rules.explain.claims import Claim, claim
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.contrasts import Contrast
@@ -27,6 +28,9 @@ APART = ("no_contact", "uncounted")
 BESIDE_BORDERS = ("met_gently(", "met_hard(", "newly_met(", "lets_go(", "takes(")
 """Prefixes of atoms that say themselves when a contact began or ended."""
 
+DOUBTED = "doubted("
+"""Prefix of atoms of what was not taken as it was measured."""
+
 CLEAR = "not sliding("
 """Prefix of atoms that say that a body was clear of others; told of what goes aside."""
 
@@ -42,23 +46,44 @@ OWN = 3
 
 
 @dataclass(frozen=True)
+class Summary:
+    """Why a segment has a name, in a few sentences."""
+
+    text: str
+    claims: tuple[Claim, ...]
+    """Its clauses, with what was measured for each."""
+
+
+@dataclass(frozen=True)
 class Briefs:
     """What a summary says of atoms."""
 
     sentences: Sentences
     clock: Clock
+    claims: dict[str, Claim] = field(default_factory=dict)
+    """Each clause so far, by its text."""
+
+    def tell(self, predicate: str, arguments: Sequence[str], mood: str) -> str:
+        """The clause for an atom, which is kept with what was measured for it."""
+        text = self.sentences.tell(predicate, arguments, self.clock, mood=mood)
+        if text and UNBOUND not in text and text not in self.claims:
+            told = predicate, arguments, mood
+            self.claims[text] = claim(self.sentences, self.clock, told, text)
+        return text
 
     def of(self, reason: Reason) -> str:
         """The clause for a node; its sentence if there is no shorter one."""
         absent = reason.atom.startswith("not ")
         predicate, arguments = _parsed(reason.atom.removeprefix("not "))
-        plain = self.sentences.tell(predicate, arguments, self.clock, mood="not" * absent)
+        plain = self.tell(predicate, arguments, "not" * absent)
         if plain != reason.sentence:
+            told = predicate, arguments, "mended"
+            self.claims[reason.sentence] = claim(self.sentences, self.clock, told, reason.sentence)
             return reason.sentence  # part of it is doubted
         if predicate == "rests" and self.clock.side(arguments[0], int(arguments[1])) == "end":
-            return self.sentences.tell("rests_afterwards", arguments, self.clock, mood="brief")
+            return self.tell("rests_afterwards", arguments, "brief")
         mood = "brief not" if absent else "brief"
-        return self.sentences.tell(predicate, arguments, self.clock, mood=mood) or plain
+        return self.tell(predicate, arguments, mood) or plain
 
     def first(self, reason: Reason) -> list[str]:
         """What the first node says, at or below one, that has something to say in a summary."""
@@ -66,7 +91,7 @@ class Briefs:
             if each.atom.startswith(CLEAR):
                 continue  # what decides against a name is what the thing did
             predicate, arguments = _parsed(each.atom)
-            told = self.sentences.tell(predicate, arguments, self.clock, mood="despite")
+            told = self.tell(predicate, arguments, "despite")
             if told or (each.leading and _rank(each)):
                 return [told or self.of(each)]
         return []
@@ -78,10 +103,9 @@ class Briefs:
         """
         pairs = merged_contacts(list(top.walk()), self.clock)
         for each in nodes:
-            pair = pairs.get(each.atom, ("", ()))
-            told = self.sentences.tell(*pair, self.clock, mood="despite")
+            told = self.tell(*pairs.get(each.atom, ("", ())), "despite")
             if each.atom.startswith(NUMBERED):
-                told = self.sentences.tell(*_parsed(each.atom), self.clock, mood="despite")
+                told = self.tell(*_parsed(each.atom), "despite")
             if told:
                 return [told]
         return self.clauses(nodes)
@@ -101,7 +125,7 @@ class Briefs:
         for each in nodes:
             pair = pairs.get(each.atom)
             if pair is not None:
-                told.append(self.sentences.tell(*pair, self.clock, mood="brief"))
+                told.append(self.tell(*pair, "brief"))
             elif not (courses and each.atom.startswith("moved(")):
                 told.append(self.of(each))
         return _at_both([each for each in dict.fromkeys(told) if each and UNBOUND not in each])
@@ -174,28 +198,40 @@ def summary(
     briefs: Briefs,
     against: Sequence[Contrast],
     generals: Sequence[str] = (),
-) -> str:
+) -> Summary:
     """Why a segment has a name, and not that of its nearest neighbours.
 
     Where none is near, what is said apart is why it has no more general name.
     """
     nodes = leading(reason)
+    doubts = [each for each in nodes if each.atom.startswith(DOUBTED)]
+    nodes = [each for each in nodes if each not in doubts]
     clauses = briefs.clauses(nodes)
     own = briefs.clauses([each for each in nodes if _rank(each) == OWN])
     subjects = _subjects(nodes, briefs)
+    against = [
+        replace(each, though=tuple(clause for clause in each.though if clause not in clauses))
+        for each in against
+    ]
     fresh = [each for each in against if each.clause not in clauses]
-    alike = [other for each in against if each not in fresh for other in each.names]
+    alike = [each.called for each in against if each not in fresh]
     apart = bool(generals and own) and all(each.by_features or each.failing > 1 for each in fresh)
     if apart:
         more = _by_subject([each for each in clauses if each not in own], subjects)
         told = f"{name}, and not just {_listed(generals, 'or')}, because "
         told += _by_subject(own, subjects) + f". Also, {more}" * bool(more)
     else:
-        beside = f", and not {_listed(alike, 'or')}" if alike else ""
+        beside = "".join(f", and not {each}" for each in alike)
         told = f"{name}{beside}, because {_by_subject(clauses, subjects)}"
         for number, contrast in enumerate(fresh):
             told += f"{';' if number else '.'} {'n' if number else 'N'}ot {contrast.sentence}"
-    return f"{told}." + briefs.touching(nodes)
+    said = [*clauses, *(clause for each in fresh for clause in each.clauses)]
+    said += [clause for each in against for clause in each.though]
+    every = (briefs.claims.get(each.removesuffix(_BOTH)) for each in dict.fromkeys(said))
+    claims = tuple(each for each in every if each is not None)
+    mended = briefs.clauses(doubts)
+    told += f". For this, {_listed(mended)}" * bool(mended)
+    return Summary(f"{told}." + briefs.touching(nodes), claims)
 
 
 def leading(reason: Reason) -> list[Reason]:
@@ -269,7 +305,7 @@ def _bears(reason: Reason, below: Reason) -> bool:
 
     Doubts are relevant to derived atoms, not to the measurements themselves.
     """
-    if below.atom.startswith("doubted("):
+    if below.atom.startswith(DOUBTED):
         return bool(reason.rule)
     return not reason.atom.startswith((*BORDERS, *APART, *BESIDE_BORDERS))
 
@@ -309,7 +345,7 @@ def _by_subject(clauses: Sequence[str], subjects: Sequence[str]) -> str:
     return _listed(told)
 
 
-_START, _END = " at the start", " at the end"
+_START, _END, _BOTH = " at the start", " at the end", " and at the end"
 
 
 def _at_both(clauses: Sequence[str]) -> list[str]:
@@ -318,7 +354,7 @@ def _at_both(clauses: Sequence[str]) -> list[str]:
     starts = {each.removesuffix(_START) for each in clauses if each.endswith(_START)}
     both = ends & starts
     return [
-        each + " and at the end" if each.removesuffix(_START) in both else each
+        each + _BOTH if each.removesuffix(_START) in both else each
         for each in clauses
         if each.removesuffix(_END) not in both
     ]

@@ -110,6 +110,22 @@ def distance(first: Body, second: Body, frame: int) -> float:
     return _apart(first.surface, second.surface, turns[0], places[0])[0]
 
 
+def separation(
+    first: Body, second: Body, frames: Int[np.ndarray, "some"]
+) -> Float[np.ndarray, "some"]:
+    """Distances [m] of two bodies' surfaces at some frames: zero where they cut or are nested.
+
+    NaN where a body is lost.
+    """
+    known = ~np.isnan(first.positions[frames] + second.positions[frames]).any(axis=1)
+    turns, places = _relative(first, second, frames[known])
+    inside = _nested(first.surface, second.surface, turns, places)
+    out = np.full(len(frames), np.nan)
+    apart = [distance(first, second, int(frame)) for frame in frames[known]]
+    out[known] = np.where(inside, 0.0, apart)
+    return out
+
+
 def _apart(
     first: Surface, second: Surface, turn: Float[np.ndarray, "3 3"], place: Float[np.ndarray, "3"]
 ) -> tuple[float, Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:

@@ -204,19 +204,40 @@ def slow_frames(
     stream: Stream, noise: Noise, rate_hz: float, thresholds: Thresholds
 ) -> Bool[np.ndarray, "frames"]:
     """Whether the way's slope over the window of rest is no more than noise makes it."""
-    half = max(1, round(0.5 * thresholds.rest_window_s * rate_hz))
+    speed_mps, turning_radps = pace_at_rest(noise, rate_hz, thresholds)
+    speed, turning = paces(stream, rate_hz, thresholds)
+    with np.errstate(invalid="ignore"):
+        return np.asarray((speed < speed_mps) & (turning < turning_radps))
+
+
+def pace_at_rest(noise: Noise, rate_hz: float, thresholds: Thresholds) -> tuple[float, float]:
+    """Below which speed [m/s] and turning [rad/s] a body may be at rest."""
+    half = _half_window(rate_hz, thresholds)
     # Least squares over n samples: by sigma sqrt(12 / n^3) a step the slope deviates on each axis.
-    left = thresholds.rest_sigmas * rate_hz * np.sqrt(12.0 / (2 * half + 1) ** 3)
-    slow = np.zeros(len(stream.times), dtype=bool)
+    left = thresholds.rest_sigmas * rate_hz * float(np.sqrt(12.0 / (2 * half + 1) ** 3))
+    return (
+        max(thresholds.rest_speed_mps, left * noise.position_m),
+        max(thresholds.rest_speed_radps, left * noise.orientation_rad),
+    )
+
+
+def paces(
+    stream: Stream, rate_hz: float, thresholds: Thresholds
+) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
+    """Slopes of way [m/s] and of turning [rad/s] over the window of rest; NaN where lost."""
+    half = _half_window(rate_hz, thresholds)
+    speed, turning = np.full(len(stream.times), np.nan), np.full(len(stream.times), np.nan)
     for first, last in geometry.runs(~stream.lost):
         part = slice(first, last + 1)
-        speed = _pace(stream.positions[part], half) * rate_hz
+        speed[part] = _pace(stream.positions[part], half) * rate_hz
         # A quaternion changes by half of the angle.
-        turning = 2.0 * _pace(stream.orientations[part], half) * rate_hz
-        slow[part] = (speed < max(thresholds.rest_speed_mps, left * noise.position_m)) & (
-            turning < max(thresholds.rest_speed_radps, left * noise.orientation_rad)
-        )
-    return slow
+        turning[part] = 2.0 * _pace(stream.orientations[part], half) * rate_hz
+    return speed, turning
+
+
+def _half_window(rate_hz: float, thresholds: Thresholds) -> int:
+    """Half the window of rest [frames]."""
+    return max(1, round(0.5 * thresholds.rest_window_s * rate_hz))
 
 
 def _pace(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.ndarray, "frames"]:

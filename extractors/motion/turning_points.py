@@ -89,6 +89,30 @@ def swings(
     return tuple(out)
 
 
+def most_turns(
+    stream: Stream, span: Interval, thresholds: Thresholds
+) -> tuple[int, Int[np.ndarray, "turns"]]:
+    """The axis of the world along which a body turns back most between two frames, and where.
+
+    Args:
+        stream: The body's poses; of a span in which it is lost, nothing is known.
+        span: First and last frame.
+        thresholds: The least way between turning points.
+
+    Returns:
+        The number of the axis, and the frames of its turning points.
+    """
+    first, last = span
+    part = stream.positions[first : last + 1]
+    found = [
+        first + turning_points(np.nan_to_num(part[:, axis]), thresholds.swing_m)
+        for axis in range(3)
+    ]
+    widths = np.nan_to_num(np.nanmax(part, axis=0) - np.nanmin(part, axis=0))
+    axis = max(range(3), key=lambda one: (len(found[one]), widths[one]))
+    return axis, found[axis]
+
+
 def _known(stream: Stream, moving: tuple[Interval, ...]) -> Iterator[Interval]:
     """The parts of the motions in which the body was not lost."""
     for first, last in moving:

@@ -44,7 +44,13 @@ def told(capture: Capture, rules: Profile) -> Iterator[tuple[Known, str]]:
     measured = measured_of(observation, measurements)
     explainer = Explainer(observation.facts, profile=rules, measured=measured)
     for segment in observation.segments:
-        known = Known(Explained(observation, explainer), measurements.facts, segment, capture, {})
+        known = Known(
+            Explained(observation, explainer, measurements),
+            measurements.facts,
+            segment,
+            capture,
+            {},
+        )
         for reason in explainer.explain(segment).reason.with_sentences().walk():
             yield known, reason.sentence
 

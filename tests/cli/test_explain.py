@@ -177,3 +177,20 @@ def test_a_picture_of_another_format_is_refused_before_anything_is_computed(monk
     assert isinstance(result.exception, FileError)
     assert str(result.exception) == f"{path}: no picture format '.png'; there are: .svg."
     assert not path.exists()
+
+
+def test_what_a_summary_speaks_of_is_drawn_over_time(tmp_path):
+    path = tmp_path / "measured.svg"
+    text = answered("right_hand/3", "--plot", str(path))
+    drawn = "".join(ElementTree.parse(path).getroot().itertext())
+    assert text.startswith("right_hand/3")
+    assert "lean from upright" in drawn
+    assert "mug to head: distance of their surfaces" in drawn
+
+
+def test_only_one_segment_is_drawn_over_time_at_once(tmp_path):
+    path = tmp_path / "measured.svg"
+    result = CliRunner().invoke(app, ["explain", DEMO, "right_hand", "--plot", str(path)])
+    assert result.exit_code == 2
+    assert "draws one segment" in result.output
+    assert not path.exists()

@@ -60,7 +60,7 @@ def told(name: str) -> Told:
     observation = observe_measured(trial.capture, replace(measurements, facts=facts), rules=rules)
     measured = measured_of(observation, measurements)
     explainer = Explainer(observation.facts, profile=rules, measured=measured)
-    seen = Explained(observation, explainer)
+    seen = Explained(observation, explainer, measurements)
     steps = story.steps or trial.truth.steps[story.rules]
     return Told(
         seen,

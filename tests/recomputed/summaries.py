@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from capar.model.body_names import body_names
-from capar.model.facts import ClosingSpeed, Moving, Posture, Resting
+from capar.model.facts import ClosingSpeed, Displaced, Posture, Resting, Touching
 from capar_rules.engine.solver import rule_file
 from recomputed.doors import NUMBER, slid, swung
 from recomputed.known import NAME, TIME, Known, covers, name, near
@@ -77,12 +77,12 @@ def _is(metres: float, told: str, *, slack_m: float = SMOOTHED_M) -> bool:
 
 
 def _motion(known: Known, body: str) -> tuple[int, int]:
-    """From when to when it was measured to move in the segment; the segment if it never was."""
+    """From when to when it truly moved in the segment; the segment if it never did."""
     first, last = known.segment.first, known.segment.last
     spans = [
         (max(each.first, first), min(each.last, last))
         for each in known.seen.observation.facts
-        if isinstance(each, Moving) and each.object == body
+        if isinstance(each, Displaced) and each.object == body
     ]
     inside = [each for each in spans if each[0] < each[1]]
     ends = (min(start for start, _ in inside), max(end for _, end in inside)) if inside else None
@@ -181,8 +181,7 @@ def counts_from(known: Known, body: str, far: str) -> bool:
 
 def not_shaken(known: Known, _: str, often: str, at: str) -> bool:
     """It turns back no more than so often, over the whole segment."""
-    words = {"never": 0, "once": 1, "twice": 2}
-    count = words[often] if often in words else int(often.removesuffix(" times"))
+    count = _count(often)
     slow = 10.0 * count < 25.0 * float(at)
     return slow and lasted(known, at) and turned_back_so_often(known, "", str(count))
 
@@ -295,10 +294,16 @@ def spun(known: Known, body: str, told: str) -> bool:
     return abs(abs(math.degrees((after - before) / 1000.0)) - float(told)) <= 0.6
 
 
-def shifted(known: Known, body: str, far: str) -> bool:
-    """It ends so far from where it was, though it does not count as moved."""
-    way = _displaced(known, body, (known.segment.first, known.segment.last))
-    return _is(_length(way), far, slack_m=0.003)
+def leant_by(known: Known, body: str, before: str, after: str, change: str, asked: str) -> bool:
+    return (
+        leant(known, body, before, after)
+        and abs(abs(float(before) - float(after)) - float(change)) <= 1.0
+        and _asked("turn_mrad", asked)
+    )
+
+
+def spun_enough(known: Known, body: str, told: str, asked: str) -> bool:
+    return spun(known, body, told) and _asked("turn_mrad", asked)
 
 
 def kept_within(known: Known, body: str, far: str, first: str = "", last: str = "") -> bool:
@@ -340,6 +345,107 @@ def counts_within(known: Known, _: str, told: str) -> bool:
     )
 
 
+def far_over(known: Known, body: str, before: str, after: str, most: str, least: str) -> bool:
+    """It leant so far over at most; from thirty degrees on that is far."""
+    first, last = known.segment.first, known.segment.last
+    calibration = known.seen.observation.calibration
+    assert calibration is not None
+    turns = known.turns(body, range(first, last + 1))
+    up = turns.apply(np.array(calibration.body(body).upright))[:, 2]
+    angles = np.degrees(np.arccos(np.clip(up, -1.0, 1.0)))
+    return (
+        leant(known, body, before, after)
+        and abs(float(angles.max()) - float(most)) <= 1.0
+        and float(least) == 30.0
+    )
+
+
+def turned_to_and_fro(known: Known, body: str, often: str, far: str, *whole: str) -> bool:
+    """So many extrema of a coordinate lie so far from the ones before and after."""
+    spans = [(known.segment.first, known.segment.last, often)]
+    if whole and whole[0]:
+        spans.append((known.frame(whole[1]), known.frame(whole[2]), f"{whole[0]} times"))
+    counted = (
+        max(extrema(place, _metres(far)) for place in known.stream(body).positions[first:last].T)
+        == _count(told)
+        for first, last, told in spans
+    )
+    return all(counted)
+
+
+def _count(often: str) -> int:
+    return {"once": 1, "twice": 2}.get(often) or int(often.removesuffix(" times"))
+
+
+def extrema(values: np.ndarray, least: float) -> int:
+    """How many extrema lie so far from the extremum before and the one after."""
+    count, rising, best = 0, 0, float(values[0])
+    low = high = best
+    for value in map(float, values):
+        low, high = min(low, value), max(high, value)
+        if not rising:
+            rising = 1 if value - low >= least else -1 if high - value >= least else 0
+            best = value
+        elif (value - best) * rising > 0.0:
+            best = value
+        elif (best - value) * rising >= least:
+            count, rising, best = count + 1, -rising, value
+    return count
+
+
+def turned_in_all(known: Known, body: str, angle: str, half: str, path: str, wide: str) -> bool:
+    """The angles from frame to frame sum to it; so far from a wrist is 15 cm times the angle."""
+    first, last = known.segment.first, known.segment.last
+    turns = known.turns(body, range(first, last + 1))
+    turned = float((turns[1:] * turns[:-1].inv()).magnitude().sum())
+    steps = np.linalg.norm(np.diff(known.track(body, first, last), axis=0), axis=1).sum()
+    return (
+        abs(math.degrees(turned) - float(angle)) <= 0.02 * float(angle) + 1.0
+        and _asked("half_turn_mrad", half)
+        and _is(float(steps), path, slack_m=0.03)
+        and _is(0.15 * turned, wide, slack_m=0.05)
+    )
+
+
+def too_brief(known: Known, _: str, took: str, asked: str) -> bool:
+    return lasted(known, took) and _asked("rest_ms", asked) and float(took) < float(asked)
+
+
+def rested_elsewhere(known: Known, body: str, far: str, asked: str) -> bool:
+    away = _from_rest(known, body)
+    return _asked("aside_mm", asked) and _is(away, far) and away > 0.1 - SMOOTHED_M
+
+
+def rested_there(known: Known, body: str, far: str, asked: str) -> bool:
+    return _asked("aside_mm", asked) and _is(_from_rest(known, body), far)
+
+
+def _from_rest(known: Known, body: str) -> float:
+    """How far it ends from the nearest place where it came to rest before [m]."""
+    rests = [
+        each
+        for each in known.of(Resting)
+        if each.ee == body and (each.last - each.first) / known.rate >= 0.4
+    ]
+    touched = [each for each in known.of(Touching) if each.body == body]
+    end = known.track(body, known.segment.last, known.segment.last)[0]
+    places = [
+        known.track(body, rest.last, rest.last)[0]
+        for rest in rests
+        if rest.last <= known.segment.first
+        and not any(each.first <= rest.last and each.last >= rest.first for each in touched)
+    ]
+    return min(_length(end - place) for place in places)
+
+
+def held_since(known: Known, body: str, other: str, at: str) -> bool:
+    """The other end-effector touches the thing from then until the segment ends, or longer."""
+    return any(
+        near(each.first, known.at(at)) and each.last >= known.segment.last
+        for each in known.touching(other.replace(" ", "_"), body)
+    )
+
+
 def turned_back_so_often(known: Known, _: str, count: str) -> bool:
     return stroked(known, known.segment.ee.replace("_", " "), count)
 
@@ -369,6 +475,14 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"ended less than {LENGTH} from where it began", ended_there),
     (rf"moved {LENGTH}", moved),
+    (
+        rf"ended {LENGTH} from the nearest place where it had rested before \({LENGTH} is near\)",
+        rested_elsewhere,
+    ),
+    (
+        rf"ended {LENGTH} from where it had rested before, and within {LENGTH} it is back there",
+        rested_there,
+    ),
     (rf"ended {LENGTH} from where it began", ended_away),
     (rf"ended {LENGTH} (higher|lower)(?: and {LENGTH} to the side)?", ended),
     (rf"ended (at the same height)() and {LENGTH} to the side",
@@ -379,14 +493,35 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"turned on its hinge from {NUMBER} rad to {NUMBER} rad open", swung),
     (r"turned back (\d+) times, in strokes of a finger's width and more", turned_back_so_often),
     (
-        rf"turned back (never|once|twice|\d+ times) in {TIME}, and what is shaken does so 25 times "
-        r"in 10 s or more",
+        rf"turned back (once|twice|\d+ times) at halts of the hand 2 cm or more apart, in {TIME}, "
+        "and what is shaken does so 25 times in 10 s or more",
         not_shaken,
     ),
+    (
+        rf"it turned back (once|twice|\d+ times) after ways of {LENGTH} or more(?:, of (\d+) "
+        rf"between {TIME} and {TIME})?",
+        turned_to_and_fro,
+    ),
+    (
+        rf"turned by {DEGREES} in all \(half a turn, {DEGREES}, is asked for\) on a path of "
+        rf"{LENGTH} \(turned so far about the wrist it would go up to {LENGTH}\)",
+        turned_in_all,
+    ),
+    (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
+    (rf"was held by the {NAME} already \(since {TIME}\)", held_since),
+    (
+        rf"leant {DEGREES} from upright at the start and {DEGREES} at the end \({DEGREES} at most; "
+        rf"far over is {DEGREES} or more\)",
+        far_over,
+    ),
     (rf"it lasted {TIME}", lambda known, _, told: lasted(known, told)),
-    (rf"leant {DEGREES} from upright at the start and {DEGREES} at the end", leant),
-    (rf"turned by {DEGREES} about the vertical", spun),
-    (rf"it shifted by {LENGTH}, too little to count as motion", shifted),
+    (
+        rf"leant {DEGREES} from upright at the start and {DEGREES} at the end, a change of "
+        rf"{DEGREES} \({DEGREES} or more count\)",
+        leant_by,
+    ),
+    (rf"turned by {DEGREES} about the vertical \({DEGREES} or more count\)", spun_enough),
+    (rf"stayed in place \(within {LENGTH} of its median place\)", kept_within),
     (
         rf"kept still \(within {LENGTH} of its median place\) and touched [\w ]+ from {TIME} to "
         rf"{TIME}",
@@ -396,7 +531,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (r"for as long as a rest lasts \((\d\.\d\d) s\)", rest_lasts),
     (rf"touched the {NAME} at {TIME}", touched_at),
     (rf"stayed within {LENGTH} of its median place", kept_within),
-    (rf"too little to count as motion \({LENGTH} or more\)", counts_from),
+    (rf"too little to count as motion \(more than {LENGTH} from where it rests\)", counts_from),
     (rf"at the start \({TIME}\)", starts),
     (rf"at the end \({TIME}\)", ends),
     (rf"until just before \({TIME}\)", precedes),

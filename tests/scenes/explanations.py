@@ -55,7 +55,7 @@ def checked(scene: Scene, chance: random.Random, rules: Profile, *, name: str = 
     explainer = Explainer(observation.facts, profile=rules, measured=measured)
     steps = {unit.ee: [step.name for step in unit.steps] for unit in expectation.units}
     segment = chance.choice([each for each in observation.segments if name in ("", each.name)])
-    seen = Explained(observation, explainer)
+    seen = Explained(observation, explainer, measurements)
     known = Known(seen, measurements.facts, segment, capture, steps)
     reason = explainer.explain(segment).reason.with_sentences()
     sentences = tuple(dict.fromkeys(each.sentence for each in reason.walk()))

@@ -1,0 +1,90 @@
+"""What the summary of an explanation claims, as a picture: a panel for each quantity."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from capar.model.segment_address import SegmentAddress
+from capar.pipelines.explanation import Explained, segment_named
+from capar.pipelines.measured_series import SERIES, Recording
+from capar.views.lettering import Span
+from capar.views.measured_picture import draw_measured
+from capar.views.panels import Panel
+from capar.views.rows import kind_of
+from capar_rules.explain.claims import Quantity
+from capar_rules.explain.explanation import Explanation
+
+AROUND_S = 1.0
+"""So long before and after the segment is shown [s]."""
+
+FURTHEST_S = 10.0
+"""What an explanation tells of longer before or after it is not shown [s]."""
+
+
+def draw_claims(
+    seen: Explained, told: Explanation, path: Path, *, beside: Sequence[str] = ()
+) -> None:
+    """Draw what a summary claims to a PNG, SVG or PDF file: its quantities over time.
+
+    Args:
+        seen: The capture.
+        told: The explanation of one of its segments.
+        path: The file, which is overwritten.
+        beside: What else is told of the segment, a line each.
+    """
+    rate = seen.explainer.windows.rate
+    first, last = shown_span(seen, told)
+    spans = {
+        segment.index: Span(segment.start_s, segment.end_s, segment.name, kind_of(segment))
+        for segment in seen.observation.segments
+        if segment.ee == told.ee
+    }
+    address = SegmentAddress(told.ee, told.index)
+    title = f"{address}  {told.name}  {told.start_s:.2f} to {told.end_s:.2f} s"
+    draw_measured(
+        title,
+        "\n".join([told.summary, *beside]),
+        list(spans.values()),
+        spans[told.index],
+        measured_panels(seen, told),
+        span_s=(first / rate, last / rate),
+        path=path,
+    )
+
+
+def shown_span(seen: Explained, told: Explanation) -> tuple[int, int]:
+    """First and last frame that a picture of an explanation shows.
+
+    A second before the segment and after it, and whatever else its summary tells of near it.
+    """
+    rate, frames = seen.explainer.windows.rate, seen.observation.frames
+    segment = _segment_frames(seen, told)
+    near = [
+        frame
+        for claim in told.claims
+        for frame in claim.frames
+        if segment[0] - FURTHEST_S * rate <= frame <= segment[1] + FURTHEST_S * rate
+    ]
+    around = round(AROUND_S * rate)
+    first, last = min([segment[0], *near]) - around, max([segment[1], *near]) + around
+    return max(first, 0), min(last, frames - 1)
+
+
+def _segment_frames(seen: Explained, told: Explanation) -> tuple[int, int]:
+    segment = segment_named(seen.observation, str(SegmentAddress(told.ee, told.index)))
+    return segment.first, segment.last
+
+
+def measured_panels(seen: Explained, told: Explanation) -> tuple[Panel, ...]:
+    """A panel for each quantity that the summary speaks of, in its order."""
+    span = shown_span(seen, told)
+    forms: dict[Quantity, set[str]] = defaultdict(set)
+    for claim in told.claims:
+        for quantity in claim.quantities:
+            forms[replace(quantity, form="")].add(quantity.form)
+    found = (
+        SERIES[quantity.measure](Recording(seen, span), quantity, frozenset(said))
+        for quantity, said in forms.items()
+    )
+    return tuple(panel for panel in found if panel is not None)

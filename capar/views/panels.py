@@ -1,0 +1,81 @@
+"""What was measured for an explanation, as panels over time, before any of it is drawn."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.views.lettering import Span
+
+PADDING = 0.15
+"""Room above and below what a panel shows, as a share of it [1]."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A quantity over time."""
+
+    times: Float[np.ndarray, "samples"]
+    """Seconds since the first frame, increasing."""
+
+    values: Float[np.ndarray, "samples"]
+    """In the panel's unit; NaN where a body was lost."""
+
+    label: str = ""
+    """What it is, where a panel has several."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A value from which on, or up to which, something counts."""
+
+    value: float
+    """In the panel's unit."""
+
+    label: str
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A number that a sentence tells, where it was measured."""
+
+    time: float
+    """Seconds since the first frame."""
+
+    value: float
+    """In the panel's unit."""
+
+    label: str = ""
+    """The number as the sentence tells it."""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One quantity of one body, or of two, over time."""
+
+    title: str
+    unit: str
+    curves: tuple[Curve, ...]
+    limits: tuple[Limit, ...] = ()
+    marks: tuple[Mark, ...] = ()
+    bars: tuple[Span, ...] = ()
+    """When something counts as holding, such as contact, as the rules read it."""
+
+    bars_label: str = ""
+    """What holds then."""
+
+    highest: float = np.inf
+    """What is greater is not shown, in the panel's unit."""
+
+    def range(self, start_s: float, end_s: float) -> tuple[float, float]:
+        """The lowest and highest value that are drawn: of the curves in a span, and all else."""
+        shown = [
+            values
+            for curve in self.curves
+            for values in curve.values[(curve.times >= start_s) & (curve.times <= end_s)]
+        ]
+        values = [*shown, *(one.value for one in (*self.limits, *self.marks))]
+        known = [min(value, self.highest) for value in values if np.isfinite(value)]
+        low, high = min(known, default=0.0), max(known, default=1.0)
+        room = PADDING * ((high - low) or abs(high) or 1.0)
+        return low - room, high + room

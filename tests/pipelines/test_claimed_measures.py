@@ -1,0 +1,130 @@
+"""A picture of a summary shows the numbers that it tells, where they were measured."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from recomputed import told
+
+from capar.pipelines.claimed_measures import draw_claims, measured_panels, shown_span
+from capar.pipelines.explanation import Explained
+from capar.views.panels import Mark, Panel
+from capar_rules.explain.claims import FORMS, PREDICATES, Measure
+from capar_rules.explain.explanation import Explanation
+from capar_rules.explain.formatting import OF_BODIES
+
+pytestmark = pytest.mark.long
+
+NAMES = (
+    "carry",
+    "tilt",
+    "turn",
+    "pour",
+    "stir",
+    "shake",
+    "slide",
+    "hand_over",
+    "throw",
+    "put_down",
+)
+
+NUMBER = re.compile(r"\d+(?:\.\d)? (?:mm/s|mm|cm|m)\b|\d+°")
+"""A number with a unit that a panel can have."""
+
+OF_NO_PANEL = re.compile(r"at halts of the hand 2 cm or more apart")
+"""What is told of no quantity over time: between which frames strokes are counted."""
+
+ROUNDED = {"mm/s": 0.5, "mm": 0.5, "cm": 0.5, "m": 0.05, "°": 0.6}
+"""Half of the last place that is told, in the unit that is told."""
+
+SCALES = {("cm", "mm"): 10.0, ("cm", "cm"): 1.0, ("cm", "m"): 0.01}
+"""By the unit of a panel and of a number in it: what the first is multiplied by."""
+
+
+def pictured(name: str) -> Iterator[tuple[Explained, Explanation, tuple[Panel, ...]]]:
+    story = told(name)
+    for explanation in story.explanations:
+        yield story.seen, explanation, measured_panels(story.seen, explanation)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_number_of_a_clause_stands_in_a_panel(name: str) -> None:
+    count = 0
+    for seen, explanation, panels in pictured(name):
+        shown = " ".join(
+            text
+            for panel in panels
+            for text in (
+                panel.title,
+                *(limit.label for limit in panel.limits),
+                *(mark.label for mark in panel.marks),
+            )
+        )
+        first, last = shown_span(seen, explanation)
+        for claim in explanation.claims:
+            assert all(first <= frame <= last for frame in claim.frames)
+            numbers = NUMBER.findall(OF_NO_PANEL.sub("", claim.text)) if claim.quantities else []
+            for number in numbers:
+                assert re.search(rf"(?<![\d.]){re.escape(number)}", shown), claim.text
+            count += len(numbers)
+    assert count
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_marked_number_lies_on_a_curve_within_what_is_drawn(name: str) -> None:
+    for _, explanation, panels in pictured(name):
+        for panel in panels:
+            low, high = panel.range(explanation.start_s, explanation.end_s)
+            for one in (*panel.limits, *panel.marks):
+                assert low < one.value < high
+            for mark in panel.marks:
+                slack = 0.51 if panel.unit == "mm/s" else 1e-6
+                assert min(off(curve.times, curve.values, mark) for curve in panel.curves) < slack
+                assert reads_as_told(mark, panel.unit), mark
+
+
+def off(times: np.ndarray, values: np.ndarray, mark: Mark) -> float:
+    """How far a mark is from a curve at its time."""
+    known = np.isfinite(values)
+    return abs(float(np.interp(mark.time, times[known], values[known])) - mark.value)
+
+
+def reads_as_told(mark: Mark, unit: str) -> bool:
+    """Whether a mark's label is its value to rounding; its sign is told in words."""
+    found = NUMBER.search(mark.label)
+    if found is None:
+        return not mark.label
+    number, told_unit = re.fullmatch(r"([\d.]+) ?(\D+)", found[0]).groups()
+    value = abs(mark.value) * SCALES.get((unit, told_unit), 1.0)
+    slack = 0.1 if told_unit == "cm" else 1.0 if told_unit == "mm" else 0.01
+    return abs(value - float(number)) <= ROUNDED[told_unit] + slack
+
+
+def test_a_segment_is_told_by_its_conditions_whatever_its_name() -> None:
+    """The panels follow from the clauses: another name, and the same claims, the same panels."""
+    story = told("carry")
+    for explanation in story.explanations:
+        renamed = replace(explanation, name="Anything")
+        assert titles(story.seen, renamed) == titles(story.seen, explanation)
+
+
+def titles(seen: Explained, explanation: Explanation) -> list[str]:
+    return [panel.title for panel in measured_panels(seen, explanation)]
+
+
+def test_every_quantity_is_claimed_by_some_clause_and_has_a_panel() -> None:
+    claimed = {measure for measures in FORMS.values() for measure in measures}
+    claimed |= {measure for measure, _ in PREDICATES.values()}
+    assert claimed == set(Measure)
+    assert set(FORMS) - set(OF_BODIES) == {"elsewhere", "back"}
+
+
+def test_a_picture_is_written_in_each_format(tmp_path: Path) -> None:
+    story = told("carry")
+    for suffix, start in ((".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")):
+        path = tmp_path / f"a{suffix}"
+        draw_claims(story.seen, story.explanations[1], path)
+        assert path.read_bytes().startswith(start)
