@@ -175,6 +175,25 @@ def with_ankles(
         return measures
 
 
+def with_legs(measures: Measures, lengths: Mapping[str, float]) -> Measures:
+    """The same body with other thighs or shanks; all above the hips moves up or down with them.
+
+    Args:
+        measures: The body's.
+        lengths: Of thigh, shank or both [m].
+
+    Returns:
+        The same measures if no body has such legs.
+    """
+    higher = sum(length - measures[name] for name, length in lengths.items())
+    raised = {name: measures[name] + higher for name in (*TRUNK_HEIGHTS, *UPPER_HEIGHTS)}
+    given = {name: measures[name] for name in measures.given} | raised | dict(lengths)
+    try:
+        return estimate_measures(sex=measures.sex, age=measures.age, given=given)
+    except MeasuresError:
+        return measures
+
+
 def _apart(first: np.ndarray, second: np.ndarray) -> float:
     """Median distance of two points [m]."""
     return float(np.nanmedian(np.linalg.norm(first - second, axis=1)))
