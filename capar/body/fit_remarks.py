@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import mujoco
 import numpy as np
 from jaxtyping import Float, Int
+from scipy.signal import find_peaks
 from scipy.spatial.transform import Rotation
 
 from capar.body.fitting import Fit
@@ -14,7 +15,7 @@ from extractors.readers.body_names.body_names import SIDES, without_side
 FAR_M = 0.03
 """Residuals larger than this are reported [m]."""
 
-MOST_PLACES = 6
+MOST_PLACES = 10
 """So many places with such residuals are named at most."""
 
 BENT = np.radians(15.0)
@@ -22,6 +23,9 @@ BENT = np.radians(15.0)
 
 SPLAYED = np.radians(40.0)
 """Feet that point farther apart than this in the median are reported [rad]."""
+
+RAISED, MOST_PEAKS = np.radians(15.0), 6
+"""Toes that point up by more than this [rad] are reported, with so many times at most."""
 
 FLOATING_M = 0.03
 """A lower sole that is higher above the floor than this in the median is reported [m]."""
@@ -139,6 +143,9 @@ def _legs(made: Fit, floor_m: float | None) -> Iterator[str]:
     if unseen & set(feet):
         return
     where = made.human.sites(made.motion, [*feet, *(f"{side}_sole" for side in SIDES)])
+    raised = [_raised(made, foot, where[foot][1]) for foot in feet]
+    if any(raised):
+        yield f"{' and '.join(filter(None, raised))}, on the heel or in the air, as recorded"
     ahead = [_ahead(where[name][1]) for name in feet]
     between = np.abs(np.angle(np.exp(1j * (ahead[0] - ahead[1]))))
     if np.median(between) > SPLAYED:
@@ -154,6 +161,20 @@ def _legs(made: Fit, floor_m: float | None) -> Iterator[str]:
             f"the lower sole is {1e3 * (np.median(lower) - floor_m):.0f} mm above the floor in the"
             " median: so high are the recorded ankles"
         )
+
+
+def _raised(made: Fit, foot: str, turns: Float[np.ndarray, "frames 4"]) -> str:
+    """How far up the toes point from the ankle, and the most, if that is far."""
+    axes = Rotation.from_quat(turns, scalar_first=True).apply([1.0, 0.0, 0.0])
+    pitch = np.arcsin(np.clip(axes[:, 2], -1.0, 1.0))
+    peaks, _ = find_peaks(np.r_[-np.pi, pitch, -np.pi], height=RAISED, prominence=RAISED)
+    if not len(peaks):
+        return ""
+    times = [f"{made.times[frame - 1]:.2f}" for frame in peaks[:MOST_PEAKS]]
+    return (
+        f"the {segment_words(foot)}'s toes point up by up to "
+        f"{np.degrees(pitch[peaks - 1].max()):.0f} degrees, at {listed(times)} s"
+    )
 
 
 def _ahead(turns: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames"]:

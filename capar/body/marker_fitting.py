@@ -16,6 +16,7 @@ from capar.body.model import body_spec
 from capar.body.point_following import Guidance, SkeletonError, segment_of
 from capar.body.skeleton import skeleton
 from capar.body.skeleton_fitting import (
+    TRUNK_OF_LANDMARKS,
     SkeletonFit,
     fit_skeleton,
     measures_from_points,
@@ -127,7 +128,7 @@ def fit_markers(
     for _ in range(ROUNDS if legs else 0):
         lengths = _leg_lengths(_joints(first, sampled, seen), human.measures, legs)
         if lengths:
-            human = Human.of(with_legs(human.measures, lengths))
+            human = _with_legs(human.measures, lengths, {exact[n].place: sampled[n] for n in exact})
             first = _by_landmarks(human.measures, sampled, exact, clusters, eased)
     local = local_places(first, sampled, seen)
     joints = {} if ease == 1.0 else _joints(first, sampled, seen)
@@ -219,6 +220,13 @@ def _by_landmarks(
     weights = {place: MIDDLE_WEIGHT for place in places.values() if place.startswith("middle_")}
     human = Human(measures, spec.compile())
     return fit_skeleton(known, file_convention(places, weights), human=human, guidance=guidance)
+
+
+def _with_legs(measures: Measures, lengths: Mapping[str, float], places: Points) -> Human:
+    """The body with other legs; its trunk, which the stature no longer tells, by its landmarks."""
+    longer = Human.of(with_legs(measures, lengths))
+    share = trunk_share(places, longer, TRUNK_OF_LANDMARKS)
+    return longer if share is None else Human.of(with_trunk(longer.measures, share))
 
 
 def _is_sided(each: BodyName) -> bool:

@@ -203,3 +203,25 @@ def test_legs_that_pass_each_other_are_said_with_the_times() -> None:
     assert first == pytest.approx(0.5, abs=0.05)
     assert last == pytest.approx(1.3, abs=0.05)
     assert passing_legs(made) == []
+
+
+def test_a_chest_that_leans_is_said_with_the_time() -> None:
+    made = fitted(WHOLE)
+    motion = made.motion.copy()
+    motion[-1, 3:7] = [np.cos(0.25), 0.0, np.sin(0.25), 0.0]
+    text = told(replace(made, motion=motion))
+    assert f"leans from upright by up to 29 degrees, at {made.times[-1]:.2f} s" in text
+    assert "leans" not in told(made)
+
+
+def test_toes_that_point_up_are_said_with_the_times() -> None:
+    made = fitted(WHOLE)
+    motion = made.motion.copy()
+    frames = [len(motion) // 4, len(motion) // 2]
+    motion[frames, made.human.index("right_ankle_dorsiflexion")] = np.radians([18.0, 24.0])
+    text = told(replace(made, motion=motion))
+    first, last = made.times[frames]
+    assert (
+        f"right foot's toes point up by up to 24 degrees, at {first:.2f} and {last:.2f} s" in text
+    )
+    assert "left foot's toes" not in text
