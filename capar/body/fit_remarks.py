@@ -1,10 +1,11 @@
 """What readers of a fitted body's pictures ask about, said from the fit itself."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import mujoco
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
+from scipy.signal import find_peaks
 from scipy.spatial.transform import Rotation
 
 from capar.body.fitting import Fit
@@ -23,14 +24,23 @@ BENT = np.radians(15.0)
 SPLAYED = np.radians(40.0)
 """Feet that point farther apart than this in the median are reported [rad]."""
 
+RAISED, MOST_PEAKS = np.radians(15.0), 6
+"""Toes that point up by more than this [rad] are reported, with so many times at most."""
+
 FLOATING_M = 0.03
 """A lower sole that is higher above the floor than this in the median is reported [m]."""
 
 ARCHED, BOWED = np.radians(-20.0), np.radians(60.0)
 """A back that is bent backwards or forwards by more than this is reported [rad]."""
 
-TWISTED = np.radians(20.0)
+TWISTED = np.radians(15.0)
 """A back that is bent sideways or turned by more than this is reported [rad]."""
+
+LEANING = np.radians(20.0)
+"""A chest that leans farther from upright than this is reported [rad]."""
+
+NECK_FAR = np.radians(25.0)
+"""A neck that, with the head on it, is bent or turned by more than this is reported [rad]."""
 
 INSIDE_M, NEAR_M = 0.01, 0.02
 """A hand that is deeper in the thigh or trunk than the one, or as near as the other, is reported
@@ -41,6 +51,9 @@ SAMPLES = 60
 
 LIMBS = {"arm": "upper_arm", "forearm": "forearm", "hand": "hand", "leg": "thigh", "foot": "foot"}
 """Parts that may be unrecorded, by their segment; a part of one that is named is not named."""
+
+WAYS = {"flexion": "bent forwards or backwards", "bend": "bent sideways", "turn": "turned"}
+"""How hinges of back and neck turn."""
 
 NECK = ("neck", "head")
 SPINE = ("lumbar_lower", "lumbar_upper", "thorax_lower", "thorax_upper")
@@ -64,19 +77,21 @@ def remarks(made: Fit, capture: Capture, floor_m: float | None = None) -> list[s
 
 def _far(made: Fit) -> Iterator[str]:
     """Places whose distance from what is followed is large, the worst first."""
-    known = {n: each for n, each in made.residuals_m.items() if np.isfinite(each).any()}
-    peaks = {name: float(np.nanmax(each)) for name, each in known.items()}
+    known = {n: metres for n, metres in made.residuals_m.items() if np.isfinite(metres).any()}
+    peaks = {name: float(np.nanmax(metres)) for name, metres in known.items()}
     worst = sorted((name for name in peaks if peaks[name] > FAR_M), key=lambda name: -peaks[name])
-    for name in worst[:MOST_PLACES]:
-        at = made.times[int(np.nanargmax(known[name]))]
-        share = float(np.mean(known[name] > FAR_M))
+    told = [
+        f"{name} by up to {1e3 * peaks[name]:.0f} mm, at "
+        f"{made.times[int(np.nanargmax(known[name]))]:.2f} s "
+        f"({float(np.mean(known[name] > FAR_M)):.0%} of the time)"
+        for name in worst[:MOST_PLACES]
+    ]
+    more = len(worst) - MOST_PLACES
+    if told:
         yield (
-            f"{name} is up to {1e3 * peaks[name]:.0f} mm from its place on the body, at {at:.2f} s;"
-            f" farther than {1e3 * FAR_M:.0f} mm for {share:.0%} of the time"
+            f"farther than {1e3 * FAR_M:.0f} mm from their places on the body: {'; '.join(told)}"
+            f"{f'; {more} more sometimes' if more > 0 else ''}"
         )
-    if len(worst) > MOST_PLACES:
-        more = len(worst) - MOST_PLACES
-        yield f"{more} more places are sometimes farther than {1e3 * FAR_M:.0f} mm from theirs"
 
 
 def _unrecorded(made: Fit) -> Iterator[str]:
@@ -128,10 +143,14 @@ def _legs(made: Fit, floor_m: float | None) -> Iterator[str]:
     if unseen & set(feet):
         return
     where = made.human.sites(made.motion, [*feet, *(f"{side}_sole" for side in SIDES)])
+    raised = [_raised(made, foot, where[foot][1]) for foot in feet]
+    if any(raised):
+        yield f"{' and '.join(filter(None, raised))}, on the heel or in the air, as recorded"
     ahead = [_ahead(where[name][1]) for name in feet]
     between = np.abs(np.angle(np.exp(1j * (ahead[0] - ahead[1]))))
     if np.median(between) > SPLAYED:
-        toed = {f"{side}_toes" for side in SIDES} <= set(made.segments.values())
+        counts = [sum(on.startswith(foot) for on in made.segments.values()) for foot in feet]
+        toed = min(counts) > 1
         yield (
             f"the feet point {np.degrees(np.median(between)):.0f} degrees apart in the median"
             f"{', as ankles and toes are recorded' if toed else ''}"
@@ -144,6 +163,20 @@ def _legs(made: Fit, floor_m: float | None) -> Iterator[str]:
         )
 
 
+def _raised(made: Fit, foot: str, turns: Float[np.ndarray, "frames 4"]) -> str:
+    """How far up the toes point from the ankle, and the most, if that is far."""
+    axes = Rotation.from_quat(turns, scalar_first=True).apply([1.0, 0.0, 0.0])
+    pitch = np.arcsin(np.clip(axes[:, 2], -1.0, 1.0))
+    peaks, _ = find_peaks(np.r_[-np.pi, pitch, -np.pi], height=RAISED, prominence=RAISED)
+    if not len(peaks):
+        return ""
+    times = [f"{made.times[frame - 1]:.2f}" for frame in peaks[:MOST_PEAKS]]
+    return (
+        f"the {segment_words(foot)}'s toes point up by up to "
+        f"{np.degrees(pitch[peaks - 1].max()):.0f} degrees, at {listed(times)} s"
+    )
+
+
 def _ahead(turns: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames"]:
     """Where a segment's x axis points in the horizontal plane [rad]."""
     axes = Rotation.from_quat(turns, scalar_first=True).apply([1.0, 0.0, 0.0])
@@ -151,7 +184,12 @@ def _ahead(turns: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames"]:
 
 
 def _back(made: Fit) -> Iterator[str]:
-    """How far the back is bent and turned, where that is far."""
+    """How far the chest leans and the back is bent and turned, where that is far."""
+    turns = made.human.sites(made.motion, ["thorax_upper"])["thorax_upper"][1]
+    upwards = Rotation.from_quat(turns, scalar_first=True).apply([0.0, 0.0, 1.0])[:, 2]
+    lean = np.arccos(np.clip(upwards, -1.0, 1.0))
+    if lean.max() > LEANING:
+        yield f"the chest, and the neck with it, {_most(made, lean, 'leans from upright')}"
     bend = _summed(made, SPINE, "flexion")
     least, most = int(np.argmin(bend)), int(np.argmax(bend))
     if bend[least] < ARCHED:
@@ -165,21 +203,28 @@ def _back(made: Fit) -> Iterator[str]:
             f"{made.times[most]:.2f} s"
         )
 
-    for way, done in (("bend", "bent sideways"), ("turn", "turned")):
+    for way, done in WAYS.items():
         angle = np.abs(_summed(made, SPINE, way))
-        if angle.max() > TWISTED:
-            yield (
-                f"the back is {done} by up to {np.degrees(angle.max()):.0f} degrees, at "
-                f"{made.times[int(np.argmax(angle))]:.2f} s"
-            )
+        if way != "flexion" and angle.max() > TWISTED:
+            yield f"the back is {_most(made, angle, done)}"
+
+
+def _most(made: Fit, angle: Float[np.ndarray, "frames"], done: str) -> str:
+    at = made.times[int(np.argmax(angle))]
+    return f"{done} by up to {np.degrees(angle.max()):.0f} degrees, at {at:.2f} s"
 
 
 def _head(made: Fit, capture: Capture) -> Iterator[str]:
     """Where on the head the tracked point is that views draw, and how far the neck is bent."""
+    if "head" in made.unrecorded:
+        return
+    tracked = [one for one in capture.sensors if one.end_effector == "head" and one.shape is None]
+    ways = {way: np.abs(_summed(made, NECK, way)) for way in WAYS}
+    far = [_most(made, angle, WAYS[way]) for way, angle in ways.items() if angle.max() > NECK_FAR]
+    if far and not tracked:
+        yield f"the neck, with the head on it, is {listed(far)}, as they are recorded"
     eyes, turns = made.human.sites(made.motion, ["between_eyes"])["between_eyes"]
-    for sensor in capture.sensors:
-        if sensor.end_effector != "head" or sensor.shape is not None or "head" in made.unrecorded:
-            continue
+    for sensor in tracked:
         nearest = np.abs(capture.times[None] - made.times[:, None]).argmin(axis=1)
         away = sensor.stream.positions[nearest] - eyes
         back = Rotation.from_quat(turns, scalar_first=True).inv()
@@ -196,7 +241,9 @@ def _head(made: Fit, capture: Capture) -> Iterator[str]:
 
 def _range(made: Fit, parts: tuple[str, ...], way: str) -> str:
     angle = np.degrees(_summed(made, parts, way))
-    return f"{angle.min():.0f} to {angle.max():.0f}"
+    most = int(np.argmax(np.abs(angle)))
+    angle = np.round(angle) + 0.0  # no negative zero
+    return f"{angle.min():.0f} to {angle.max():.0f} ({angle[most]:.0f} at {made.times[most]:.2f} s)"
 
 
 def _summed(made: Fit, parts: tuple[str, ...], way: str) -> Float[np.ndarray, "frames"]:
@@ -214,6 +261,8 @@ def _inside(made: Fit) -> Iterator[str]:
     for side in SIDES:
         if f"{side}_hand" in unseen:
             continue
+        if "head" in unseen:
+            yield _beside_unseen(made, side, frames)
         hand, deepest = _forms(made, (f"{side}_hand", f"{side}_fingers")), (NEAR_M, 0.0, "")
         for frame in frames:
             data.qpos[:] = made.motion[frame]
@@ -226,14 +275,33 @@ def _inside(made: Fit) -> Iterator[str]:
         depth, at, segment = deepest
         if depth < -INSIDE_M:
             yield (
-                f"the {side} hand is up to {-1e3 * depth:.0f} mm inside the {_words(segment)}, at "
-                f"{at:.2f} s: limbs of this body are as thick as usual, the recording's are points"
+                f"the {side} hand is up to {-1e3 * depth:.0f} mm inside the "
+                f"{segment_words(segment)}, at {at:.2f} s: limbs of this body are as thick as "
+                "usual, the recording's are points"
             )
         elif segment:
             yield (
                 f"the {side} hand comes as near as {max(1e3 * depth, 0.0):.0f} mm to the "
-                f"{_words(segment)}, at {at:.2f} s, and is not inside of it"
+                f"{segment_words(segment)}, at {at:.2f} s, and is not inside of it"
             )
+
+
+def _beside_unseen(made: Fit, side: str, frames: Int[np.ndarray, "some"]) -> str:
+    """How near a recorded hand comes to a head and neck that are not recorded."""
+    model, data = made.human.model, mujoco.MjData(made.human.model)
+    least, at = np.inf, 0.0
+    for frame in frames:
+        data.qpos[:] = made.motion[frame]
+        mujoco.mj_kinematics(model, data)
+        for form in _forms(made, NECK):
+            for own in _forms(made, (f"{side}_hand", f"{side}_fingers", f"{side}_fingertips")):
+                apart = mujoco.mj_geomDistance(model, data, own, form, 2.0, None)
+                least, at = min((least, at), (apart, float(made.times[frame])))
+    where = f"{1e3 * least:.0f} mm from" if least > 0.0 else f"{-1e3 * least:.0f} mm inside"
+    return (
+        f"the {side} hand comes no nearer to the head and neck than {where} them, at {at:.2f} s; "
+        "they are not recorded, and pictures show through them what is before or behind"
+    )
 
 
 def _forms(made: Fit, segments: tuple[str, ...]) -> list[int]:
@@ -246,6 +314,12 @@ def _forms(made: Fit, segments: tuple[str, ...]) -> list[int]:
     ]
 
 
-def _words(segment: str) -> str:
+def listed(words: Sequence[str]) -> str:
+    """Words with commas and an ``and``."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def segment_words(segment: str) -> str:
+    """A segment as people call it; those of the spine are the trunk."""
     trunk = without_side(segment) in SPINE
     return "trunk" if trunk else segment.replace("_", " ")

@@ -91,14 +91,16 @@ def fit_joints(
     shaped = rigid_places(Human.of(measures), sampled, places, known.at(frames).faces)
     names |= {name: replace(names[name], place=part_of(places[name])) for name in shaped}
     early = {name: weight * _early(name, names, places) for name, weight in weights.items()}
-    own = {name: body for name, body in names.items() if name not in shaped and _differs(body)}
+    differing = [n for n, name in names.items() if n not in shaped and _differs(name)]
+    names |= {n: replace(names[n], place=_rides_on(places[n])) for n in differing}
+    own = {name: names[name] for name in differing}
     local: Local = shaped
     for _ in range(ROUNDS):
-        first = _fit(sampled, measures, local, names, early, known.at(frames))
+        first = _fit(sampled, measures, local, names, places, early, known.at(frames))
         settled = _settled(shaped, first, sampled, names, places)
         measures = with_head(measures, _eyes_higher_m(first, sampled, places))
-        local = {**settled, **_anatomical(local_places(first, sampled, own), names)}
-    return _fit(points, measures, local, names, weights, known)
+        local = {**settled, **_anatomical(local_places(first, sampled, own), places)}
+    return _fit(points, measures, local, names, places, weights, known)
 
 
 def _weight(convention: Convention, place: str, places: Mapping[str, str]) -> float:
@@ -140,6 +142,15 @@ def _differs(name: BodyName) -> bool:
     return without_side(name.place) not in {*LIMB_JOINTS, "fingers", "thumb_tip"}
 
 
+def _rides_on(place: str) -> str:
+    """The segment with which a joint moves: that of the toes, about which they turn, is the foot's.
+
+    On the toes themselves it would turn them, of which nothing is recorded.
+    """
+    side, _, joint = place.partition("_")
+    return f"{side}_foot" if joint == "toes" else place
+
+
 def _settled(
     shaped: Local,
     first: SkeletonFit,
@@ -167,7 +178,7 @@ def _eyes_higher_m(made: SkeletonFit, points: Points, places: Mapping[str, str])
     return float(np.nanmedian(off))
 
 
-def _anatomical(local: Local, names: Mapping[str, BodyName]) -> dict[str, Float[np.ndarray, "3"]]:
+def _anatomical(local: Local, places: Mapping[str, str]) -> dict[str, Float[np.ndarray, "3"]]:
     """Places on segments, where a body can have them.
 
     Those of toes are straight ahead of the ankle, as a foot points to its toes; those of the spine
@@ -175,7 +186,7 @@ def _anatomical(local: Local, names: Mapping[str, BodyName]) -> dict[str, Float[
     """
     out = {}
     for name, spot in local.items():
-        place = without_side(names[name].place)
+        place = without_side(places[name])
         if place == "toes":
             out[name] = spot * np.array([1.0, 0.0, 1.0])
         elif parts().get(place) in {"trunk", "pelvis"}:
@@ -191,11 +202,12 @@ def _fit(
     measures: Measures,
     local: Local,
     names: Mapping[str, BodyName],
+    places: Mapping[str, str],
     weights: Mapping[str, float],
     guidance: Guidance,
 ) -> SkeletonFit:
     """The body fitted to points, some of which have places of their own on it."""
-    found = {n: f"marker_{n}" if n in local else body.place for n, body in names.items()}
+    found = {name: f"marker_{name}" if name in local else places[name] for name in names}
     own = file_convention(found, {place: weights[name] for name, place in found.items()})
     human = with_markers(measures, local, names)
     return fit_skeleton(points, own, human=human, guidance=guidance)

@@ -16,11 +16,13 @@ from capar.body.model import body_spec
 from capar.body.point_following import Guidance, SkeletonError, segment_of
 from capar.body.skeleton import skeleton
 from capar.body.skeleton_fitting import (
+    TRUNK_OF_LANDMARKS,
     SkeletonFit,
     fit_skeleton,
     measures_from_points,
     trunk_share,
     with_ankles,
+    with_legs,
     with_trunk,
 )
 from extractors.readers.body_names.body_names import SIDES, BodyName
@@ -58,11 +60,16 @@ SPANS: Mapping[str, tuple[tuple[str, str], ...]] = {
     "forearm": (("forearm", "hand"), ("elbow_lateral", "wrist_radial")),
     "thigh": (("thigh", "shank"), ("trochanter", "knee_lateral")),
     "shank": (("shank", "foot"), ("knee_lateral", "ankle_lateral")),
+    "foot_length": (("heel", "toe_tip"),),
+    "foot_breadth": (("first_metatarsal", "fifth_metatarsal"),),
 }
 """Pairs of places, of one side, between which a measure lies; the first that is there counts."""
 
 LIMBS = (("shank", "thigh"), ("foot", "shank"), ("forearm", "upper_arm"))
 """Segments of limbs, each with the one that it hangs on."""
+
+LEGS = {"thigh": "shank", "shank": "foot"}
+"""Segments of legs, whose measures have their names, each with the one that hangs on it."""
 
 BREADTHS: Mapping[str, tuple[str, ...]] = {
     "shoulder_breadth": ("upper_arm", "acromion"),
@@ -117,11 +124,19 @@ def fit_markers(
     ease = 1.0 if len(exact) >= LEAST_EXACT else CLUSTER_EASE
     eased = replace(known.at(frames), ease=ease)
     first = _by_landmarks(human.measures, sampled, exact, clusters, eased)
+    legs = [measure for measure in LEGS if ease == 1.0 and measure not in human.measures.given]
+    for _ in range(ROUNDS if legs else 0):
+        lengths = _leg_lengths(_joints(first, sampled, seen), human.measures, legs)
+        if lengths:
+            human = _with_legs(human.measures, lengths, {exact[n].place: sampled[n] for n in exact})
+            first = _by_landmarks(human.measures, sampled, exact, clusters, eased)
     local = local_places(first, sampled, seen)
     joints = {} if ease == 1.0 else _joints(first, sampled, seen)
-    if joints:
+    if len(joints) >= LEAST_EXACT:
         human = Human.of(_measures_by_joints(human.measures, joints, known.at(frames)))
         local = {}
+    else:
+        joints = {}
     for _ in range(ROUNDS):
         human = with_markers(human.measures, local, seen)
         own = _own_places(local, seen, joints)
@@ -136,18 +151,28 @@ def fit_markers(
 def _joints(
     made: SkeletonFit, points: Points, names: Mapping[str, BodyName]
 ) -> dict[str, Float[np.ndarray, "frames 3"]]:
-    """Centres of joints between segments with three markers or more, by the segment below [m].
-
-    Empty if they are too few to place the body without its markers.
-    """
+    """Centres of joints between segments with three markers or more, by the segment below [m]."""
     segments = {
         n: segment_of(made.human, each.place) for n, each in names.items() if _is_sided(each)
     }
     parents = {child: parent for side in SIDES for child, parent in _jointed(side)}
     where = made.human.sites(made.motion, parents)
     guesses = {name: one[0] for name, one in where.items()}
-    found = joint_centres(points, segments, parents, guesses)
-    return found if len(found) >= LEAST_EXACT else {}
+    return joint_centres(points, segments, parents, guesses)
+
+
+def _leg_lengths(joints: Points, measures: Measures, legs: Iterable[str]) -> dict[str, float]:
+    """Lengths of thighs, shanks or both between centres of joints [m], if a body has such."""
+    found = {}
+    for measure in legs:
+        ends = [(f"{side}_{measure}", f"{side}_{LEGS[measure]}") for side in SIDES]
+        pairs = [(joints[a], joints[b]) for a, b in ends if a in joints and b in joints]
+        known = [np.linalg.norm(first - second, axis=1) for first, second in pairs]
+        if known:
+            length = float(np.mean([np.nanmedian(apart) for apart in known]))
+            if USUAL_SHARE[0] < length / measures[measure] < USUAL_SHARE[1]:
+                found[measure] = length
+    return found
 
 
 def _jointed(side: str) -> list[tuple[str, str]]:
@@ -195,6 +220,13 @@ def _by_landmarks(
     weights = {place: MIDDLE_WEIGHT for place in places.values() if place.startswith("middle_")}
     human = Human(measures, spec.compile())
     return fit_skeleton(known, file_convention(places, weights), human=human, guidance=guidance)
+
+
+def _with_legs(measures: Measures, lengths: Mapping[str, float], places: Points) -> Human:
+    """The body with other legs; its trunk, which the stature no longer tells, by its landmarks."""
+    longer = Human.of(with_legs(measures, lengths))
+    share = trunk_share(places, longer, TRUNK_OF_LANDMARKS)
+    return longer if share is None else Human.of(with_trunk(longer.measures, share))
 
 
 def _is_sided(each: BodyName) -> bool:

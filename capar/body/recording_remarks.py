@@ -7,13 +7,18 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from capar.body.fit_remarks import FAR_M, SPINE
+from capar.body.finger_postures import Closing
+from capar.body.fit_remarks import FAR_M, SPINE, listed
 from capar.body.fitting import Fit
 from extractors.readers.body_names.body_names import SIDES, BodyName
 
 TILTED = 8.0
 """A line between recorded points of a foot that lies steeper than this to its sole is reported
 [degrees]."""
+
+STEP_M, LEAST_STEPS, MOST_STEPS = 0.15, 2, 8
+"""Legs pass each other where one foot is so far ahead [m] before, and the other after; fewer such
+times are no walk, and no more of them are named."""
 
 Points = Mapping[str, Float[np.ndarray, "frames 3"]]
 
@@ -72,7 +77,7 @@ def recorded_feet(made: Fit, points: Points) -> list[str]:
             out.append(
                 f"the line from {pair[0]} to {pair[1]} is not the {side} sole: it lies at "
                 f"{middle:.0f} degrees to it in the median ({low:.0f} to {high:.0f} "
-                "in nine of ten frames)"
+                "in nine of ten frames), so that one end of it stands off the drawn foot"
             )
     return out
 
@@ -95,11 +100,84 @@ def stand_off(made: Fit, names: Mapping[str, BodyName]) -> list[str]:
             same = model.site_bodyid[own] == model.site_bodyid[usual]
             if same and metres > FAR_M:
                 apart[segment] = max(apart.get(segment, (0.0, "")), (metres, name))
-    return [
-        f"{name} rides {1e3 * metres:.0f} mm from where this body has that landmark on its "
-        f"{segment.replace('_', ' ')}; distances from its place on the body do not contain that"
-        for segment, (metres, name) in apart.items()
+    told = [
+        f"{name} by {1e3 * metres:.0f} mm ({segment.replace('_', ' ')})"
+        for segment, (metres, name) in sorted(apart.items(), key=lambda one: -one[1][0])
     ]
+    if not told:
+        return []
+    return [
+        "markers or joints that ride aside from where this body has the landmarks of their names, "
+        f"the worst of each part: {', '.join(told)}; distances from their places on the body do "
+        "not contain that"
+    ]
+
+
+def passing_legs(made: Fit) -> list[str]:
+    """When the legs of somebody who walks pass each other, and how near the ankles are then.
+
+    Args:
+        made: The body, both of whose feet were followed.
+    """
+    feet = [f"{side}_foot" for side in SIDES]
+    if set(feet) & set(made.unrecorded):
+        return []
+    where = made.human.sites(made.motion, [*feet, "pelvis"])
+    ahead = Rotation.from_quat(where["pelvis"][1], scalar_first=True).apply([1.0, 0.0, 0.0])
+    apart = where[feet[0]][0] - where[feet[1]][0]
+    along = (apart * ahead)[:, :2].sum(axis=1)
+    crossings = np.flatnonzero(np.diff(np.sign(along)) != 0)
+    between = np.split(np.abs(along), crossings + 1)
+    steps = [
+        frame
+        for frame, before, after in zip(crossings, between, between[1:], strict=False)
+        if before.max() > STEP_M and after.max() > STEP_M
+    ]
+    if len(steps) < LEAST_STEPS:
+        return []
+    metres = np.linalg.norm(apart[steps], axis=1)
+    knees = np.degrees(
+        [made.motion[steps, made.human.index(f"{side}_knee_flexion")] for side in SIDES]
+    )
+    times = [f"{made.times[frame]:.2f}" for frame in steps]
+    more = [f"{len(times) - MOST_STEPS} more times"] if len(times) > MOST_STEPS else []
+    return [
+        f"the legs pass each other at {listed([*times[:MOST_STEPS], *more])} s: the ankles are "
+        f"then {1e3 * metres.min():.0f} to {1e3 * metres.max():.0f} mm apart, as recorded, one "
+        f"knee bent by {knees.min(axis=0).min():.0f} to {knees.min(axis=0).max():.0f} degrees and "
+        f"the other by {knees.max(axis=0).min():.0f} to {knees.max(axis=0).max():.0f}; from "
+        "aside one leg hides the other"
+    ]
+
+
+def closed_hands(made: Fit, hands: Mapping[str, Closing]) -> list[str]:
+    """How far hands are closed by their recorded fingers, or that these are not recorded.
+
+    Args:
+        made: The body.
+        hands: What is known of them, by the side.
+    """
+    seen = [side for side in SIDES if f"{side}_hand" not in made.unrecorded]
+    told, out = [], []
+    for side in (side for side in seen if side in hands):
+        bent = [
+            float(np.degrees(np.median(made.motion[:, made.human.index(f"{side}_{hinge}")])))
+            for hinge in ("knuckle_flexion", "finger_flexion")
+        ]
+        names = hands[side].names
+        told.append(
+            f"of the {side} hand by {bent[0]:.0f} degrees at the knuckles and {bent[1]:.0f} beyond "
+            f"in the median ({names[0]} to {names[-1]})"
+        )
+    if told:
+        out.append(f"fingers, which bend as one, are bent as recorded: {listed(told)}")
+    without = [f"{side} hand" for side in seen if side not in hands]
+    if without:
+        out.append(
+            f"no fingers are recorded of the {listed(without)}: they are drawn straight, whatever "
+            "they hold"
+        )
+    return out
 
 
 def _angle(

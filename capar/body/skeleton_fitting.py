@@ -27,8 +27,11 @@ BREADTHS = {
 }
 """The paired joint, and the share of the measure that lies between its two sides."""
 
-TRUNKS = (("thigh", "upper_arm"),)
+TRUNK = ("thigh", "upper_arm")
 """Paired joints at the lower and upper end of the trunk; skin moves too much over bones there."""
+
+TRUNK_OF_LANDMARKS = ("asis", "acromion")
+"""Paired landmarks there, for who has no other measure of the trunk."""
 
 TRUNK_TRUST = 0.5
 """Weight of a trunk's length as it is seen against that by stature [1]: shoulders rise and fall by
@@ -96,26 +99,27 @@ def measures_from_points(
     return made if trunk is None else with_trunk(made, trunk)
 
 
-def trunk_share(places: Mapping[str, Float[np.ndarray, "frames 3"]], body: Human) -> float | None:
+def trunk_share(
+    places: Mapping[str, Float[np.ndarray, "frames 3"]],
+    body: Human,
+    ends: tuple[str, str] = TRUNK,
+) -> float | None:
     """Likely length of somebody's trunk as a share of a body's [1]; None where it is not seen.
 
     Args:
         places: Joints and landmarks by the body's own names for them.
         body: Of the same stature.
+        ends: Which places, paired, are at the lower and upper end of the trunk.
     """
-    for ends in TRUNKS:
-        names = [f"{side}_{end}" for end in ends for side in SIDES]
-        if all(name in places for name in names):
-            own = body.sites(body.posture()[None], names)
-            seen, usual = (
-                _apart((a + b) / 2, (c + d) / 2)
-                for a, b, c, d in (
-                    [places[name] for name in names],
-                    [own[name][0] for name in names],
-                )
-            )
-            return None if np.isnan(seen) else 1.0 + TRUNK_TRUST * (seen / usual - 1.0)
-    return None
+    names = [f"{side}_{end}" for end in ends for side in SIDES]
+    if not all(name in places for name in names):
+        return None
+    own = body.sites(body.posture()[None], names)
+    seen, usual = (
+        _apart((a + b) / 2, (c + d) / 2)
+        for a, b, c, d in ([places[name] for name in names], [own[name][0] for name in names])
+    )
+    return None if np.isnan(seen) else 1.0 + TRUNK_TRUST * (seen / usual - 1.0)
 
 
 def with_trunk(measures: Measures, share: float) -> Measures:
@@ -169,6 +173,25 @@ def with_ankles(
     raised = {name: measures[name] + higher for name in (*TRUNK_HEIGHTS, *UPPER_HEIGHTS)}
     given = {name: measures[name] for name in measures.given} | raised
     given["ankle_height"] = usual + higher
+    try:
+        return estimate_measures(sex=measures.sex, age=measures.age, given=given)
+    except MeasuresError:
+        return measures
+
+
+def with_legs(measures: Measures, lengths: Mapping[str, float]) -> Measures:
+    """The same body with other thighs or shanks; all above the hips moves up or down with them.
+
+    Args:
+        measures: The body's.
+        lengths: Of thigh, shank or both [m].
+
+    Returns:
+        The same measures if no body has such legs.
+    """
+    higher = sum(length - measures[name] for name, length in lengths.items())
+    raised = {name: measures[name] + higher for name in (*TRUNK_HEIGHTS, *UPPER_HEIGHTS)}
+    given = {name: measures[name] for name in measures.given} | raised | dict(lengths)
     try:
         return estimate_measures(sex=measures.sex, age=measures.age, given=given)
     except MeasuresError:

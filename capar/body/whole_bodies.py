@@ -9,14 +9,22 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.body.capture_fitting import fit_capture
+from capar.body.finger_postures import closings, with_closings
 from capar.body.fit_remarks import remarks
 from capar.body.fitting import Fit
 from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import LEAST_EXACT, fit_markers
-from capar.body.recording_remarks import recorded_feet, recorded_spine, stand_off
+from capar.body.object_remarks import corners_of, is_floor, object_remarks
+from capar.body.recording_remarks import (
+    closed_hands,
+    passing_legs,
+    recorded_feet,
+    recorded_spine,
+    stand_off,
+)
 from capar.body.skeleton_fitting import SkeletonFit
 from capar.model import geometry
-from capar.model.capture import Capture, TagType
+from capar.model.capture import Capture
 from extractors.readers.body_names.body_names import BY_WORDS, BodyName, body_names
 from extractors.readers.body_names.conventions import (
     ConventionError,
@@ -29,9 +37,6 @@ from extractors.readers.drafting.sides import sided
 
 LEAST_JOINTS = 0.6
 """Bodies are the joints of a skeleton if a convention has so many of its places among them [1]."""
-
-FLOOR_M, THICK_M = 1.5, 0.3
-"""A fixed thing that is as wide as this both ways, and no thicker, is a floor [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +143,10 @@ def remarks_on(place: str | Path, capture: Capture, made: Fit) -> list[str]:
     """
     found = whole_body(place)
     said = [*remarks(made, capture, ground(capture)), *_stretching(capture)]
+    said += object_remarks(made, capture) + passing_legs(made)
     if found is not None:
+        hands = closings(made.human, made.motion, found.points, found.names)
+        said += closed_hands(made, hands)
         said += recorded_spine(made, found.points) + recorded_feet(made, found.points)
         said += stand_off(made, found.names)
     return said
@@ -154,11 +162,9 @@ def ground(capture: Capture) -> float | None:
     """Height of the lowest level floor that a capture has, as wide as one [m]."""
     tops = []
     for thing in capture.objects:
-        if thing.tag is TagType.FIXED and thing.shape is not None:
-            turn, place = thing.stream.orientations[0], thing.stream.positions[0]
-            corners = geometry.transforms(place, turn).apply(np.array(thing.shape.vertices))
-            if np.ptp(corners[:, :2], axis=0).min() > FLOOR_M and np.ptp(corners[:, 2]) < THICK_M:
-                tops.append(float(corners[:, 2].max()))
+        corners = corners_of(thing)
+        if len(corners) and is_floor(thing, corners):
+            tops.append(float(corners[:, 2].max()))
     return min(tops, default=None)
 
 
@@ -171,11 +177,11 @@ def fit_places(found: Places, *, ground_m: float | None = None) -> Fit:
     """
     began = time.perf_counter()
     made = _skeleton(found, ground_m)
+    hands = closings(made.human, made.motion, found.points, found.names)
+    motion = with_closings(made.human, made.motion, hands)
     seconds = time.perf_counter() - began
     lost = {name: np.isnan(found.points[name]).any(axis=1) for name in made.residuals_m}
-    return Fit(
-        made.human, found.times, made.motion, lost, made.residuals_m, {}, seconds, made.segments
-    )
+    return Fit(made.human, found.times, motion, lost, made.residuals_m, {}, seconds, made.segments)
 
 
 def _skeleton(found: Places, ground_m: float | None) -> SkeletonFit:

@@ -12,7 +12,12 @@ from capar.body.fit_remarks import remarks
 from capar.body.fitting import Fit
 from capar.body.human import Human
 from capar.body.marker_fitting import with_markers
-from capar.body.recording_remarks import recorded_feet, recorded_spine, stand_off
+from capar.body.recording_remarks import (
+    passing_legs,
+    recorded_feet,
+    recorded_spine,
+    stand_off,
+)
 from capar.model.capture import Capture
 from capar.model.notices import notice
 from capar.views.viewer.mannequin import with_mannequin
@@ -50,8 +55,8 @@ def test_large_residuals_are_said_with_their_peak_its_time_and_their_share() -> 
     off[-1] = 0.0451
     far = replace(made, residuals_m={**made.residuals_m, "chest": off})
     text = told(far)
-    assert "chest is up to 45 mm from its place on the body" in text
-    assert f"at {made.times[-1]:.2f} s" in text
+    assert "farther than 30 mm from their places on the body: chest by up to 45 mm" in text
+    assert f"at {made.times[-1]:.2f} s (" in text
     assert "hips" not in text
 
 
@@ -130,7 +135,7 @@ def test_a_marker_far_from_its_landmark_is_said_and_one_on_it_is_not() -> None:
         human = with_markers(plain.measures, {"M": where + np.array([0.0, aside, 0.0])}, names)
         said.append(stand_off(replace(fitted({"M": "right_thigh"}), human=human), names))
     assert said[0] == []
-    assert said[1][0].startswith("M rides 50 mm from where this body has that landmark")
+    assert "the worst of each part: M by 50 mm (right thigh)" in said[1][0]
 
 
 def test_a_body_whose_bone_changes_its_length_is_shown_as_a_point() -> None:
@@ -152,7 +157,8 @@ def test_a_head_that_is_drawn_as_a_point_is_told_with_where_it_is_and_how_the_ne
     text = told(made, replace(BARE, sensors=(tracked,)))
     assert f"{head.name} is drawn as a point" in text
     assert "25 mm behind and 76 mm below the middle between this body's eyes" in text
-    assert "with the head on it, bent forwards by -6 to -6 degrees, sideways by 0 to 0" in text
+    assert "with the head on it, bent forwards by -6 to -6 (-6 at 0.00 s) degrees" in text
+    assert "sideways by 0 to 0 (0 at 0.00 s)" in text
     assert "drawn as a point" not in told(made)
 
 
@@ -168,3 +174,54 @@ def test_a_back_that_is_bent_sideways_or_turned_far_is_said() -> None:
     )
     assert "the back is bent sideways by up to 23 degrees" in text
     assert "the back is turned by up to 23 degrees" in text
+
+
+def test_a_neck_that_is_bent_far_is_said_with_the_time() -> None:
+    made = fitted(WHOLE, neck_bend=0.3, head_bend=0.2)
+    assert "is bent sideways by up to 29 degrees, at 0.00 s" in told(made)
+
+
+def test_of_a_head_that_is_not_recorded_it_is_said_how_near_the_hands_come() -> None:
+    made = fitted({name: part for name, part in WHOLE.items() if part != "head"})
+    text = told(made)
+    where = made.human.sites(made.motion[:1], ["right_fingertip", "neck"])
+    below = 1e3 * np.linalg.norm(where["right_fingertip"][0][0] - where["neck"][0][0])
+    (line,) = [line for line in text.splitlines() if line.startswith("the right hand comes no")]
+    assert below - 400.0 < float(line.split("neck than ")[1].split(" mm")[0]) < below
+    assert "comes no nearer" not in told(fitted(WHOLE))
+
+
+def test_legs_that_pass_each_other_are_said_with_the_times() -> None:
+    made = fitted({"ankle": "right_foot", "other": "left_foot"})
+    times = np.linspace(0.0, 2.0, len(made.times))
+    motion = made.motion.copy()
+    swing = 0.4 * np.cos(2.0 * np.pi * (times - 0.1) / 1.6)
+    motion[:, made.human.index("right_hip_flexion")] = swing.clip(-0.3, 0.4)
+    motion[:, made.human.index("left_hip_flexion")] = -swing.clip(-0.4, 0.3)
+    (line,) = passing_legs(replace(made, times=times, motion=motion))
+    first, last = (float(word) for word in line.split(" at ")[1].split(" s:")[0].split(" and "))
+    assert first == pytest.approx(0.5, abs=0.05)
+    assert last == pytest.approx(1.3, abs=0.05)
+    assert passing_legs(made) == []
+
+
+def test_a_chest_that_leans_is_said_with_the_time() -> None:
+    made = fitted(WHOLE)
+    motion = made.motion.copy()
+    motion[-1, 3:7] = [np.cos(0.25), 0.0, np.sin(0.25), 0.0]
+    text = told(replace(made, motion=motion))
+    assert f"leans from upright by up to 29 degrees, at {made.times[-1]:.2f} s" in text
+    assert "leans" not in told(made)
+
+
+def test_toes_that_point_up_are_said_with_the_times() -> None:
+    made = fitted(WHOLE)
+    motion = made.motion.copy()
+    frames = [len(motion) // 4, len(motion) // 2]
+    motion[frames, made.human.index("right_ankle_dorsiflexion")] = np.radians([18.0, 24.0])
+    text = told(replace(made, motion=motion))
+    first, last = made.times[frames]
+    assert (
+        f"right foot's toes point up by up to 24 degrees, at {first:.2f} and {last:.2f} s" in text
+    )
+    assert "left foot's toes" not in text

@@ -13,7 +13,7 @@ from virtual_bodies.moving import swinging
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.marker_fitting import fit_markers
-from capar.body.skeleton_fitting import SkeletonError
+from capar.body.skeleton_fitting import SkeletonError, with_legs
 from capar.body.whole_bodies import fit_body, fit_places, whole_body
 from capar.cli import app
 from capar.model import geometry
@@ -83,6 +83,30 @@ def test_every_place_of_every_convention_is_of_a_part() -> None:
     for each in conventions().values():
         found = body_names([*each.points, *each.on])
         assert {name.part for name in found.values()} <= set(parts().values())
+
+
+def test_legs_without_landmarks_are_as_long_as_their_clusters_move() -> None:
+    usual = ready_made("woman")
+    longer = {"thigh": 1.08 * usual["thigh"], "shank": 1.06 * usual["shank"]}
+    human = Human.of(with_legs(usual, longer))
+    motion = swinging(human, np.arange(0.0, 4.0, 1.0 / 30.0), 4, still_s=0.2)
+    above = [place for place in PLACES if not place.endswith(("trochanter", "knee_lateral"))]
+    above = [place for place in above if "ankle" not in place]
+    legs = [f"{side}_{part}" for side in ("right", "left") for part in ("thigh", "shank", "foot")]
+    where = human.sites(motion, {*above, *legs})
+    points = {place: where[place][0] for place in above}
+    names = {place: BodyName(place, place, exact=True, by="a guide") for place in above}
+    rng = np.random.default_rng(6)
+    for segment in legs:
+        at, turn = where[segment]
+        for number in range(3):
+            local = rng.uniform(-0.05, 0.05, 3) - [0.0, 0.0, 0.02 if "foot" in segment else 0.2]
+            name = f"{segment}_{number}"
+            points[name] = geometry.transforms(at, turn).apply(np.tile(local, (len(at), 1)))
+            names[name] = BodyName(name, segment, exact=False, by="a guide")
+    made = fit_markers(points, names).skeleton
+    for leg, length in longer.items():
+        assert made.human.measures[leg] == pytest.approx(length, rel=0.035), leg
 
 
 @recorded

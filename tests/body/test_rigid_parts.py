@@ -100,6 +100,18 @@ def test_the_toes_of_a_foot_are_straight_ahead_of_its_ankle() -> None:
         assert made.human.model.site(f"marker_{letter}_Toe").pos[1] == 0.0
 
 
+def test_joints_of_the_toes_do_not_turn_the_toes_of_which_nothing_is_recorded() -> None:
+    human, motion = moved()
+    points = recorded(human, motion)
+    rng = np.random.default_rng(8)
+    for name in ("L_Toe", "R_Toe"):
+        points[name] = points[name] + rng.normal(0.0, 0.01, points[name].shape)
+    made = fit_joints(points, convention("smpl"), stated=STATED | EYES)
+    for side in SIDES:
+        angle = made.motion[:, made.human.index(f"{side}_toe_extension")]
+        assert np.abs(angle).max() < np.radians(2.0)
+
+
 def test_joints_of_a_spine_that_is_recorded_behind_the_back_are_put_into_the_trunk() -> None:
     human, motion = moved()
     points = recorded(human, motion)
