@@ -4,9 +4,11 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 from jaxtyping import Float
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
 from scipy.spatial.transform import RigidTransform
 
 from capar.body.human import Human
+from capar.model.capture import TagType
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.errors import PlanError
 from capar.regeneration.path_mapping import STRAIGHT, Detour, mapped
@@ -25,6 +27,15 @@ SLACK_M = 0.0005
 
 CUT_M = 0.001
 """How much deeper than at both ends it may be inside something [m]."""
+
+SUNK_M = 0.005
+"""A recorded thing that sinks no deeper into what is fixed does so by error [m]."""
+
+SPREAD = 9
+"""Over so many frames it is raised out of it [1]."""
+
+STEEPEST_M = 0.001
+"""Nor faster than this from either end of its way [m a frame]."""
 
 STRIDE = 2
 """Frames between two at which a way is checked."""
@@ -60,26 +71,48 @@ class Carrying:
         """
         best, least = STRAIGHT, np.inf
         for detour in (Detour(lift) for lift in LIFTS_M):
-            path = self._mapped(part, ends, turn, detour)
+            path = self._mapped(name, part, ends, turn, detour, others)
             short = self._short(name, path, others)
             if short < least:
                 best, least = detour, short
             if least <= 0.0:
                 break
-        path = self._mapped(part, ends, turn, best)
+        path = self._mapped(name, part, ends, turn, best, others)
         if least > 0.0:
             self._check_free(name, path, others)
         return path, best
 
     def _mapped(
         self,
+        name: str,
         part: RigidTransform,
         ends: tuple[RigidTransform, RigidTransform],
         turn: float,
         detour: Detour,
+        others: Mapping[str, RigidTransform],
     ) -> RigidTransform:
         facing = self.scene.heading
-        return mapped(part, *ends, turn=turn, detour=detour, heading=facing, kind=self.kind)
+        path = mapped(part, *ends, turn=turn, detour=detour, heading=facing, kind=self.kind)
+        return self._out_of_ground(name, path, others)
+
+    def _out_of_ground(
+        self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]
+    ) -> RigidTransform:
+        """The way raised where it sinks a little deeper into something fixed than both ends do.
+
+        Recorded things do, as they are tipped up: their poses are a few millimetres off.
+        """
+        things = self.scene.things
+        fixed = {n: vectors(p) for n, p in others.items() if things[n].tag is TagType.FIXED}
+        gaps = [dict(self._gaps(name, pose, fixed)) for pose in vectors(path)]
+        usual = {n: min(0.0, gaps[0].get(n, 0.0), gaps[-1].get(n, 0.0)) for n in fixed}
+        sunk = np.array([max([0.0, *(usual[n] - gap for n, gap in g.items())]) for g in gaps])
+        if not 0.0 < sunk.max() <= SUNK_M:
+            return path
+        wide = uniform_filter1d(maximum_filter1d(sunk, SPREAD), SPREAD)
+        frames = np.arange(len(sunk))
+        by_m = np.minimum(wide, STEEPEST_M * np.minimum(frames, frames[::-1]))
+        return RigidTransform.from_translation(np.outer(by_m, [0.0, 0.0, 1.0])) * path
 
     def _check_free(
         self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]

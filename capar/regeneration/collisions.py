@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 import trimesh
 from jaxtyping import Float
+from scipy.spatial import KDTree
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
@@ -20,6 +21,9 @@ NEAR_M = 0.08
 
 HOLLOW = 0.98
 """A thing that fills a smaller share of its hull is hollow [1]."""
+
+DIFFERENCE_M = 1e-6
+"""Step of a difference quotient of a distance [m]."""
 
 SAMPLES, SPACING_M = 4000, 0.008
 """Points on the surface of a hollow thing, at least, and how far apart they are on a large one."""
@@ -78,19 +82,45 @@ class Surroundings:
 
     def near(self, parts: Iterable[str] | None = None) -> list[Pair]:
         """Distances of parts of the body, or of all, from the things near them."""
-        wanted = None if parts is None else set(parts)
         out = []
-        for geom, part in self.parts.items():
-            if wanted is None or part in wanted:
-                for name, other in self.geoms.items():
-                    if (part, name) in self.ignored:
-                        continue
-                    found = self._distance(geom, other)
-                    if found < 0.0 and self.hollow[name] is not None:
-                        found = max(found, self._apart(geom, name))
-                    if found < NEAR_M:
-                        out.append(Pair(found, part, name))
+        for geom, name in self.pairs(parts):
+            found = self.gap(geom, name)
+            if found < NEAR_M:
+                out.append(Pair(found, self.parts[geom], name))
         return out
+
+    def pairs(self, parts: Iterable[str] | None = None) -> list[tuple[int, str]]:
+        """Shapes of parts of the body, or of all, each with a thing that stops it."""
+        wanted = None if parts is None else set(parts)
+        return [
+            (geom, name)
+            for geom, part in self.parts.items()
+            if wanted is None or part in wanted
+            for name in self.geoms
+            if (part, name) not in self.ignored
+        ]
+
+    def gap(self, geom: int, name: str, most_m: float = NEAR_M) -> float:
+        """How far a shape of the body is from a thing; larger distances are not measured [m]."""
+        found = self._distance(geom, self.geoms[name])
+        if not self._in_hull(found, name):
+            return found
+        return max(found, self._apart(geom, name, most_m))
+
+    def slope(self, geom: int, name: str) -> Float[np.ndarray, "dofs"]:
+        """How that distance changes with the body's joints."""
+        mujoco.mj_comPos(self.model, self.data)
+        ends = np.zeros(6)
+        found = mujoco.mj_geomDistance(self.model, self.data, geom, self.geoms[name], NEAR_M, ends)
+        spot, normal = ends[:3], (ends[3:] - ends[:3]) * np.sign(found)
+        if self._in_hull(found, name) and self._apart(geom, name, NEAR_M) >= found:
+            spot, normal = self._nearest(geom, name)
+        moves = np.empty((3, self.model.nv))
+        mujoco.mj_jac(self.model, self.data, moves, None, spot, self.model.geom_bodyid[geom])
+        return np.asarray(-normal / max(float(np.linalg.norm(normal)), 1e-12) @ moves)
+
+    def _in_hull(self, distance_m: float, name: str) -> bool:
+        return distance_m < 0.0 and self.hollow[name] is not None
 
     def things_near(self) -> list[Pair]:
         """Distances between things near each other."""
@@ -111,18 +141,32 @@ class Surroundings:
             return NEAR_M
         return float(mujoco.mj_geomDistance(self.model, self.data, first, second, NEAR_M, None))
 
-    def _apart(self, geom: int, name: str) -> float:
+    def _apart(self, geom: int, name: str, most_m: float) -> float:
         """How far the surface of a hollow thing is from a part, negative where it is inside [m]."""
-        points = self.hollow[name]
-        assert points is not None
-        mocap = self.bodies[name]
-        pose = RigidTransform.from_components(
-            self.data.mocap_pos[mocap],
-            _rotation(self.data.mocap_quat[mocap]),
-        )
+        points = self._surface(geom, name, most_m)
+        return float(_depths(points, self.model, geom).min()) if len(points) else most_m
+
+    def _nearest(
+        self, geom: int, name: str
+    ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+        """The point of a hollow thing's surface next to a part, and the way out to it [m, 1]."""
+        local = self._surface(geom, name, NEAR_M)
+        point = local[int(_depths(local, self.model, geom).argmin())]
+        steps = point + DIFFERENCE_M * np.concatenate([np.eye(3), -np.eye(3)])
+        ahead, back = _depths(steps, self.model, geom).reshape(2, 3)
         turn = self.data.geom_xmat[geom].reshape(3, 3)
-        local = (pose.apply(points) - self.data.geom_xpos[geom]) @ turn
-        return float(_depths(local, self.model, geom).min())
+        return turn @ point + self.data.geom_xpos[geom], turn @ (ahead - back)
+
+    def _surface(self, geom: int, name: str, most_m: float) -> Float[np.ndarray, "points 3"]:
+        """Points on a hollow thing's surface near a part, in the frame of the part's shape [m]."""
+        tree = self.hollow[name]
+        assert tree is not None
+        mocap = self.bodies[name]
+        thing = _rotation(self.data.mocap_quat[mocap]).as_matrix()
+        middle = (self.data.geom_xpos[geom] - self.data.mocap_pos[mocap]) @ thing
+        near = tree.query_ball_point(middle, self.model.geom_rbound[geom] + most_m)
+        turn = self.data.geom_xmat[geom].reshape(3, 3)
+        return np.asarray((tree.data[near] - middle) @ (thing.T @ turn))
 
 
 def _rotation(quaternion: Float[np.ndarray, "4"]) -> Rotation:
@@ -148,7 +192,7 @@ def _depths(
     return np.asarray(scaled * (scaled - 1.0) / np.maximum(slope, 1e-9))
 
 
-def _surface_points(shape: Shape) -> Float[np.ndarray, "points 3"] | None:
+def _surface_points(shape: Shape) -> KDTree | None:
     """Points on a hollow shape's surface; None where its hull is its shape."""
     mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
     if abs(mesh.volume) > HOLLOW * mesh.convex_hull.volume:
@@ -156,7 +200,7 @@ def _surface_points(shape: Shape) -> Float[np.ndarray, "points 3"] | None:
     points, _ = trimesh.sample.sample_surface(
         mesh, max(SAMPLES, round(mesh.area / SPACING_M**2)), seed=0
     )
-    return np.concatenate([np.array(shape.vertices), np.array(points)])
+    return KDTree(np.concatenate([np.array(shape.vertices), np.array(points)]))
 
 
 def _add_thing(spec: mujoco.MjSpec, name: str, vertices: Float[np.ndarray, "vertices 3"]) -> None:

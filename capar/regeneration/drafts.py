@@ -1,14 +1,16 @@
 """What is decided of a performance before hands' ways are: goals, and grips that reach."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
+from scipy.spatial.transform import Rotation
 
 from capar.body.human import Human
 from capar.body.recording import HAND_SEGMENTS
 from capar.regeneration import attending
 from capar.regeneration.body_frames import body_frames, head_path
+from capar.regeneration.clearing import ClearTask
 from capar.regeneration.collisions import Pair, Surroundings
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.flights import first_guess
@@ -35,6 +37,15 @@ KEYS = 6
 KEY_ITERATIONS = 40
 MOST_TURNS = 120
 """Turns of a grip that are tried."""
+
+FREELY = 0.003
+"""Share of its weight that a palm's turning has where it is sought how the body would turn it."""
+
+MOST_EASED_RAD = 1.05
+"""So far a grip is turned at most as the body would take it [rad]."""
+
+ROUNDS = 4
+"""So often a grip is turned as the body would take it: each time the hand touches elsewhere [1]."""
 
 SETTLE_S = 0.45
 """How long the head takes to be firmly where it is to be [s]."""
@@ -73,6 +84,7 @@ class Draft:
         self.firmness = attending.around(source, source.meetings, SETTLE_S)
         self.looks = attending.looks(source, self.things, self.head)
         self.gripping = Gripping(source, scene, self.old, self.new)
+        self.clear = ClearTask(self.gripping.around, source.met)
         self.grips: tuple[Grip, ...] = ()
         self.pressed: list[str] = []
         self.watched, self.style = watched, style
@@ -88,6 +100,9 @@ class Draft:
             miss, grips = self._best_grips(chosen, group, usual)
             if miss.ratio > 1.0 and miss.cuts and most == MOST_TURNS:
                 found = self._best_grips(chosen, group, list(drawn_turns()))
+                miss, grips = min((miss, grips), found, key=lambda tried: tried[0].ratio)
+            if miss.ratio > 1.0 and most == MOST_TURNS:
+                found = self._eased_grips(chosen, group, miss, grips)
                 miss, grips = min((miss, grips), found, key=lambda tried: tried[0].ratio)
             chosen += grips
             if miss.ratio > 1.0 and not (miss.cuts and miss.ratio * CUT_M <= PRESSED_M):
@@ -112,16 +127,51 @@ class Draft:
         assert best is not None
         return best
 
+    def _eased_grips(
+        self, chosen: list[Grip], group: list[Hold], miss: Miss, grips: list[Grip]
+    ) -> tuple[Miss, list[Grip]]:
+        """Grips turned as the body itself would take the thing; the best ones that were tried."""
+        best = miss, grips
+        for start in ([self.gripping.grip(hold, Turn()) for hold in group], grips):
+            eased = start
+            for _ in range(ROUNDS):
+                eased = self._as_turned(chosen, group, eased)
+                found = self._missed(chosen + eased, group, best[0].ratio)
+                best = min(best, (found, eased), key=lambda tried: tried[0].ratio)
+                if best[0].ratio <= 1.0:
+                    return best
+        return best
+
+    def _as_turned(self, chosen: list[Grip], group: list[Hold], grips: list[Grip]) -> list[Grip]:
+        """Grips turned as palms are, in the mean, that have to be somewhere and may turn freely."""
+        solver = self._solver()
+        solver.turning = FREELY
+        turns: dict[str, list[Rotation]] = {grip.hold.side: [] for grip in grips}
+        for frame in self.key_frames(group):
+            self._follow(solver, chosen + grips, frame)
+            for grip in grips:
+                if grip.hold.first <= frame <= grip.hold.last:
+                    side, thing = grip.hold.side, self.things[grip.hold.thing][frame]
+                    hand = solver.palm(side) * self.new.palms[side].inv()
+                    wanted = (thing * grip.pose).rotation
+                    turns[side].append(wanted.inv() * hand.rotation)
+        out = []
+        for grip in grips:
+            by = Rotation.concatenate(turns[grip.hold.side]).mean()
+            eased = (Rotation.from_rotvec(grip.turn.eased) * by).as_rotvec()
+            eased *= min(1.0, MOST_EASED_RAD / max(float(np.linalg.norm(eased)), 1e-9))
+            x, y, z = (float(angle) for angle in eased)
+            out.append(self.gripping.grip(grip.hold, replace(grip.turn, eased=(x, y, z))))
+        return out
+
     def _missed(self, grips: list[Grip], group: list[Hold], enough: float) -> Miss:
         """How far the key postures of some holds are missed, in units of what is allowed.
 
         No further than is enough to be worse than another grip.
         """
-        solver = Solver(self.new.human, (*self.scene.place, self.scene.floor_m), self.scene.heading)
-        worst = Miss()
+        solver, worst = self._solver(), Miss()
         for frame in self.key_frames(group):
-            goal = self.targets(grips, frame)
-            solver.follow(goal, most=KEY_ITERATIONS)
+            goal = self._follow(solver, grips, frame)
             metres, radians = solver.missed(goal)
             ratio = max(metres / REACH_M, radians / REACH_RAD)
             if ratio > worst.ratio:
@@ -144,12 +194,29 @@ class Draft:
         self,
     ) -> tuple[dict[int, Float[np.ndarray, "posture"]], Float[np.ndarray, "posture"]]:
         """The posture at each key frame with the chosen grips, and the one of standing at ease."""
-        solver = Solver(self.new.human, (*self.scene.place, self.scene.floor_m), self.scene.heading)
-        out = {}
+        solver, out = self._solver(), {}
         for frame in self.key_frames(list(self.source.holds)):
-            solver.follow(self.targets(list(self.grips), frame), most=KEY_ITERATIONS)
+            self._follow(solver, list(self.grips), frame)
             out[frame] = solver.posture
         return out, solver.rest
+
+    def _solver(self) -> Solver:
+        place = (*self.scene.place, self.scene.floor_m)
+        return Solver(self.new.human, place, self.scene.heading, (self.clear,))
+
+    def _follow(self, solver: Solver, grips: list[Grip], frame: int) -> Targets:
+        """Reach for the goals of a key frame; a second time where limbs are inside something.
+
+        From wherever the body was before, the way there may lead through things.
+        """
+        goal = self.targets(grips, frame)
+        self.clear.active = False
+        solver.follow(goal, most=KEY_ITERATIONS)
+        if self.deepest_cut(solver.posture, grips, frame):
+            self.clear.active = True
+            self.clear.place({name: vectors(path[frame]) for name, path in self.things.items()})
+            solver.follow(goal, most=KEY_ITERATIONS)
+        return goal
 
     def targets(self, grips: list[Grip], frame: int) -> Targets:
         """Where palms, head and gaze are to be at a frame."""

@@ -65,6 +65,10 @@ class Turn:
     drawn_m: float = 0.0
     """How far the hand is drawn back along its fingers [m]."""
 
+    eased: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """How it is turned besides, as the body itself would take it: about and as far as this in the
+    frame on the hand [rad]."""
+
     @property
     def size(self) -> float:
         """How much worse than none it is [rad]."""
@@ -126,7 +130,8 @@ class Gripping:
         point = on_hand * self.new.hands[hold.side].extents / track.frame.extents
         spot = on_thing * after.size / np.maximum(before.size, 1e-9)
         gap = relative.apply(on_hand) - on_thing
-        turned = relative.rotation * Rotation.from_euler("ZY", [turn.pitch, turn.tilt])
+        eased = Rotation.from_rotvec(turn.eased)
+        turned = relative.rotation * Rotation.from_euler("ZY", [turn.pitch, turn.tilt]) * eased
         pose = RigidTransform.from_components(spot + gap - turned.apply(point), turned)
         if is_round(after.shape):
             pose = RigidTransform.from_rotation(self._about(hold, turn)) * pose

@@ -1,7 +1,7 @@
 """When hands and things, and things and the head, are rigidly together."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -31,6 +31,9 @@ GRASP_RAD = float(np.radians(20.0))
 
 SLID = 2.0
 """Multiple of both by which a hand may slide before the thing leaves and after it arrived [1]."""
+
+UNSEEN_S = 1.0
+"""So long a hand that touches a thing from the first frame on may slide before it holds it [s]."""
 
 CARRIED_M = 0.02
 """A thing that is so far from where a contact begins and from where it ends is under way [m]."""
@@ -83,6 +86,36 @@ def holds_of(
                 if span:
                     first, last = (contact.first + edge for edge in span)
                     out.append(Hold(side, contact.other, first, last))
+    return tuple(sorted(out, key=lambda hold: (hold.first, hold.side)))
+
+
+def with_unseen_ends(
+    holds: tuple[Hold, ...],
+    hands: Hands,
+    touching: list[Touching],
+    times: Float[np.ndarray, "frames"],
+) -> tuple[Hold, ...]:
+    """Holds from the first frame, or to the last one, where the hand touches the thing there.
+
+    Nobody saw it come or leave: performed again, it would have to come from ease. Only if it slides
+    no longer than ``UNSEEN_S`` meanwhile.
+
+    Args:
+        holds: As they were found.
+        hands: The hands.
+        touching: The contacts that were observed.
+        times: Of the frames [s].
+    """
+    out = []
+    for hold in holds:
+        first, last = hold.first, hold.last
+        for contact in touching:
+            if (contact.body, contact.other) == (hands[hold.side][0], hold.thing):
+                if contact.first == 0 and times[hold.first] - times[0] <= UNSEEN_S:
+                    first = 0
+                if contact.last == len(times) - 1 and times[-1] - times[hold.last] <= UNSEEN_S:
+                    last = contact.last
+        out.append(replace(hold, first=first, last=last))
     return tuple(sorted(out, key=lambda hold: (hold.first, hold.side)))
 
 

@@ -5,9 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from capar.regeneration.clearing import ClearTask
+from capar.regeneration.collisions import Surroundings
 from capar.regeneration.guides import Guide
 from capar.regeneration.planning import Plan
-from capar.regeneration.solving import Solver
+from capar.regeneration.solving import Solver, vectors
 
 SETTLING = 60
 """Iterations for the first frame."""
@@ -29,14 +31,20 @@ def perform_plan(plan: Plan, guide: Guide | None = None) -> Motion:
         guide: Postures to which the body is drawn meanwhile; standing at ease, unless stated.
     """
     scene = plan.scene
-    solver = Solver(plan.human, (*scene.place, scene.floor_m), scene.heading)
+    clear = ClearTask(Surroundings(plan.human, scene), plan.source.met)
+    solver = Solver(plan.human, (*scene.place, scene.floor_m), scene.heading, (clear,))
     targets = plan.targets()
-    solver.follow(targets[0], most=SETTLING)
+    things = {name: vectors(path) for name, path in plan.things.items()}
+    if guide is not None:
+        solver.draw_to(guide.postures[0], float(guide.weights[0]))
+    for clear.active in (False, True):  # the way from standing at ease may lead through things
+        solver.follow(targets[0], most=SETTLING)
     solver.frame.bound(1.0 / plan.source.rate_hz)
     postures = np.empty((len(plan.source.times), len(solver.posture)))
     for frame in range(len(postures)):
         if guide is not None:
             solver.draw_to(guide.postures[frame], float(guide.weights[frame]))
+        clear.place({name: rows[frame] for name, rows in things.items()})
         solver.follow(targets[frame])
         postures[frame] = solver.posture
     return Motion(plan, postures)

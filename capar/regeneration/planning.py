@@ -15,7 +15,7 @@ from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.drafts import MOST_TURNS, Draft, check_stance
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.flights import flight_notes, flights
-from capar.regeneration.grips import OUT_M, Grip, Turn
+from capar.regeneration.grips import OUT_M, Grip
 from capar.regeneration.hand_paths import Care, hand_paths
 from capar.regeneration.path_mapping import Detour
 from capar.regeneration.scenes import Scene, mobile, moved, raised, resized
@@ -268,7 +268,13 @@ def _notes(
                 f"the {grip.hold.side} hand's grip is moved {1e3 * abs(grip.out_m):.0f} mm {way} "
                 f"{grip.hold.thing!r}, {so}"
             )
-        if grip.turn != Turn(drawn_m=grip.turn.drawn_m):
+        if any(grip.turn.eased):
+            angle = np.degrees(np.linalg.norm(grip.turn.eased))
+            out.append(
+                f"the {grip.hold.side} hand's grip on {grip.hold.thing!r} is turned by {angle:.0f} "
+                "degrees as the body would take it"
+            )
+        if grip.turn.size > 0.0:
             out.append(
                 f"the {grip.hold.side} hand's grip on {grip.hold.thing!r} is turned by "
                 f"{np.degrees(grip.turn.yaw):.0f} degrees about it, "

@@ -15,8 +15,8 @@ from capar.regeneration.styles import Style
 CARES = (Care(), Care(0.03, 0.015), Care(0.03, 0.015, 1.0), Care(0.05, 0.02, 1.0))
 """How free hands keep from things; the next where a motion is too near something."""
 
-BY_CARE = {"penetration", "free hand clear"}
-"""The gates that more care may mend."""
+BY_CARE = {"penetration", "free hand clear", "event position", "event rotation"}
+"""The gates that more care may mend: a hand that is led firmly for longer arrives in time."""
 
 BY_GRIP = {"on the way", "event position", "event rotation", "penetration"}
 """The gates that another grip may mend."""

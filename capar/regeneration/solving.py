@@ -1,6 +1,6 @@
 """Inverse kinematics of a whole body: palms, head, gaze, feet and balance together."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import mink
@@ -107,8 +107,22 @@ class FrameLimit(mink.Limit):
 class Solver:
     """The body in a posture, led from target to target."""
 
-    def __init__(self, human: Human, place: tuple[float, float, float], heading: float) -> None:
-        self.human = human
+    def __init__(
+        self,
+        human: Human,
+        place: tuple[float, float, float],
+        heading: float,
+        further: Sequence[mink.Task] = (),
+    ) -> None:
+        """Stand at ease.
+
+        Args:
+            human: Who.
+            place: Where [m].
+            heading: Which way [rad].
+            further: What else is wanted.
+        """
+        self.human, self.further = human, further
         eased = {f"{s}_{n}": float(np.radians(a)) for n, a in RELAXED.items() for s in SIDES}
         self.rest = human.posture(eased, place=place, heading=heading)
         self.configuration = mink.Configuration(human.model)
@@ -117,10 +131,14 @@ class Solver:
         self.head = mink.FrameTask("between_eyes", "site", *HEAD_COST)
         self.looks = look_tasks()
         self.home = {side: vectors(self.palm(side)) for side in SIDES}
+        self.turning = 1.0
+        """Share of its weight that the way has in which a palm is turned [1]."""
+
         self.goals = {side: pose[4:] for side, pose in self.home.items()}
         self.ease = mink.PostureTask(human.model, cost=share_costs(human, EASE_COST))
         self.ease.set_target(self.rest)
-        self.tasks = [*self.palms.values(), self.head, *self.looks.values(), *self._stance()]
+        looks = self.looks.values()
+        self.tasks = [*self.palms.values(), self.head, *looks, *self._stance(), *further]
         self.frame = FrameLimit(len(human.joints))
         self.steps = Steps(human, self.tasks, longest_rad=LARGEST_STEP, limits=[self.frame])
 
@@ -175,7 +193,7 @@ class Solver:
             firm = targets.grasps.get(side, 0.0)
             costs = [c * (f + (1.0 - f) * firm) for c, f in zip(PALM_COST, FREE_PALM, strict=True)]
             task.set_position_cost(costs[0])
-            task.set_orientation_cost(costs[1])
+            task.set_orientation_cost(costs[1] * self.turning)
         self.head.set_target(mink.SE3(targets.head))
         firm = FREE_HEAD + (1.0 - FREE_HEAD) * targets.firmness
         self.head.set_position_cost(HEAD_COST[0] * firm)
@@ -197,7 +215,8 @@ class Solver:
                 return
             if self.steps.settled:
                 return
-            if number + 1 >= FEWEST and missed_m < NEAR_M and missed_rad < NEAR_RAD:
+            near = missed_m < NEAR_M and missed_rad < NEAR_RAD
+            if number + 1 >= FEWEST and near and self._further_missed() < NEAR_M:
                 return
 
     def missed(self, targets: Targets) -> tuple[float, float]:
@@ -213,6 +232,11 @@ class Solver:
                 metres = max(metres, float(np.linalg.norm(spot - goal)))
                 radians = max(radians, float(np.linalg.norm(twist[3:])))
         return metres, radians
+
+    def _further_missed(self) -> float:
+        """The largest error of what else is wanted."""
+        errors = (task.compute_error(self.configuration) for task in self.further)
+        return max((float(np.abs(error).max(initial=0.0)) for error in errors), default=0.0)
 
     def _step(self) -> None:
         self.frame.gone += self.steps.step(self.configuration)

@@ -26,6 +26,7 @@ from capar.regeneration.holding import (
     meetings_of,
     wandering,
     wanderings,
+    with_unseen_ends,
 )
 from capar.regeneration.holding import Hold as Hold
 from capar.regeneration.holding import Meeting as Meeting
@@ -102,6 +103,11 @@ class Source:
         return np.asarray(self.capture.times * self.pace)
 
     @property
+    def met(self) -> frozenset[str]:
+        """Names of the things that meet the performer's head."""
+        return frozenset(meeting.thing for meeting in self.meetings)
+
+    @property
     def rate_hz(self) -> float:
         """Frames a second."""
         return self.capture.rate_hz / self.pace
@@ -151,6 +157,7 @@ def source_of(
     told = [*notes, "the point of contact on each hand is measured on the capture's meshes"]
     tracks_of_hands = {side: (hand.sensor, hand.path) for side, hand in hands.items()}
     holds = holds_of(tracks_of_hands, paths, touching)
+    holds = with_unseen_ends(holds, tracks_of_hands, touching, capture.times)
     sides = {hand.sensor: side for side, hand in hands.items()}
     launches = launches_of(observation.forces, sides, holds, capture.times)
     holds = with_blows(holds, launches)

@@ -45,3 +45,21 @@ def test_a_thing_is_lifted_over_a_wall() -> None:
 def test_a_wall_that_is_higher_than_any_lift_is_refused() -> None:
     with pytest.raises(PlanError, match=r"'mug' would go \d+ mm into 'wall' on its way"):
         _way(max(LIFTS_M) + 0.3)
+
+
+def test_what_was_recorded_a_little_inside_its_support_is_raised_out_of_it() -> None:
+    crate = Thing("crate", box(0.2, 0.2, 0.2), (0.45, 0.0, HEIGHT_M))
+    things = {each.name: each for each in (table(HEIGHT_M), crate)}
+    carrying = Carrying(Human.of(ready_made("man")), Scene(things, (0.0, 0.0), 0.0), Kind.PATH)
+    share = np.linspace(0.0, 1.0, 61)
+    sunk = np.interp(share, [0.0, 0.1, 0.2, 0.3, 1.0], [0.0, -0.003, -0.003, 0.0, 0.2])
+    part = RigidTransform.from_translation(
+        crate.pose.translation + np.stack([0.0 * share, 0.1 * share, sunk], axis=1)
+    )
+    still = {"table": things["table"].pose}
+    path, detour = carrying.way("crate", part, (part[0], part[-1]), still, 0.0)
+    assert detour == STRAIGHT
+    low = path.translation[:, 2] - HEIGHT_M
+    assert low.min() > -0.0002
+    np.testing.assert_allclose(path.translation[[0, -1]], part.translation[[0, -1]], atol=1e-9)
+    np.testing.assert_allclose(low[30:], sunk[30:], atol=1e-9)

@@ -20,7 +20,7 @@ from capar.regeneration.collisions import Surroundings
 from capar.regeneration.drafts import Draft
 from capar.regeneration.grips import Turn, drawn_turns
 from capar.regeneration.hand_frames import HandAxes, stated_hand_frame
-from capar.regeneration.holding import holds_of
+from capar.regeneration.holding import Hold, holds_of, with_unseen_ends
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Source, source_of
@@ -162,3 +162,16 @@ def test_what_is_put_down_stands_still_from_when_it_was_seen_to() -> None:
     path = draft.things[hold.thing].translation
     assert np.ptp(path[down.frame : after.frame + 1], axis=0).max() == 0.0
     assert np.linalg.norm(path[down.frame - 3] - path[down.frame]) > 0.0
+
+
+@pytest.mark.parametrize(("first", "held"), [(0, (0, 80)), (1, (20, 80))])
+def test_a_hand_that_nobody_saw_come_holds_the_thing_from_the_first_frame(
+    first: int, held: tuple[int, int]
+) -> None:
+    times = np.arange(90) / 30.0
+    hands = {"right": ("right_hand", RigidTransform.from_translation(np.zeros((90, 3))))}
+    touching = [Touching("right_hand", "box", first, 80)]
+    (hold,) = with_unseen_ends((Hold("right", "box", 20, 80),), hands, touching, times)
+    assert (hold.first, hold.last) == held
+    (slow,) = with_unseen_ends((Hold("right", "box", 40, 80),), hands, touching, times)
+    assert slow.first == 40
