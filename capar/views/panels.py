@@ -74,7 +74,8 @@ class Panel:
             for curve in self.curves
             for values in curve.values[(curve.times >= start_s) & (curve.times <= end_s)]
         ]
-        values = [*shown, *(one.value for one in (*self.limits, *self.marks))]
+        limits, marks = (limit.value for limit in self.limits), (mark.value for mark in self.marks)
+        values = [*shown, *limits, *marks]
         known = [min(value, self.highest) for value in values if np.isfinite(value)]
         low, high = min(known, default=0.0), max(known, default=1.0)
         room = PADDING * ((high - low) or abs(high) or 1.0)
