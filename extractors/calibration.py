@@ -17,6 +17,7 @@ falls, rolling, and how bodies are arranged. It does not hold for these:
 * ``Place``, ``TrunkPlace``, ``Posture``, ``Distance``, ``Travelled`` and ``SweptAzimuth``: their
   frames are those of the facts above; and ways and angles are summed up from the first frame:
   they agree where a window is given the sums before it (``extractors.relations.running_sums``).
+  A window has every ``SweptAzimuth``, the whole only those of pairs that go about each other.
 * Which mobile objects are measured at all: those that an end-effector touches in the window.
 * ``Lies`` of a shifted grip: it compares all pauses of one contact, however long.
 * Contacts across a loss or a stay within the release distance that is longer than the margin: the

@@ -1,5 +1,7 @@
 """What is measured of handled bodies is what their closed forms say."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -328,3 +330,14 @@ def test_a_place_of_rest_lasts_from_the_first_frame_and_to_the_last() -> None:
     first, last = rest_poses(body(along_x(0.0, 1.0)).poses, floor, LIMITS)
     assert first.interval[0] == 0
     assert last.interval[1] == len(TIMES) - 1
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(deadline=None, max_examples=20)
+def test_the_outermost_points_of_a_body_hold_those_along_its_axes_and_diagonals(seed: int) -> None:
+    points = np.random.default_rng(seed).normal(size=(300, 3))
+    cloud = Shape(points, np.arange(300).reshape(-1, 3))
+    corners = body(np.zeros(3), shape=cloud).corners + cloud.bounds.mean(axis=0)
+    signs = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
+    for along in signs[np.isin(np.abs(signs).sum(axis=1), (1.0, 3.0))]:
+        assert (corners @ along).max() == pytest.approx((points @ along).max())

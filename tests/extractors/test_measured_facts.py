@@ -10,6 +10,7 @@ from measured_bodies import UP, ball, box, pick_and_place, still, stream
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import (
+    Agent,
     Capture,
     PivotContact,
     Purpose,
@@ -28,6 +29,7 @@ from capar.model.facts import (
     Intended,
     LookingAt,
     Moving,
+    OfAgent,
     RateMhz,
     Touching,
     ZeroCrossing,
@@ -283,3 +285,25 @@ def test_eyes_without_a_head_look_themselves() -> None:
     alone = replace(capture, sensors=tuple(s for s in capture.sensors if s.name != "head"))
     looks = [fact for fact in measure(alone).facts if isinstance(fact, LookingAt)]
     assert looks == [LookingAt("eyes", "seen", 0, 199)]
+
+
+def test_of_several_agents_it_is_told_whose_hands_heads_and_other_parts_are_which() -> None:
+    capture = pick_and_place()
+    (hand,) = capture.sensors
+    there = still((1.0, 1.0, 1.0), len(capture.times))
+    bo = Sensor("bo_hand", "hand", "left", "left_arm", there, ball(0.05), agent="bo")
+    own = TagObject("head", TagType.SELF, there, ball(0.1))
+    others = TagObject("bo_head", TagType.SELF, there, ball(0.1), agent="bo")
+    both = replace(
+        capture,
+        sensors=(hand, bo),
+        objects=(*capture.objects, own, others),
+        others=(Agent("bo"),),
+    )
+    assert of_kind(both, OfAgent) == [
+        OfAgent("bo_hand", "bo"),
+        OfAgent("bo_head", "bo"),
+        OfAgent("head", "agent"),
+        OfAgent("right_hand", "agent"),
+    ]
+    assert of_kind(capture, OfAgent) == []

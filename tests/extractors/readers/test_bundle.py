@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from capar.model import geometry
-from capar.model.capture import Capture, Role, ShapeSource
+from capar.model.capture import Capture, Role, ShapeSource, Source
 from capar.model.errors import CaparError, CaptureError, FileError, UnknownNameError
 from extractors.readers.bundle.capture_toml import frame_times, read_capture, takes
+from extractors.readers.bundle.world import to_world
+from extractors.readers.recording import Recording
 
 BASE = """name = "trial"
 unit = "m"
@@ -151,6 +153,15 @@ def test_a_left_handed_world_becomes_a_right_handed_one(tmp_path: Path) -> None:
         there = right.sensor("right_hand").stream.pose(frame).as_matrix()
         assert np.allclose(here[:3, :3], mirror @ there[:3, :3] @ mirror, atol=1e-9)
         assert np.allclose(here[:3, 3], mirror @ there[:3, 3], atol=1e-9)
+
+
+def test_markers_of_a_left_handed_world_in_millimetres_are_mirrored_and_in_metres() -> None:
+    points = np.random.default_rng(0).uniform(-2000.0, 2000.0, (5, 3))
+    recording = Recording(
+        Source("a.trc", "trc", ""), markers={"wrist": points}, marker_times=np.arange(5.0)
+    )
+    world = to_world(recording, unit_m=0.001, up="z", left_handed=True)
+    np.testing.assert_allclose(world.markers["wrist"], 0.001 * points * [-1.0, 1.0, 1.0])
 
 
 def test_y_up_is_turned_to_z_up(tmp_path: Path) -> None:
