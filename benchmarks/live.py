@@ -15,7 +15,6 @@ import argparse
 import json
 import resource
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,7 @@ import numpy as np
 import scene
 
 from capar.model.bodies import Stream
-from capar.model.capture import Capture, Role, Sensor
+from capar.model.capture import Capture, Sensor
 from capar.pipelines.live.events import Status
 from capar.pipelines.live.frames import Poses, body_names, replayed
 from capar.pipelines.live.observer import LiveObserver
@@ -35,26 +34,9 @@ RATE_HZ = 103.3
 TENTHS = 10
 
 
-def heavy(minutes: float, *, faces: int) -> Capture:
-    """The scene of the other benchmarks with more sensors on the trunk and the limbs."""
-    capture = scene.capture(minutes, rate_hz=RATE_HZ, faces=faces)
-    times = capture.times
-    random = np.random.default_rng(1)
-    more = []
-    for index in range(12 - len(capture.sensors)):
-        places = np.array([0.0, 0.05 * index, 1.0]) + 0.02 * np.sin(
-            np.outer(times, [0.3 + 0.1 * index, 0.5, 0.2])
-        )
-        places += random.normal(0.0, 0.0002, places.shape)
-        turns = np.tile([1.0, 0.0, 0.0, 0.0], (len(times), 1))
-        stream = Stream(times, places, turns)
-        more.append(Sensor(f"trunk{index}", "spine", "none", "trunk", stream, role=Role.ATTENDS))
-    return replace(capture, sensors=(*capture.sensors, *more))
-
-
 def heavy_figures(minutes: float, *, faces: int) -> dict[str, Any]:
     """Real-time factor, delay and agreement in the heavy scene."""
-    capture = heavy(minutes, faces=faces)
+    capture = scene.with_trunk(scene.capture(minutes, rate_hz=RATE_HZ, faces=faces))
     known = calibrate(capture)
     observer = LiveObserver(capture, known)
     frames = replayed(capture)

@@ -1,5 +1,6 @@
 """A capture of any length for the benchmarks: hands that handle objects of many triangles."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -132,3 +133,19 @@ def capture(
     )
     objects.append(TagObject("head", TagType.SELF, gaze, skull))
     return Capture("benchmark", tuple(sensors), tuple(objects), contact_tolerance_m=0.005)
+
+
+def with_trunk(capture: Capture, sensors: int = 12) -> Capture:
+    """The same with so many sensors: the others are on the trunk and the limbs, and act not."""
+    times = capture.times
+    random = np.random.default_rng(1)
+    more = []
+    for index in range(sensors - len(capture.sensors)):
+        places = np.array([0.0, 0.05 * index, 1.0]) + 0.02 * np.sin(
+            np.outer(times, [0.3 + 0.1 * index, 0.5, 0.2])
+        )
+        places += random.normal(0.0, 0.0002, places.shape)
+        turns = np.tile([1.0, 0.0, 0.0, 0.0], (len(times), 1))
+        stream = Stream(times, places, turns)
+        more.append(Sensor(f"trunk{index}", "spine", "none", "trunk", stream, role=Role.ATTENDS))
+    return replace(capture, sensors=(*capture.sensors, *more))

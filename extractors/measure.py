@@ -103,7 +103,7 @@ class Measurements:
     """What was decided for the whole recording."""
 
     tracks: Mapping[str, Track]
-    """By sensor, acting or attending."""
+    """By acting sensor."""
 
     attention: Mapping[str, Attention]
     """By sensor that attends, and by head that acts."""
@@ -168,8 +168,12 @@ def measured(
     """
     limits = thresholds_of(calibration)
     tracks = {
-        name: _track(body.poses, calibration.sensor(name).highest_speed_mps, limits)
-        for name, body in bodies.sensors.items()
+        sensor.name: _track(
+            bodies.sensors[sensor.name].poses,
+            calibration.sensor(sensor.name).highest_speed_mps,
+            limits,
+        )
+        for sensor in capture.acting
     }
     looks = {sensor.name: attention(capture, sensor, bodies, limits) for sensor in seeing(capture)}
     near = contacts(capture, bodies, calibration, limits, answers)

@@ -152,14 +152,14 @@ def along(pair: Pair) -> Holds:
     sizes = np.sort(other.shape.size)
     if sizes[2] < 2.0 * sizes[1]:
         return out
-    axis = other.turns_at(slice(None))[:, :, int(np.argmax(other.shape.size))]
-    times = body.poses.smooth.times
-    step = derivative(body.middles, times)
+    near = np.flatnonzero(pair.near)
+    axis = other.turns_at(near)[:, :, int(np.argmax(other.shape.size))]
+    step = derivative(body.middles, body.poses.smooth.times)[near]
     pace = np.linalg.norm(step, axis=1)
     with np.errstate(invalid="ignore"):
         straight = np.abs(np.einsum("ij,ij->i", step, axis)) >= np.cos(thresholds.along_rad) * pace
-        moves = pace > thresholds.rest_speed_mps
-        return np.asarray(straight & moves & pair.near)
+        out[near] = straight & (pace > thresholds.rest_speed_mps)
+    return out
 
 
 def between(body: BodyGeometry, one: BodyGeometry, other: BodyGeometry) -> Holds:
