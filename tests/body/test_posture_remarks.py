@@ -36,8 +36,7 @@ def told(made: Fit, capture: Capture = BARE) -> str:
 
 
 def test_of_a_body_that_stands_with_its_arms_down_nothing_is_said() -> None:
-    assert told(posed(right_hip_abduction=0.2, left_hip_abduction=0.2)).count("\n") == 0
-    assert "upper arm" not in told(posed())
+    assert told(posed(right_hip_abduction=0.2, left_hip_abduction=0.2)) == ""
 
 
 @pytest.mark.parametrize(
