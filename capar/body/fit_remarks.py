@@ -135,13 +135,18 @@ def _assumed(made: Fit, capture: Capture, floor_m: float | None) -> Iterator[str
 def _legs(made: Fit, floor_m: float | None) -> Iterator[str]:
     """Knees that never straighten, feet that point apart, soles that float."""
     unseen = set(made.unrecorded)
-    for side in SIDES:
-        bend = made.motion[:, made.human.index(f"{side}_knee_flexion")]
-        if f"{side}_shank" not in unseen and bend.min() > BENT:
-            yield (
-                f"the {side} knee is never straighter than {np.degrees(bend.min()):.0f} degrees, as"
-                " hip, knee and ankle are recorded"
-            )
+    bent = {
+        side: float(made.motion[:, made.human.index(f"{side}_knee_flexion")].min())
+        for side in SIDES
+        if f"{side}_shank" not in unseen
+    }
+    knees = [
+        f"the {side} knee is never straighter than {np.degrees(angle):.0f} degrees"
+        for side, angle in bent.items()
+        if angle > BENT
+    ]
+    if knees:
+        yield f"{listed(knees)}, as hip, knee and ankle are recorded"
     feet = [f"{side}_foot" for side in SIDES]
     if unseen & set(feet):
         return
@@ -193,23 +198,17 @@ def _back(made: Fit) -> Iterator[str]:
     lean = np.arccos(np.clip(upwards, -1.0, 1.0))
     if lean.max() > LEANING:
         yield f"the chest, and the neck with it, {_most(made, lean, 'leans from upright')}"
-    bend = _summed(made, SPINE, "flexion")
-    least, most = int(np.argmin(bend)), int(np.argmax(bend))
-    if bend[least] < ARCHED:
-        yield (
-            f"the back is arched backwards by up to {-np.degrees(bend[least]):.0f} degrees, at "
-            f"{made.times[least]:.2f} s"
-        )
-    if bend[most] > BOWED:
-        yield (
-            f"the back is bent forwards by up to {np.degrees(bend[most]):.0f} degrees, at "
-            f"{made.times[most]:.2f} s"
-        )
-
-    for way, done in WAYS.items():
+    bend, told = _summed(made, SPINE, "flexion"), []
+    if bend.min() < ARCHED:
+        told.append(_most(made, -bend, "arched backwards"))
+    if bend.max() > BOWED:
+        told.append(_most(made, bend, "bent forwards"))
+    for way in ("bend", "turn"):
         angle = np.abs(_summed(made, SPINE, way))
-        if way != "flexion" and angle.max() > TWISTED:
-            yield f"the back is {_most(made, angle, done)}"
+        if angle.max() > TWISTED:
+            told.append(_most(made, angle, WAYS[way]))
+    if told:
+        yield f"the back is {listed(told)}"
 
 
 def _most(made: Fit, angle: Float[np.ndarray, "frames"], done: str) -> str:
