@@ -179,7 +179,8 @@ def _apart(
 ) -> Float[np.ndarray, "points"]:
     """Distances of points from a form in its own frame, negative inside [m].
 
-    Those from ellipsoids are exact on their surface, and estimated by the slope elsewhere.
+    Those from ellipsoids are estimated by the slope at the point. Outside they are no larger than
+    the true ones; inside no larger than the nearest way out along an axis.
     """
     if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
         along = np.clip(points[:, 2], -size[1], size[1])
@@ -191,7 +192,11 @@ def _apart(
         return np.asarray(outside + np.minimum(beyond.max(axis=1), 0.0))
     scaled = np.linalg.norm(points / size, axis=1)
     slope = np.maximum(np.linalg.norm(points / size**2, axis=1), 1e-9)
-    return np.asarray(scaled * (scaled - 1.0) / slope)
+    sloping = scaled * (scaled - 1.0) / slope
+    shares = (points / size) ** 2
+    rest = np.maximum(1.0 - shares.sum(axis=1, keepdims=True) + shares, 0.0)
+    out = (size * np.sqrt(rest) - np.abs(points)).min(axis=1)
+    return np.where(scaled < 1.0, np.maximum(sloping, -out), sloping)
 
 
 def _at_hands(made: Fit, thing: str, nears: Mapping[str, _Near]) -> Iterator[str]:
