@@ -9,7 +9,7 @@ from scipy.signal import find_peaks
 from scipy.spatial.transform import Rotation
 
 from capar.body.fitting import Fit
-from capar.model.capture import Capture
+from capar.model.capture import Capture, Shape
 from extractors.readers.body_names.body_names import SIDES, without_side
 
 FAR_M = 0.03
@@ -41,6 +41,9 @@ LEANING = np.radians(20.0)
 
 NECK_FAR = np.radians(25.0)
 """A neck that, with the head on it, is bent or turned by more than this is reported [rad]."""
+
+POINT_M = 0.06
+"""A head's shape that is smaller than this says no more of the head than a point [m]."""
 
 INSIDE_M, NEAR_M = 0.01, 0.02
 """A hand that is deeper in the thigh or trunk than the one, or as near as the other, is reported
@@ -132,13 +135,18 @@ def _assumed(made: Fit, capture: Capture, floor_m: float | None) -> Iterator[str
 def _legs(made: Fit, floor_m: float | None) -> Iterator[str]:
     """Knees that never straighten, feet that point apart, soles that float."""
     unseen = set(made.unrecorded)
-    for side in SIDES:
-        bend = made.motion[:, made.human.index(f"{side}_knee_flexion")]
-        if f"{side}_shank" not in unseen and bend.min() > BENT:
-            yield (
-                f"the {side} knee is never straighter than {np.degrees(bend.min()):.0f} degrees, as"
-                " hip, knee and ankle are recorded"
-            )
+    bent = {
+        side: float(made.motion[:, made.human.index(f"{side}_knee_flexion")].min())
+        for side in SIDES
+        if f"{side}_shank" not in unseen
+    }
+    knees = [
+        f"the {side} knee is never straighter than {np.degrees(angle):.0f} degrees"
+        for side, angle in bent.items()
+        if angle > BENT
+    ]
+    if knees:
+        yield f"{listed(knees)}, as hip, knee and ankle are recorded"
     feet = [f"{side}_foot" for side in SIDES]
     if unseen & set(feet):
         return
@@ -190,23 +198,17 @@ def _back(made: Fit) -> Iterator[str]:
     lean = np.arccos(np.clip(upwards, -1.0, 1.0))
     if lean.max() > LEANING:
         yield f"the chest, and the neck with it, {_most(made, lean, 'leans from upright')}"
-    bend = _summed(made, SPINE, "flexion")
-    least, most = int(np.argmin(bend)), int(np.argmax(bend))
-    if bend[least] < ARCHED:
-        yield (
-            f"the back is arched backwards by up to {-np.degrees(bend[least]):.0f} degrees, at "
-            f"{made.times[least]:.2f} s"
-        )
-    if bend[most] > BOWED:
-        yield (
-            f"the back is bent forwards by up to {np.degrees(bend[most]):.0f} degrees, at "
-            f"{made.times[most]:.2f} s"
-        )
-
-    for way, done in WAYS.items():
+    bend, told = _summed(made, SPINE, "flexion"), []
+    if bend.min() < ARCHED:
+        told.append(_most(made, -bend, "arched backwards"))
+    if bend.max() > BOWED:
+        told.append(_most(made, bend, "bent forwards"))
+    for way in ("bend", "turn"):
         angle = np.abs(_summed(made, SPINE, way))
-        if way != "flexion" and angle.max() > TWISTED:
-            yield f"the back is {_most(made, angle, done)}"
+        if angle.max() > TWISTED:
+            told.append(_most(made, angle, WAYS[way]))
+    if told:
+        yield f"the back is {listed(told)}"
 
 
 def _most(made: Fit, angle: Float[np.ndarray, "frames"], done: str) -> str:
@@ -218,7 +220,11 @@ def _head(made: Fit, capture: Capture) -> Iterator[str]:
     """Where on the head the tracked point is that views draw, and how far the neck is bent."""
     if "head" in made.unrecorded:
         return
-    tracked = [one for one in capture.sensors if one.end_effector == "head" and one.shape is None]
+    tracked = [
+        sensor
+        for sensor in capture.sensors
+        if sensor.end_effector == "head" and _small(sensor.shape)
+    ]
     ways = {way: np.abs(_summed(made, NECK, way)) for way in WAYS}
     far = [_most(made, angle, WAYS[way]) for way, angle in ways.items() if angle.max() > NECK_FAR]
     if far and not tracked:
@@ -237,6 +243,11 @@ def _head(made: Fit, capture: Capture) -> Iterator[str]:
             f"head on it, bent forwards by {_range(made, NECK, 'flexion')} degrees, sideways by "
             f"{_range(made, NECK, 'bend')} and turned by {_range(made, NECK, 'turn')}"
         )
+
+
+def _small(shape: Shape | None) -> bool:
+    """Whether a shape is drawn as a point, or nearly."""
+    return shape is None or float(np.ptp(shape.vertices, axis=0).max()) < POINT_M
 
 
 def _range(made: Fit, parts: tuple[str, ...], way: str) -> str:
@@ -263,11 +274,11 @@ def _inside(made: Fit) -> Iterator[str]:
             continue
         if "head" in unseen:
             yield _beside_unseen(made, side, frames)
-        hand, deepest = _forms(made, (f"{side}_hand", f"{side}_fingers")), (NEAR_M, 0.0, "")
+        hand, deepest = forms_of(made, (f"{side}_hand", f"{side}_fingers")), (NEAR_M, 0.0, "")
         for frame in frames:
             data.qpos[:] = made.motion[frame]
             mujoco.mj_kinematics(model, data)
-            for form in _forms(made, BODY):
+            for form in forms_of(made, BODY):
                 for own in hand:
                     apart = mujoco.mj_geomDistance(model, data, own, form, 0.05, None)
                     segment = model.body(model.geom_bodyid[form]).name
@@ -293,8 +304,8 @@ def _beside_unseen(made: Fit, side: str, frames: Int[np.ndarray, "some"]) -> str
     for frame in frames:
         data.qpos[:] = made.motion[frame]
         mujoco.mj_kinematics(model, data)
-        for form in _forms(made, NECK):
-            for own in _forms(made, (f"{side}_hand", f"{side}_fingers", f"{side}_fingertips")):
+        for form in forms_of(made, NECK):
+            for own in forms_of(made, (f"{side}_hand", f"{side}_fingers", f"{side}_fingertips")):
                 apart = mujoco.mj_geomDistance(model, data, own, form, 2.0, None)
                 least, at = min((least, at), (apart, float(made.times[frame])))
     where = f"{1e3 * least:.0f} mm from" if least > 0.0 else f"{-1e3 * least:.0f} mm inside"
@@ -304,8 +315,8 @@ def _beside_unseen(made: Fit, side: str, frames: Int[np.ndarray, "some"]) -> str
     )
 
 
-def _forms(made: Fit, segments: tuple[str, ...]) -> list[int]:
-    """Numbers of the surfaces of segments."""
+def forms_of(made: Fit, segments: tuple[str, ...]) -> list[int]:
+    """Numbers of the surfaces of segments in the body's model."""
     model = made.human.model
     return [
         number

@@ -25,7 +25,8 @@ CLOSE_M = 0.1
 """A hand that never comes so near to an object has nothing to do with it [m]."""
 
 INSIDE_M, NEAR_M = 0.01, 0.03
-"""An object that is deeper in the body than the one, or as near as the other, is reported [m]."""
+"""An object that is deeper in the body than the one, or as near as the other, is reported [m];
+beside forearms, whose hands take things, only where it is in them."""
 
 APART_M, HEAD_APART_M = 0.2, 0.5
 """Limbs, and the head, to which a mobile object comes nearer than these, but not near, are named
@@ -143,9 +144,7 @@ def _nears(made: Fit, capture: Capture, thing: TagObject, frames: np.ndarray) ->
         for number, name in enumerate(owners):
             known = tree.query_ball_point(middles[number], model.geom_rbound[number] + CLOSE_M)
             known = known or tree.query(middles[number], min(ROUGH, tree.n))[1]
-            points = pose.apply(tree.data[known]) - data.geom_xpos[number]
-            local = points @ data.geom_xmat[number].reshape(3, 3)
-            apart = _apart(model.geom_type[number], model.geom_size[number], local)
+            apart = from_form(model, data, number, pose.apply(tree.data[known]))
             out[name][row] = min(out[name][row], float(apart.min()))
     return {name: _Near(times, metres) for name, metres in out.items()}
 
@@ -160,12 +159,28 @@ def _surface_points(thing: TagObject) -> Float[np.ndarray, "points 3"]:
     return np.concatenate([np.asarray(points), vertices])
 
 
+def from_form(
+    model: mujoco.MjModel, data: mujoco.MjData, form: int, points: Float[np.ndarray, "points 3"]
+) -> Float[np.ndarray, "points"]:
+    """Distances of points in the world from one of a body's surfaces, negative inside [m].
+
+    Args:
+        model: The body's.
+        data: A posture of it.
+        form: Number of the surface.
+        points: In the world [m].
+    """
+    local = (points - data.geom_xpos[form]) @ data.geom_xmat[form].reshape(3, 3)
+    return _apart(model.geom_type[form], model.geom_size[form], local)
+
+
 def _apart(
     kind: int, size: Float[np.ndarray, "3"], points: Float[np.ndarray, "points 3"]
 ) -> Float[np.ndarray, "points"]:
     """Distances of points from a form in its own frame, negative inside [m].
 
-    Those from ellipsoids are exact on their surface, and estimated by the slope elsewhere.
+    Those from ellipsoids are estimated by the slope at the point. Outside they are no larger than
+    the true ones; inside no larger than the nearest way out along an axis.
     """
     if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
         along = np.clip(points[:, 2], -size[1], size[1])
@@ -177,7 +192,11 @@ def _apart(
         return np.asarray(outside + np.minimum(beyond.max(axis=1), 0.0))
     scaled = np.linalg.norm(points / size, axis=1)
     slope = np.maximum(np.linalg.norm(points / size**2, axis=1), 1e-9)
-    return np.asarray(scaled * (scaled - 1.0) / slope)
+    sloping = scaled * (scaled - 1.0) / slope
+    shares = (points / size) ** 2
+    rest = np.maximum(1.0 - shares.sum(axis=1, keepdims=True) + shares, 0.0)
+    out = (size * np.sqrt(rest) - np.abs(points)).min(axis=1)
+    return np.where(scaled < 1.0, np.maximum(sloping, -out), sloping)
 
 
 def _at_hands(made: Fit, thing: str, nears: Mapping[str, _Near]) -> Iterator[str]:
@@ -213,7 +232,7 @@ def _cuts(
         (thing, part): near
         for thing, segments in nears.items()
         for part, near in _by_part(made, segments, segment_words).items()
-        if near.least < NEAR_M
+        if near.least < (0.0 if part.endswith("forearm") else NEAR_M)
     }
     for (thing, part), near in sorted(found.items(), key=lambda one: one[1].least)[:MOST_CUTS]:
         if near.least < -INSIDE_M:

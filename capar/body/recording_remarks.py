@@ -77,9 +77,9 @@ def recorded_feet(made: Fit, points: Points) -> list[str]:
             out.append(
                 f"the line from {pair[0]} to {pair[1]} is not the {side} sole: it lies at "
                 f"{middle:.0f} degrees to it in the median ({low:.0f} to {high:.0f} "
-                "in nine of ten frames), so that one end of it stands off the drawn foot"
+                "in nine of ten frames)"
             )
-    return out
+    return [f"{listed(out)}, so that one end stands off the drawn foot"] if out else []
 
 
 def stand_off(made: Fit, names: Mapping[str, BodyName]) -> list[str]:

@@ -15,6 +15,7 @@ from capar.body.fitting import Fit
 from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import LEAST_EXACT, fit_markers
 from capar.body.object_remarks import corners_of, is_floor, object_remarks
+from capar.body.posture_remarks import posture_remarks
 from capar.body.recording_remarks import (
     closed_hands,
     passing_legs,
@@ -143,7 +144,7 @@ def remarks_on(place: str | Path, capture: Capture, made: Fit) -> list[str]:
     """
     found = whole_body(place)
     said = [*remarks(made, capture, ground(capture)), *_stretching(capture)]
-    said += object_remarks(made, capture) + passing_legs(made)
+    said += posture_remarks(made, capture) + object_remarks(made, capture) + passing_legs(made)
     if found is not None:
         hands = closings(made.human, made.motion, found.points, found.names)
         said += closed_hands(made, hands)

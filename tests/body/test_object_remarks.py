@@ -3,13 +3,15 @@
 from dataclasses import replace
 
 import motions
+import mujoco
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from capar.body.anthropometry import ready_made
 from capar.body.fitting import Fit
 from capar.body.human import Human
-from capar.body.object_remarks import object_remarks
+from capar.body.object_remarks import _apart, object_remarks
 from capar.body.things import box
 from capar.model.capture import Capture, TagObject, TagType
 
@@ -89,3 +91,19 @@ def test_an_object_before_the_head_is_said_to_be_away_from_it() -> None:
     assert line.startswith("crate stays at least ")
     assert "from the head (0.00 s)" in line
     assert object_remarks(standing(), with_box(top + np.array([3.0, 0.0, 0.0]))) == []
+
+
+def test_distances_from_ellipsoids_are_near_those_from_points_all_over_them() -> None:
+    size = np.array([0.04, 0.05, 0.11])
+    rng = np.random.default_rng(2)
+    around = rng.normal(size=(60_000, 3))
+    surface = size * around / np.linalg.norm(around, axis=1, keepdims=True)
+    points = rng.uniform(-1.4, 1.4, (300, 3)) * size
+    told = _apart(mujoco.mjtGeom.mjGEOM_ELLIPSOID, size, points)
+    inside = np.linalg.norm(points / size, axis=1) < 1.0
+    true = cKDTree(surface).query(points)[0] * np.where(inside, -1.0, 1.0)
+    np.testing.assert_array_equal(told < 0.0, inside)
+    assert np.abs(told - true)[np.abs(true) < 0.03].max() < 0.008
+    assert (told - true)[~inside].max() < 1e-3  # "at least" holds
+    middle = _apart(mujoco.mjtGeom.mjGEOM_ELLIPSOID, size, np.array([[0.0, 0.0, 1e-6]]))
+    assert middle[0] == pytest.approx(-0.04, abs=1e-6)
