@@ -150,7 +150,7 @@ def _long_gap(each: Notice) -> str:
     times = int(values["times"])
     often = "" if times == 1 else f"{'twice' if times == 2 else f'{times} times'}, for longest "
     follows = "it is held to stay" if values["fixed"] else (
-        "contact before and after is assumed to have lasted"
+        "what touched it before and after is assumed to have touched it then"
     )  # fmt: skip
     span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
     return f"{body!r} was lost {often}from {span}; {follows}"
@@ -229,7 +229,7 @@ class NoticeKind:
 KINDS: Mapping[str, NoticeKind] = {
     "long-gap": NoticeKind(
         _long_gap,
-        "bodies that were lost for some time",
+        "tracks with gaps",
     ),
     "markers-not-rigid": NoticeKind(
         "{0}: {frames} frames in which its markers are not rigid are taken as lost",
@@ -244,7 +244,7 @@ KINDS: Mapping[str, NoticeKind] = {
     "stand-in-shape": NoticeKind(
         "{0!r} is a stand-in: {shape}",
         "stand-in shapes",
-        "the recording does not tell the shape of {names}; a rough one is assumed",
+        "rough shapes are assumed for {names}",
     ),
     "no-shape": NoticeKind(
         "{0!r} has no shape, so no contact of it is known", "bodies without a shape"
@@ -252,13 +252,13 @@ KINDS: Mapping[str, NoticeKind] = {
     "objects-left-out": NoticeKind(
         _objects_left_out,
         "groups of objects left out",
-        "the recording does not tell the shape of {names}; nothing is told of that",
+        "left out because the shape is not known: {names}",
         listed=True,
     ),
     "assumed-support": NoticeKind(
         "{0!r} is assumed: {assumed}",
         "assumed supports",
-        "the place of {names} is assumed: the recording does not have it",
+        "the recording lacks {names}; the place is assumed",
     ),
     "moving-ground": NoticeKind(
         "{0!r} goes by under the feet of {agent} at {speed_mps:.2f} m/s, as a treadmill does: feet "
@@ -268,12 +268,12 @@ KINDS: Mapping[str, NoticeKind] = {
     "pivot-distance": NoticeKind(
         _pivot_distance,
         "pairs that touch by the distance of their origins",
-        "contact of {names} is judged by distance alone",
+        "contact is judged by distance alone for {names}",
     ),
     "touch-estimated": NoticeKind(
         _touch_estimated,
         "pairs that touch by a distance estimated from the recording",
-        "contact of {names} is judged by distance alone",
+        "contact is judged by distance alone for {names}",
     ),
     "distance-contradicted": NoticeKind(
         lambda each: distance_contradicted(each.bodies, each.fields),
@@ -283,13 +283,13 @@ KINDS: Mapping[str, NoticeKind] = {
     "mount-gap": NoticeKind(
         lambda each: mount_gap(each.bodies, each.fields),
         "bodies carried with a gap",
-        "as measured, there is a gap between these while they move as one: {names}",
+        "a gap was measured between bodies that move as one: {names}",
         fault=True,
     ),
     "no-mover": NoticeKind(
         lambda each: no_mover(each.bodies, each.fields),
         "objects that move and nothing moves them",
-        "not all of the motion of {names} is explained by what was recorded",
+        "at times, nothing that was recorded moved {names}",
         fault=True,
     ),
     "up-contradicted": NoticeKind(

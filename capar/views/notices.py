@@ -4,7 +4,7 @@ import re
 from collections.abc import Collection, Iterable, Sequence
 
 from capar.model.notices import KINDS, Notice
-from kb.lexicon.english import joined
+from kb.lexicon.english import joined, number
 
 HEADING = "Known with reservations:"
 
@@ -55,7 +55,9 @@ def _plain(code: str, group: Sequence[Notice]) -> Iterable[str]:
     """What notices of one code mean to whoever reads what was done."""
     if KINDS[code].plain:
         names = [*dict.fromkeys(name for notice in group for name in _about(notice))]
-        named = joined([*names[:NAMED], "others"] if len(names) > NAMED else names)
+        left = len(names) - NAMED
+        others = f"{number(left)} other{'s' if left > 1 else ''}"
+        named = joined([*names[:NAMED], others] if left > 0 else names)
         return [f"note: {KINDS[code].plain.format(names=named)}"]
     return [f"note: {text}" for text in _texts(code, group, most=1)]
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import groupby
 
 from kb.language.clause import Clause, in_time
-from kb.language.lexicalisation import BY_TURNS, JOINT, THIS_WAY, TURN
+from kb.language.lexicalisation import BY_TURNS, DOWN, JOINT, THIS_WAY, TURN
 from kb.language.repeating import whole
 from kb.language.thresholds import MOSTLY
 
@@ -19,8 +19,8 @@ MOST_TURNS = 3
 def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses of a summary; where hands mostly turn one thing about in turn, that as one.
 
-    What is done before the first turn and after the last stays; so does all where other things are
-    handled, too.
+    What is done before the first turn and after the last stays, but for putting the thing down; so
+    does all where other things are handled, too.
 
     Args:
         steps: What was done, in order of time.
@@ -55,7 +55,7 @@ def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
         and not (lifted and _rises(step))
         and not (step.pattern in {TURN, THIS_WAY} and _helps(step, steps))
     ]
-    after = [step for step in steps if step.start_s >= last.end_s]
+    after = [step for step in steps if step.start_s >= last.end_s and step.pattern != DOWN]
     return tuple(sorted((*before, main, *after), key=in_time))
 
 

@@ -120,6 +120,20 @@ class Scene:
             return False
         return abs(float(then[-1, 2] - now[-1, 2])) < LEVEL_M
 
+    def sets_down(self, thing: str, start_s: float, end_s: float) -> bool:
+        """Whether a thing stands at the end where it is left, and did not at the start."""
+        return self.left_there(thing, end_s) and not self.left_there(thing, start_s)
+
+    def comes_down_s(self, thing: str, start_s: float, end_s: float) -> float:
+        """Since when, within a time, a thing is on its way down to where it is at the end [s]."""
+        places = self._places(thing, start_s, end_s)
+        if places is None:
+            return end_s
+        above = places[:, 2] - places[-1, 2]
+        high = np.flatnonzero(above > min(RISEN_M, 0.5 * float(above.max())))
+        step_s = (end_s - start_s) / max(len(above) - 1, 1)
+        return start_s + float(max(high, default=0)) * step_s
+
     def nears(self, body: str, thing: str, start_s: float, end_s: float, by_m: float) -> bool:
         """Whether a body is nearer to where a thing is at the end, by so much [m]."""
         places, there = self._places(body, start_s, end_s), self._places(thing, end_s, end_s)

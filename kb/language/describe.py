@@ -28,7 +28,7 @@ from kb.language.hands import (
 from kb.language.holding import Holding
 from kb.language.lexicalisation import FREE, STEP, Phrasebook
 from kb.language.listing import listed
-from kb.language.omitting import without_coming
+from kb.language.omitting import set_down, without_coming
 from kb.language.placing import placed
 from kb.language.planning import sentences
 from kb.language.realisation import Realiser
@@ -96,7 +96,7 @@ def _story(
     if observation.profile != TO_THE_LETTER:
         steps = stowed(steps, observation.objects, scene)
         there = placed(steps, observation.objects, scene, Turning(observation))
-        steps = in_sequence(without_coming(there, scene))
+        steps = in_sequence(without_coming(set_down(there, scene), scene))
     if detail == "summary":
         steps = chosen(gathered(in_turns(steps), observation.objects, scene))
     if not timed:

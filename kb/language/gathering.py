@@ -10,7 +10,7 @@ from kb.language.lexicalisation import ONE_BY_ONE
 from kb.language.repeating import whole
 from kb.language.stowing import containers, is_container
 from kb.language.thresholds import MOST_DEEDS
-from kb.lexicon.english import joined
+from kb.lexicon.english import joined, number
 
 FEWEST_PACKED = 3
 """So many things that are put into one box are packed."""
@@ -21,7 +21,8 @@ def gathered(
 ) -> tuple[Clause, ...]:
     """The clauses of a summary; where one hand packs things, or moves too many, that as one.
 
-    What is only moved within the box is left out beside that.
+    What is only moved within the box is left out beside that. Of more than can be named it is told
+    how many there are.
 
     Args:
         steps: What was done, in order of time.
@@ -55,17 +56,20 @@ def _as_one(
     packed = goal is not None and is_container(goal)
     if len(things) <= MOST_DEEDS and not packed:
         return None
-    places = joined([f"{{{number}}}" for number in range(1, len(things) + 1)])
+    source = [place.name for place in objects if _bore(place, things, scene)][:1]
+    if packed and len(things) > MOST_DEEDS:
+        told, things = f"{number(len(things))} things", ()
+    else:
+        told = joined([f"{{{place}}}" for place in range(1, len(things) + 1)])
     if goal is not None and packed:
-        source = [place.name for place in objects if _bore(place, things, scene)][:1]
         there = (*source, goal.name)
-        number = len(things) + len(source)
-        origin = f" from {{{number}}}" if source else ""
-        pattern = f"pack {places}{origin} into {{{number + 1}}}"
+        last = len(things) + len(source)
+        origin = f" from {{{last}}}" if source else ""
+        pattern = f"pack {told}{origin} into {{{last + 1}}}"
     else:
         there = (goal.name,) if goal is not None else ()
         to_there = f" to {{{len(things) + 1}}}" if goal is not None else ""
-        pattern = f"move {places}{to_there} {{with}}{ONE_BY_ONE}"
+        pattern = f"move {told}{to_there} {{with}}{ONE_BY_ONE}"
     return replace(
         whole(steps, pattern=pattern),
         objects=(*things, *there),

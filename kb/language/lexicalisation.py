@@ -44,7 +44,7 @@ HELPS = frozenset({"steady {1}"})
 ONE_BY_ONE = "one after the other"
 """How several things are moved."""
 
-BY_TURNS = "by turns"
+BY_TURNS = "in turn"
 """How hands do something one after the other several times."""
 
 BIT_BY_BIT = "bit by bit"

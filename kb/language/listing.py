@@ -2,14 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from kb.language.clause import Clause
 from kb.language.repeating import whole
 from kb.language.thresholds import MOST_DEEDS
 from kb.lexicon.english import joined
-
-FEWEST = 2
-"""So many things at least make a list."""
 
 
 def listed(steps: Sequence[Clause]) -> tuple[Clause, ...]:
@@ -18,14 +16,34 @@ def listed(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     Args:
         steps: What was done, in order of time.
     """
-    out: list[list[Clause]] = []
+    runs: list[list[Clause]] = []
     for step in steps:
-        run = out[-1] if out else []
-        if run and len(run) < MOST_DEEDS and _goes_on(run, step):
-            run.append(step)
+        if runs and _goes_on(runs[-1], step):
+            runs[-1].append(step)
         else:
-            out.append([step])
-    return tuple(step for run in out for step in (_as_list(run) if len(run) >= FEWEST else run))
+            runs.append([step])
+    parts = [part for run in runs for part in _parts(run)]
+    return tuple(step for part in parts for step in (_as_list(part) if len(part) > 1 else part))
+
+
+def _parts(run: Sequence[Clause]) -> list[Sequence[Clause]]:
+    """A run in as few parts as can be told as lists, parted at the longest pauses."""
+    best: list[tuple[int, float, tuple[int, ...]]] = [(0, 0.0, ())]
+    for end in range(1, len(run) + 1):
+        ways = []
+        for first in range(max(end - MOST_DEEDS, 0), end):
+            parts, without_s, cuts = best[first]
+            pause_s = run[first].start_s - run[first - 1].end_s if first else 0.0
+            ways.append((parts + 1, without_s - pause_s, (*cuts, first)))
+        best.append(min(ways, key=_preference))
+    cuts = (*best[-1][2], len(run))
+    return [run[first:last] for first, last in pairwise(cuts)]
+
+
+def _preference(way: tuple[int, float, tuple[int, ...]]) -> tuple[int, float, list[int]]:
+    """Fewer parts first, then longer pauses between them, then longer lists before shorter ones."""
+    parts, without_s, cuts = way
+    return parts, round(without_s, 3), [-cut for cut in cuts]
 
 
 def _goes_on(run: Sequence[Clause], step: Clause) -> bool:

@@ -5,8 +5,18 @@ from dataclasses import replace
 
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import DOWN, LET_GO, LOWER, MOMENTARY, QUIET, REACH
-from kb.language.thresholds import REST_S
+from kb.language.lexicalisation import (
+    DOWN,
+    LET_GO,
+    LOWER,
+    MOMENTARY,
+    QUIET,
+    REACH,
+    THIS_WAY,
+    TILT,
+    TURN,
+)
+from kb.language.thresholds import REST_S, UNSEEN_S
 
 UP = ("lift {1}", "raise {1}", "carry {1}", "hold {1} up", "hold {1} overhead")
 """How patterns begin of a thing that is off what it stood on then."""
@@ -28,6 +38,27 @@ def without_coming(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
             out.append(step)
         elif step.pattern == LET_GO and _is_up(steps[:at], step):
             out.append(_left(step, steps[:at], scene))
+    return tuple(out)
+
+
+def set_down(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
+    """The clauses, with putting a thing down where it comes down while it is turned.
+
+    Args:
+        steps: What was done, in order of time.
+        scene: Measured contacts and places.
+    """
+    out: list[Clause] = []
+    for step in steps:
+        turns = step.pattern in {THIS_WAY, TURN, TILT} and step.possessed and step.changes
+        if not turns or not scene.sets_down(step.objects[0], step.start_s, step.end_s):
+            out.append(step)
+            continue
+        begin_s = scene.comes_down_s(step.objects[0], step.start_s, step.end_s)
+        if begin_s - step.start_s > UNSEEN_S:
+            out.append(replace(step, end_s=begin_s))
+        down = replace(step, pattern=DOWN, name="PutDown", start_s=begin_s)
+        out.append(replace(down, pauses=0, rests=()))
     return tuple(out)
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from capar.model.observation import ObservedObject
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import DOWN, GOALS, GROUNDS, LOWER, TURN
+from kb.language.lexicalisation import DOWN, GOALS, GROUNDS, LOWER, SLID, TURN
 from kb.language.thresholds import (
     FURTHER_M,
     HELD_M,
@@ -22,6 +22,7 @@ from kb.language.thresholds import (
 )
 from kb.language.turning import Turning
 
+IN_ITS_PLACE = "put {1} back in its place"
 SLIDE = "slide {1}"
 BRING = "bring {1} to {2}"
 CARRY, RISES = "carry {1}", frozenset({"lift {1}", "raise {1}"})
@@ -47,6 +48,8 @@ def placed(
             out.append(_carried(step, scene, turning))
         elif step.pattern == LOWER and scene.left_there(step.objects[0], step.end_s):
             out.append(replace(step, pattern=DOWN))
+        elif out and _settles(step, out[-1], scene):
+            out[-1] = replace(out[-1], end_s=step.end_s)
         elif step.pattern == TURN and step.possessed and not step.pauses:
             out.append(replace(step, pattern=turning.seen_to_turn(step) or TURN))
         elif step.pattern.startswith(SLIDE):
@@ -60,6 +63,17 @@ def placed(
             works = _works_there(step, steps[at + 1 :]) and not _has_it(step, out)
             out.append(_taken(brought, objects, scene) if works else brought)
     return tuple(out)
+
+
+def _settles(step: Clause, before: Clause, scene: Scene) -> bool:
+    """Whether a thing that was just put on the ground only stirs until it stands there."""
+    same = (step.ees, step.grip, step.objects[:1]) == (before.ees, before.grip, before.objects[:1])
+    put = before.pattern.startswith(DOWN) or before.pattern == IN_ITS_PLACE
+    soon = step.start_s - before.end_s < REST_S
+    if not (same and put and soon and step.name in SLID):
+        return False
+    gone_m = scene.way_m(step.objects[0], step.start_s, step.end_s)
+    return gone_m is not None and gone_m < PLACE_M
 
 
 def _drawn(step: Clause, scene: Scene) -> Clause:
@@ -139,8 +153,8 @@ def _on_the_ground(step: Clause, before: Sequence[Clause], scene: Scene) -> Clau
     taken_s = min(each.start_s for each in since)
     gone_m, _ = scene.over_ground_m(step.objects[0], taken_s, step.end_s)
     if gone_m < PLACE_M:
-        return replace(step, pattern="put {1} back in its place")
-    return replace(step, pattern=f"{DOWN} further along" if gone_m > FURTHER_M else DOWN)
+        return replace(step, pattern=IN_ITS_PLACE)
+    return replace(step, pattern=f"{DOWN} elsewhere" if gone_m > FURTHER_M else DOWN)
 
 
 def _puts(step: Clause) -> bool:

@@ -90,7 +90,7 @@ class Realiser:
         there = f" ({reached.start_s:.2f}–{reached.there_s:.2f} s)" if self._timed else ""
         back = f" ({reached.leaves_s:.2f}–{reached.end_s:.2f} s)" if self._timed else ""
         parts = [f"reached {reached.where} with {hand}{there}"]
-        verb = f"took the {kind} back"
+        verb = f"brought the {kind} back"
         if reached.down:
             verb = f"lowered the {kind} again"
         elif reached.where == "backward":

@@ -29,14 +29,14 @@ def deeds(told: Sequence[Clause], scene: Scene, turning: Turning) -> tuple[Claus
         scene: Measured contacts and places.
         turning: How things are turned.
     """
-    joined = _resumed(leading_up(_specialised(_resumed(told))))
-    found = _resumed(leading_up(_reached(_without_scraps(joined, scene))))
+    joined = _resumed(leading_up(_specialised(_resumed(told, scene))), scene)
+    found = _resumed(leading_up(_reached(_without_scraps(joined, scene))), scene)
     return _gripped(_turned_on(_steadied(found), scene, turning))
 
 
 def as_segmented(told: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses, each segment by itself but those that say the same on end."""
-    return _gripped(_resumed(told, over_pauses=False))
+    return _gripped(_resumed(told))
 
 
 def _gripped(told: Sequence[Clause]) -> tuple[Clause, ...]:
@@ -81,6 +81,8 @@ def _turns_on(last: Clause, clause: Clause, scene: Scene, turning: Turning) -> b
     soon = clause.start_s - last.end_s < SETTLING_S
     if not (moved and soon) or last.objects != clause.objects:
         return False
+    if _set_down(last, scene):
+        return False
     others = [step for step in (last, clause) if step.pattern != THIS_WAY]
     return len(others) < 2 and all(_turns(step, scene, turning) for step in others)
 
@@ -95,8 +97,15 @@ def _turns(step: Clause, scene: Scene, turning: Turning) -> bool:
     return rises or step.pattern in {TURN, TILT}
 
 
-def _resumed(told: Sequence[Clause], *, over_pauses: bool = True) -> list[Clause]:
-    """The clauses, with each deed that goes on, at once or after pauses in the grip, as one."""
+def _resumed(told: Sequence[Clause], scene: Scene | None = None) -> list[Clause]:
+    """The clauses, with each deed that goes on, at once or after pauses in the grip, as one.
+
+    A thing that was set down in between is not done the same to all the time.
+
+    Args:
+        told: What one hand did.
+        scene: Measured contacts and places; None where only what goes on at once is one deed.
+    """
     out: list[Clause] = []
     at = 0
     while at < len(told):
@@ -104,15 +113,26 @@ def _resumed(told: Sequence[Clause], *, over_pauses: bool = True) -> list[Clause
         at += 1
         while at < len(told):
             pause: tuple[Clause, ...] = ()
-            if over_pauses and deed.changes and _pauses(deed, told[at]) and at + 1 < len(told):
+            if (
+                scene is not None
+                and at + 1 < len(told)
+                and deed.changes
+                and _pauses(deed, told[at])
+            ):
                 pause = (told[at],)
             following = told[at + len(pause)]
-            if not _same(deed, following):
+            if not _same(deed, following) or (scene is not None and _set_down(deed, scene)):
                 break
             deed = _continued(deed, pause, following)
             at += len(pause) + 1
         out.append(deed)
     return out
+
+
+def _set_down(deed: Clause, scene: Scene) -> bool:
+    """Whether a thing that was turned stands at the end where it is left, and did not before."""
+    turned = deed.pattern in {THIS_WAY, TURN, TILT} and deed.possessed
+    return turned and scene.sets_down(deed.objects[0], deed.start_s, deed.end_s)
 
 
 def _same(deed: Clause, following: Clause) -> bool:

@@ -89,10 +89,7 @@ def run(*arguments: str) -> str:
 def test_stand_ins_are_told_after_the_text(bundle: Callable[[int, int], str]) -> None:
     told, _, notes = run("describe", bundle(0, 0)).partition(f"\n{HEADING}\n")
     assert told == "Anna touched the box with the right hand.\n"
-    assert notes == (
-        "note: the recording does not tell the shape of the box and the post; a rough one is "
-        "assumed\n"
-    )
+    assert notes == "note: rough shapes are assumed for the box and the post\n"
 
 
 def test_what_is_left_out_is_listed_as_people_call_it() -> None:
@@ -103,8 +100,7 @@ def test_what_is_left_out_is_listed_as_people_call_it() -> None:
         objects=9,
     )
     assert reservation_lines((left,))[-1] == (
-        "note: the recording does not tell the shape of the half egg carton and the tooth brush; "
-        "nothing is told of that"
+        "note: left out because the shape is not known: the half egg carton and the tooth brush"
     )
 
 
@@ -128,8 +124,8 @@ def test_a_loss_is_counted_in_words_and_told_once(bundle: Callable[[int, int], s
     told = run("describe", bundle(20, 60))
     (line,) = [each for each in told.splitlines() if "lost" in each]
     assert line == (
-        "note: 'box' was lost from 0.19 to 0.57 s; contact before "
-        "and after is assumed to have lasted"
+        "note: 'box' was lost from 0.19 to 0.57 s; what touched it before and after is assumed to "
+        "have touched it then"
     )
 
 
@@ -140,7 +136,7 @@ def test_explain_tells_those_of_the_bodies_that_its_segment_is_about(
     for arguments in ((place,), (place, "right_hand/1"), (place, "--why-not", "Hit")):
         told, _, notes = run("explain", *arguments).partition(f"\n{HEADING}\n")
         assert "the right hand touched the box" in told or "Hit" in told
-        assert notes.startswith("note: the recording does not tell the shape of the box;")
+        assert notes.startswith("note: rough shapes are assumed for the box\n")
         assert "post" not in notes
     for arguments in ((), ("--why-not", "Hit")):
         rows = json.loads(run("explain", place, *arguments, "--json"))

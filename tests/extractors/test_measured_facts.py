@@ -202,7 +202,7 @@ def test_each_loss_is_told_once_in_words(
     found = measure(Capture("x", (hand,), (thing,), notices=(read,))).notices
     (loss,) = [each.message for each in found if each.code == "long-gap"]
     unknown = "no contact of it is known"
-    lasts = "contact before and after is assumed to have lasted"
+    lasts = "what touched it before and after is assumed to have touched it then"
     assert loss == f"'thing' was lost {told.format(unknown=unknown, lasts=lasts)}"
 
 

@@ -84,7 +84,7 @@ ONE_OF_EACH = {
         "'mug' was lost from 1.00 to 2.00 s; it is held to stay",
     notice("long-gap", "mug", start_s=1.0, end_s=2.0, times=3, fixed=False):
         "'mug' was lost 3 times, for longest from 1.00 to 2.00 s; "
-        "contact before and after is assumed to have lasted",
+        "what touched it before and after is assumed to have touched it then",
     notice("markers-not-rigid", "mug", frames=3):
         "mug: 3 frames in which its markers are not rigid are taken as lost",
     notice("bone-stretches", "hand", "wrist", "index", shortest_m=0.4, longest_m=0.7):

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from kb.language.instruction import Window
 from kb.language.reading.adjuncts import around, window_at
-from kb.language.reading.function_words import first_words, is_next, of_class
+from kb.language.reading.function_words import first_words, is_next, number_at, of_class
 from kb.language.reading.reader import RELATIVES, Reader
 from kb.language.tokens import ARTICLES
 from kb.language.vocabulary import SIDES
@@ -120,6 +120,8 @@ def _single(reader: Reader) -> Noun | None:  # noqa: PLR0911 (each is one kind o
     at = cursor.at
     if (known := _known(reader, at)) is not None:
         return known
+    if (counted := _counted(reader, at)) is not None:
+        return counted
     pronoun = _pronoun(reader, at)
     if pronoun is not None:
         return pronoun
@@ -152,6 +154,16 @@ def _known(reader: Reader, at: int) -> Noun | None:
     if thing is None and limb is None:
         return None
     return Noun((thing,) if thing else (), limb or "", at=at)
+
+
+def _counted(reader: Reader, at: int) -> Noun | None:
+    """Things of which only the number is said: ``sixteen things``."""
+    cursor = reader.cursor
+    start = cursor.at
+    if number_at(cursor) is not None and cursor.accept("things"):
+        return Noun(("",), at=at)
+    cursor.at = start
+    return None
 
 
 def _pronoun(reader: Reader, at: int) -> Noun | None:

@@ -84,9 +84,9 @@ def test_of_more_turns_than_can_be_told_it_is_said_that_hands_took_turns() -> No
     hands = ("right_hand", "left_hand", "right_hand", "left_hand")
     spans = [(hand, 400 * at + 50, 400 * at + 350) for at, hand in enumerate(hands)]
     text = turned(*spans)
-    assert text == "The agent turned the mug about with both hands by turns."
+    assert text == "The agent turned the mug about with both hands in turn."
     (step,) = steps_of(text)
-    assert (step.ee, step.circumstances.manner) == ("both_hands", ("by turns",))
+    assert (step.ee, step.circumstances.manner) == ("both_hands", ("in turn",))
 
 
 def test_what_each_lifts_and_turns_is_lifted_and_turned() -> None:
@@ -99,7 +99,7 @@ def test_two_turns_are_told_for_themselves_and_so_is_another_thing(other: str) -
     assert "then with" not in turned(*spans, other=other)
 
 
-def gathered(count: int, *, last: int = 1000) -> str:
+def gathered(count: int, *, last: int = 1000, kind: str = "shelf") -> str:
     """The summary of so many cups that a hand moves, which all are over a shelf till a frame."""
     names = [f"{word}_cup" for word in ("red", "blue", "green", "white", "black", "gold", "tin")]
     cups = tuple(replace(MUG, name=name, kind="cup") for name in names[:count])
@@ -114,7 +114,7 @@ def gathered(count: int, *, last: int = 1000) -> str:
     made = observation(
         "Gathered",
         {"right_hand": tuple(pieces)},
-        (*cups, SHELF),
+        (*cups, replace(SHELF, kind=kind)),
         facts=(*over, table),
         frames=1001,
         rate_hz=100.0,
@@ -137,3 +137,14 @@ def test_more_things_than_a_summary_tells_are_moved_one_after_the_other(
 
 def test_few_things_are_told_one_by_one() -> None:
     assert "one after the other" not in gathered(5)
+
+
+def test_of_more_things_than_can_be_told_that_are_packed_only_the_number_is() -> None:
+    text = gathered(7, kind="carton")
+    assert text == "The agent packed seven things into the shelf with the right hand."
+    (step,) = steps_of(text)
+    assert step.call.objects == ("", "shelf")
+    assert gathered(4, kind="carton") == (
+        "The agent packed the red cup, the blue cup, the green cup, and the white cup into the "
+        "shelf with the right hand."
+    )

@@ -62,7 +62,7 @@ def told(way: Sequence[float], facing: float = 0.0, *, back: bool = True) -> str
 def test_a_reach_has_its_direction(way: tuple[float, ...], words: str) -> None:
     text = told(way)
     assert text.startswith(f"The agent reached {words} with the right hand (0.50–")
-    back = "brought the hand forward again" if words == "backward" else "took the hand back"
+    back = "brought the hand forward again" if words == "backward" else "brought the hand back"
     back = "lowered the hand again" if way[2] > 0.0 else back
     assert f" and {back} (" in text
     assert text.endswith(" s) without touching anything.")

@@ -101,7 +101,7 @@ def test_how_a_thing_leans_while_it_is_carried_is_told(lean: int, how: str) -> N
 
 @pytest.mark.parametrize(
     ("far_m", "words"),
-    [(0.1, "put it back in its place"), (0.3, "put it down"), (0.9, "put it down further along")],
+    [(0.1, "put it back in its place"), (0.3, "put it down"), (0.9, "put it down elsewhere")],
 )
 def test_what_is_put_on_the_ground_is_put_back_or_elsewhere(far_m: float, words: str) -> None:
     way = (*TAKEN, (far_m, 0.0, 1.0), (far_m, 0.0, 0.0))
@@ -223,3 +223,40 @@ def test_what_is_slid_by_a_hand_before_it_is_pulled_and_behind_it_pushed(
     assert text == f"The agent {words} the mug with the right hand."
     (step,) = steps_of(text)
     assert step.call.action == {"pulled": "Pull", "pushed": "Push", "slid": "Slide"}[words]
+
+
+@pytest.mark.parametrize(("slid_m", "told_apart"), [(0.1, False), (0.6, True)])
+def test_what_stirs_a_little_as_it_is_put_down_is_only_put_down(
+    slid_m: float, told_apart: bool
+) -> None:
+    way = (*TAKEN, (0.8, 0.0, 1.0), (0.8, 0.0, 0.0), (0.8 + slid_m, 0.0, 0.0))
+    pieces = (
+        REACHED,
+        LIFTED,
+        Piece("Carry", 300, ("mug",), features=OWN),
+        Piece("Lower", 400, ("mug", "floor"), features=PLACED),
+        Piece(
+            "Slide", 500, ("mug", "floor"), features=FeatureSet("101", "101", "10", "hand", "00")
+        ),
+    )
+    floor = (Touching("mug", "floor", 0, 100), Touching("mug", "floor", 395, 500))
+    text = told(*pieces, way=way, facts=(*floor, Touching("right_hand", "mug", 100, 500)))
+    assert "put it down elsewhere" in text
+    assert ("slid" in text) is told_apart
+
+
+def test_what_comes_down_while_it_is_turned_is_put_down() -> None:
+    """It stands for the rest of the grip, in which it is turned again."""
+    way = (*TAKEN, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    pieces = (
+        REACHED,
+        LIFTED,
+        Piece("Turn", 400, ("mug",), features=OWN),
+        Piece("Touch", 450, ("mug",)),
+        Piece("Turn", 550, ("mug",), features=OWN),
+        Piece("ResumePosture", 600, ("mug",)),
+    )
+    text = told(*pieces, way=way, facts=(Touching("right_hand", "mug", 100, 550),))
+    assert text == (
+        "lifted the mug with the right hand, turned it, put it down, and turned it again."
+    )
