@@ -105,8 +105,16 @@ def _list_goes_on(reader: Reader) -> bool:
 def _begins_item(reader: Reader) -> bool:
     """Whether one of several things comes next, with an article or with a number: ``mug 2``."""
     cursor = reader.cursor
+    if cursor.peek() in ARTICLES:
+        return True
+    known = reader.words.nouns
+    start = cursor.at
+    named = known is not None and cursor.longest(known) is not None
+    last, cursor.at = cursor.at, start
+    if named and cursor.tokens[last - 1].text.isdigit():
+        return True
     counted = cursor.peek(2) in {"times", "time", *(words[0] for words in of_class("unit"))}
-    return cursor.peek() in ARTICLES or (cursor.peek(1).isdigit() and not counted)
+    return cursor.peek(1).isdigit() and not counted
 
 
 def _skip_time(reader: Reader) -> None:

@@ -6,11 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from observations import MUG, TABLE, Piece, observation
-from tellings import against_time, spans, steps_of
+from tellings import WORDS, against_time, spans, steps_of
 
 from capar.model.facts import Touching
 from capar.model.par import FeatureSet
+from kb.language import Instruction, parse
 from kb.language.describe import describe
+from kb.language.vocabulary import Vocabulary
 
 PLACED = FeatureSet("100", "101", "10", "hand", "00")
 NAMES = ("mug", "bowl", "bottle", "plate", "spoon", "jar", "cup_2", "fork", "cup")
@@ -98,3 +100,11 @@ def test_each_thing_is_told_once_with_its_place_and_time(places: list[str]) -> N
     assert found == list(zip(NAMES, places, strict=False))
     assert spans(text) == [(2.0 * at + 0.5, 2.0 * at + 1.5) for at in range(len(places))]
     assert against_time(text) == []
+
+
+def test_numbered_things_of_several_words_are_read_where_they_are_known() -> None:
+    known = Vocabulary(WORDS.words, frozenset({"coffee_can", "coffee_can_2", "tuna", "carton"}))
+    told_so = "The agent put the coffee can, coffee can 2, and the tuna in the carton."
+    value = parse(told_so, known)
+    assert isinstance(value, Instruction)
+    assert value.call.objects == ("coffee_can", "coffee_can_2", "tuna", "carton")
