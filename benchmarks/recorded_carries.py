@@ -1,8 +1,8 @@
 """Things that were carried in recordings of others, performed by other bodies and observed again.
 
 Run as ``CAPAR_DATA=DATA PYTHONPATH=.:tests python benchmarks/recorded_carries.py [CLIP ...]
-[--agents AGENT ...] [--output FOLDER]``. Of each clip the part is performed that its
-``*.assumed.toml`` in ``examples`` states; a child takes the smaller thing of ``*.child.scene.toml``.
+[--agents AGENT ...] [--output FOLDER]``. Of each clip the part is performed that its file
+``assumed.toml`` in ``examples`` states; a child takes the smaller thing of ``child.scene.toml``.
 With ``--output`` the capture of each motion is written, so that it can be looked at.
 """
 
