@@ -10,11 +10,11 @@ from capar.body.recording import HAND_SEGMENTS
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.solving import vectors
 
-CLEAR_M = 0.0
+CLEAR_M = 0.001
 """How far the surface of a limb is kept from that of a thing [m]."""
 
 HEAD = ("head", "right_eye", "left_eye")
-HEAD_CLEAR_M = 0.008
+HEAD_CLEAR_M = 0.015
 """Likewise the head, whose contacts are observed from 5 mm on [m]."""
 
 CLEAR_COST = 100.0
