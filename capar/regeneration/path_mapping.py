@@ -90,8 +90,7 @@ def mapped(
     """A path with other ends.
 
     What deviates from the straight way is kept in metres and turned with the way; the share of
-    the path's length that is covered at each frame stays the same. Lags and leads along the way
-    are kept in metres, too: a hand that is first drawn back is drawn back as far on a longer way.
+    the path's length that is covered at each frame stays the same.
 
     Args:
         path: As it was recorded; the last frame is the goal's.
@@ -106,15 +105,16 @@ def mapped(
     old = path.translation
     shares = arc_shares(old) if kind is not Kind.EVEN else minimum_jerk(len(path))
     straight = kind in {Kind.VEL, Kind.EVEN}
+    along = shares if straight else _along(old, shares)
     chord, new = old[-1] - old[0], goal.translation - start.translation
     angle = _turn(chord, new, turn)
     about = Rotation.from_euler("z", angle)
-    aside = about.apply(old - old[0] - np.outer(shares, chord))
+    aside = about.apply(old - old[0] - np.outer(along, chord))
     if straight:
         aside = np.zeros_like(old)
     elif kind is Kind.FRAME:
-        aside = _in_frames(old, start.translation, goal.translation, shares, new, aside)
-    spots = start.translation + np.outer(shares, new) + aside
+        aside = _in_frames(old, start.translation, goal.translation, along, new, aside)
+    spots = start.translation + np.outer(along, new) + aside
     spots = spots + detour.offset(shares, heading, away)
     spots = _retimed(spots, shares)
     return RigidTransform.from_components(
@@ -132,7 +132,7 @@ def _in_frames(
     old: Float[np.ndarray, "frames 3"],
     start: Float[np.ndarray, "3"],
     goal: Float[np.ndarray, "3"],
-    shares: Float[np.ndarray, "frames"],
+    along: Float[np.ndarray, "frames"],
     new: Float[np.ndarray, "3"],
     usual: Float[np.ndarray, "frames 3"],
 ) -> Float[np.ndarray, "frames 3"]:
@@ -141,7 +141,16 @@ def _in_frames(
         before, after = frame_between(old[-1], old[0]), frame_between(goal, start)
     except CoordinateError:
         return usual
-    return np.asarray(replayed(old, before, after) - start - np.outer(shares, new))
+    return np.asarray(replayed(old, before, after) - start - np.outer(along, new))
+
+
+def _along(
+    old: Float[np.ndarray, "frames 3"], shares: Float[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames"]:
+    """How far along the straight way each frame is; by the path's length where that is short."""
+    chord = old[-1] - old[0]
+    length = float(np.linalg.norm(chord))
+    return np.asarray((old - old[0]) @ chord / length**2) if length > SHORT_M else shares
 
 
 def _turn(old: Float[np.ndarray, "3"], new: Float[np.ndarray, "3"], usual: float) -> float:

@@ -81,11 +81,3 @@ def test_a_detour_is_highest_half_way() -> None:
     plain = mapped(path, path[0], path[-1])
     assert lifted.translation[:, 2].max() > plain.translation[:, 2].max() + 0.04
     assert lifted.translation[0, 2] == pytest.approx(plain.translation[0, 2], abs=1e-9)
-
-
-def test_a_hand_that_is_first_drawn_back_is_drawn_back_no_farther_on_a_longer_way() -> None:
-    share = np.linspace(0.0, 1.0, 121)
-    ahead = np.interp(share, [0.0, 0.4, 1.0], [0.0, -0.1, 0.2])
-    back = RigidTransform.from_translation(np.outer(ahead, [1.0, 0.0, 0.0]))
-    longer = _pose((0.4, 0.0, 0.0), (0.0, 0.0, 0.0))
-    assert -0.1 <= mapped(back, back[0], longer).translation[:, 0].min() < -0.04
