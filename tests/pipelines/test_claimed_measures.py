@@ -99,6 +99,8 @@ def reads_as_told(mark: Mark, unit: str) -> bool:
         return not mark.label
     number, told_unit = re.fullmatch(r"([\d.]+) ?(\D+)", found[0]).groups()
     value = abs(mark.value) * SCALES.get((unit, told_unit), 1.0)
+    if mark.label.startswith("less than"):
+        return value < float(number)
     slack = 0.1 if told_unit == "cm" else 1.0 if told_unit == "mm" else 0.01
     return abs(value - float(number)) <= ROUNDED[told_unit] + slack
 
