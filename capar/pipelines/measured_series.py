@@ -140,7 +140,7 @@ WAYS = {
     "place": ("aside_mm", "near is within {}"),
     "not_near": ("aside_mm", "near is within {}"),
     "not_slid": ("slide_mm", "a slide takes {}"),
-    "elsewhere": ("aside_mm", "back there is within {}"),
+    "away": ("aside_mm", "back there is within {}"),
     "back": ("aside_mm", "back there is within {}"),
 }
 """By the format of a way: the constant of the rules that it is compared with, and how it reads."""

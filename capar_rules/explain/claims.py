@@ -56,7 +56,7 @@ FORMS: Mapping[str, tuple[Measure, ...]] = {
     "place": (Measure.WAY,),
     "not_near": (Measure.WAY,),
     "not_slid": (Measure.WAY,),
-    "elsewhere": (Measure.WAY,),
+    "away": (Measure.WAY,),
     "back": (Measure.WAY,),
     "spread": (Measure.SPREAD,),
     "still": (Measure.SPREAD,),

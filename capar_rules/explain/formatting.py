@@ -1,5 +1,6 @@
 """The arguments of atoms as sentences have them: names, times and distances."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 from capar_rules.borders.times import constants, in_frames, times
@@ -88,8 +89,11 @@ class Argument:
             "met": self._met,
             "from_rest": self._from_rest,
             "elsewhere": self._elsewhere,
+            "away": self._away,
             "back": self._back,
             "keeper": self._keeper,
+            "ahead": lambda: self._bearing("ahead is 45° or less"),
+            "after": lambda: self._bearing("after is 135° or more"),
             "not_at_rest": self._not_at_rest,
             "rest_s": self._rest_s,
             "long": self._long,
@@ -161,6 +165,23 @@ class Argument:
         since, keeper = min(before)
         return f"was held by the {keeper} already (since {self.clock.at(since)})"
 
+    def _bearing(self, asked: str) -> str:
+        """At which level angle to the line from the end-effector to it the thing went."""
+        span, thing = self.clock.span(self.text), self.clock.objects.get(self.text, "")
+        places = self.clock.measured.places
+        if span is None:
+            return ""
+        hand, start = places.get((self._hand, span[0])), places.get((thing, span[0]))
+        end = places.get((thing, span[1]))
+        if hand is None or start is None or end is None:
+            return ""
+        line = start[0] - hand[0], start[1] - hand[1]
+        course = end[0] - start[0], end[1] - start[1]
+        across = line[0] * course[1] - line[1] * course[0]
+        along = line[0] * course[0] + line[1] * course[1]
+        angle = math.degrees(abs(math.atan2(across, along)))
+        return f" (its way was at {angle:.0f}° to the line from that to its middle; {asked})"
+
     def _not_at_rest(self) -> str:
         """Why the segment is no rest: it lasted too briefly, or its end-effector moved."""
         span = self.clock.span(self.text)
@@ -198,9 +219,16 @@ class Argument:
         return f"left {' and '.join(left)}" if left else "started from rest"
 
     def _elsewhere(self) -> str:
+        """That the end-effector did not come back to a rest, or had none to come back to."""
+        span, rests = self.clock.span(self.text), self.clock.measured.rests.get(self._hand, ())
+        if span is None or any(first < span[0] for first, _ in rests):
+            return "did not come back to where it had rested before"
+        return "had not rested before"
+
+    def _away(self) -> str:
         """How far from where it had rested the end-effector ended, or that it had not rested."""
         if not self._earlier_rests():
-            return "had not rested before"
+            return "had not rested before without touching anything"
         found = self._nearest_rest()
         if found is None or found[0] < constants()["aside_mm"] / 1000.0:
             return "did not come back to where it had rested before"
@@ -322,7 +350,7 @@ class Argument:
     def measured_between(self, form: str) -> tuple[int, int] | None:
         """The frames between which what such a format tells of a body was measured."""
         span = self._span_beside(form)
-        if form in ("elsewhere", "back"):
+        if form in ("away", "back"):
             nearest = self._nearest_rest()
             return (nearest[1], span[1]) if nearest and span else None
         return self.clock.displacement(self.body, span) if span and form == "way" else span

@@ -438,6 +438,18 @@ def _from_rest(known: Known, body: str) -> float:
     return min(_length(end - place) for place in places)
 
 
+def goes_at(known: Known, body: str, angle: str, *_: str) -> bool:
+    """The level angle of its way to the line from the end-effector's middle to its own."""
+    hand, thing = known.segment.ee, known.segment.objects[0]
+    line = (
+        known.track(thing, known.segment.first, known.segment.first)[0]
+        - known.track(hand, known.segment.first, known.segment.first)[0]
+    )
+    way = _shifted(known, thing)
+    cosine = float(line[:2] @ way[:2]) / (_length(line[:2]) * _length(way[:2]))
+    return abs(math.degrees(math.acos(min(max(cosine, -1.0), 1.0))) - float(angle)) <= 5.0
+
+
 def held_since(known: Known, body: str, other: str, at: str) -> bool:
     """The other end-effector touches the thing from then until the segment ends, or longer."""
     return any(
@@ -506,6 +518,11 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         rf"turned by {DEGREES} in all \(half a turn, {DEGREES}, is asked for\) on a path of "
         rf"{LENGTH} \(turned so far about the wrist it would go up to {LENGTH}\)",
         turned_in_all,
+    ),
+    (
+        rf"its way was at {DEGREES} to the line from that to its middle; "
+        r"(?:ahead is 45° or less|after is 135° or more)",
+        goes_at,
     ),
     (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
     (rf"was held by the {NAME} already \(since {TIME}\)", held_since),
