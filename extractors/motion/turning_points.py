@@ -95,7 +95,7 @@ def most_turns(
     """The axis of the world along which a body turns back most between two frames, and where.
 
     Args:
-        stream: The body's poses; of a span in which it is lost, nothing is known.
+        stream: The body's poses; where it is lost it is taken to go straight on.
         span: First and last frame.
         thresholds: The least way between turning points.
 
@@ -104,12 +104,13 @@ def most_turns(
     """
     first, last = span
     part = stream.positions[first : last + 1]
-    found = [
-        first + turning_points(np.nan_to_num(part[:, axis]), thresholds.swing_m)
-        for axis in range(3)
-    ]
-    widths = np.nan_to_num(np.nanmax(part, axis=0) - np.nanmin(part, axis=0))
-    axis = max(range(3), key=lambda one: (len(found[one]), widths[one]))
+    known = np.flatnonzero(~stream.lost[first : last + 1])
+    if not known.size:
+        return 0, np.array([], dtype=np.int64)
+    every = np.arange(len(part))
+    paths = [np.interp(every, known, part[known, axis]) for axis in range(3)]
+    found = [first + turning_points(path, thresholds.swing_m) for path in paths]
+    axis = max(range(3), key=lambda one: (len(found[one]), float(np.ptp(paths[one]))))
     return axis, found[axis]
 
 

@@ -19,7 +19,7 @@ from extractors.motion.leaning import leaning, spin_steps
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.motion.rest import resting
-from extractors.motion.turning_points import level_turns, swings, turning_points
+from extractors.motion.turning_points import level_turns, most_turns, swings, turning_points
 from extractors.relations.arrangement import (
     Pair,
     above,
@@ -75,6 +75,27 @@ def test_what_is_drawn_back_on_the_level_turns_once_and_what_goes_up_and_down_ne
     ):
         places = np.outer(there, way) + 1.0
         assert level_turns(places, [(0, len(there) - 1)], LIMITS) == turns
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("lost", [False, True])
+def test_a_body_turns_back_most_along_the_axis_on_which_it_goes_to_and_fro(
+    axis: int, lost: bool
+) -> None:
+    """Four periods in two seconds turn eight times, also where it is lost between two turns."""
+    wave = np.zeros((len(TIMES), 3))
+    wave[:, (axis + 1) % 3] = 0.2 * TIMES
+    wave[:, axis] = 0.03 * np.sin(2.0 * np.pi * 2.0 * TIMES)
+    stream = body(wave).poses.smooth
+    if lost:
+        gap = np.isin(np.arange(len(TIMES)), (110, 111))[:, None]
+        turned = np.where(gap, np.nan, stream.orientations)
+        stream = Stream(stream.times, np.where(gap, np.nan, stream.positions), turned)
+    span = (0, round(2.0 / (TIMES[1] - TIMES[0])))
+    found, turns = most_turns(stream, span, LIMITS)
+    assert found == axis
+    assert len(turns) == pytest.approx(8, abs=1)
+    assert most_turns(stream, (5, 5), LIMITS)[1].size == 0
 
 
 @given(st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=50))

@@ -20,7 +20,7 @@ from extractors.calibration import calibrate
 from extractors.contact.contacts import bridged
 from extractors.contact.earlier_answers import EarlierAnswers
 from extractors.contact.offset_surfaces import EXACTNESS_M, offset_surface
-from extractors.contact.proximity import Body, body, distance, near, nearest
+from extractors.contact.proximity import Body, body, distance, near, nearest, separation
 from extractors.contact.surfaces import surface
 from extractors.contact.sweep import FEW, sweep
 from extractors.contact.touch_distances import touchable
@@ -247,3 +247,13 @@ def test_a_contact_that_noise_hides_at_the_recording_s_edge_lasts_up_to_it(
     found = bridged(one, other, edge=edge)
     extended = apart == 0 and hidden < edge
     assert (found == (other if extended else one)).all()
+
+
+def test_surfaces_are_apart_by_their_distance_and_by_none_where_one_body_is_in_another() -> None:
+    places = np.array([[0.2, 0.0, 0.0], [0.115, 0.0, 0.0], [0.0, 0.0, 0.0], [np.nan] * 3])
+    small = at(box(0.03, 0.03, 0.03), stream(places))
+    large = at(box(0.2, 0.2, 0.2), still((0.0, 0.0, 0.0), 4))
+    found = separation(small, large, np.arange(4))
+    assert found[:3] == pytest.approx([0.085, 0.0, 0.0], abs=1e-6)
+    assert np.isnan(found[3])
+    assert distance(small, large, 0) == found[0]
