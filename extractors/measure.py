@@ -14,6 +14,7 @@ from capar.model.capture import (
     Capture,
     Notice,
     Purpose,
+    Role,
     Sensor,
     TagObject,
     TagType,
@@ -43,6 +44,7 @@ from extractors.contact.arrivals import arrivals
 from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
 from extractors.contact.earlier_answers import EarlierAnswers
+from extractors.contact.touch_distances import forget_touchable
 from extractors.faults.faults import faults
 from extractors.handling_facts import handling
 from extractors.measurement_notices import LOSS, notices_of
@@ -180,6 +182,7 @@ def measured(
     moves = tuple(_moving(capture, bodies, calibration, near, limits))
     touches = tuple(arrivals(capture, bodies, calibration, near, moves, limits))
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
+    _forget(capture, bodies)
     reach = horizon_frames(capture.times, limits)
     facts = [
         *_scene(capture),
@@ -219,6 +222,14 @@ def measured(
         {(each.first, each.second): each.interval[1] for each in near if each.lingers},
         dict(_arriving(capture, bodies, calibration, limits)),
     )
+
+
+def _forget(capture: Capture, bodies: Bodies) -> None:
+    """Keep nothing for contacts alone, nor filtered poses of what handles nothing."""
+    forget_touchable([*bodies.sensors.values(), *bodies.objects.values()])
+    for sensor in capture.sensors:
+        if sensor.role is not Role.ACTS:
+            bodies.sensors[sensor.name].poses.forget()
 
 
 def _track(poses: Poses, highest_mps: float, thresholds: Thresholds) -> Track:

@@ -84,8 +84,10 @@ def observe_measured(
     limits = thresholds_of(measurements.calibration)
     action = name or capture.name
     facts = steady(measurements.facts) if base.steady else measurements.facts
-    # The solver takes the most memory, and needs no poses; styles and places, which do, come later.
+    # The solver needs no poses; styles and places, which do, come later.
     measurements.bodies.forget_smooth_poses()
+    return_freed_memory()
+    tracks = tuple(sampled_tracks(measurements.bodies, capture.times))
     return_freed_memory()
     inference = infer(facts, profile=base)
     return_freed_memory()
@@ -127,7 +129,7 @@ def observe_measured(
         guides=() if base.crossings_only else tuple(_guides(measurements)),
         forces=force_styles(capture, measurements.bodies, facts, measurements.guides),
         naming=naming_rules(base, (segment.name for segment in _segments(inference))),
-        tracks=tuple(sampled_tracks(measurements.bodies, capture.times)),
+        tracks=tracks,
     )
 
 

@@ -173,6 +173,12 @@ def touchable(each: BodyGeometry) -> Body:
     return _TOUCHABLE[each]
 
 
+def forget_touchable(bodies: Iterable[BodyGeometry]) -> None:
+    """Keep the surfaces of some bodies at their poses no longer: they are made again when asked."""
+    for each in bodies:
+        _TOUCHABLE.pop(each, None)
+
+
 def touchable_at(each: BodyGeometry, frame: int) -> Body:
     """The same at one frame, which is its frame 0."""
     return at_frame(_surface(each), each.poses.settled, frame)

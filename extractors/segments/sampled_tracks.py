@@ -13,10 +13,15 @@ RATE_HZ = 50.0
 
 
 def sampled_tracks(bodies: Bodies, times: Float[np.ndarray, "frames"]) -> Iterator[SampledTrack]:
-    """The track of each sensor and object, by name; an object that is a sensor stands once."""
+    """The track of each sensor and object, by name; an object that is a sensor stands once.
+
+    No low-passed poses are kept: those of all bodies at once would be most of what a long recording
+    takes.
+    """
     for name, pose in sorted(bodies.poses.items()):
         places = pose.settled if pose.rests else pose.smooth
         yield track_of(name, places.positions, times, rests=pose.rests)
+        pose.forget()
 
 
 def track_of(

@@ -35,7 +35,12 @@ def hints(store: "Store", query: str) -> list[str]:
     """
     parts = list(_parts(translateQuery(parseQuery(query)).algebra))
     triples = [triple for part in parts if part.name == "BGP" for triple in part["triples"]]
-    found = [*_unknown_values(store, triples), *_compared(store, parts), *_lacking(store, triples)]
+    found = [
+        *_unknown_values(store, triples),
+        *_compared(store, parts),
+        *_lacking(store, triples),
+        *_shapeless(store, triples),
+    ]
     return list(dict.fromkeys(found))
 
 
@@ -105,6 +110,17 @@ def _lacking(store: "Store", triples: list[tuple[Any, Any, Any]]) -> Iterator[st
                 asked = " or ".join(map(_short, first))
                 own = _properties(store, class_)
                 yield f"no {_short(class_)} has {asked}; they have {', '.join(own)}"
+
+
+def _shapeless(store: "Store", triples: list[tuple[Any, Any, Any]]) -> Iterator[str]:
+    """Things that are asked for by name, in which nothing can lie as their shape is not known."""
+    if not any(URIRef(BASE + "arrangement") in _last_of(path) for _, path, _ in triples):
+        return
+    for _, path, value in triples:
+        if isinstance(value, Text) and URIRef(BASE + "name") in _last_of(path):
+            fact = f"?x a <{BASE}ShapelessObject> ; <{BASE}body>/<{BASE}name> {value.n3()}"
+            if _holds(store, fact):
+                yield f"{str(value)!r} is a capar:ShapelessObject, so nothing is inside it"
 
 
 def _last_of(path: Any) -> list[URIRef]:

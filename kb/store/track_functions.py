@@ -89,9 +89,7 @@ class _Tracks:
         track, times = self._between(observation, body, start, end)
         if track is None or not times:
             return None
-        speeds = [track.speed(each) for each in times]
-        known = [each for each in speeds if not np.isnan(each)]
-        return _number(max(known)) if known else None
+        return _number(float(np.max([track.speed(time) for time in times])))
 
     def path_length(self, observation: Any, body: Any, start: Any, end: Any) -> Literal | None:
         track, times = self._between(observation, body, start, end)

@@ -13,6 +13,7 @@ import pytest
 from observations import drink_from_mug, with_unknown
 
 from capar.cli import main
+from capar.model.facts import Shapeless
 from kb.actionary import Actionary
 
 
@@ -31,7 +32,8 @@ Ask: TypeAlias = Callable[..., Done]
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("queries") / "actionary"
     with Actionary.open(place) as actionary:
-        actionary.add(drink_from_mug())
+        drunk = drink_from_mug()
+        actionary.add(replace(drunk, facts=(*drunk.facts, Shapeless("mug"))))
         actionary.add(with_unknown())
     return place
 
@@ -180,6 +182,9 @@ EMPTY = {
     "?s a capar:Touching ; capar:seen ?x": ["no capar:Touching has capar:seen", "capar:other"],
     '?s capar:body/capar:name "mugg"; capar:start ?x': ["'mugg' as its capar:name", "'mug'"],
     '?s capar:action/capar:name ?x FILTER(?x = "Grasp")': ["nothing has 'Grasp'"],
+    '?s capar:arrangement "inside"; capar:body ?x; capar:other/capar:name "mug"': [
+        "'mug' is a capar:ShapelessObject"
+    ],
     '?s a capar:Segment; capar:objects ?x FILTER(?x IN ("there", "nowhere"))': ["'nowhere'"],
 }
 

@@ -76,6 +76,7 @@ def test_speeds_ways_and_distances_are_those_of_the_circle(turning: Actionary) -
         "capar:position(?o, 'mug', 'noon')",
         "capar:highestSpeed(?o, 'mug', 1.2, 1.1)",
         "capar:pathLength(?o, 'right_hand', 1, 1.9)",
+        "capar:highestSpeed(?o, 'right_hand', 1, 1.9)",
     ],
 )
 def test_what_is_not_known_has_no_value(turning: Actionary, expression: str) -> None:
