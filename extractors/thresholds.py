@@ -97,7 +97,7 @@ class Thresholds(FootThresholds):
     rest_minimum_s: float = 0.15
     """A shorter standstill is no rest [s] (spec 5.4)."""
 
-    rest_begins_s: float = 0.75
+    rest_begins_s: float = 0.7
     """Where an object came to rest is the middle of its poses in so much of its rest [s]: enough to
     take the noise out, and no more than live observation waits before it settles anything."""
 
