@@ -92,6 +92,7 @@ def observe_measured(
     inference = infer(facts, profile=base)
     return_freed_memory()
     moved = () if base.crossings_only else movers(facts)
+    return_freed_memory()
     measured = dict(_measured(capture, measurements, inference, limits))
     frames = len(capture.times) - 1
     duration_s = float(capture.times[-1])
