@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import compress
 
 import numpy as np
 from jaxtyping import Float
@@ -97,7 +98,9 @@ def distances(
     values = _thousandths(np.stack([apart[known], gone_about[at[known]]], axis=1))
     swept = [milliradians for _, milliradians in values]
     sweeps = not whole or _sweeps(swept)
-    for frame, (millimetres, milliradians) in zip(at[known].tolist(), values, strict=True):
+    # The frames themselves, not copies: a long recording has hundreds of thousands of these facts.
+    kept = compress(frames, known.tolist())
+    for frame, (millimetres, milliradians) in zip(kept, values, strict=True):
         yield Distance(body.name, other.name, frame, millimetres)
         if sweeps:
             yield SweptAzimuth(body.name, other.name, frame, milliradians)
