@@ -16,7 +16,7 @@ SAMPLES = 17
 APART_M, APART_SHARE = 0.05, 0.05
 """A shape so far aside counts as much as a timing that is so far off: one unit of distance."""
 
-LEAST_SPREAD = 0.1
+LEAST_SPREAD = 0.03
 """Every single number of a style is taken to vary at least so much, in units of distance [1]."""
 
 SHORTEST_M = 0.05

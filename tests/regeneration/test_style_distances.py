@@ -67,7 +67,7 @@ def test_the_nearest_performer_is_the_one_whose_trials_are_like_it() -> None:
 
 def test_what_performing_changes_counts_less() -> None:
     trials = {
-        name: [way_style(_way(aside, up + off, 0.0)) for off in (-0.01, 0.01)]
+        name: [way_style(_way(aside + off, up, 0.0)) for off in (-0.01, 0.01)]
         for name, (aside, up) in {"low": (0.0, 0.0), "high": (0.06, 0.12)}.items()
     }
     borrowed, lifted = way_style(_way(0.0, 0.0, 0.0)), way_style(_way(0.0, 0.1, 0.0))
