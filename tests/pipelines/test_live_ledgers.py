@@ -16,6 +16,7 @@ from capar.model.errors import CaparError, CaptureError, DeviceError, RuleError
 from capar.model.facts import (
     Displaced,
     Gap,
+    Leans,
     Moving,
     Observed,
     Pause,
@@ -314,12 +315,30 @@ def test_what_has_just_come_to_rest_is_undecided_until_its_place_is_told() -> No
     handling = Handling(
         (own,), moves, {"cup"}, last=400, margin=15, longest=200, fresh=20, arriving=landed
     )
-    assert undecided(handling) == nameless(handling) == {"hand": 390}
+    assert undecided(handling) == {"hand": 390}
+    assert nameless(handling) == {}
+    for laid, open_since in ((389, {}), (375, {"hand": 390}), (350, {})):
+        on_table = replace(handling, laid=(Touching("cup", "table", laid, 400),))
+        assert nameless(on_table) == open_since
     assert handling.sure == 374
     assert 434 in decided_at(handling)
     let_go = replace(handling, touching=(replace(own, last=300),))
     assert undecided(let_go) == {}
     assert undecided(replace(handling, arriving={})) == {}
+
+
+def test_what_has_just_tipped_is_not_announced_while_it_leans_and_for_a_while() -> None:
+    own, lean = Touching("hand", "cup", 100, 400), Leans("cup", 380, 400)
+    handling = Handling(
+        (own,), [Moving("cup", 150, 400)], {"cup"}, last=400, margin=15, longest=200
+    )
+    assert nameless(handling) == {}
+    tipped = replace(handling, leans=(lean,))
+    assert nameless(tipped) == {"hand": 380}
+    assert undecided(tipped) == {}
+    assert nameless(replace(tipped, leans=(Leans("cup", 350, 370),))) == {}
+    assert nameless(replace(tipped, leans=(Leans("cup", 150, 400),))) == {}
+    assert nameless(replace(tipped, leans=(Leans("jug", 380, 400),))) == {}
 
 
 def test_the_rules_answer_the_same_from_one_process_after_the_other() -> None:

@@ -1,10 +1,10 @@
 """From which frame on later frames may yet decide what an end-effector does."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
-from capar.model.facts import Displaced, Moving, Swings, Touching
+from capar.model.facts import Displaced, Leans, Moving, Swings, Touching
 from extractors.measure import Arriving
 
 
@@ -46,6 +46,9 @@ class Handling:
     lingering: Mapping[tuple[str, str], int] = field(default_factory=dict)
     """Bodies that may be said to have touched on, as they are near each other, or one is out of
     sight, and the last frame in which they were seen to touch."""
+
+    leans: Sequence[Leans] = ()
+    """When things lean far over."""
 
     arriving: Mapping[str, Arriving] = field(default_factory=dict)
     """Objects that have just come to rest, where and when is not told yet."""
@@ -114,7 +117,8 @@ def nameless(handling: Handling) -> dict[str, int]:
         *_lingering(handling),
         *_just_taken(handling),
         *_just_set_off(handling),
-        *_arriving(handling),
+        *_arriving(handling, lambda thing: _may_part(handling, thing)),
+        *_just_tipped(handling),
     )
     for body, since in later:
         out[body] = min(since, out.get(body, since))
@@ -223,12 +227,43 @@ def _just_set_off(handling: Handling) -> Iterator[tuple[str, int]]:
                 yield own.body, _set_off(handling, move)
 
 
-def _arriving(handling: Handling) -> Iterator[tuple[str, int]]:
+def _arriving(
+    handling: Handling, counts: Callable[[str], bool] = lambda _: True
+) -> Iterator[tuple[str, int]]:
     """End-effectors that touch what has just come to rest, and since when that is open."""
-    for thing, rest in handling.arriving.items():
+    for thing in filter(counts, handling.arriving):
+        first = handling.arriving[thing].first
         for touch in handling.touching:
-            if touch.other == thing and touch.last >= rest.first - handling.margin:
-                yield touch.body, rest.first
+            if touch.other == thing and touch.last >= first - handling.margin:
+                yield touch.body, first
+
+
+def _just_tipped(handling: Handling) -> Iterator[tuple[str, int]]:
+    """End-effectors that touch what has begun to lean not long ago, and since when.
+
+    Where it comes to touch something else before it is righted, its tipping was no event.
+    """
+    for lean in handling.leans:
+        goes_on = lean.last >= handling.last - handling.margin
+        if goes_on and handling.last - lean.first <= handling.longest:
+            yield from (
+                (own.body, lean.first) for own in _going(handling) if own.other == lean.object
+            )
+
+
+def _may_part(handling: Handling, thing: str) -> bool:
+    """Whether it is open if a contact began or ended at once with a stop, or well before.
+
+    When a thing stopped is known to two thirds of the time within which events are one.
+    """
+    stop = handling.arriving[thing].first
+    unsure = 2 * handling.margin // 3
+    return any(
+        abs(stop - frame - handling.margin) <= unsure
+        for touch in (*handling.touching, *handling.laid)
+        if thing in (touch.body, touch.other)
+        for frame in (touch.first, touch.last)
+    )
 
 
 def _set_off(handling: Handling, move: Moving) -> int:
