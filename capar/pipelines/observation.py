@@ -22,6 +22,7 @@ from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key, infer
 from capar_rules.pars.naming_rules import naming_rules
 from capar_rules.pars.primitive_pars import Measured, ipars, upars
+from extractors.bodies.bodies import Bodies
 from extractors.bodies.observed_objects import observed_object
 from extractors.calibration import calibrate as calibration_of
 from extractors.calibration import thresholds_of
@@ -87,8 +88,6 @@ def observe_measured(
     # The solver needs no poses; styles and places, which do, come later.
     measurements.bodies.forget_smooth_poses()
     return_freed_memory()
-    tracks = tuple(sampled_tracks(measurements.bodies, capture.times))
-    return_freed_memory()
     inference = infer(facts, profile=base)
     return_freed_memory()
     moved = () if base.crossings_only else movers(facts)
@@ -115,7 +114,7 @@ def observe_measured(
         locations=tuple(_locations(capture, measurements, inference)),
         styles=tuple(
             style(segment, measurements.tracks[segment.ee], capture.times, limits)
-            for segment in _segments(inference)
+            for segment in _link_by_link(inference, measurements.bodies)
         ),
         sources=capture.sources,
         notices=(
@@ -130,7 +129,7 @@ def observe_measured(
         guides=() if base.crossings_only else tuple(_guides(measurements)),
         forces=force_styles(capture, measurements.bodies, facts, measurements.guides),
         naming=naming_rules(base, (segment.name for segment in _segments(inference))),
-        tracks=tracks,
+        tracks=tuple(sampled_tracks(measurements.bodies, capture.times)),
     )
 
 
@@ -157,10 +156,17 @@ def _segments(inference: Inference) -> Iterable[Segment]:
     return (segment for link in inference.links for segment in link.segments)
 
 
+def _link_by_link(inference: Inference, bodies: Bodies) -> Iterable[Segment]:
+    """All segments; after those of a link the poses that were filtered for them are forgotten."""
+    for link in inference.links:
+        yield from link.segments
+        bodies.forget_smooth_poses()
+
+
 def _measured(
     capture: Capture, measurements: Measurements, inference: Inference, thresholds: Thresholds
 ) -> Iterable[tuple[Key, Measured]]:
-    for segment in _segments(inference):
+    for segment in _link_by_link(inference, measurements.bodies):
         motion, path = moved_path(capture, measurements, segment, thresholds)
         yield (segment.ee, segment.index), Measured(motion, path)
 
@@ -169,7 +175,7 @@ def _locations(
     capture: Capture, measurements: Measurements, inference: Inference
 ) -> Iterable[ConstraintLocation]:
     """The constraint that ends each segment, where it ends in a contact (spec 4)."""
-    for segment in _segments(inference):
+    for segment in _link_by_link(inference, measurements.bodies):
         first, second = inference.conditions[segment.ee, segment.index].colliding
         if second >= 0 and "1" in segment.features.rel_end:
             yield constraint_location(
