@@ -215,7 +215,7 @@ def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
     from dataclasses import asdict, replace
 
     segments = [e for e in seen.observation.segments if (e.ee, e.index) == (told.ee, told.index)]
-    notices = [each.document() for each in _notices(segments, seen, [told])]
+    notices = [note.document() for note in _notices(segments, seen, [told])]
     whole = replace(told, reason=told.reason.expanded_once())
     return _placed(asdict(whole), seen) | {"notices": notices}
 

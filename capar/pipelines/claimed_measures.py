@@ -9,7 +9,7 @@ from capar.model.segment_address import SegmentAddress
 from capar.pipelines.explanation import Explained, segment_named
 from capar.pipelines.measured_series import SERIES, Recording
 from capar.views.lettering import Span
-from capar.views.measured_picture import draw_measured
+from capar.views.measured_picture import MeasuredPicture, draw_measured
 from capar.views.panels import Panel
 from capar.views.rows import kind_of
 from capar_rules.explain.claims import Quantity
@@ -42,15 +42,15 @@ def draw_claims(
     }
     address = SegmentAddress(told.ee, told.index)
     title = f"{address}  {told.name}  {told.start_s:.2f} to {told.end_s:.2f} s"
-    draw_measured(
+    picture = MeasuredPicture(
         title,
         "\n".join([told.summary, *beside]),
         list(spans.values()),
         spans[told.index],
         measured_panels(seen, told),
-        span_s=(first / rate, last / rate),
-        path=path,
+        (first / rate, last / rate),
     )
+    draw_measured(picture, path)
 
 
 def shown_span(seen: Explained, told: Explanation) -> tuple[int, int]:

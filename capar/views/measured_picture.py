@@ -1,6 +1,7 @@
 """A picture of what an explanation says: the segment in time, and each quantity below it."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
@@ -33,61 +34,65 @@ BAR_SHARE = 0.07
 """How high a bar is at the foot of a panel, as a share of it [1]."""
 
 
-def draw_measured(
-    title: str,
-    text: str,
-    segments: Sequence[Span],
-    chosen: Span,
-    panels: Sequence[Panel],
-    *,
-    span_s: tuple[float, float],
-    path: Path,
-) -> None:
-    """Draw what a text says of a segment to a PNG, SVG or PDF file, as the suffix says.
+@dataclass(frozen=True, slots=True)
+class MeasuredPicture:
+    """What a text says of a segment, over time."""
 
-    Args:
-        title: What the picture is of.
-        text: The summary of the explanation.
-        segments: The segments of the same end-effector, by their names.
-        chosen: The one that is explained.
-        panels: Each quantity that the text speaks of.
-        span_s: First and last time that are shown [s].
-        path: The file, which is overwritten.
-    """
-    save(lambda: _figure(title, text, segments, chosen, panels, span_s), path, path.suffix.lower())
+    title: str
+    text: str
+    """The summary of the explanation."""
+
+    segments: Sequence[Span]
+    """The segments of the same end-effector, by their names."""
+
+    chosen: Span
+    """The one that is explained."""
+
+    panels: Sequence[Panel]
+    """Each quantity that the text speaks of."""
+
+    span_s: tuple[float, float]
+    """First and last time that are shown [s]."""
 
 
-def _figure(
-    title: str,
-    text: str,
-    segments: Sequence[Span],
-    chosen: Span,
-    panels: Sequence[Panel],
-    span_s: tuple[float, float],
-) -> "Figure":
+def draw_measured(picture: MeasuredPicture, path: Path) -> None:
+    """Draw a picture to a PNG, SVG or PDF file, which is overwritten, as its suffix says."""
+    save(lambda: _figure(picture), path, path.suffix.lower())
+
+
+def _figure(picture: MeasuredPicture) -> "Figure":
     from matplotlib.figure import Figure
 
     letter = 0.86 * width_in("n" * 20, points=9.5) / 20.0
     lines = [
-        line for part in text.splitlines() for line in wrap(part, int((WIDTH_IN - 0.5) / letter))
+        line
+        for part in picture.text.splitlines()
+        for line in wrap(part, int((WIDTH_IN - 0.5) / letter))
     ]
     head = 0.55 + LINE_IN * len(lines) + 0.1
-    height = head + STRIP_IN + len(panels) * (CAPTION_IN + PANEL_IN) + FOOT_IN
+    height = head + STRIP_IN + len(picture.panels) * (CAPTION_IN + PANEL_IN) + FOOT_IN
     figure = Figure(figsize=(WIDTH_IN, height), facecolor="white")
     figure.text(
-        EDGE_IN / WIDTH_IN, 1 - 0.2 / height, title, fontsize=13, weight="bold", color=INK, va="top"
+        EDGE_IN / WIDTH_IN,
+        1 - 0.2 / height,
+        picture.title,
+        fontsize=13,
+        weight="bold",
+        color=INK,
+        va="top",
     )
     for number, line in enumerate(lines):
         y = 1 - (0.55 + LINE_IN * number) / height
         figure.text(EDGE_IN / WIDTH_IN, y, line, fontsize=9.5, color=INK, va="top")
     top = head
-    _strip(_axes(figure, top, STRIP_IN, span_s), segments, chosen, span_s)
+    span_s, chosen = picture.span_s, picture.chosen
+    _strip(_axes(figure, top, STRIP_IN, span_s), picture.segments, chosen, span_s)
     top += STRIP_IN
-    for number, panel in enumerate(panels):
+    for number, panel in enumerate(picture.panels):
         axes = _axes(figure, top + CAPTION_IN, PANEL_IN, span_s)
         _panel(axes, panel, chosen, span_s)
         top += CAPTION_IN + PANEL_IN
-        if number == len(panels) - 1:
+        if number == len(picture.panels) - 1:
             axes.set_xlabel("time [s]", fontsize=9, color=QUIET, labelpad=2)
         else:
             axes.tick_params(axis="x", labelbottom=False)

@@ -89,7 +89,7 @@ def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
     for mover, count in most:
         alike.setdefault(_how_long(count, len(movers)), []).append(f"the {spoken(mover)}")
     told = [f"by {joined(who)}{how_long}" for how_long, who in alike.items()]
-    told = [each.removesuffix(OF_TIME) for each in told[:-1]] + told[-1:]
+    told = [share.removesuffix(OF_TIME) for share in told[:-1]] + told[-1:]
     others = len(shares) - len(most)
     told += [f"by {others} other{'s' * (others > 1)}"] if others else []
     remainder = _remainder(movers.values(), it="they were" if is_plural(thing) else "it was")

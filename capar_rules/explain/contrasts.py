@@ -130,7 +130,7 @@ def contrasts(
         for neighbour in neighbours(base, name)
         for one in _of_neighbour(base, neighbour, atoms, clock, tell)
     ]
-    own_found = [each for each in found if not each.contrast.by_features]
+    own_found = [refused for refused in found if not refused.contrast.by_features]
     own = list(_nearest(own_found)) or list(_nearest(own_found, least=LEAST_TOLD, most=1))
     features = [each for each in found if each.contrast.by_features]
     indirect = list(_nearest([each for each in features if not each.direct], most=1))
@@ -143,7 +143,7 @@ def _nearest(
     found: Sequence[_Found], *, most: int = MOST_TOLD, least: float = LEAST_NEARNESS
 ) -> Iterator[Contrast]:
     """The nearest of some neighbours, each with those of which the same condition decided."""
-    near = (each for each in found if each.nearness >= least)
+    near = (refused for refused in found if refused.nearness >= least)
     waiting = sorted(near, key=lambda each: each.order)
     told: set[str] = set()
     for _ in range(most):

@@ -215,7 +215,7 @@ class Argument:
         """What the segment's object left in it, if it touched anything."""
         thing = self.clock.objects.get(self.text, "")
         met, at_end = (self.clock.met.get((self.text, at, thing), ()) for at in ("start", "end"))
-        left = [f"the {self.clock.called(each)}" for each in met if each not in at_end]
+        left = [f"the {self.clock.called(body)}" for body in met if body not in at_end]
         return f"left {' and '.join(left)}" if left else "started from rest"
 
     def _elsewhere(self) -> str:

@@ -72,12 +72,12 @@ def _with_sentences(reason: Reason, known: set[str]) -> Reason:
 
 def _with_one_joint_action(reason: Reason) -> Reason:
     """The node with the first segment that it is one action with, and the number of the others."""
-    joint = [each for each in reason.because if each.atom.startswith(JOINT)]
+    joint = [cause for cause in reason.because if cause.atom.startswith(JOINT)]
     if len(joint) < 2:
         return reason
     told = f"{joint[0].sentence}, and with what {len(joint) - 1} more do"
     first = replace(joint[0], sentence=told)
-    below = (each for each in reason.because if each not in joint)
+    below = (cause for cause in reason.because if cause not in joint)
     return replace(reason, because=(*below, first))
 
 

@@ -120,8 +120,8 @@ class Briefs:
         pairs = merged_contacts(nodes, self.clock)
         told: list[str] = []
         courses = any(each.atom.startswith(COURSES) for each in nodes)
-        aside = any(each.atom.startswith("travels(") for each in nodes)
-        nodes = [each for each in nodes if aside or not each.atom.startswith(CLEAR)]
+        aside = any(node.atom.startswith("travels(") for node in nodes)
+        nodes = [node for node in nodes if aside or not node.atom.startswith(CLEAR)]
         for each in nodes:
             pair = pairs.get(each.atom)
             if pair is not None:

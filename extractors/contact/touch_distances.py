@@ -175,8 +175,8 @@ def touchable(each: BodyGeometry) -> Body:
 
 def forget_touchable(bodies: Iterable[BodyGeometry]) -> None:
     """Keep the surfaces of some bodies at their poses no longer: they are made again when asked."""
-    for each in bodies:
-        _TOUCHABLE.pop(each, None)
+    for body_geometry in bodies:
+        _TOUCHABLE.pop(body_geometry, None)
 
 
 def touchable_at(each: BodyGeometry, frame: int) -> Body:

@@ -114,7 +114,7 @@ def _again(told: Sequence[Clause]) -> tuple[Clause, ...]:
         own = [each for each in out if each.ees == clause.ees][-RECALLED:]
         once = clause.changes and clause.known and clause.count == 1 and not clause.often
         again = (
-            once and clause.pattern != THIS_WAY and any(_same_deed(each, clause) for each in own)
+            once and clause.pattern != THIS_WAY and any(_same_deed(other, clause) for other in own)
         )
         out.append(replace(clause, often="again") if again else clause)
     return tuple(out)

@@ -175,7 +175,7 @@ class Scene:
             container: The box; one of which only the floor is known has no rim.
             time_s: When [s].
         """
-        within = [each for each in self._within if each.other == container.name]
+        within = [fact for fact in self._within if fact.other == container.name]
         if within and container.size_m[2] >= FLOOR_M:
             frame = min(round(time_s / self._step_s), self._last)
             there = {each.body for each in within if each.first <= frame <= each.last}
