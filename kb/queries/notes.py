@@ -17,6 +17,7 @@ _NOTE = re.compile(
     r"""^\#\ Unless\ \?(?P<column>\w+)(?:\ =\ "(?P<value>[^"]+)")?:\ (?P<text>.+)$""",
     re.MULTILINE | re.VERBOSE,
 )
+_ALWAYS = re.compile(r"^# Note: (?P<text>.+)$", re.MULTILINE)
 _QUOTED = re.compile(r"""^(?:"([^"]*)"|'([^']*)')$""")
 
 
@@ -26,7 +27,8 @@ def notes(
     """Sentences to be told beside the answer of a named question.
 
     A question's file says what is told unless a column has a value, or one certain value, in any
-    row: ``# Unless ?recorded: no capture says when it was recorded``.
+    row: ``# Unless ?recorded: no capture says when it was recorded``. What always is told stands
+    after ``# Note:``.
 
     Args:
         store: What was asked.
@@ -41,6 +43,9 @@ def notes(
         for word in meant(name, str(given[name]))
     ]
     yield from uncounted(store, named)
+    if not {"action", "kind"} & set(answer.variables):
+        yield from _counted(store, named)
+    yield from (note["text"] for note in _ALWAYS.finditer(asked.query))
     for note in _NOTE.finditer(asked.query):
         held = _held(answer, note["column"])
         if answer.rows and (note["value"] not in held if note["value"] else not held):
@@ -92,6 +97,20 @@ SELECT DISTINCT ?other {{
                 f"{' and '.join(left_out)} {are} of {name} and not counted; "
                 f"ask for both ({name},{','.join(left_out)}) if you mean them too"
             )
+
+
+def _counted(store: "Store", named: Iterable[str]) -> Iterator[str]:
+    """The kinds of actions that were asked for, where the answer does not show them."""
+    for name in named:
+        query = f"""
+SELECT DISTINCT ?other {{
+  ?kind capar:kindOf/capar:name {Literal(name)} ; capar:name ?other .
+  FILTER(?other != {Literal(name)}) FILTER EXISTS {{ ?segment capar:action ?kind }}
+}} ORDER BY ?other"""
+        rows = store.ask(sparql.complete(query)).rows
+        others = [term.value for (term,) in rows if isinstance(term, Literal)]
+        if others:
+            yield f"{name} counts its kinds as well: {', '.join(others)}"
 
 
 def _held(answer: "Answer", column: str) -> set[str]:
