@@ -47,6 +47,7 @@ def can(
     actions: Annotated[list[str], typer.Argument(help="Actions that it is able to do.")],
     wait: Wait = 0.0,
     actionary: Place = None,
+    json: Json = False,
 ) -> None:
     """Declare what an agent that is known is able to do, beside what was observed."""
     from capar.model.errors import UnknownNameError
@@ -58,7 +59,10 @@ def can(
             raise UnknownNameError("agent", name, opened.agents())
         for action in actions:
             opened.add_ability(action, agent=name)
-    typer.echo(f"declared of {name}: {', '.join(actions)}")
+    if json:
+        print_json({"agent": name, "declared": actions})
+    else:
+        typer.echo(f"declared of {name}: {', '.join(actions)}")
 
 
 @app.command("list")

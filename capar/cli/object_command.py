@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from capar.cli._options import Place, Wait, require_actionary
-from capar.cli._output import print_fields, print_names
+from capar.cli._output import print_fields, print_json, print_names
 
 app = typer.Typer(no_args_is_help=True)
 
@@ -33,6 +33,7 @@ def can(
     actions: Annotated[list[str], typer.Argument(help="Actions that it lends itself to.")],
     wait: Wait = 0.0,
     actionary: Place = None,
+    json: Json = False,
 ) -> None:
     """Declare what a kind of object can be used for, beside what was observed."""
     from capar.model.errors import UnknownNameError
@@ -44,7 +45,10 @@ def can(
             raise UnknownNameError("kind of object", kind, opened.object_kinds())
         for action in actions:
             opened.add_ability(action, kind=kind)
-    typer.echo(f"declared of every {kind}: {', '.join(actions)}")
+    if json:
+        print_json({"kind": kind, "declared": actions})
+    else:
+        typer.echo(f"declared of every {kind}: {', '.join(actions)}")
 
 
 @app.command()

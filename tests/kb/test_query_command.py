@@ -271,6 +271,21 @@ def test_what_is_nowhere_declared_or_recorded_is_noted(ask: Ask) -> None:
     assert "note" not in ask("query", "sources", "--json").stderr
 
 
+def test_what_is_declared_is_told_beside_what_was_observed(ask: Ask, tmp_path: Path) -> None:
+    with Actionary.open(tmp_path / "own") as actionary:
+        actionary.add(drink_from_mug())
+        (who,) = actionary.agents()
+    place = ("--actionary", str(tmp_path / "own"))
+    assert "declared of every mug: Wipe" in ask("object", "can", "mug", "Wipe", *place).stdout
+    done = ask("query", "uses", "object=mug", *place)
+    assert "Wipe" in done.stdout and "nothing is declared" not in done.stderr
+    assert "declared of" in ask("agent", "can", who, "Juggle", *place).stdout
+    done = ask("query", "abilities", f"performer={who}", *place)
+    assert "Juggle" in done.stdout and "nothing is declared" not in done.stderr
+    wrong = ask("object", "can", "mgu", "Wipe", *place)
+    assert wrong.returncode == 2 and "no kind of object 'mgu'" in wrong.stderr
+
+
 def test_a_column_without_values_is_noted(ask: Ask) -> None:
     done = ask("query", "SELECT ?s ?x { ?s a capar:Segment OPTIONAL { ?s capar:seen ?x } }")
     assert "note: ?x has no value in any row (8 in all)" in done.stderr
