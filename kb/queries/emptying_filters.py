@@ -25,6 +25,7 @@ def emptying_filters(store: "Store", asked: Question, given: Mapping[str, object
         given: What it was asked of, by parameter.
     """
     yield from _shapeless(store, asked, given)
+    yield from _gazeless(store, asked, given)
     needed = {p.name: given[p.name] for p in asked.parameters if p.required and p.name in given}
     filters = {name: value for name, value in given.items() if name not in needed}
     if not filters or len(given) == 1:
@@ -62,6 +63,16 @@ def _values(answer: "Answer", column: str) -> str:
     held = sorted({term.value for term in terms if isinstance(term, Literal)})
     more = ", ..." if len(held) > MOST_VALUES else ""
     return f", of which {column} is {', '.join(held[:MOST_VALUES])}{more}"
+
+
+def _gazeless(store: "Store", asked: Question, given: Mapping[str, object]) -> Iterator[str]:
+    """Captures in which no gaze was recorded."""
+    if "capar:LookingAt" not in asked.query or "capture" not in given:
+        return
+    name = Literal(str(given["capture"]))
+    looks = f"?seen capar:capture/capar:name {name} ; capar:fact ?look . ?look a capar:LookingAt"
+    if not store.ask(sparql.complete(f"ASK {{ {looks} }}")).boolean:
+        yield f"{name.value} has no look at anything: its gaze was not recorded, or met nothing"
 
 
 def _shapeless(store: "Store", asked: Question, given: Mapping[str, object]) -> Iterator[str]:

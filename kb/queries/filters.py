@@ -130,6 +130,9 @@ FILTERS: Mapping[str, Filter] = {
 }
 """Every filter by name."""
 
+NARROWING = frozenset({"capture", "address"})
+"""Filters that leave so few that the others are best tested on each of these."""
+
 _MARKED = "segment|seen|link|joint|place|two|thing|contact"
 _MARK = re.compile(rf"^ *# filters \?({_MARKED})$", re.MULTILINE)
 
@@ -146,10 +149,11 @@ def filters_of(query: str) -> tuple[str, ...]:
 
 def filtered(query: str, given: Mapping[str, Sequence[Literal]]) -> str:
     """A query with the filters set for which there are values; one of several is enough."""
+    narrow = bool(given.keys() & NARROWING)
 
     def patterns(found: "re.Match[str]") -> str:
         held = (
-            _set(found[1], FILTERS[name].patterns[found[1]], name, values)
+            _set(found[1], FILTERS[name], name, values, narrow=narrow)
             for name, values in given.items()
             if found[1] in FILTERS[name].patterns
         )
@@ -158,9 +162,19 @@ def filtered(query: str, given: Mapping[str, Sequence[Literal]]) -> str:
     return _MARK.sub(patterns, query)
 
 
-def _set(of: str, pattern: str, name: str, values: Sequence[Literal]) -> str:
-    """A pattern with its values; what may fit in several ways still counts once."""
-    if len(values) == 1 and "|" not in pattern:
+def _set(of: str, by: Filter, name: str, values: Sequence[Literal], *, narrow: bool) -> str:
+    """A pattern with its values; what may fit in several ways still counts once.
+
+    Where another filter leaves few, each of them is tested, instead of finding all that fit.
+    """
+    pattern = by.patterns[of]
+    several = len(values) > 1 or "|" in pattern
+    if several and narrow:
+        tests = (f"EXISTS {{ {pattern.replace('@value@', str(value))} }}" for value in values)
+        return f"FILTER({' || '.join(tests)})"
+    if narrow and by.kind == "text" and name not in NARROWING:
+        return f"FILTER EXISTS {{ {pattern.replace('@value@', str(values[0]))} }}"
+    if not several:
         return pattern.replace("@value@", str(values[0]))
     variable = f"?f_one_{name}"
     one_of = f"VALUES {variable} {{ {' '.join(map(str, values))} }}"

@@ -17,6 +17,11 @@ _NOTE = re.compile(
     r"""^\#\ Unless\ \?(?P<column>\w+)(?:\ =\ "(?P<value>[^"]+)")?:\ (?P<text>.+)$""",
     re.MULTILINE | re.VERBOSE,
 )
+_OF_SEGMENTS = frozenset(
+    f"capar:{name}" for name in ("segment", "Segment", "address", "ofLink", "start", "namedBy")
+)
+"""Words of a query that leave segments alone."""
+
 _ALWAYS = re.compile(r"^# Note: (?P<text>.+)$", re.MULTILINE)
 _QUOTED = re.compile(r"""^(?:"([^"]*)"|'([^']*)')$""")
 
@@ -45,6 +50,8 @@ def notes(
     yield from uncounted(store, named)
     if not {"action", "kind"} & set(answer.variables):
         yield from _counted(store, named)
+    if _mixes(store, asked, given, answer):
+        yield "fingers, toes and other bodies count as well as hands: effector=hand for hands alone"
     yield from (note["text"] for note in _ALWAYS.finditer(asked.query))
     for note in _NOTE.finditer(asked.query):
         held = _held(answer, note["column"])
@@ -61,9 +68,17 @@ def notes_of_sparql(store: "Store", query: str, answer: "Answer") -> Iterator[st
         answer: Its rows.
     """
     pieces = [piece for piece in sparql.tokens(query) if piece.kind != "space"]
-    if any(piece.text.endswith("kindOf") for piece in pieces):
+    words = {piece.text for piece in pieces}
+    if "capar:kindOf" in words:
         texts = (_QUOTED.match(piece.text) for piece in pieces if piece.kind == "string")
-        yield from uncounted(store, [text[1] or text[2] or "" for text in texts if text])
+        named = [text[1] or text[2] or "" for text in texts if text]
+        yield from uncounted(store, named)
+        yield from _counted(store, named)
+    if "capar:action" in words and not words & _OF_SEGMENTS:
+        yield (
+            "capar:action is of steps, styles, locations and joint actions as well: "
+            "?observation capar:segment ?s leaves segments alone"
+        )
     for column in answer.variables:
         at = answer.variables.index(column)
         without = sum(row[at] is None for row in answer.rows)
@@ -97,6 +112,18 @@ SELECT DISTINCT ?other {{
                 f"{' and '.join(left_out)} {are} of {name} and not counted; "
                 f"ask for both ({name},{','.join(left_out)}) if you mean them too"
             )
+
+
+def _mixes(store: "Store", asked: Question, given: Mapping[str, object], answer: "Answer") -> bool:
+    """Whether an answer counts what other end-effectors than hands did, and does not show it."""
+    takes = {parameter.name for parameter in asked.parameters}
+    told = {"effector", "ee", "address"} & given.keys() or {"ee", "address", "first"} & set(
+        answer.variables
+    )
+    if "effector" not in takes or told:
+        return False
+    others = "?link capar:effectorType ?kind FILTER(?kind != 'hand') ?segment capar:ofLink ?link"
+    return bool(store.ask(sparql.complete(f"ASK {{ {others} }}")).boolean)
 
 
 def _counted(store: "Store", named: Iterable[str]) -> Iterator[str]:

@@ -308,6 +308,10 @@ def test_when_bottle_and_table_touched(world: World, actionary: Actionary) -> No
         if (each.body, each.other) == ("bottle", "table")
     }
     assert asked(actionary, "in touch") == rounded(expected)
+    for given in ({"body": "bottle", "object": "table"}, {"body": "table", "object": "bottle"}):
+        rows = actionary.ask("contacts", **given)
+        told = [(row["observation"], row["begins"], row["ends"]) for row in rows]
+        assert rounded(told) == rounded(expected) and len(told) == len(expected)
     assert {each[0] for each in expected} == world.kitchen
 
 
@@ -497,7 +501,7 @@ def test_every_filter_leaves_exactly_what_it_says(world: World, actionary: Actio
 def test_every_question_of_segments_takes_the_same_filters() -> None:
     exempt = {"allen", "before", "shared", "world"}  # of whole actions, conditions, or one time
     other = {"corrections", "held", "notices", "observations", "sources"}  # of observations
-    other |= {"arrangements", "looked_before"}
+    other |= {"arrangements", "contacts", "looked_before"}
     own = {"other_side", "other_ee", "other_effector", "object"}  # of few questions
     body = {"place", "both_hands", "looked_at"}
     for name, each in questions().items():
