@@ -63,6 +63,11 @@ FILTERS: Mapping[str, Filter] = {
             "link": "?link capar:effectorType @value@ .",
         },
     ),
+    "other": Filter(
+        "text",
+        "the name of the other segment's action, which stands for every kind of it",
+        {"two": "?two capar:action/capar:kindOf/capar:name @value@ ."},
+    ),
     "other_side": Filter(
         "text",
         "left, right or none, of the other segment",
@@ -96,6 +101,7 @@ FILTERS: Mapping[str, Filter] = {
             "joint": "?f_seen capar:jointAction ?joint ; capar:capture/capar:name @value@ .",
             "place": "?f_seen capar:location ?place ; capar:capture/capar:name @value@ .",
             "contact": "?f_seen capar:fact ?contact ; capar:capture/capar:name @value@ .",
+            "two": "?f_two capar:segment ?two ; capar:capture/capar:name @value@ .",
         },
     ),
     "from": Filter(
@@ -165,7 +171,8 @@ def filtered(query: str, given: Mapping[str, Sequence[Literal]]) -> str:
 def _set(of: str, by: Filter, name: str, values: Sequence[Literal], *, narrow: bool) -> str:
     """A pattern with its values; what may fit in several ways still counts once.
 
-    Where another filter leaves few, each of them is tested, instead of finding all that fit.
+    Where another filter leaves few, each of them is tested, instead of finding all that fit: a
+    variable that is compared is bound last, a value that is written out is sought first.
     """
     pattern = by.patterns[of]
     several = len(values) > 1 or "|" in pattern
@@ -173,7 +180,8 @@ def _set(of: str, by: Filter, name: str, values: Sequence[Literal], *, narrow: b
         tests = (f"EXISTS {{ {pattern.replace('@value@', str(value))} }}" for value in values)
         return f"FILTER({' || '.join(tests)})"
     if narrow and by.kind == "text" and name not in NARROWING:
-        return f"FILTER EXISTS {{ {pattern.replace('@value@', str(values[0]))} }}"
+        variable = f"?f_one_{name}"
+        return f"{pattern.replace('@value@', variable)} FILTER({variable} = {values[0]})"
     if not several:
         return pattern.replace("@value@", str(values[0]))
     variable = f"?f_one_{name}"

@@ -489,7 +489,7 @@ def test_every_filter_leaves_exactly_what_it_says(world: World, actionary: Actio
             "container" in kinds.get((seen.capture, name), ()) for name in each.objects
         ),
     }
-    of_others = {"other_side", "other_ee", "other_effector", "object"}
+    of_others = {"other", "other_side", "other_ee", "other_effector", "object"}
     assert {name for name, _ in fitting} == FILTERS.keys() - of_others
     for (name, value), fits in fitting.items():
         expected = {address for seen, each, address in world.segments() if fits(seen, each)}
@@ -502,7 +502,7 @@ def test_every_question_of_segments_takes_the_same_filters() -> None:
     exempt = {"allen", "before", "shared", "world"}  # of whole actions, conditions, or one time
     other = {"corrections", "held", "notices", "observations", "sources"}  # of observations
     other |= {"arrangements", "contacts", "looked_before"}
-    own = {"other_side", "other_ee", "other_effector", "object"}  # of few questions
+    own = {"other", "other_side", "other_ee", "other_effector", "object"}  # of few questions
     body = {"place", "both_hands", "looked_at"}
     for name, each in questions().items():
         taken = {parameter.name for parameter in each.parameters}
