@@ -41,6 +41,30 @@ def new(
         typer.echo(f"declared {name}")
 
 
+@app.command()
+def can(
+    name: Name,
+    actions: Annotated[list[str], typer.Argument(help="Actions that it is able to do.")],
+    wait: Wait = 0.0,
+    actionary: Place = None,
+    json: Json = False,
+) -> None:
+    """Declare what an agent that is known is able to do, beside what was observed."""
+    from capar.model.errors import UnknownNameError
+    from kb import Actionary
+
+    require_actionary(actionary, observed=True)
+    with Actionary.open(actionary, wait_s=wait) as opened:
+        if name not in opened.agents():
+            raise UnknownNameError("agent", name, opened.agents())
+        for action in actions:
+            opened.add_ability(action, agent=name)
+    if json:
+        print_json({"agent": name, "declared": actions})
+    else:
+        typer.echo(f"declared of {name}: {', '.join(actions)}")
+
+
 @app.command("list")
 def list_agents(actionary: Place = None, json: Json = False) -> None:
     """List every agent; one without a name is called by the capture that it is of."""

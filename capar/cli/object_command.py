@@ -4,8 +4,8 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._options import Place
-from capar.cli._output import print_fields, print_names
+from capar.cli._options import Place, Wait, require_actionary
+from capar.cli._output import print_fields, print_json, print_names
 
 app = typer.Typer(no_args_is_help=True)
 
@@ -25,6 +25,30 @@ def list_objects(actionary: Place = None, json: Json = False) -> None:
     with Actionary.open(actionary, read_only=True) as opened:
         found = opened.object_kinds()
     print_names(found, json=json)
+
+
+@app.command()
+def can(
+    kind: Annotated[str, typer.Argument(help="A kind of object, as `capar object list` has it.")],
+    actions: Annotated[list[str], typer.Argument(help="Actions that it lends itself to.")],
+    wait: Wait = 0.0,
+    actionary: Place = None,
+    json: Json = False,
+) -> None:
+    """Declare what a kind of object can be used for, beside what was observed."""
+    from capar.model.errors import UnknownNameError
+    from kb import Actionary
+
+    require_actionary(actionary, observed=True)
+    with Actionary.open(actionary, wait_s=wait) as opened:
+        if kind not in opened.object_kinds():
+            raise UnknownNameError("kind of object", kind, opened.object_kinds())
+        for action in actions:
+            opened.add_ability(action, kind=kind)
+    if json:
+        print_json({"kind": kind, "declared": actions})
+    else:
+        typer.echo(f"declared of every {kind}: {', '.join(actions)}")
 
 
 @app.command()

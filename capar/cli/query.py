@@ -1,8 +1,9 @@
 """Ask the Actionary: a named question, or any SPARQL."""
 
 import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
     from kb.store.stores import Store
 
 app = typer.Typer()
+
+Given: TypeAlias = dict[str, str]
+"""What a named question is asked of, by parameter."""
 
 
 def _names(incomplete: str) -> list[tuple[str, str]]:
@@ -86,10 +90,10 @@ def query(
         answer = store.ask_within(text, seconds=time_limit)
         if raw is None and not answer.rows:
             check_known(store, named(question), given)
-            _tell_none(store, chosen)
-        elif raw is not None and answer.variables and not answer.rows:
-            _tell_why_empty(store, text)
-    _print(answer, chosen)
+        _print(answer, chosen)
+        if chosen == "table" and answer.variables:
+            for sentence in _remarks(store, answer, question, raw, text, given):
+                typer.echo(sentence, err=True)
 
 
 def _warn_of_unknown_terms(query: str) -> None:
@@ -99,20 +103,31 @@ def _warn_of_unknown_terms(query: str) -> None:
         typer.echo(f"warning: {sentence}", err=True)
 
 
-def _tell_none(store: "Store", chosen: str) -> None:
-    """Say that an empty answer is one, and of how many segments; not in other formats."""
+def _remarks(
+    store: "Store", answer: "Answer", question: str, raw: str | None, text: str, given: Given
+) -> Iterator[str]:
+    """What ought to be known beside the answer, or why there is none."""
+    from kb.queries.emptying_filters import emptying_filters
+    from kb.queries.notes import notes, notes_of_sparql
     from kb.queries.questions import counted_segments
+    from kb.queries.questions import question as named
 
-    if chosen == "table":
-        typer.echo(f"nothing found among {counted_segments(store)}", err=True)
+    if answer.rows:
+        beside = (
+            notes(store, named(question), given, answer)
+            if raw is None
+            else notes_of_sparql(store, text, answer)
+        )
+        yield from (f"note: {sentence}" for sentence in beside)
+        return
+    yield f"nothing found among {counted_segments(store)}"
+    if raw is None:
+        why = list(emptying_filters(store, named(question), given))
+    else:
+        from kb.queries.empty_answers import hints  # half a second, for queries without answer
 
-
-def _tell_why_empty(store: "Store", query: str) -> None:
-    """Name the words of a query of one's own that nothing here has."""
-    from kb.queries.empty_answers import hints
-
-    for sentence in hints(store, query):
-        typer.echo(f"nothing found: {sentence}", err=True)
+        why = hints(store, text)
+    yield from (f"nothing found: {sentence}" for sentence in why)
 
 
 def _corrected(store: "Store") -> "Store":
@@ -121,7 +136,7 @@ def _corrected(store: "Store") -> "Store":
     return corrected(store)
 
 
-def _given(parameters: list[str], asked: str) -> dict[str, str]:
+def _given(parameters: list[str], asked: str) -> Given:
     from capar.model.errors import CaparError
     from kb.queries.questions import questions
 
@@ -136,7 +151,7 @@ def _given(parameters: list[str], asked: str) -> dict[str, str]:
     return given
 
 
-def _text(question: str, raw: str | None, given: dict[str, str]) -> str:
+def _text(question: str, raw: str | None, given: Given) -> str:
     """The SPARQL that is meant."""
     from capar.model.errors import CaparError
     from kb.queries.questions import question as named

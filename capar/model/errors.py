@@ -22,9 +22,13 @@ class UnknownNameError(CaparError):
         name: The name as it was given.
         known: The names that exist, sorted.
         where: File and line, or an empty string.
+
+    All names that exist are in the message if they are few, or if ``listed`` is true.
     """
 
-    def __init__(self, kind: str, name: str, known: Iterable[str], *, where: str = "") -> None:
+    def __init__(
+        self, kind: str, name: str, known: Iterable[str], *, where: str = "", listed: bool = False
+    ) -> None:
         self.kind = kind
         self.name = name
         self.known = sorted(known)
@@ -32,12 +36,14 @@ class UnknownNameError(CaparError):
         close = get_close_matches(name, self.known, n=1)
         hint = f" Did you mean {close[0]!r}?" if close else ""
         place = f"{where}: " if where else ""
-        super().__init__(f"{place}no {kind} {name!r}; {_listed(name, self.known)}.{hint}")
+        super().__init__(
+            f"{place}no {kind} {name!r}; {_listed(name, self.known, whole=listed)}.{hint}"
+        )
 
 
-def _listed(name: str, known: list[str]) -> str:
+def _listed(name: str, known: list[str], *, whole: bool) -> str:
     """The names that exist: all of a few, of many the nearest five and how many there are."""
-    if len(known) <= MOST_LISTED:
+    if whole or len(known) <= MOST_LISTED:
         return f"there are: {', '.join(known) or 'none'}"
     nearest = get_close_matches(name, known, n=NEAREST, cutoff=0.0)
     return f"there are {len(known)}, the nearest: {', '.join(nearest)}"

@@ -52,7 +52,7 @@ def kind(out: Statements, name: str) -> NamedNode:
     above = names.shared("kind", "object")
     thing = names.shared("kind", "thing")
     properties: PropertyValues = {
-        LABEL: Literal(name.replace("_", " "), language="en"),
+        LABEL: name.replace("_", " "),
         CAPAR.name: name,
         CAPAR.isA: [node, above, thing],
     }

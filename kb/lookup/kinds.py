@@ -55,7 +55,7 @@ def described(name: str) -> list[Quad]:
     marks = [Quad(node, CAPAR.declared, Literal(True), graph)]
     if names.graph_of(node) == names.GRAPHS["ontology"]:
         return marks
-    label = Literal(name.replace("_", " "), language="en")
+    label = Literal(name.replace("_", " "))
     return [
         *marks,
         Quad(node, TYPE, CAPAR.ObjectKind, graph),

@@ -15,6 +15,7 @@ from rdflib.plugins.sparql.algebra import translateQuery
 from rdflib.plugins.sparql.parser import parseQuery
 from rdflib.plugins.sparql.parserutils import CompValue
 
+from kb.queries.emptying_patterns import emptying_patterns, needed_triples
 from ontology import BASE
 
 if TYPE_CHECKING:
@@ -25,15 +26,24 @@ _NEGATIONS = frozenset({"Builtin_NOTEXISTS", "Minus"})
 MOST_NEAR = 3
 """How many values are told that are written alike."""
 
+MOST_LISTED = 40
+"""Of so many values that there are, those are listed that there are, where none is alike."""
+
 
 def hints(store: "Store", query: str) -> list[str]:
     """A sentence for each word of a complete query that alone leaves its answer empty.
+
+    If no word does, for the patterns or filters that do.
 
     Args:
         store: What was asked.
         query: The query, with its prefixes declared (``sparql.prepare``).
     """
-    parts = list(_parts(translateQuery(parseQuery(query)).algebra))
+    try:
+        algebra = translateQuery(parseQuery(query)).algebra
+    except Exception:  # rdflib reads less than the engine does, and says so in many ways
+        return []
+    parts = list(_parts(algebra))
     triples = [triple for part in parts if part.name == "BGP" for triple in part["triples"]]
     found = [
         *_unknown_values(store, triples),
@@ -41,6 +51,8 @@ def hints(store: "Store", query: str) -> list[str]:
         *_lacking(store, triples),
         *_shapeless(store, triples),
     ]
+    if not found:
+        found = list(emptying_patterns(store, query, needed_triples(algebra)))
     return list(dict.fromkeys(found))
 
 
@@ -86,7 +98,11 @@ def _unknown(store: "Store", value: Text, properties: list[URIRef]) -> Iterator[
     asked = " or ".join(_short(property_) for property_ in properties) or "name or value"
     known = _texts(store, f"?x {path} ?found FILTER(isLiteral(?found))") if properties else []
     near = get_close_matches(str(value), known, n=MOST_NEAR)
+    if not near and len(known) <= MOST_LISTED:
+        near = known
     hint = f"; there is {' or '.join(map(repr, near))}" if near else ""
+    if str(value) in known:
+        hint = "; it is there with another language tag, or with none"
     yield f"nothing has {str(value)!r} as its {asked}{hint}"
 
 

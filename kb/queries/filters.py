@@ -1,11 +1,11 @@
 """Filters that named questions share: which end-effector, whose, of which capture, when, with what.
 
-A question that takes them says where, in a comment of its own: ``# filters ?segment``, or
-``# filters ?seen``, ``?joint`` or ``?place`` where it asks of something else.
+A question that takes them says where, in a comment of its own: ``# filters ?segment``, or another
+variable where it asks of something else.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from pyoxigraph import Literal
@@ -63,6 +63,26 @@ FILTERS: Mapping[str, Filter] = {
             "link": "?link capar:effectorType @value@ .",
         },
     ),
+    "other": Filter(
+        "text",
+        "the name of the other segment's action, which stands for every kind of it",
+        {"two": "?two capar:action/capar:kindOf/capar:name @value@ ."},
+    ),
+    "other_side": Filter(
+        "text",
+        "left, right or none, of the other segment",
+        {"two": "?two capar:ofLink/capar:side @value@ ."},
+    ),
+    "other_ee": Filter(
+        "text",
+        "the name of the other segment's end-effector",
+        {"two": "?two capar:ofLink/capar:ee @value@ ."},
+    ),
+    "other_effector": Filter(
+        "text",
+        "the other segment's kind of end-effector",
+        {"two": "?two capar:ofLink/capar:effectorType @value@ ."},
+    ),
     "performer": Filter(
         "text",
         "the name of an agent",
@@ -80,6 +100,8 @@ FILTERS: Mapping[str, Filter] = {
             "seen": "?seen capar:capture/capar:name @value@ .",
             "joint": "?f_seen capar:jointAction ?joint ; capar:capture/capar:name @value@ .",
             "place": "?f_seen capar:location ?place ; capar:capture/capar:name @value@ .",
+            "contact": "?f_seen capar:fact ?contact ; capar:capture/capar:name @value@ .",
+            "two": "?f_two capar:segment ?two ; capar:capture/capar:name @value@ .",
         },
     ),
     "from": Filter(
@@ -91,6 +113,13 @@ FILTERS: Mapping[str, Filter] = {
         "number",
         "seconds since the first frame; what starts earlier counts",
         {"segment": "?segment capar:start ?f_start . FILTER(?f_start < @value@)"},
+    ),
+    "object": Filter(
+        "text",
+        "the name of the object or of its kind",
+        {
+            "thing": "?thing (capar:name|(capar:kind/capar:isA/capar:name)) @value@ .",
+        },
     ),
     "kind": Filter(
         "text",
@@ -107,7 +136,11 @@ FILTERS: Mapping[str, Filter] = {
 }
 """Every filter by name."""
 
-_MARK = re.compile(r"^ *# filters \?(segment|seen|link|joint|place)$", re.MULTILINE)
+NARROWING = frozenset({"capture", "address"})
+"""Filters that leave so few that the others are best tested on each of these."""
+
+_MARKED = "segment|seen|link|joint|place|two|thing|contact"
+_MARK = re.compile(rf"^ *# filters \?({_MARKED})$", re.MULTILINE)
 
 
 def filters_of(query: str) -> tuple[str, ...]:
@@ -120,15 +153,37 @@ def filters_of(query: str) -> tuple[str, ...]:
     )
 
 
-def filtered(query: str, given: Mapping[str, Literal]) -> str:
-    """A query with the filters set for which there is a value."""
+def filtered(query: str, given: Mapping[str, Sequence[Literal]]) -> str:
+    """A query with the filters set for which there are values; one of several is enough."""
+    narrow = bool(given.keys() & NARROWING)
 
     def patterns(found: "re.Match[str]") -> str:
         held = (
-            FILTERS[name].patterns[found[1]].replace("@value@", str(value))
-            for name, value in given.items()
+            _set(found[1], FILTERS[name], name, values, narrow=narrow)
+            for name, values in given.items()
             if found[1] in FILTERS[name].patterns
         )
-        return "\n".join(f"  {each}" for each in held)
+        return "\n".join(f"  {pattern}" for pattern in held)
 
     return _MARK.sub(patterns, query)
+
+
+def _set(of: str, by: Filter, name: str, values: Sequence[Literal], *, narrow: bool) -> str:
+    """A pattern with its values; what may fit in several ways still counts once.
+
+    Where another filter leaves few, each of them is tested, instead of finding all that fit: a
+    variable that is compared is bound last, a value that is written out is sought first.
+    """
+    pattern = by.patterns[of]
+    several = len(values) > 1 or "|" in pattern
+    if several and narrow:
+        tests = (f"EXISTS {{ {pattern.replace('@value@', str(value))} }}" for value in values)
+        return f"FILTER({' || '.join(tests)})"
+    if narrow and by.kind == "text" and name not in NARROWING:
+        variable = f"?f_one_{name}"
+        return f"{pattern.replace('@value@', variable)} FILTER({variable} = {values[0]})"
+    if not several:
+        return pattern.replace("@value@", str(values[0]))
+    variable = f"?f_one_{name}"
+    one_of = f"VALUES {variable} {{ {' '.join(map(str, values))} }}"
+    return f"{{ SELECT DISTINCT ?{of} {{ {one_of} {pattern.replace('@value@', variable)} }} }}"

@@ -31,27 +31,51 @@ BEARERS = {
         "{ ?of a capar:Observation ; rdfs:label ?name } UNION { ?of a ?kind ; capar:name ?name "
         "VALUES ?kind { capar:Action capar:Upar capar:JointAction capar:Observation } }",
     ),
+    "arrangement": ("arrangement", "?of capar:arrangement ?name"),
     "body": ("body", "?of capar:body/capar:name ?name"),
     "capture": ("capture", "?of a capar:Capture ; capar:name ?name"),
     "ee": ("end-effector", "?of a capar:Link ; capar:ee ?name"),
     "effector": ("kind of end-effector", "?of a capar:Link ; capar:effectorType ?name"),
     "first": _WHOLE,
     "goal": _OBJECT,
-    "kind": ("kind of object", "?of a capar:ObjectKind ; capar:name ?name"),
+    "kind": (
+        "object or kind of object",
+        "?of capar:name ?name ; a ?bearer VALUES ?bearer { capar:ObjectKind capar:TagObject }",
+    ),
     "lemma": ("verb", "?of a ontolex:Word ; rdfs:label ?word BIND(STR(?word) AS ?name)"),
     "levin": ("class of Levin's", "?of a capar:LevinClass ; skos:notation ?name"),
     "object": _OBJECT,
     "observation": ("observation", "?of a capar:Observation ; rdfs:label ?name"),
     "other": ("action", "?of a capar:Action ; capar:name ?name"),
+    "other_ee": ("end-effector", "?of a capar:Link ; capar:ee ?name"),
+    "other_effector": ("kind of end-effector", "?of a capar:Link ; capar:effectorType ?name"),
+    "other_side": ("side", "?of a capar:Link ; capar:side ?name"),
     "performer": ("performer", "?of a capar:Agent ; capar:name|rdfs:label ?name"),
     "preposition": ("preposition", "?of capar:preposition ?name"),
     "purpose": ("purpose", "?of capar:purpose ?name"),
-    "relation": ("relation of Allen's", f"VALUES ?name {{ {' '.join(map(repr, RELATIONS))} }}"),
+    "relation": (
+        "relation of Allen's",
+        f"VALUES ?name {{ {' '.join(map(repr, (*RELATIONS, 'together')))} }}",
+    ),
     "second": _WHOLE,
     "side": ("side", "?of a capar:Link ; capar:side ?name"),
 }
 """What each parameter that is a text names, and the pattern of those that bear such a name."""
 
+
+FEW = frozenset({"arrangement", "effector", "other_effector", "preposition", "relation", "side"})
+"""Parameters whose values are few enough to list all of them where one is not known."""
+
+SEVERAL = frozenset(
+    {
+        *("action", "arrangement", "body", "ee", "effector", "kind", "object", "other"),
+        *("other_ee", "other_effector", "preposition"),
+    }
+)
+"""Parameters that take several names with commas between them, of which one is enough."""
+
+SYNONYMS = {("preposition", "inside"): "in", ("arrangement", "in"): "inside"}
+"""Values by parameter and another word that people use for them."""
 
 OF_LEXICON = frozenset({"lemma", "levin"})
 """The parameters that only a loaded lexicon can answer."""
@@ -96,27 +120,30 @@ class Question:
                 raise UnknownNameError(f"parameter of the question {self.name!r}", name, names)
         values = {each.name: self._value(each, given) for each in self.parameters}
         set_filters = filters_of(self.query)
-        query = filtered(
-            self.query,
-            {each: value for each in set_filters if (value := values[each]) is not None},
-        )
+        query = filtered(self.query, {each: values[each] for each in set_filters if values[each]})
         for parameter in self.parameters:
             query = _set(query, parameter, values[parameter.name])
         return sparql.complete(query)
 
-    def _value(self, parameter: Parameter, given: Mapping[str, object]) -> Literal | None:
+    def _value(self, parameter: Parameter, given: Mapping[str, object]) -> tuple[Literal, ...]:
         value = given.get(parameter.name)
         text = parameter.default if value is None else str(value)
         if not text:
             if parameter.required:
                 raise QuestionError(self, parameter)
-            return None
+            return ()
         if parameter.kind == "text":
-            return Literal(text)
+            return tuple(map(Literal, meant(parameter.name, text)))
         try:
-            return Literal(float(text))
+            return (Literal(float(text)),)
         except ValueError:
             raise QuestionError(self, parameter, text) from None
+
+
+def meant(parameter: str, text: str) -> list[str]:
+    """The values that a text means for a parameter: several of some, the usual word for others."""
+    words = text.split(",") if parameter in SEVERAL else [text]
+    return [SYNONYMS.get((parameter, word.strip()), word.strip()) for word in words]
 
 
 class QuestionError(CaparError):
@@ -132,9 +159,10 @@ class QuestionError(CaparError):
         )
 
 
-def _set(query: str, parameter: Parameter, value: Literal | None) -> str:
+def _set(query: str, parameter: Parameter, values: tuple[Literal, ...]) -> str:
     line = f"VALUES ?{parameter.name} {{ UNDEF }}"
-    return query.replace(line, f"VALUES ?{parameter.name} {{ {value} }}" if value else "")
+    stated = f"VALUES ?{parameter.name} {{ {' '.join(map(str, values))} }}"
+    return query.replace(line, stated if values else "")
 
 
 @cache
@@ -167,8 +195,8 @@ def check_known(store: "Store", asked: Question, given: Mapping[str, object]) ->
         CaparError: The capture has no such time, or the body was lost then.
     """
     for parameter in asked.parameters:
-        value = str(given.get(parameter.name) or "")
-        if parameter.kind != "text" or not value:
+        asked_for = str(given.get(parameter.name) or "")
+        if parameter.kind != "text" or not asked_for:
             continue
         kind, pattern = BEARERS[parameter.name]
         known = _texts(store, pattern)
@@ -177,8 +205,10 @@ def check_known(store: "Store", asked: Question, given: Mapping[str, object]) ->
                 f"{store.place}: no {kind} is known, as no lexicon is loaded; "
                 "`capar lexicon load` puts WordNet's verbs and Levin's classes in"
             )
-        if value not in known:
-            raise UnknownNameError(kind, value, known, where=store.place)
+        for value in meant(parameter.name, asked_for):
+            if value not in known:
+                listed = parameter.name in FEW
+                raise UnknownNameError(kind, value, known, where=store.place, listed=listed)
     if {"capture", "time"} <= given.keys():
         _check_time(store, str(given["capture"]), float(str(given["time"])))
         if "body" in given:

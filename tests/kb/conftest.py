@@ -10,6 +10,7 @@ from pathlib import Path
 import motions
 import pytest
 from actionaries import ACTIONS, STORES, opened, oxigraph_binary
+from competency import World
 
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
@@ -95,3 +96,9 @@ def extended_five_by_three() -> tuple[Observation, ...]:
     named = [observe(trial(first).capture, name=name) for name, trial in ACTIONS.items()]
     unnamed = [observe(trial(each).capture) for each in others for trial in ACTIONS.values()]
     return (*named, *unnamed)
+
+
+@pytest.fixture(scope="session")
+def world() -> World:
+    """What is observed of the demo and of recordings, with what it rests on."""
+    return World()

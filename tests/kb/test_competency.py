@@ -4,114 +4,24 @@ They are asked of the shipped demo, of two unnamed performers, and where there a
 two takes from a kitchen.
 """
 
-import os
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
-from pathlib import Path
+from collections.abc import Callable, Iterator
 
-import motions
 import numpy as np
 import pytest
-from competency import QUERIES
-from observations import drink_from_mug, with_unknown
+from competency import QUERIES, World, rounded, side, step
 
-from capar.model.capture import Agent, Capture, recorded_at
+from capar.model.capture import recorded_at
 from capar.model.errors import UnknownNameError
-from capar.model.facts import Fact, Leans, Lies, LookingAt, Moving, Touching
+from capar.model.facts import Leans, Lies, LookingAt, Moving, Touching
 from capar.model.observation import Observation, Segment
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
-from capar.pipelines.observation import observe_measured
-from capar.pipelines.trials import trial_of
-from extractors.measure import Measurements, measure
 from kb.actionary import Actionary
 from kb.lexicon.links import class_links, sense_links, thesis_senses
 from kb.lexicon.loading import load_words
 from kb.lexicon.wordnet import wordnet
 from kb.queries.filters import FILTERS
 from kb.queries.questions import check_known, question, questions
-
-HERE = Path(__file__).parents[2]
-TAKES = ("take0", "take5")
-DEMO = HERE / "capar" / "demo" / "drink_from_mug"
-
-
-def recordings() -> Iterator[str]:
-    folder = Path(os.environ.get("CAPAR_DATA") or HERE.parent / "shared" / "data")
-    if (folder / "bimacs_optitrack").is_dir():
-        os.environ.setdefault("CAPAR_DATA", str(folder))
-        yield from (str(HERE / "examples" / "bimacs_optitrack") + f":{each}" for each in TAKES)
-
-
-def ambiguous(seen: Observation) -> Observation:
-    """The same with another name that fits each of its first segments as well."""
-    links = (
-        replace(
-            each,
-            segments=(replace(each.segments[0], candidates=("Hit", "Kick")), *each.segments[1:]),
-        )
-        for each in seen.links
-    )
-    return replace(seen, links=tuple(links))
-
-
-class World:
-    """What was observed, and the measurements that it rests on."""
-
-    def __init__(self) -> None:
-        self.captures: dict[str, Capture] = {}
-        self.measured: dict[str, Measurements] = {}
-        self.seen: list[Observation] = []
-        lifted = motions.pick_up_with_both_hands(motions.PERFORMERS[0]).capture
-        for place in (str(DEMO), *recordings(), lifted):
-            capture = trial_of(place)
-            measured = measure(capture)
-            self.captures[capture.name] = capture
-            self.measured[capture.name] = measured
-            self.seen.append(observe_measured(capture, measured))
-        unnamed = [replace(drink_from_mug(), agent=Agent(), capture=f"cup_{n}") for n in (1, 2)]
-        self.seen += [ambiguous(each) for each in unnamed]
-        self.seen.append(with_unknown())
-
-    def segments(self) -> Iterator[tuple[Observation, Segment, str]]:
-        """Every segment with its observation and its address."""
-        for seen in self.seen:
-            for each in seen.segments:
-                yield seen, each, f"{seen.capture}/{each.ee}/{each.index}"
-
-    def is_kind(self, segment: Segment, action: str) -> bool:
-        """Whether it is a case of an action, as any of the rule bases has it."""
-        above = {
-            general
-            for _, each, _ in self.segments()
-            if each.name == segment.name
-            for general in each.general
-        }
-        return segment.known and action in {segment.name, *above}
-
-    def performer(self, seen: Observation, segment: Segment) -> str:
-        name = seen.performer(segment.ee)
-        return f"agent of {seen.capture}" if name == "agent" else name
-
-    def facts(self, seen: Observation, kind: type[Fact]) -> list[Fact]:
-        return [each for each in seen.facts if isinstance(each, kind)]
-
-
-def step(seen: Observation) -> float:
-    return seen.duration_s / (seen.frames - 1)
-
-
-def side(seen: Observation, ee: str) -> str:
-    return next((each.side for each in seen.links if each.ee == ee), "")
-
-
-def rounded(rows: Iterable[Iterable[object]]) -> set[tuple[object, ...]]:
-    return {tuple(round(v, 4) if isinstance(v, float) else v for v in row) for row in rows}
-
-
-@pytest.fixture(scope="module")
-def world() -> World:
-    return World()
 
 
 @pytest.fixture(scope="module")
@@ -146,7 +56,7 @@ def test_when_the_whisk_was_held_while_the_bottle_was_tilted(
                 if right and tilt.object == "bottle" and first < last:
                     expected.add((seen.capture, first * step(seen), last * step(seen)))
     assert asked(actionary, "held while tilted") == rounded(expected)
-    assert len({each[0] for each in expected}) == len(list(recordings()))
+    assert {each[0] for each in expected} == world.kitchen
 
 
 def test_which_objects_were_ever_inside_a_container(world: World, actionary: Actionary) -> None:
@@ -160,6 +70,18 @@ def test_which_objects_were_ever_inside_a_container(world: World, actionary: Act
                 expected.add((seen.capture, body))
     assert asked(actionary, "inside") == expected
     assert not any(body == "bottle" for _, body in expected)  # it is held above the bowl
+    inside = {
+        (seen.capture, e.body, e.first * step(seen), e.last * step(seen))
+        for seen in world.seen
+        for e in world.facts(seen, Lies)
+        if (e.how, e.other) == ("inside", "bowl")
+    }
+    rows = actionary.ask("arrangements", arrangement="in", object="bowl")
+    found = [(row["observation"], row["body"], row["begins"], row["ends"]) for row in rows]
+    assert rounded(found) == rounded(inside)
+    assert {(capture, body) for capture, body, *_ in found} == {(k, "whisk") for k in world.kitchen}
+    steps = actionary.ask("where", preposition="inside", object="bowl")
+    assert {row["observation"] for row in steps} == world.kitchen
 
 
 def test_what_was_done_between_two_times(world: World, actionary: Actionary) -> None:
@@ -207,6 +129,13 @@ def test_which_segments_are_unknown_and_what_they_match_partly(
     rows = actionary.ask("unexplained")
     expected = {(s.capture, e.ee, e.index) for s, e, _ in world.segments() if not e.known}
     assert {(row["observation"], row["ee"], row["index"]) for row in rows} == expected
+    for row in rows:
+        ((_, segment),) = (
+            (s, e)
+            for s, e, _ in world.segments()
+            if (s.capture, e.ee, e.index) == (row["observation"], row["ee"], row["index"])
+        )
+        assert set(str(row["nearest"] or "").split()) == set(segment.candidates)
     partly = {row["nearest"] for row in actionary.ask("unknown")} - {None}
     assert partly == {n for _, e, _ in world.segments() if not e.known for n in e.candidates}
     assert expected and partly
@@ -266,11 +195,28 @@ def test_what_the_left_hand_did_during_the_right_hands_stirring_both_ways(
                 expected.add((first, f"{seen.capture}/{two.ee}/{two.index}"))
     rows = actionary.ask("relations", side="left", other="Stir", relation="during")
     assert {(row["first"], row["second"]) for row in rows} == expected
+    for row in rows:
+        names = {address: each.name for _, each, address in world.segments()}
+        assert row["action"] == names[str(row["first"])]
+        assert row["other_action"] == names[str(row["second"])]
+    together = {
+        (first, second)
+        for seen, one, first in world.segments()
+        for other, two, second in world.segments()
+        if seen is other and one is not two and max(one.first, two.first) < min(one.last, two.last)
+        if side(seen, one.ee) == "left" and side(seen, two.ee) == "right"
+        if world.is_kind(two, "Stir")
+    }
+    asked_for = {"side": "left", "other": "Stir", "other_side": "right", "relation": "together"}
+    rows = actionary.ask("relations", **asked_for)
+    assert {(row["first"], row["second"]) for row in rows} == together
+    rows = actionary.ask("relations", **asked_for, other_ee="right_hand", other_effector="hand")
+    assert {(row["first"], row["second"]) for row in rows} == together
     back = actionary.ask("relations", action="Stir", side="right", other="MoveObj")
     inverse = {(row["second"], row["first"]) for row in back if row["holds"] == "contains"}
     forth = actionary.ask("relations", action="MoveObj", other="Stir", relation="during")
     assert inverse == {(row["first"], row["second"]) for row in forth}
-    assert len({each.partition("/")[0] for each, _ in expected}) == len(list(recordings()))
+    assert {each.partition("/")[0] for each, _ in expected} == world.kitchen
 
 
 def test_every_pair_of_segments_stands_in_one_relation_and_its_inverse(
@@ -318,31 +264,40 @@ def test_when_with_which_version_and_from_which_files(world: World, actionary: A
     assert all(row["recorded"] == recorded[str(row["observation"])] for row in rows)
 
 
-def test_how_long_each_object_was_touched_and_possessed_and_by_which_hand(
+def test_how_long_each_object_was_held_and_by_which_hand(
     world: World, actionary: Actionary
 ) -> None:
     touched: Counter[tuple[str, str, str]] = Counter()
-    possessed: Counter[tuple[str, str, str]] = Counter()
+    held: Counter[tuple[str, str, str]] = Counter()
+    moved: Counter[tuple[str, str, str]] = Counter()
     for seen in world.seen:
-        hands = {each.ee for each in seen.links}
-        for each in world.facts(seen, Touching):
-            if each.body in hands:
-                key = (seen.capture, each.body, each.other)
-                touched[key] += (each.last - each.first) * step(seen)
-    for seen, segment, _ in world.segments():
-        if segment.possessed:
-            possessed[seen.capture, segment.ee, segment.objects[0]] += (
-                segment.end_s - segment.start_s
-            )
+        for touch in world.facts(seen, Touching):
+            if touch.body not in {link.ee for link in seen.links}:
+                continue
+            key = (seen.capture, touch.body, touch.other)
+            touched[key] += (touch.last - touch.first) * step(seen)
+            start, end = touch.first * step(seen), touch.last * step(seen)
+            for segment in seen.segments:
+                if segment.possessed and (segment.ee, segment.objects[0]) == key[1:]:
+                    held[key] += max(0.0, min(end, segment.end_s) - max(start, segment.start_s))
+            for motion in world.facts(seen, Moving):
+                if motion.object == touch.other:
+                    frames = min(touch.last, motion.last) - max(touch.first, motion.first)
+                    moved[key] += max(0, frames) * step(seen)
     rows = actionary.ask("held")
-    assert any(possessed.values()) and {each["object"] for each in rows} > {"mug"}
     found = {(r["observation"], r["ee"], r["object"]): r for r in rows}
-    assert found.keys() == touched.keys() | possessed.keys()
+    assert found.keys() == touched.keys() and len(found) == len(rows)
     for key, row in found.items():
-        assert row["touched"] == pytest.approx(touched[key])
-        assert row["possessed"] == pytest.approx(possessed[key])
+        assert row["touched"] == pytest.approx(touched[key], abs=1e-6)
+        assert row["held"] == pytest.approx(held[key], abs=1e-6)
+        assert row["moved"] == pytest.approx(moved[key], abs=1e-6)
+    assert any(held.values()) and any(moved.values()) and any(held[k] < touched[k] for k in held)
     right = actionary.ask("held", side="right", effector="hand")
     assert right == [row for row in rows if row["ee"] == "right_hand"]
+    mugs = actionary.ask("held", object="mug", capture=world.seen[0].capture)
+    assert mugs == [
+        row for row in rows if (row["observation"], row["object"]) == (world.seen[0].capture, "mug")
+    ]
 
 
 def test_when_bottle_and_table_touched(world: World, actionary: Actionary) -> None:
@@ -353,7 +308,11 @@ def test_when_bottle_and_table_touched(world: World, actionary: Actionary) -> No
         if (each.body, each.other) == ("bottle", "table")
     }
     assert asked(actionary, "in touch") == rounded(expected)
-    assert bool(expected) == bool(list(recordings()))
+    for given in ({"body": "bottle", "object": "table"}, {"body": "table", "object": "bottle"}):
+        rows = actionary.ask("contacts", **given)
+        told = [(row["observation"], row["begins"], row["ends"]) for row in rows]
+        assert rounded(told) == rounded(expected) and len(told) == len(expected)
+    assert {each[0] for each in expected} == world.kitchen
 
 
 def test_who_looked_at_an_object_before_grasping_it(world: World, actionary: Actionary) -> None:
@@ -371,6 +330,47 @@ def test_who_looked_at_an_object_before_grasping_it(world: World, actionary: Act
     rows = {(who, thing, before) for (_, who, thing), before in expected.items()}
     assert asked(actionary, "looked before") == rounded(rows)
     assert rows
+
+
+def test_how_long_before_a_grasp_the_last_look_began(world: World, actionary: Actionary) -> None:
+    expected = set()
+    for seen in world.seen:
+        for link in seen.links:
+            for grasp in world.facts(seen, Touching):
+                begun = [
+                    look.first
+                    for look in world.facts(seen, LookingAt)
+                    if look.object == grasp.other and look.first < grasp.first
+                ]
+                possessed = any(
+                    segment.possessed
+                    and segment.objects[0] == grasp.other
+                    and segment.start_s < grasp.last * step(seen)
+                    and grasp.first * step(seen) < segment.end_s
+                    for segment in link.segments
+                )
+                if begun and possessed and grasp.body == link.ee:
+                    at, before = grasp.first, grasp.first - max(begun)
+                    times = (at * step(seen), before * step(seen))
+                    expected.add((seen.capture, link.ee, grasp.other, *times))
+    columns = ("observation", "ee", "object", "grasped", "seconds")
+    rows = actionary.ask("looked_before")
+    assert rounded([row[name] for name in columns] for row in rows) == rounded(expected)
+    assert len(rows) == len(expected) and expected
+
+
+def test_what_was_looked_at_is_told_with_its_times(world: World, actionary: Actionary) -> None:
+    for row in actionary.ask("looked_at"):
+        (seen,) = (each for each in world.seen if each.capture == row["observation"])
+        looks = {
+            (look.first * step(seen), look.last * step(seen))
+            for look in world.facts(seen, LookingAt)
+            if look.object == row["seen"]
+        }
+        time_s = float(str(row["time"]))
+        covering = rounded((a, b) for a, b in looks if a - 1e-6 <= time_s <= b + 1e-6)
+        told = rounded([(row["begins"], row["ends"])])
+        assert told <= covering if covering else told == {(None, None)}
 
 
 def test_highest_speed_of_the_right_hand_in_each_reach(world: World, actionary: Actionary) -> None:
@@ -431,7 +431,9 @@ def test_which_segments_are_of_a_verb_that_wordnet_puts_under_another(
         if any(world.is_kind(each, name) for name in under)
     }
     assert expected
-    assert {row["address"] for row in actionary.ask("verb", lemma=lemma)} == expected
+    rows = actionary.ask("verb", lemma=lemma)
+    assert {row["address"] for row in rows} == expected
+    assert len(rows) == len(expected)
 
 
 def test_which_segments_are_of_a_class_of_levins(world: World, actionary: Actionary) -> None:
@@ -472,6 +474,9 @@ def test_every_filter_leaves_exactly_what_it_says(world: World, actionary: Actio
     _, _, known = next(iter(world.segments()))
     fitting: dict[tuple[str, object], Callable[[Observation, Segment], bool]] = {
         ("action", "MoveObj"): lambda seen, each: world.is_kind(each, "MoveObj"),
+        ("action", "MoveObj,MoveObjTo"): lambda seen, each: (
+            world.is_kind(each, "MoveObj") or world.is_kind(each, "MoveObjTo")
+        ),
         ("address", known): lambda seen, each: f"{seen.capture}/{each.ee}/{each.index}" == known,
         ("ee", "left_hand"): lambda seen, each: each.ee == "left_hand",
         ("side", "left"): lambda seen, each: side(seen, each.ee) == "left",
@@ -484,7 +489,8 @@ def test_every_filter_leaves_exactly_what_it_says(world: World, actionary: Actio
             "container" in kinds.get((seen.capture, name), ()) for name in each.objects
         ),
     }
-    assert {name for name, _ in fitting} == FILTERS.keys()
+    of_others = {"other", "other_side", "other_ee", "other_effector", "object"}
+    assert {name for name, _ in fitting} == FILTERS.keys() - of_others
     for (name, value), fits in fitting.items():
         expected = {address for seen, each, address in world.segments() if fits(seen, each)}
         rows = actionary.ask("segments", **{name: value})
@@ -495,11 +501,13 @@ def test_every_filter_leaves_exactly_what_it_says(world: World, actionary: Actio
 def test_every_question_of_segments_takes_the_same_filters() -> None:
     exempt = {"allen", "before", "shared", "world"}  # of whole actions, conditions, or one time
     other = {"corrections", "held", "notices", "observations", "sources"}  # of observations
+    other |= {"arrangements", "contacts", "looked_before"}
+    own = {"other", "other_side", "other_ee", "other_effector", "object"}  # of few questions
     body = {"place", "both_hands", "looked_at"}
     for name, each in questions().items():
         taken = {parameter.name for parameter in each.parameters}
         if name not in exempt | other | body:
-            assert taken >= FILTERS.keys(), name  # its own count, too
+            assert taken >= FILTERS.keys() - own, name  # its own count, too
         if name in other | {"both_hands", "looked_at"}:
             assert {"performer", "capture"} & taken, name
 

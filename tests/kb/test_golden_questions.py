@@ -22,7 +22,8 @@ ASKED_HERE = {
 
 ASKED_OF_RECORDINGS = {
     "segments", "kinds", "durations", "place", "relations", "rule", "sources", "held", "uses",
-    "abilities", "verb", "levin", "ambiguous",
+    "abilities", "verb", "levin", "ambiguous", "arrangements", "looked_before", "speeds",
+    "contacts",
 }  # fmt: skip
 """The questions that test_competency.py asks."""
 

@@ -203,7 +203,105 @@ def test_what_is_optional_or_negated_is_not_blamed_for_an_empty_answer(ask: Ask)
         'SELECT ?s { ?s a capar:Segment ; capar:index 99 OPTIONAL { ?s capar:seen "a" } '
         'FILTER NOT EXISTS { ?s capar:seen "b" } MINUS { ?s capar:seen "c" } }',
     )
-    assert (done.returncode, done.stderr) == (0, "")
+    assert done.returncode == 0
+    assert "nothing fits  ?s capar:index 99; capar:index is 0, 1, 2, 3" in done.stderr
+    assert "seen" not in done.stderr
+
+
+EMPTYING = {
+    # what objects are kinds of is asked of their kinds
+    "?f capar:other/capar:isA/capar:name 'mug'": ["capar:other leads to has no capar:isA", "kind"],
+    # each holds alone, never both of one segment
+    "?s capar:action/capar:name 'Reach' ; capar:possesses true ; capar:index 0": [
+        "nothing fits both", "capar:name \"Reach\"", "capar:possesses true",
+    ],
+    "?s a capar:Segment ; capar:start ?a ; capar:end ?b FILTER(?a < ?b) FILTER(?b < ?a)": [
+        "without FILTER(?b < ?a) there would be an answer",
+    ],
+    "?s a capar:Segment ; capar:start ?a FILTER(?a < -1) FILTER(?a < -2)": [
+        "without its FILTERs there would be an answer",
+    ],
+    "?k a capar:ObjectKind ; rdfs:label 'mug'@en": ["another language tag, or with none"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("pattern", EMPTYING)
+def test_a_query_that_finds_nothing_names_what_empties_it(pattern: str, ask: Ask) -> None:
+    done = ask("query", f"SELECT * {{ {pattern} }}")
+    assert done.returncode == 0
+    assert all(text in done.stderr for text in EMPTYING[pattern]), done.stderr
+
+
+def test_kinds_are_found_by_their_label_without_a_language(ask: Ask) -> None:
+    query = "SELECT ?name { ?o capar:kind/capar:isA/rdfs:label 'container' ; capar:name ?name }"
+    assert "mug" in ask("query", query).stdout
+
+
+def test_a_named_question_without_an_answer_tries_each_filter_alone(ask: Ask) -> None:
+    done = ask("query", "segments", "action=MoveObj", "from=0", "until=0.1")
+    assert "action=MoveObj alone finds " in done.stderr and "until=0.1 alone finds" in done.stderr
+    assert "without until=0.1 there are " in done.stderr
+    assert "without action=MoveObj there are 2, of which action is Reach" in done.stderr
+    assert "without from=0 " not in done.stderr
+
+
+def test_a_thing_without_a_shape_is_said_to_hold_nothing(ask: Ask) -> None:
+    done = ask("query", "arrangements", "object=mug")
+    assert "'mug' has no shape here (capar:ShapelessObject)" in done.stderr
+
+
+def test_actions_whose_names_begin_alike_are_noted_where_they_are_not_counted(ask: Ask) -> None:
+    note = "MoveObjTo is no kind of MoveObj and not counted"
+    assert note in ask("query", "kinds", "action=MoveObj").stderr
+    own = "SELECT ?s {{ ?s capar:action/capar:kindOf/capar:name ?k FILTER(?k IN ({})) }}"
+    assert note in ask("query", own.format("'MoveObj'")).stderr
+    assert note not in ask("query", own.format("'MoveObj', 'MoveObjTo'")).stderr
+    both = ask("query", "segments", "action=MoveObj,MoveObjTo")
+    assert note not in both.stderr
+    rows = [ask("query", "segments", f"action={name}").stdout for name in ("MoveObj", "MoveObjTo")]
+    listed = {row for table in rows for row in table.splitlines()[1:]}
+    assert {"".join(row.split()) for row in both.stdout.splitlines()[1:]} == {
+        "".join(row.split()) for row in listed
+    }
+
+
+def test_what_is_nowhere_declared_or_recorded_is_noted(ask: Ask) -> None:
+    assert "note: nothing is declared" in ask("query", "uses", "object=mug").stderr
+    assert "note: recorded is empty" in ask("query", "sources").stderr
+    assert "note" not in ask("query", "sources", "--json").stderr
+
+
+def test_what_is_declared_is_told_beside_what_was_observed(ask: Ask, tmp_path: Path) -> None:
+    with Actionary.open(tmp_path / "own") as actionary:
+        actionary.add(drink_from_mug())
+        (who,) = actionary.agents()
+    place = ("--actionary", str(tmp_path / "own"))
+    assert "declared of every mug: Wipe" in ask("object", "can", "mug", "Wipe", *place).stdout
+    done = ask("query", "uses", "object=mug", *place)
+    assert "Wipe" in done.stdout and "nothing is declared" not in done.stderr
+    assert "declared of" in ask("agent", "can", who, "Juggle", *place).stdout
+    done = ask("query", "abilities", f"performer={who}", *place)
+    assert "Juggle" in done.stdout and "nothing is declared" not in done.stderr
+    wrong = ask("object", "can", "mgu", "Wipe", *place)
+    assert wrong.returncode == 2 and "no kind of object 'mgu'" in wrong.stderr
+
+
+def test_a_column_without_values_is_noted(ask: Ask) -> None:
+    done = ask("query", "SELECT ?s ?x { ?s a capar:Segment OPTIONAL { ?s capar:seen ?x } }")
+    assert "note: ?x has no value in any row (8 in all)" in done.stderr
+
+
+def test_a_kind_of_end_effector_that_is_not_there_is_told_with_all_there_are(ask: Ask) -> None:
+    done = ask("query", "segments", "effector=finger")
+    assert done.returncode == 2 and "no kind of end-effector 'finger'; there are: " in done.stderr
+
+
+def test_a_filter_that_fits_in_two_ways_counts_once(ask: Ask) -> None:
+    query = ["query", "durations", "action=Reach", "--json"]
+    reaches = {row["performer"]: row for row in json.loads(ask(*query).stdout)}
+    for row in json.loads(ask(*query, "kind=object").stdout):
+        (by_name,) = json.loads(ask(*query, f"performer={row['performer']}").stdout)
+        assert row == by_name == reaches[row["performer"]]
 
 
 def test_a_segment_is_asked_for_by_its_address(ask: Ask) -> None:

@@ -24,7 +24,7 @@ DEFINITION = NamedNode(PREFIXES["skos"] + "definition")
 TYPE = NamedNode(RDF + "type")
 STATEMENTS = [each for file in term_files() for each in read(file)]
 HERE = Path(ontology.__file__).parent
-README = (HERE / "README.md").read_text("utf-8")
+THESIS = (HERE / "thesis.md").read_text("utf-8")
 
 
 def typed() -> set[str]:
@@ -106,7 +106,7 @@ def test_a_misspelt_term_is_an_error_that_names_a_near_one() -> None:
 
 
 def test_every_term_in_the_table_of_the_thesis_exists() -> None:
-    rows = [line for line in README.splitlines() if re.match(r"\| 4\.", line)]
+    rows = [line for line in THESIS.splitlines() if re.match(r"\| 4\.", line)]
     assert len(rows) > 50
     for row in rows:
         named = re.findall(r"`(\w+)`", row.split("|")[3])
@@ -116,7 +116,7 @@ def test_every_term_in_the_table_of_the_thesis_exists() -> None:
 
 def test_every_figure_of_the_thesis_has_rows() -> None:
     for figure in ("4.1", "4.2", "4.3", "4.8", "4.9", "4.11", "4.12", "4.13", "4.14", "4.16"):
-        assert re.search(rf"^\| [^|]*{re.escape(figure)}\b", README, re.MULTILINE), figure
+        assert re.search(rf"^\| [^|]*{re.escape(figure)}\b", THESIS, re.MULTILINE), figure
 
 
 def test_what_may_happen_at_a_border_is_the_same_in_files_shapes_code_and_model() -> None:
