@@ -23,17 +23,20 @@ REST_M, REST_SHARE = 0.02, 0.5
 """A hand that stays so near for a while rests [m], and how firmly it is kept there [1]."""
 
 
-def grasps(source: Source, firm_s: float) -> dict[str, Float[np.ndarray, "frames"]]:
+def grasps(
+    source: Source, firm_s: float, weight: float = 1.0
+) -> dict[str, Float[np.ndarray, "frames"]]:
     """How firmly each hand is led [1]: in holds, and less so at rest beside a body that leans.
 
     Args:
         source: The recorded performance.
         firm_s: How long before a hold the hand is led more and more firmly [s].
+        weight: How firmly it is led in holds [1].
     """
     out = {}
     for side, hand in source.hands.items():
         holds = [hold for hold in source.holds if hold.side == side]
-        firm = around(source, holds, firm_s)
+        firm = weight * around(source, holds, firm_s)
         out[side] = np.maximum(firm, REST_SHARE * _rests(source, hand.path.translation))
     return out
 

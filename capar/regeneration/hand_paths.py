@@ -44,6 +44,9 @@ class Care:
     firm_s: float = 0.5
     """How long before and after a hold they are led firmly [s]."""
 
+    weight: float = 1.0
+    """How many times as much as usual their places weigh then, against all else [1]."""
+
 
 def hand_paths(
     source: Source,

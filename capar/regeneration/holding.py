@@ -51,7 +51,7 @@ class Hold:
 
 @dataclass(frozen=True)
 class Meeting:
-    """A held thing that is rigidly together with the performer's head."""
+    """A held thing that is rigidly together with the performer's head, if only for an instant."""
 
     thing: str
     part: str
@@ -142,7 +142,11 @@ def meetings_of(
     paths: Mapping[str, RigidTransform],
     touching: list[Touching],
 ) -> tuple[Meeting, ...]:
-    """When things are rigidly together with the head, in order of time."""
+    """When things are rigidly together with the head, in order of time.
+
+    What moves at the head as long as it is there, such as a mug that is tipped further, meets it
+    at three instants: when it comes, half-way, and when it leaves.
+    """
     own = {thing.name for thing in capture.objects if thing.tag is TagType.SELF}
     out = []
     for contact in touching:
@@ -153,6 +157,10 @@ def meetings_of(
                 if found:
                     first, last = (contact.first + edge for edge in found)
                     out.append(Meeting(thing, part, first, last))
+                else:
+                    half_way = (contact.first + contact.last) // 2
+                    instants = sorted({contact.first, half_way, contact.last})
+                    out += [Meeting(thing, part, frame, frame) for frame in instants]
     return tuple(sorted(out, key=lambda meeting: meeting.first))
 
 

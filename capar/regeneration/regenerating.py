@@ -12,10 +12,17 @@ from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Style
 
-CARES = (Care(), Care(0.03, 0.015), Care(0.03, 0.015, 1.0), Care(0.05, 0.02, 1.0))
-"""How free hands keep from things; the next where a motion is too near something."""
+CARES = (
+    Care(),
+    Care(0.03, 0.015),
+    Care(0.03, 0.015, 1.0),
+    Care(0.05, 0.02, 1.0),
+    Care(weight=2.0),
+    Care(0.03, 0.015, 1.0, weight=2.0),
+)
+"""How free hands keep from things, and how firmly hands are led; the next where that fails."""
 
-BY_CARE = {"penetration", "free hand clear", "event position", "event rotation"}
+BY_CARE = {"penetration", "free hand clear", "event position", "event rotation", "on the way"}
 """The gates that more care may mend: a hand that is led firmly for longer arrives in time."""
 
 BY_GRIP = {"on the way", "event position", "event rotation", "penetration"}

@@ -21,6 +21,7 @@ from capar.regeneration.drafts import Draft
 from capar.regeneration.grips import Turn, drawn_turns
 from capar.regeneration.hand_frames import HandAxes, stated_hand_frame
 from capar.regeneration.holding import Hold, holds_of, with_unseen_ends
+from capar.regeneration.planning import reachable
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Source, source_of
@@ -82,6 +83,20 @@ def test_a_hand_is_moved_to_the_nearest_surface(
     surface: Callable[[float], float], moved_m: float
 ) -> None:
     assert abs(touching_shift(surface, 0.1) - moved_m - TOUCH_M) < 1e-4
+
+
+def test_a_hand_that_was_recorded_far_from_what_it_takes_has_no_grip() -> None:
+    source = _source("touch")
+    hand = source.hands["right"]
+    palm = hand.path[source.holds[0].first].rotation.apply([0.0, 0.0, 1.0])
+    near, far = (
+        source_of(_shifted(source.capture, "crate", off_m * palm), source.observation)
+        for off_m in (0.06, 0.16)
+    )
+    held = reachable(near, near.scene, near.human).grips
+    assert [grip.touches for grip in held] == [True]
+    with pytest.raises(PlanError, match=r"beside 'crate' and not on its surface.*\[hand\.SIDE\]"):
+        reachable(far, far.scene, far.human)
 
 
 @cache
