@@ -164,10 +164,11 @@ def led(draft: Draft, care: Care) -> Plan:
     )
     humans, kind = (source.human, draft.new.human), draft.style.force
     things, hands, launched = flights(source, scene, humans, draft.things, hands, kind)
+    events = {goal.frame for several in draft.goals.values() for goal in several}
+    grasps = attending.grasps(source, care.firm_s, events, care.weight)
     return Plan(
         source, scene, draft.new.human, draft.new, draft.goals, draft.grips, detours, hands,
-        draft.style, attending.grasps(source, care.firm_s, care.weight), things, draft.head,
-        draft.firmness, draft.looks,
+        draft.style, grasps, things, draft.head, draft.firmness, draft.looks,
         (*_notes(source, draft.grips, draft.goals), *draft.told, *flight_notes(source, launched)),
     )  # fmt: skip
 

@@ -76,5 +76,8 @@ def _careful(draft: Draft, guide: Guide | None = None) -> tuple[Motion, Quality]
     return min(tried, key=_failures)
 
 
-def _failures(made: tuple[Motion, Quality]) -> int:
-    return len(made[1].failed)
+def _failures(made: tuple[Motion, Quality]) -> tuple[int, float]:
+    """How many gates fail, and by how much of their limits in all."""
+    failed = [gate for gate in made[1].gates if not gate.passed]
+    beyond = (abs(gate.value - gate.limit) / max(abs(gate.limit), 1e-9) for gate in failed)
+    return len(failed), float(sum(beyond))
