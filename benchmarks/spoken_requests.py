@@ -21,12 +21,15 @@ from capar.pipelines.recordings import Recording, stored_recordings
 from capar.pipelines.spoken_requests import after, perform
 from kb import Actionary
 
+RECORDED = [action for action in ACTIONS if action != "touch_from_rest"]
+"""What the requests were written for: a hand that stays where it touches came later."""
+
 
 def recordings(folder: Path) -> tuple[Recording, ...]:
     """Recordings of the virtual man, in an Actionary."""
     with Actionary.open(folder / "actionary") as words:
         known = {stored.name for stored in words.observations()}
-        for action in ACTIONS:
+        for action in RECORDED:
             if action not in known:
                 made = truth_of(performed(action, rate_hz=RATE_HZ))
                 write_bundle(action_capture(action, rate_hz=RATE_HZ), made, folder / action)

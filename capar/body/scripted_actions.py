@@ -21,6 +21,7 @@ from capar.body.scripts import (
     sip,
     slide,
     touch,
+    touch_from_rest,
     turn,
 )
 from capar.body.sensing import PERFECT, Tracker
@@ -47,6 +48,7 @@ ACTIONS: dict[str, Script] = {
     "drink": drink("mug"),
     "sip": sip("mug"),
     "touch": touch("crate"),
+    "touch_from_rest": touch_from_rest("crate"),
     "slide": slide("mug", (0.0, 0.12, 0.0)),
     "carry": CARRY,
     "pick_up": lift_with_both_hands("crate", height=0.2),
@@ -54,7 +56,8 @@ ACTIONS: dict[str, Script] = {
     "push": push("crate", (0.15 * np.cos(ASKEW), 0.15 * np.sin(ASKEW), 0.0)),
     "pour": pour("mug", lift=0.18, over=(0.0, 0.25, 0.0), angle=float(np.radians(80.0))),
 }
-"""Each has the things of its own scene."""
+"""Each has the things of its own scene. Those of thesis 5.2 are ``sip`` (DrinkFromMug), ``touch``
+(TouchCycle), ``touch_from_rest``, ``slide`` (SlideObject) and ``pick_up`` (PickUpWithBothHands)."""
 
 
 def action_scene(human: Human, action: str) -> Scene:
@@ -65,7 +68,10 @@ def action_scene(human: Human, action: str) -> Scene:
     crate = Thing("crate", box(0.15, 0.20, 0.15), (0.24 * tall, 0.02 * tall, top))
     askew = Thing("crate", box(0.15, 0.20, 0.22), (0.29 * tall, -0.08 * tall, top), ASKEW)
     bowl = Thing("bowl", cup(0.07, 0.06), (0.22 * tall, -0.10 * tall + 0.34, top), round=True)
-    needed = {"touch": (crate,), "pick_up": (crate,), "push": (askew,), "pour": (mug, bowl)}
+    needed = {
+        "touch": (crate,), "touch_from_rest": (crate,), "pick_up": (crate,),
+        "push": (askew,), "pour": (mug, bowl),
+    }  # fmt: skip
     return scene(table(top, near_m=0.13 * tall), *needed.get(action, (mug,)))
 
 

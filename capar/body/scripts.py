@@ -84,6 +84,17 @@ def touch(thing: str, *, side: str = "right", grip: str = "top", seconds: float 
     )
 
 
+def touch_from_rest(
+    thing: str, *, side: str = "right", grip: str = "top", seconds: float = 1.4
+) -> Script:
+    """Lay a hand on a thing, and keep it there to the end (thesis 5.2.2)."""
+    return (
+        STAND,
+        Phase("reach", 1.0, {side: Hand("reaches", thing, grip)}, look=thing),
+        Phase("touch", seconds, {side: Hand("holds", thing, grip)}, look=thing),
+    )
+
+
 def slide(thing: str, by: tuple[float, float, float], *, side: str = "right") -> Script:
     """Take a thing at its side and slide it along what it stands on."""
     held = {side: Hand("holds", thing)}

@@ -12,7 +12,9 @@ app = typer.Typer()
 def perform(
     action: Annotated[
         str,
-        typer.Argument(help="drink, sip, touch, slide, carry, pick_up, turn, push or pour."),
+        typer.Argument(
+            help="drink, sip, touch, touch_from_rest, slide, carry, pick_up, turn, push or pour."
+        ),
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="A new folder for the capture.")],
     agent: Annotated[str, typer.Option(help="Who performs: man, woman or child.")] = "man",

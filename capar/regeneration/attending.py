@@ -1,6 +1,6 @@
 """How firmly hands and head are led at each frame, and what is looked at."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 from jaxtyping import Float
@@ -16,6 +16,9 @@ FAR_M = 3.0
 SHIFT_S = 0.3
 """How long a shift of gaze takes [s]."""
 
+EVENT_S = 0.3
+"""How long before and after an event a hand may be led more firmly [s]."""
+
 REST_S = 0.5
 """Over so long it is seen whether a hand rests [s]."""
 
@@ -23,17 +26,24 @@ REST_M, REST_SHARE = 0.02, 0.5
 """A hand that stays so near for a while rests [m], and how firmly it is kept there [1]."""
 
 
-def grasps(source: Source, firm_s: float) -> dict[str, Float[np.ndarray, "frames"]]:
+def grasps(
+    source: Source, firm_s: float, events: Collection[int] = (), weight: float = 1.0
+) -> dict[str, Float[np.ndarray, "frames"]]:
     """How firmly each hand is led [1]: in holds, and less so at rest beside a body that leans.
 
     Args:
         source: The recorded performance.
         firm_s: How long before a hold the hand is led more and more firmly [s].
+        events: Frames at which things are taken, let go, and have to be somewhere.
+        weight: How firmly it is led in holds at these frames; 1 at others [1].
     """
     out = {}
     for side, hand in source.hands.items():
         holds = [hold for hold in source.holds if hold.side == side]
         firm = around(source, holds, firm_s)
+        edges = {frame for hold in holds for frame in (hold.first, hold.last)}
+        instants = [Hold(side, "", frame, frame) for frame in sorted(edges.union(events))]
+        firm *= 1.0 + (weight - 1.0) * around(source, instants, EVENT_S)
         out[side] = np.maximum(firm, REST_SHARE * _rests(source, hand.path.translation))
     return out
 

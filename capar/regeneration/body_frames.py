@@ -52,6 +52,37 @@ def rest_pose(
     return new.rest[side] * _enlarged(away, _ratio(old, new))
 
 
+def free_pose(
+    source: Source,
+    old: BodyFrames,
+    new: BodyFrames,
+    side: str,
+    frames: tuple[int, int],
+    held: RigidTransform,
+) -> RigidTransform:
+    """Where a hand that was free at a frame is on the new body, beside a hold.
+
+    As far from ease as it was, or from where it takes the thing or lets it go, if it was nearer to
+    that: a recording may begin when the hand is about to arrive.
+
+    Args:
+        source: The recorded performance.
+        old: The recorded body.
+        new: The new one.
+        side: Which hand.
+        frames: The one at which it is free, and the next or last one of the hold.
+        held: Where the new hand is in the latter.
+    """
+    free, holding = (source.hands[side].path[frame] for frame in frames)
+    gone = free.translation - holding.translation
+    if np.linalg.norm(gone) >= np.linalg.norm(free.translation - old.rest[side].translation):
+        return rest_pose(source, old, new, side, frames[0])
+    ahead = (new.eyes * old.eyes.inv()).rotation
+    turned = ahead * free.rotation * holding.rotation.inv() * ahead.inv() * held.rotation
+    spot = held.translation + _ratio(old, new) * ahead.apply(gone)
+    return RigidTransform.from_components(spot, turned)
+
+
 def head_path(source: Source, old: BodyFrames, new: BodyFrames) -> RigidTransform:
     """The eyes' path on the new body: as far from standing as they were."""
     away = old.eyes.inv() * source.eyes

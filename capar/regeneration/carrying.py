@@ -149,5 +149,6 @@ class Carrying:
     ) -> Iterator[tuple[str, float]]:
         self.around.place(self.posture, {**others, name: pose})
         for pair in self.around.things_near():
-            if name in (pair.part, pair.thing):
-                yield (pair.thing if pair.part == name else pair.part), pair.distance_m
+            other = pair.thing if pair.part == name else pair.part
+            if name in (pair.part, pair.thing) and other in others:
+                yield other, pair.distance_m

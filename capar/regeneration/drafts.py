@@ -14,7 +14,7 @@ from capar.regeneration.clearing import ClearTask
 from capar.regeneration.collisions import Pair, Surroundings
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.flights import first_guess
-from capar.regeneration.grips import Grip, Gripping, Turn, drawn_turns, turns
+from capar.regeneration.grips import OUT_M, Grip, Gripping, Turn, drawn_turns, turns
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, Targets, vectors
 from capar.regeneration.sources import Hold, Source
@@ -167,8 +167,12 @@ class Draft:
     def _missed(self, grips: list[Grip], group: list[Hold], enough: float) -> Miss:
         """How far the key postures of some holds are missed, in units of what is allowed.
 
-        No further than is enough to be worse than another grip.
+        No further than is enough to be worse than another grip. A hand that does not come to the
+        surface of the thing has no grip.
         """
+        loose = max(grips, key=lambda grip: abs(grip.gap_m))
+        if not loose.touches:
+            return Miss(1.0 + abs(loose.gap_m) / REACH_M, _beside(loose))
         solver, worst = self._solver(), Miss()
         for frame in self.key_frames(group):
             goal = self._follow(solver, grips, frame)
@@ -255,6 +259,15 @@ class Draft:
         for goals in self.goals.values():
             keys |= {goal.frame for goal in goals if first <= goal.frame <= last}
         return sorted(keys)
+
+
+def _beside(grip: Grip) -> str:
+    where = "beside" if grip.gap_m > 0.0 else "inside"
+    return (
+        f"the {grip.hold.side} hand would be {where} {grip.hold.thing!r} and not on its surface, "
+        f"though moved by up to {1e3 * OUT_M:.0f} mm along its palm: it has to be recorded nearer, "
+        "or its palm faces elsewhere, which [hand.SIDE] with --assume states"
+    )
 
 
 def _sides(group: list[Hold]) -> str:

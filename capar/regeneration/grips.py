@@ -18,7 +18,7 @@ from capar.regeneration.contact_points import contact_points
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Hold, Source
-from capar.regeneration.thing_paths import touching_shift
+from capar.regeneration.thing_paths import TOUCH_M, touching_shift
 
 YAWS = (0.0, 0.2, -0.2, 0.4, -0.4, 0.6, -0.6, 0.8, -0.8, 1.05, -1.05)
 """Turns about the axis of a round thing that are tried, outwards positive [rad]."""
@@ -41,6 +41,9 @@ PITCH_WEIGHT, TILT_WEIGHT = 2.0, 4.0
 
 OUT_M = 0.1
 """How far a recorded hand is brought to the surface of what it holds at most [m]."""
+
+LOOSE_M = 0.003
+"""A hand that is then farther off its surface or deeper inside does not take it [m]."""
 
 CLEAR_M = 0.014
 """How far a hand stays above what the thing stands on, if it did so before [m]."""
@@ -90,6 +93,14 @@ class Grip:
     out_m: float = 0.0
     """How far it was moved off the thing so that it just touches; negative towards it [m]."""
 
+    gap_m: float = 0.0
+    """How far the hand is from the thing then, negative inside: none where it touches [m]."""
+
+    @property
+    def touches(self) -> bool:
+        """Whether the hand came to the surface of the thing, or was too far from it or inside."""
+        return abs(self.gap_m) <= LOOSE_M
+
 
 def turns(thing: Thing) -> Iterator[Turn]:
     """The turns to try on a thing, the smallest first."""
@@ -138,10 +149,9 @@ class Gripping:
         pose = pose * RigidTransform.from_translation([-turn.drawn_m, 0.0, 0.0])
         raised = self._raise(hold, pose)
         pose = RigidTransform.from_translation([0.0, 0.0, raised]) * pose
-        out = self._out(hold, pose)
-        return Grip(
-            hold, pose * RigidTransform.from_translation([0.0, 0.0, -out]), turn, raised, out
-        )
+        out, gap = self._out(hold, pose)
+        pose = pose * RigidTransform.from_translation([0.0, 0.0, -out])
+        return Grip(hold, pose, turn, raised, out, gap)
 
     def _recorded(
         self, hold: Hold
@@ -185,8 +195,8 @@ class Gripping:
         low = scene.thing(hold.thing).shape.bounds[0, 2]
         return float(pose.apply(np.array(hand.vertices))[:, 2].min() - low)
 
-    def _out(self, hold: Hold, pose: RigidTransform) -> float:
-        """How far against its palm a hand is moved until it just touches [m]."""
+    def _out(self, hold: Hold, pose: RigidTransform) -> tuple[float, float]:
+        """How far against its palm a hand is moved until it touches, and what gap is left [m]."""
         rest, side = self.new.rest[hold.side], hold.side
         names = [f"{side}_{each}" for each in HAND_SEGMENTS]
 
@@ -196,7 +206,8 @@ class Gripping:
             found = (p.distance_m for p in self.around.near(names) if p.thing == hold.thing)
             return min(found, default=1.0)
 
-        return touching_shift(apart, OUT_M)
+        out = touching_shift(apart, OUT_M)
+        return out, apart(out) - TOUCH_M
 
 
 def _hand_shape(sensor: Sensor, frame: RigidTransform) -> Shape:

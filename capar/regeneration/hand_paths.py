@@ -8,7 +8,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform
 
 from capar.body.recording import HAND_SEGMENTS
-from capar.regeneration.body_frames import BodyFrames, rest_pose
+from capar.regeneration.body_frames import BodyFrames, free_pose, rest_pose
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.path_mapping import STRAIGHT, Detour, mapped
 from capar.regeneration.scenes import Scene
@@ -31,6 +31,13 @@ CUT_M = 0.0003
 """How far a hand may cut what it is about to hold or has just left [m]."""
 
 
+AT_ONCE_S, SOON_M = 0.15, 0.005
+"""A thing that is moved so far within that time of being taken is moved at once [s, m]."""
+
+COMING_S, COMING_M = 0.1, 0.007
+"""Until so long before that a hand keeps so far off it, or it would be seen to touch it [s, m]."""
+
+
 @dataclass(frozen=True)
 class Care:
     """How carefully free hands move."""
@@ -43,6 +50,9 @@ class Care:
 
     firm_s: float = 0.5
     """How long before and after a hold they are led firmly [s]."""
+
+    weight: float = 1.0
+    """How many times as much as usual their places weigh at events, against all else [1]."""
 
 
 def hand_paths(
@@ -71,8 +81,11 @@ def hand_paths(
             last = after.first if after else len(source.times) - 1
             if last <= first:
                 continue
-            start = poses[first] if before else rest_pose(source, old, new, side, 0)
-            goal = poses[last] if after else rest_pose(source, old, new, side, last)
+            start, goal = poses[first], poses[last]
+            if not before:
+                start = _free(source, old, new, side, (first, last), goal if after else None)
+            if not after:
+                goal = _free(source, old, new, side, (last, first), start if before else None)
             touched = {each.thing for each in (before, after) if each}
             part = style.hands[side][first : last + 1]
             away = _away(start, before), _away(goal, after)
@@ -94,12 +107,34 @@ def hand_paths(
                 )
 
             held = before is not None, after is not None
-            best = clearance.first_clear(side, path, first, touched, held)
+            apart = after.thing if after and _moved_at_once(source, after) else ""
+            best = clearance.first_clear(side, path, first, touched, held, apart)
             poses[first : last + 1] = list(path(best))
             if best != STRAIGHT:
                 detours[side, first] = best
         out[side] = RigidTransform.concatenate(poses)
     return out, detours
+
+
+def _free(
+    source: Source,
+    old: BodyFrames,
+    new: BodyFrames,
+    side: str,
+    frames: tuple[int, int],
+    held: RigidTransform | None,
+) -> RigidTransform:
+    """Where a hand begins or ends that is free then, by the hold next to that if there is one."""
+    if held is None:
+        return rest_pose(source, old, new, side, frames[0])
+    return free_pose(source, old, new, side, frames, held)
+
+
+def _moved_at_once(source: Source, hold: Hold) -> bool:
+    """Whether a thing is moved as soon as it is taken."""
+    spots = source.paths[hold.thing].translation
+    soon = min(hold.first + round(AT_ONCE_S * source.rate_hz), hold.last)
+    return bool(np.linalg.norm(spots[soon] - spots[hold.first]) > SOON_M)
 
 
 def _away(hand: RigidTransform, hold: Hold | None) -> Float[np.ndarray, "3"]:
@@ -127,7 +162,7 @@ class _Clearance:
         self.around = Surroundings(new.human, scene)
         self.posture = Solver(new.human, (*scene.place, scene.floor_m), scene.heading).rest
         self.new, self.things, self.care = new, things, care
-        self.leaving = round(LEAVING_S * rate_hz)
+        self.leaving, self.coming = round(LEAVING_S * rate_hz), round(COMING_S * rate_hz)
         self.stride = max(int(CHECK_S * rate_hz), 1)
 
     def first_clear(
@@ -137,11 +172,15 @@ class _Clearance:
         first: int,
         touched: set[str],
         held: tuple[bool, bool],
+        apart: str,
     ) -> Detour:
-        """The smallest detour that is clear, or else the one that comes nearest to it."""
+        """The smallest detour that is clear, or else the one that comes nearest to it.
+
+        Of a thing that is moved as soon as it is taken the hand is clear until shortly before.
+        """
         best, least = STRAIGHT, np.inf
         for detour in DETOURS:
-            short = self._short(side, path(detour), first, touched, held, least)
+            short = self._short(side, path(detour), first, touched, held, apart, least)
             if short < least:
                 best, least = detour, short
             if least <= 0.0:
@@ -155,6 +194,7 @@ class _Clearance:
         first: int,
         touched: set[str],
         held: tuple[bool, bool],
+        apart: str,
         enough: float,
     ) -> float:
         """By how much the path is too near, at worst; not further than is decided [m].
@@ -171,7 +211,8 @@ class _Clearance:
         }
         worst = 0.0
         for frame in range(0, len(path), self.stride):
-            near = min(frame, len(path) - 1 - frame) <= self.leaving
+            ahead = len(path) - 1 - frame
+            near = min(frame, ahead) <= self.leaving
             for name, gap in self._gaps(side, around, frame).items():
                 least = (
                     wanted[near][name]
@@ -180,6 +221,8 @@ class _Clearance:
                     if near
                     else self.care.off_m
                 )
+                if name == apart and ahead > self.coming and frame > self.leaving:
+                    least = max(least, COMING_M)
                 worst = max(worst, least - gap)
             if worst >= enough:
                 break

@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float
 from scipy.spatial.transform import RigidTransform
 
 from capar.model.capture import Capture, TagType
-from capar.model.facts import Touching
+from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs
 
 SETTLED_M = 0.0025
@@ -35,6 +35,13 @@ SLID = 2.0
 UNSEEN_S = 1.0
 """So long a hand that touches a thing from the first frame on may slide before it holds it [s]."""
 
+STEP_S, TOUCHES_S = 0.15, 0.2
+"""A hand that touches a thing at rest for the first of these before that moves, or after, is seen
+to touch it; it is held for the second then, so that this is seen again [s]."""
+
+INSTANTS = 5
+"""At so many instants a thing that moves at the head meets it [1]."""
+
 CARRIED_M = 0.02
 """A thing that is so far from where a contact begins and from where it ends is under way [m]."""
 
@@ -51,7 +58,7 @@ class Hold:
 
 @dataclass(frozen=True)
 class Meeting:
-    """A held thing that is rigidly together with the performer's head."""
+    """A held thing that is rigidly together with the performer's head, if only for an instant."""
 
     thing: str
     part: str
@@ -119,6 +126,46 @@ def with_unseen_ends(
     return tuple(sorted(out, key=lambda hold: (hold.first, hold.side)))
 
 
+def with_touches(
+    holds: tuple[Hold, ...],
+    hands: Hands,
+    touching: list[Touching],
+    displaced: list[Displaced],
+    times: Float[np.ndarray, "frames"],
+) -> tuple[Hold, ...]:
+    """Holds that begin before the thing moves, and end after it, where the hand touched it then.
+
+    A living hand slides on a thing at rest until it has its grip: only the grip is held, which
+    may begin so late that no touch would be seen before the thing moves.
+
+    Args:
+        holds: As they were found.
+        hands: The hands.
+        touching: The contacts that were observed.
+        displaced: When things moved.
+        times: Of the frames [s].
+    """
+    out = []
+    for hold in holds:
+        first, last = hold.first, hold.last
+        for contact in touching:
+            moved = [m for m in displaced if m.object == hold.thing and _within(m, contact)]
+            if (contact.body, contact.other) == (hands[hold.side][0], hold.thing) and moved:
+                start, end = min(m.first for m in moved), max(m.last for m in moved)
+                if times[start] - times[contact.first] >= STEP_S and _within(hold, contact):
+                    early = int(np.searchsorted(times, times[start] - TOUCHES_S + 1e-6)) - 1
+                    first = min(first, max(contact.first, early))
+                if times[contact.last] - times[end] >= STEP_S and _within(hold, contact):
+                    late = int(np.searchsorted(times, times[end] + TOUCHES_S - 1e-6))
+                    last = max(last, min(contact.last, late))
+        out.append(replace(hold, first=first, last=last))
+    return tuple(sorted(out, key=lambda hold: (hold.first, hold.side)))
+
+
+def _within(span: Hold | Displaced, contact: Touching) -> bool:
+    return contact.first <= span.first and span.last <= contact.last
+
+
 def wanderings(
     hands: Hands, paths: Mapping[str, RigidTransform], holds: tuple[Hold, ...]
 ) -> list[str]:
@@ -142,7 +189,11 @@ def meetings_of(
     paths: Mapping[str, RigidTransform],
     touching: list[Touching],
 ) -> tuple[Meeting, ...]:
-    """When things are rigidly together with the head, in order of time."""
+    """When things are rigidly together with the head, in order of time.
+
+    What moves at the head as long as it is there, such as a mug that is tipped further, meets it
+    at some instants, from when it comes to when it leaves.
+    """
     own = {thing.name for thing in capture.objects if thing.tag is TagType.SELF}
     out = []
     for contact in touching:
@@ -153,6 +204,10 @@ def meetings_of(
                 if found:
                     first, last = (contact.first + edge for edge in found)
                     out.append(Meeting(thing, part, first, last))
+                else:
+                    instants = np.linspace(contact.first, contact.last, INSTANTS).round()
+                    frames = dict.fromkeys(int(frame) for frame in instants)
+                    out += [Meeting(thing, part, frame, frame) for frame in frames]
     return tuple(sorted(out, key=lambda meeting: meeting.first))
 
 

@@ -15,7 +15,7 @@ from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.drafts import MOST_TURNS, Draft, check_stance
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.flights import flight_notes, flights
-from capar.regeneration.grips import OUT_M, Grip
+from capar.regeneration.grips import Grip
 from capar.regeneration.hand_paths import Care, hand_paths
 from capar.regeneration.path_mapping import Detour
 from capar.regeneration.scenes import Scene, mobile, moved, raised, resized
@@ -69,7 +69,7 @@ class Plan:
 
     style: Style
     grasps: Mapping[str, Float[np.ndarray, "frames"]]
-    """How firmly each hand is kept there [1]."""
+    """How firmly each hand is kept there [1], 1 being usual in a hold."""
 
     things: Mapping[str, RigidTransform]
     head: RigidTransform
@@ -164,10 +164,11 @@ def led(draft: Draft, care: Care) -> Plan:
     )
     humans, kind = (source.human, draft.new.human), draft.style.force
     things, hands, launched = flights(source, scene, humans, draft.things, hands, kind)
+    events = {goal.frame for several in draft.goals.values() for goal in several}
+    grasps = attending.grasps(source, care.firm_s, events, care.weight)
     return Plan(
         source, scene, draft.new.human, draft.new, draft.goals, draft.grips, detours, hands,
-        draft.style, attending.grasps(source, care.firm_s), things, draft.head, draft.firmness,
-        draft.looks,
+        draft.style, grasps, things, draft.head, draft.firmness, draft.looks,
         (*_notes(source, draft.grips, draft.goals), *draft.told, *flight_notes(source, launched)),
     )  # fmt: skip
 
@@ -262,11 +263,9 @@ def _notes(
             )
         if abs(grip.out_m) > TOLD_M:
             way = "off" if grip.out_m > 0.0 else "towards"
-            ends = abs(grip.out_m) > OUT_M - TOLD_M
-            so = "the most that is tried, and may not touch" if ends else "so that it just touches"
             out.append(
                 f"the {grip.hold.side} hand's grip is moved {1e3 * abs(grip.out_m):.0f} mm {way} "
-                f"{grip.hold.thing!r}, {so}"
+                f"{grip.hold.thing!r}, so that it just touches"
             )
         if any(grip.turn.eased):
             angle = np.degrees(np.linalg.norm(grip.turn.eased))

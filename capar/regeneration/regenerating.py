@@ -12,10 +12,17 @@ from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Style
 
-CARES = (Care(), Care(0.03, 0.015), Care(0.03, 0.015, 1.0), Care(0.05, 0.02, 1.0))
-"""How free hands keep from things; the next where a motion is too near something."""
+CARES = (
+    Care(),
+    Care(0.03, 0.015),
+    Care(0.03, 0.015, 1.0),
+    Care(0.05, 0.02, 1.0),
+    Care(weight=2.0),
+    Care(0.03, 0.015, 1.0, weight=2.0),
+)
+"""How free hands keep from things, and how firmly hands are led; the next where that fails."""
 
-BY_CARE = {"penetration", "free hand clear", "event position", "event rotation"}
+BY_CARE = {"penetration", "free hand clear", "event position", "event rotation", "on the way"}
 """The gates that more care may mend: a hand that is led firmly for longer arrives in time."""
 
 BY_GRIP = {"on the way", "event position", "event rotation", "penetration"}
@@ -69,5 +76,8 @@ def _careful(draft: Draft, guide: Guide | None = None) -> tuple[Motion, Quality]
     return min(tried, key=_failures)
 
 
-def _failures(made: tuple[Motion, Quality]) -> int:
-    return len(made[1].failed)
+def _failures(made: tuple[Motion, Quality]) -> tuple[int, float]:
+    """How many gates fail, and by how much of their limits in all."""
+    failed = [gate for gate in made[1].gates if not gate.passed]
+    beyond = (abs(gate.value - gate.limit) / max(abs(gate.limit), 1e-9) for gate in failed)
+    return len(failed), float(sum(beyond))

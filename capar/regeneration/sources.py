@@ -13,7 +13,7 @@ from capar.body.skeleton import eyes_between
 from capar.body.targets import CUTOFF_HZ, target
 from capar.body.things import Thing
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagType
-from capar.model.facts import Touching
+from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
 from capar.regeneration.contact_points import surface_samples
@@ -26,6 +26,7 @@ from capar.regeneration.holding import (
     meetings_of,
     wandering,
     wanderings,
+    with_touches,
     with_unseen_ends,
 )
 from capar.regeneration.holding import Hold as Hold
@@ -158,6 +159,8 @@ def source_of(
     tracks_of_hands = {side: (hand.sensor, hand.path) for side, hand in hands.items()}
     holds = holds_of(tracks_of_hands, paths, touching)
     holds = with_unseen_ends(holds, tracks_of_hands, touching, capture.times)
+    displaced = [fact for fact in observation.facts if isinstance(fact, Displaced)]
+    holds = with_touches(holds, tracks_of_hands, touching, displaced, capture.times)
     sides = {hand.sensor: side for side, hand in hands.items()}
     launches = launches_of(observation.forces, sides, holds, capture.times)
     holds = with_blows(holds, launches)

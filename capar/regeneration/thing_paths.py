@@ -62,8 +62,8 @@ def thing_goals(
                 if meeting.thing == name and first <= meeting.first <= last:
                     at = _at_head(source, scene, old, new, meeting)
                     reason = f"at the {meeting.part}, in its own measures"
-                    goals.append(Goal(name, meeting.first, at, reason))
-                    goals.append(Goal(name, min(meeting.last, last), at, reason))
+                    frames = dict.fromkeys((meeting.first, min(meeting.last, last)))
+                    goals += [Goal(name, frame, at, reason) for frame in frames]
             down = _put_down(source, scene, name, (first, last), pose)
             goals += _poised(source, scene, name, (first, last), (pose, down.pose))
             goals.sort(key=lambda goal: goal.frame)

@@ -17,10 +17,10 @@ from capar.regeneration.style_kinds import Kind
 HEIGHT_M = 0.8
 
 
-def _way(wall_m: float) -> tuple[RigidTransform, Detour]:
+def _way(wall_m: float, tag: TagType = TagType.FIXED) -> tuple[RigidTransform, Detour]:
     """A mug's way of 0.4 m to the left, lifted by 0.1 m, over a wall half-way."""
     mug = Thing("mug", cup(0.035, 0.09), (0.45, -0.2, HEIGHT_M), round=True)
-    wall = Thing("wall", box(0.3, 0.02, wall_m), (0.45, 0.0, HEIGHT_M), tag=TagType.FIXED)
+    wall = Thing("wall", box(0.3, 0.02, wall_m), (0.45, 0.0, HEIGHT_M), tag=tag)
     things = {each.name: each for each in (table(HEIGHT_M), mug, wall)}
     carrying = Carrying(Human.of(ready_made("man")), Scene(things, (0.0, 0.0), 0.0), Kind.PATH)
     share = np.linspace(0.0, 1.0, 31)
@@ -35,8 +35,9 @@ def test_nothing_is_lifted_that_has_a_free_way() -> None:
     assert _way(0.02)[1] == STRAIGHT
 
 
-def test_a_thing_is_lifted_over_a_wall() -> None:
-    path, detour = _way(0.15)
+@pytest.mark.parametrize("tag", [TagType.FIXED, TagType.MOBILE])
+def test_a_thing_is_lifted_over_a_wall(tag: TagType) -> None:
+    path, detour = _way(0.15, tag)
     assert detour.lift_m > 0.0
     over = np.argmin(np.abs(path.translation[:, 1]))
     assert path.translation[over, 2] > HEIGHT_M + 0.15

@@ -13,14 +13,22 @@ from capar.body.recording import HAND_SEGMENTS
 from capar.body.scripted_actions import action_capture
 from capar.body.things import Thing
 from capar.model.capture import Capture, Shape, Stream, TagType
-from capar.model.facts import Touching
-from capar.pipelines.round_trips import observed_source
-from capar.regeneration import PlanError
+from capar.model.facts import Displaced, Touching
+from capar.pipelines.round_trips import body, observed_source
+from capar.regeneration import PlanError, attending
+from capar.regeneration.body_frames import body_frames, free_pose, rest_pose
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.drafts import Draft
 from capar.regeneration.grips import Turn, drawn_turns
 from capar.regeneration.hand_frames import HandAxes, stated_hand_frame
-from capar.regeneration.holding import Hold, holds_of, with_unseen_ends
+from capar.regeneration.holding import (
+    INSTANTS,
+    Hold,
+    holds_of,
+    with_touches,
+    with_unseen_ends,
+)
+from capar.regeneration.planning import reachable
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Source, source_of
@@ -82,6 +90,22 @@ def test_a_hand_is_moved_to_the_nearest_surface(
     surface: Callable[[float], float], moved_m: float
 ) -> None:
     assert abs(touching_shift(surface, 0.1) - moved_m - TOUCH_M) < 1e-4
+
+
+def test_a_hand_that_was_recorded_far_from_what_it_takes_has_no_grip() -> None:
+    source = _source("touch")
+    hand = source.hands["right"]
+    palm = hand.path[source.holds[0].first].rotation.apply([0.0, 0.0, 1.0])
+    near, far = (
+        source_of(_shifted(source.capture, "crate", off_m * palm), source.observation)
+        for off_m in (0.06, 0.16)
+    )
+    held = reachable(near, near.scene, near.human).grips
+    assert [grip.touches for grip in held] == [True]
+    grips, missed = Draft(far, far.scene, far.human, own_style(far)).reachable_grips()
+    assert not grips[0].touches
+    assert missed is not None
+    assert "beside 'crate' and not on its surface" in missed and "[hand.SIDE]" in missed
 
 
 @cache
@@ -175,3 +199,68 @@ def test_a_hand_that_nobody_saw_come_holds_the_thing_from_the_first_frame(
     assert (hold.first, hold.last) == held
     (slow,) = with_unseen_ends((Hold("right", "box", 40, 80),), hands, touching, times)
     assert slow.first == 40
+
+
+@pytest.mark.parametrize(
+    ("contact", "moved", "held"),
+    [
+        ((10, 80), (30, 60), (24, 66)),  # 0.2 s before it moves and after
+        ((26, 63), (30, 60), (28, 62)),  # never seen to touch it at rest
+        ((10, 64), (30, 60), (24, 62)),
+        ((10, 80), (36, 54), (28, 62)),  # held for long enough
+    ],
+)
+def test_a_touch_before_the_thing_moves_is_held_long_enough_to_be_seen(
+    contact: tuple[int, int], moved: tuple[int, int], held: tuple[int, int]
+) -> None:
+    times = np.arange(90) / 30.0
+    hands = {"right": ("right_hand", RigidTransform.from_translation(np.zeros((90, 3))))}
+    (hold,) = with_touches(
+        (Hold("right", "box", 28, 62),),
+        hands,
+        [Touching("right_hand", "box", *contact)],
+        [Displaced("box", *moved)],
+        times,
+    )
+    assert (hold.first, hold.last) == held
+
+
+def test_what_is_tipped_at_the_mouth_meets_it_from_when_it_comes_to_when_it_leaves() -> None:
+    source = _source("sip")
+    (contact,) = (
+        fact
+        for fact in source.observation.facts
+        if isinstance(fact, Touching) and {fact.body, fact.other} == {"mug", "head"}
+    )
+    frames = [meeting.first for meeting in source.meetings]
+    assert [meeting.last for meeting in source.meetings] == frames == sorted(set(frames))
+    assert (frames[0], frames[-1], len(frames)) == (contact.first, contact.last, INSTANTS)
+
+
+def test_hands_are_led_more_firmly_at_events_alone() -> None:
+    source = _source("pick_up")
+    usual, firmer = (attending.grasps(source, 0.5, (), weight) for weight in (1.0, 2.0))
+    for hold in source.holds:
+        for frame in (hold.first, hold.last):
+            assert usual[hold.side][frame] == pytest.approx(1.0)
+            assert firmer[hold.side][frame] == pytest.approx(2.0)
+        halfway = (hold.first + hold.last) // 2
+        assert firmer[hold.side][halfway] == pytest.approx(1.0)
+        again = attending.grasps(source, 0.5, (halfway,), 2.0)
+        assert again[hold.side][halfway] == pytest.approx(2.0)
+
+
+def test_a_hand_that_is_about_to_arrive_when_the_recording_begins_is_as_far_from_there() -> None:
+    source = _source("touch")
+    woman = body_frames(body("woman", source), source.scene)
+    man = body_frames(source.human, source.scene)
+    (hold,), hand = source.holds, source.hands["right"].path
+    held = RigidTransform.from_components([0.4, 0.0, 1.2], Rotation.from_euler("y", 0.3))
+    smaller = woman.human.measures["stature"] / man.human.measures["stature"]
+    about = free_pose(source, man, woman, "right", (hold.first - 5, hold.first), held)
+    came = hand[hold.first - 5].translation - hand[hold.first].translation
+    assert np.linalg.norm(came) > 0.02
+    np.testing.assert_allclose(about.translation - held.translation, smaller * came, atol=1e-9)
+    at_ease = free_pose(source, man, woman, "right", (0, hold.first), held)
+    usual = rest_pose(source, man, woman, "right", 0)
+    np.testing.assert_allclose(at_ease.translation, usual.translation)
