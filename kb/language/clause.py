@@ -103,9 +103,10 @@ class Clause:
         return tuple(zip(begins, (*(start_s for start_s, _ in own), self.end_s), strict=True))
 
     def within(self, other: "Clause") -> bool:
-        """Whether it is a turning of the same thing that is over before the other clause is."""
+        """Whether it is a turning of the same thing that mostly goes on during the other clause."""
         turns = self.pattern in TURNED and self.objects[:1] == other.objects[:1]
-        return turns and other.start_s <= self.start_s and self.end_s < other.end_s
+        begins = other.start_s <= self.start_s < other.end_s
+        return turns and begins and self.overlap_s(other) > 0.5 * (self.end_s - self.start_s)
 
     def overlaps(self, other: "Clause") -> bool:
         """Whether both go on at some time."""

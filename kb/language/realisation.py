@@ -11,7 +11,7 @@ from kb.language.free_motion import Reached
 from kb.language.lexicalisation import BIT_BY_BIT, BODILY, STIR, SUSTAINED, in_past, in_progress
 from kb.language.planning import Part
 from kb.language.vocabulary import SIDES
-from kb.lexicon.english import joined, noun, number, the, times
+from kb.lexicon.english import a, joined, noun, number, the, times
 
 _ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
 """Places of several objects that a verb has as one."""
@@ -36,6 +36,7 @@ class Realiser:
         self._rivals = set[str]()
         self._several: tuple[str, ...] = ()
         self._ees: tuple[str, ...] = ()
+        self._known = set[str]()
 
     def sentence(self, part: Part) -> str:
         """What a sentence tells, as the rest of one whose subject is the agent."""
@@ -89,9 +90,12 @@ class Realiser:
         hand, kind = self._hands((reached.ee,)), self._kinds[reached.ee]
         there = f" ({reached.start_s:.2f}–{reached.there_s:.2f} s)" if self._timed else ""
         back = f" ({reached.leaves_s:.2f}–{reached.end_s:.2f} s)" if self._timed else ""
-        parts = [f"reached {reached.where} with {hand}{there}"]
         verb = f"brought the {kind} back"
-        if reached.down:
+        parts = [f"reached {reached.where} with {hand}{there}"]
+        if reached.leans:
+            parts = [f"leaned and reached {reached.where} with {hand}{there}"]
+            verb = "straightened up again"
+        elif reached.down:
             verb = f"lowered the {kind} again"
         elif reached.where == "backward":
             verb = f"brought the {kind} forward again"
@@ -182,6 +186,8 @@ class Realiser:
             pattern = pattern.removesuffix(" with {1}")
         if step.pattern == "let go of {1}" and step.objects[0] == self._topic:
             pattern = in_past("let go")
+        if pattern.endswith(" from {1} into {2}") and step.objects[1] == self._topic:
+            pattern = pattern.replace("{2}", "it")
         if pattern.endswith(" there") and step.objects[0] != self._topic:
             pattern = f"{pattern.removesuffix('there')}in place"
         if "{1}" in pattern and step.objects == self._several:
@@ -192,11 +198,16 @@ class Realiser:
         spans = [*map(_span, step.apart)] if self._spans else []
         for place, name in enumerate(step.objects, 1):
             when = f" ({spans[place - 1]})" if place <= len(spans) else ""
-            filled = filled.replace(f"{{{place}}}", f"{self._mention(name, place)}{when}")
+            mention = self._mention(name, place)
+            tool = place == 1 and pattern.endswith(" with {1}")
+            if tool and name not in self._known and mention != "it":
+                mention = a(self._nouns.get(name, name))
+            filled = filled.replace(f"{{{place}}}", f"{mention}{when}")
         if "{" in pattern:
             self._rivals = set(_named(pattern, step.objects[1:], first=2)) - self._fixed
         if step.pauses and step.name not in SUSTAINED:
             filled += f" {BIT_BY_BIT}"
+        self._known |= set(step.objects)
         named = "{1}" in step.pattern or step.objects[:1] == (self._topic,)
         if step.objects:
             self._topic = step.objects[0] if named and not self._several else ""

@@ -17,6 +17,7 @@ from kb.language.lexicalisation import (
     AROUND,
     BACK_UPRIGHT,
     BY_A_QUARTER,
+    HELD_OVER,
     SHIFTED,
     SLID,
     THIS_WAY,
@@ -28,6 +29,7 @@ from kb.language.lexicalisation import (
 from kb.language.thresholds import (
     AROUND_RAD,
     OVER_RAD,
+    POURING_RAD,
     QUARTER_RAD,
     REST_S,
     SCRAP_S,
@@ -106,6 +108,14 @@ class Turning:
                 since, until = _course(seen)
                 if until.time_s < clause.end_s:
                     yield _turned((clause,), pattern, since, until)
+
+    def tipped_s(self, thing: str, start_s: float, end_s: float) -> float:
+        """Until when, from a time on, it leans so far that it is poured from [s]."""
+        for seen in self._between(thing, start_s, end_s):
+            if seen.time_s > start_s and seen.lean < POURING_RAD:
+                break
+            start_s = max(start_s, seen.time_s)
+        return start_s
 
     def leant(self, thing: str, start_s: float, end_s: float) -> float:
         """How far it leans from upright most of that time [rad]; 0 where that is not known."""
@@ -204,7 +214,20 @@ def turned(told: Sequence[Clause], turning: Turning) -> tuple[list[Clause], list
         ways += [] if ways else turning.beside(moved)
         rest += (step for step in (_turn(each, ways, turning) for each in grip) if step)
         found += ways
+        found += _held_over(moved, ways)
     return rest, found
+
+
+def _held_over(moved: Sequence[Clause], ways: Sequence[Clause]) -> Iterator[Clause]:
+    """That a thing is held upside down, of which no more is said meanwhile than that it moves."""
+    for over, back in pairwise(ways):
+        turned_over = (over.pattern, back.pattern) == (UPSIDE_DOWN, BACK_UPRIGHT)
+        if not turned_over or back.start_s - over.end_s < SETTLING_S:
+            continue
+        held = replace(over, pattern=HELD_OVER, start_s=over.end_s, end_s=back.start_s)
+        meanwhile = [each for each in moved if each.overlaps(held)]
+        if all(moves_only(each.pattern) for each in meanwhile):
+            yield held
 
 
 def _turn(clause: Clause, ways: Sequence[Clause], turning: Turning) -> Clause | None:

@@ -141,7 +141,9 @@ def test_few_things_are_told_one_by_one() -> None:
 
 def test_of_more_things_than_can_be_told_that_are_packed_only_the_number_is() -> None:
     text = gathered(7, kind="carton")
-    assert text == "The agent packed seven things into the shelf with the right hand."
+    assert text == (
+        "The agent packed all seven things into the shelf one by one with the right hand."
+    )
     (step,) = steps_of(text)
     assert step.call.objects == ("", "shelf")
     assert gathered(4, kind="carton") == (

@@ -58,7 +58,7 @@ def seen(links: Mapping[str, tuple[tuple[str, int], ...]], way_m: float) -> Obse
 def test_steps_before_a_thing_is_taken_are_walking() -> None:
     told = describe(seen({"right_hand": WORKED, **WALKED}, 0.6), timed=True)
     assert told == (
-        "The agent walked (0.00–1.70 s), lifted the mug with the right hand (2.00–3.00 s), and let "
+        "The agent walked (0.00–1.74 s), lifted the mug with the right hand (2.00–3.00 s), and let "
         "go (3.00 s)."
     )
 
