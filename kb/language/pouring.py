@@ -18,23 +18,27 @@ def poured(steps: Sequence[Clause], turning: Turning) -> tuple[Clause, ...]:
         steps: What was done, in order of time.
         turning: How things are turned.
     """
-    out = list(steps)
-    for pour in steps:
-        if pour.pattern not in TIPPED or not pour.possessed:
+    out: list[Clause] = []
+    for at, step in enumerate(steps):
+        pour = next((each for each in out[::-1] if _goes_on_after(step, each)), None)
+        if pour is not None and step.start_s < pour.end_s < step.end_s:
+            out.append(replace(step, start_s=pour.end_s))
+        elif pour is not None and step.holds and step.end_s <= pour.end_s:
             continue
-        own = [step for step in out if _in_the_grip(step, pour)]
-        last_s = max(step.end_s for step in own)
-        until_s = turning.tipped_s(pour.objects[0], pour.end_s, last_s)
-        for step in own:
-            at = out.index(step)
-            if step.start_s == pour.start_s:
-                out[at] = replace(step, end_s=max(step.end_s, until_s))
-            elif step.start_s >= pour.end_s and step.start_s < until_s < step.end_s:
-                out[at] = replace(step, start_s=until_s)
+        elif step.pattern in TIPPED and step.possessed:
+            later = (each.end_s for each in steps[at:] if _same_grip(each, step))
+            until_s = turning.tipped_s(step.objects[0], step.end_s, max(later))
+            out.append(replace(step, end_s=max(step.end_s, until_s)))
+        else:
+            out.append(step)
     return tuple(out)
 
 
-def _in_the_grip(step: Clause, pour: Clause) -> bool:
-    """Whether it tells of the same thing in the same hand, from the pouring on."""
-    same = (step.ees, step.grip, step.objects[:1]) == (pour.ees, pour.grip, pour.objects[:1])
-    return same and step.start_s >= pour.start_s
+def _goes_on_after(step: Clause, pour: Clause) -> bool:
+    """Whether it tells of the same thing in the same hand since that was poured from."""
+    poured = pour.pattern in TIPPED and step.pattern not in TIPPED
+    return poured and _same_grip(step, pour) and step.start_s > pour.start_s
+
+
+def _same_grip(one: Clause, other: Clause) -> bool:
+    return (one.ees, one.grip, one.objects[:1]) == (other.ees, other.grip, other.objects[:1])
