@@ -49,6 +49,7 @@ def describe(
     from capar.pipelines.observation import observe
     from capar.views.notices import reservation_lines, reservations_on_told
     from kb.language.describe import describe as told
+    from kb.language.realisation import nouns
 
     observation = observe(capture, rules=rule_base(profile, rules, actionary))
     if corrected:
@@ -60,7 +61,9 @@ def describe(
         told_of = {"capture": observation.capture, "description": text}
         print_json(told_of | {"notices": [each.document() for each in notices]}, sort_keys=True)
     else:
-        typer.echo("\n".join((text, *reservation_lines(notices))))
+        typer.echo(
+            "\n".join((text, *reservation_lines(notices, called=nouns(observation.objects))))
+        )
 
 
 def _corrected(observation: "Observation", actionary: str | None) -> "Observation":

@@ -1,6 +1,8 @@
 """Notices as people read them: one a line, many alike as one, reservations by themselves."""
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
 
 from capar.model.notices import KINDS, Notice
 from capar.model.observation import Observation
@@ -46,9 +48,20 @@ def note_lines(notices: Iterable[Notice], *, most: int = MOST) -> tuple[str, ...
     )
 
 
-def reservation_lines(notices: Sequence[Notice]) -> tuple[str, ...]:
-    """What follows a text whose reservations those are: a gap, a heading, and the notes."""
-    lines = (line for code, group in _by_code(notices).items() for line in _plain(code, group))
+def reservation_lines(
+    notices: Sequence[Notice], *, called: Mapping[str, str] = MappingProxyType({})
+) -> tuple[str, ...]:
+    """What follows a text whose reservations those are: a gap, a heading, and the notes.
+
+    Args:
+        notices: What is known with reservations.
+        called: What bodies are called in the text, where that is not their name.
+    """
+    groups = (
+        (code, [replace(each, bodies=_called(each, called)) for each in group])
+        for code, group in _by_code(notices).items()
+    )
+    lines = (line for code, group in groups for line in _plain(code, group))
     return ("", HEADING, *lines) if notices else ()
 
 
@@ -57,6 +70,10 @@ def _by_code(notices: Iterable[Notice]) -> dict[str, list[Notice]]:
     for notice in notices:
         alike.setdefault(notice.code, []).append(notice)
     return alike
+
+
+def _called(notice: Notice, called: Mapping[str, str]) -> tuple[str, ...]:
+    return tuple(called.get(body, body) for body in notice.bodies)
 
 
 def _plain(code: str, group: Sequence[Notice]) -> Iterable[str]:

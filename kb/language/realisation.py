@@ -26,7 +26,7 @@ class Realiser:
     def __init__(
         self, links: Sequence[ObservedLink], objects: Sequence[ObservedObject], *, timed: bool
     ) -> None:
-        self._nouns = _nouns(objects)
+        self._nouns = nouns(objects)
         self._kinds = {link.ee: link.kind for link in links}
         self._names = {link.ee: _spoken(link) for link in links}
         self._timed = timed
@@ -229,7 +229,7 @@ class Realiser:
         return f"the {self._names[ees[0]]}"
 
 
-def _nouns(objects: Sequence[ObservedObject]) -> dict[str, str]:
+def nouns(objects: Sequence[ObservedObject]) -> dict[str, str]:
     """Objects by what they are called, where that is their kind.
 
     So it is where a capture says of one object alone that it is a ``large_table``, whatever short

@@ -77,6 +77,9 @@ TURNED_RAD = 0.35
 """What is turned by more than this [rad] is seen to be: 20 degrees, as in the rules
 (``turn_mrad``)."""
 
+NOTICED_SHARE = 0.1
+"""A turn goes on between its first and its last such share [1], or ``TURNED_RAD`` of a long one."""
+
 SOMEWHAT_RAD = 0.7
 """What is only moved, and turned about the vertical by more than this [rad], is turned: 40 degrees,
 twice what happens in carrying."""

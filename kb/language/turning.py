@@ -28,6 +28,7 @@ from kb.language.lexicalisation import (
 )
 from kb.language.thresholds import (
     AROUND_RAD,
+    NOTICED_SHARE,
     OVER_RAD,
     POURING_RAD,
     QUARTER_RAD,
@@ -169,8 +170,9 @@ def _time(attitude: Attitude) -> float:
 
 def _course(seen: Sequence[Attitude]) -> tuple[Attitude, Attitude]:
     """From where it still is turned as at first to where it is turned as at last."""
-    moved = [abs(each.spin - seen[0].spin) > TURNED_RAD for each in seen]
-    rest = [abs(each.spin - seen[-1].spin) > TURNED_RAD for each in seen]
+    noticed = min(TURNED_RAD, NOTICED_SHARE * abs(seen[-1].spin - seen[0].spin))
+    moved = [abs(each.spin - seen[0].spin) > noticed for each in seen]
+    rest = [abs(each.spin - seen[-1].spin) > noticed for each in seen]
     last = len(seen) - 1 - rest[::-1].index(True)
     return seen[max(moved.index(True) - 1, 0)], seen[min(last + 1, len(seen) - 1)]
 

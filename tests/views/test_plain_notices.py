@@ -104,3 +104,8 @@ def test_every_kind_is_told_here() -> None:
 def test_other_kinds_have_their_own_words_as_a_sentence() -> None:
     (line,) = reservation_lines([notice("no-shape", "mug")])[2:]
     assert line == "note: 'mug' has no shape, so no contact of it is known."
+
+
+def test_a_note_calls_a_thing_as_the_text_does() -> None:
+    (line,) = reservation_lines([lost("chair", fixed=True)], called={"chair": "wooden_chair"})[2:]
+    assert line.startswith("note: The wooden chair was not tracked")

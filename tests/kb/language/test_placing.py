@@ -267,7 +267,9 @@ def test_what_comes_down_while_it_is_turned_is_put_down() -> None:
     )
 
 
-@pytest.mark.parametrize(("low_m", "words"), [(0.5, "moved it up and down"), (1.05, "and raised the mug")])
+@pytest.mark.parametrize(
+    ("low_m", "words"), [(0.5, "moved it up and down"), (1.05, "and raised the mug")]
+)
 def test_what_sinks_as_it_rises_is_moved_up_and_down(low_m: float, words: str) -> None:
     way = (*TAKEN, (0.0, 0.0, 1.1), (0.0, 0.0, low_m), (0.0, 0.0, 1.4))
     turned = Piece("Turn", 220, ("mug",), features=OWN)
