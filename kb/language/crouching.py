@@ -33,9 +33,14 @@ def with_crouching(
     crouches = list(_changes(_track(PELVIS, links, tracks), manual[0], CROUCH, CROUCHED_M))
     bends = _changes(_track(HEAD, links, tracks), manual[0], BEND, BENT_M)
     own = [*crouches, *(each for each in bends if not any(map(each.overlaps, crouches)))]
-    own = [each for each in own if not any(map(each.overlaps, manual))]
+    own = [each for each in own if not any(_goes_with(each, step) for step in manual)]
     rest = [step for step in steps if not _steadies(step, own)]
     return tuple(sorted((*rest, *own), key=in_time))
+
+
+def _goes_with(change: Clause, step: Clause) -> bool:
+    """Whether the body mostly goes down or comes up while a thing is moved."""
+    return change.overlap_s(step) > 0.5 * (change.end_s - change.start_s)
 
 
 def _steadies(step: Clause, changes: Sequence[Clause]) -> bool:
