@@ -55,6 +55,11 @@ def _bodies(group: Sequence[Notice]) -> list[str]:
 def _named(bodies: Sequence[str]) -> str:
     """Bodies as a list; of many the first, and how many others there are."""
     names = list(dict.fromkeys(map(_the, bodies)))
+    for each in list(names):
+        pair = [f"the {side} {each.removeprefix('the right ')}" for side in ("right", "left")]
+        if set(pair) <= set(names):
+            names[names.index(pair[0])] = f"both {each.removeprefix('the right ')}s"
+            names.remove(pair[1])
     left = len(names) - NAMED
     if left <= 1:
         return joined(names)
@@ -91,8 +96,8 @@ def _rough(group: Sequence[Notice]) -> Iterable[str]:
     if len(parts) <= NAMED:
         return [f"Rough shapes are assumed for {_named(bodies)}: the recording has none"]
     hands = any({*_spoken(each).split()} & {*LIMB, *_parts()} for each in parts)
-    also = ", also the hands" if hands else ""
-    return [f"The body is drawn with rough shapes{also}: the recording has none"]
+    also = ", including the hands" if hands else ""
+    return [f"Rough shapes are assumed for the body{also}: the recording has none"]
 
 
 def _assumed(group: Sequence[Notice]) -> Iterable[str]:
@@ -109,15 +114,20 @@ def _by_distance(group: Sequence[Notice]) -> Iterable[str]:
     shared = set.intersection(*(set(each.bodies) for each in group))
     if len(shared) == 1:
         (body,) = shared
-        return [f"What {_the(body)} touches is judged by how near it is: it has no shape"]
-    return ["What touches what is judged by how near it is: the recording has no shapes"]
+        name = _the(body)
+        return [
+            f"Contacts of {name} are inferred from distance: the recording has no shape of the "
+            f"{name.split()[-1]}"
+        ]
+    return ["Contacts are inferred from distance: the recording has no shapes"]
 
 
 def _left_out(group: Sequence[Notice]) -> Iterable[str]:
     """Of what nothing can be told."""
     bodies = _bodies(group)
-    whose = "whose shape is" if len({*map(_the, bodies)}) == 1 else "whose shapes are"
-    return [f"Nothing is told of {_named(bodies)}, {whose} not known"]
+    one = len({*map(_the, bodies)}) == 1
+    are, shapes = ("is", "its shape is") if one else ("are", "their shapes are")
+    return [f"{capital(_named(bodies))} {are} left out: {shapes} not known"]
 
 
 def _gap(group: Sequence[Notice]) -> Iterable[str]:
@@ -125,7 +135,14 @@ def _gap(group: Sequence[Notice]) -> Iterable[str]:
     for each in group:
         first, second = map(_the, each.bodies)
         gap_cm = 100.0 * float(each["shown_m"])
-        yield f"{capital(first)} and {second} moved as one, but were measured {gap_cm:.0f} cm apart"
+        _, side, *part = [*first.split(), "", ""]
+        finger = " ".join(filter(None, part))
+        if _SIDED.match(each.bodies[0]) and finger.split()[0] in _parts():
+            held = f"The {side} hand is taken to have held {second}"
+            yield f"{held}, though its {finger} was measured {gap_cm:.0f} cm away"
+        else:
+            moved = f"{capital(first)} and {second} moved as one"
+            yield f"{moved}, but were measured {gap_cm:.0f} cm apart"
 
 
 def _unmoved(group: Sequence[Notice]) -> Iterable[str]:

@@ -9,7 +9,17 @@ from dataclasses import replace
 from capar.model.observation import ObservedObject
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import DOWN, GOALS, GROUNDS, LOWER, RAISE, SLID, TURN, UP_AND_DOWN
+from kb.language.lexicalisation import (
+    DOWN,
+    GOALS,
+    GROUNDS,
+    LOWER,
+    RAISE,
+    SLID,
+    TURN,
+    TURNED,
+    UP_AND_DOWN,
+)
 from kb.language.thresholds import (
     FEW_STEPS,
     FURTHER_M,
@@ -66,6 +76,38 @@ def placed(
             works = _works_there(step, steps[at + 1 :]) and not _has_it(step, out)
             out.append(_taken(brought, objects, scene) if works else brought)
     return tuple(out)
+
+
+def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses; turning that outlasts what it began in, with what the hands do next.
+
+    Args:
+        steps: What was done, in order of time.
+    """
+    out = list(steps)
+    for turning in steps:
+        own = [step for step in out if _moves_it_beside(turning, step)]
+        if turning.pattern not in TURNED or any(map(turning.within, own)):
+            continue
+        begins = [step for step in own if step.start_s - UNSEEN_S < turning.start_s < step.end_s]
+        ends = [
+            step for step in own if turning.start_s < step.start_s < turning.end_s <= step.end_s
+        ]
+        if begins and ends:
+            start_s = max(turning.start_s, begins[0].start_s)
+            out[out.index(ends[0])] = replace(ends[0], along=(replace(turning, start_s=start_s),))
+            out.remove(turning)
+    return tuple(out)
+
+
+def _moves_it_beside(turning: Clause, step: Clause) -> bool:
+    """Whether the same hands move the same thing otherwise, in the same grip."""
+    same = (step.ees, step.grip, step.objects[:1]) == (
+        turning.ees,
+        turning.grip,
+        turning.objects[:1],
+    )
+    return same and step.changes and step.pattern not in TURNED
 
 
 def _settles(step: Clause, before: Clause, scene: Scene) -> bool:

@@ -37,6 +37,9 @@ OPENINGS = ("Then ", "Next, ", "After that, ")
 LATER = "Later, "
 """How a sentence begins after a noticed pause, where times are not told."""
 
+ALSO = "Also, "
+"""How a sentence begins that tells what the same hand did in between."""
+
 MEANWHILE = "Meanwhile, "
 """How a sentence begins that tells what was done during what was told before."""
 
@@ -120,6 +123,8 @@ def _opening(part: Part, told: Sequence[Part], end_s: float, afterwards: str) ->
         before = told[-1]
         recurs = before.often and _said(part.steps) == _said(before.steps)[: len(part.steps)]
         return ONCE_MORE if recurs else afterwards
+    if all(each.ees == part.told[0].ees for each in (*part.steps, *told[-1].steps)):
+        return ALSO if part.end_s < end_s else ""
     during = min(part.end_s, end_s) - start_s
     return MEANWHILE if during >= 0.5 * (part.end_s - start_s) else ""
 

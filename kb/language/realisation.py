@@ -32,6 +32,7 @@ class Realiser:
         self._timed = timed
         self._spans = timed
         self._fixed = {each.name for each in objects if each.tag in FIXED}
+        self._touchable = any(each.tag == "mobile" for each in objects)
         self._topic = ""
         self._rivals = set[str]()
         self._several: tuple[str, ...] = ()
@@ -66,15 +67,16 @@ class Realiser:
     def idle(
         self, moved: Mapping[str, tuple[float, float]], reached: Sequence[Reached] = ()
     ) -> str:
-        """That nothing was touched, and what was moved, as the rest of a sentence.
+        """What was moved, and that nothing was touched where there was something to touch.
 
         Args:
             moved: From when to when each end-effector moved [s].
             reached: Where hands reached, if that is known.
         """
+        untouched = " without touching anything" if self._touchable else ""
         if reached:
             parts = [part for each in reached for part in self._there_and_back(each)]
-            return f"{joined(parts)} without touching anything"
+            return f"{joined(parts)}{untouched}"
         kinds: dict[str, list[str]] = {}
         for ee in moved:
             kinds.setdefault(self._kinds[ee], []).append(ee)
@@ -84,7 +86,7 @@ class Realiser:
             end_s = max(moved[ee][1] for ee in ees)
             span = f" ({start_s:.2f}–{end_s:.2f} s)" if self._timed else ""
             parts.append(f"moved {self._hands(tuple(ees))}{span}")
-        return f"{joined(parts)} without touching anything" if parts else "touched nothing"
+        return f"{joined(parts)}{untouched}" if parts else "touched nothing"
 
     def _there_and_back(self, reached: Reached) -> list[str]:
         hand, kind = self._hands((reached.ee,)), self._kinds[reached.ee]
@@ -120,7 +122,7 @@ class Realiser:
             elif hand:
                 text = f"{text} {hand}"
             self._ees = self._ees if bodily else step.ees
-            parts.append(f"{text}{self._end(step)}")
+            parts.append(f"{text}{self._end(step)}{self._on_the_way(step)}")
         return joined(parts)
 
     def _with_hands(self, step: Clause) -> str:
@@ -153,7 +155,7 @@ class Realiser:
             last = step
             own = replace(step, pattern="move away") if "{ee}" in step.pattern else step
             text = self._verb_phrase(own).replace("{with}", "")
-            parts.append(f"{text}{self._end(step)}")
+            parts.append(f"{text}{self._end(step)}{self._on_the_way(step)}")
         return joined(parts)
 
     def _begin(self, topic: str) -> None:
@@ -165,6 +167,11 @@ class Realiser:
         """How the thing was turned during what was told last."""
         text = in_progress(step.pattern).replace("{1}", self._mention(step.objects[0], 1))
         return f", {text}{self._end(step)}"
+
+    def _on_the_way(self, step: Clause) -> str:
+        """How the thing was turned until it was put there."""
+        ways = (replace(each, pattern=f"{each.pattern} on the way") for each in step.along)
+        return "".join(map(self._meanwhile, ways))
 
     def _end(self, step: Clause) -> str:
         often = f" {times(step.count)}" if step.count > 1 else ""

@@ -84,6 +84,10 @@ SOMEWHAT_RAD = 0.7
 """What is only moved, and turned about the vertical by more than this [rad], is turned: 40 degrees,
 twice what happens in carrying."""
 
+FACING_M = 0.4
+"""What is larger than this [m], as furniture, is seen to face aside when it is carried: smaller
+things turn in every hand."""
+
 QUARTER_RAD = 1.05
 """What is turned about the vertical by more than this [rad], and does not face another way, is
 turned by about a quarter: 60 degrees."""

@@ -28,6 +28,7 @@ from kb.language.lexicalisation import (
 )
 from kb.language.thresholds import (
     AROUND_RAD,
+    FACING_M,
     NOTICED_SHARE,
     OVER_RAD,
     POURING_RAD,
@@ -64,6 +65,7 @@ class Turning:
         for fact in sorted(each for each in observation.facts if isinstance(each, Posture)):
             found = Attitude(fact.frame * self._step_s, fact.lean / 1000.0, fact.spin / 1000.0)
             self._postures[fact.body].append(found)
+        self._large = {each.name for each in observation.objects if max(each.size_m) > FACING_M}
         for way in observation.facts:
             if isinstance(way, Travelled):
                 self._turns[way.body][way.frame] = way.turn
@@ -147,11 +149,13 @@ class Turning:
             elif (over or leant) and after.lean < UPRIGHT_RAD:
                 yield _turned(grip, BACK_UPRIGHT if turned_over else UPRIGHT, since, after)
                 over, leant, since = False, False, after
-        if (
-            max(each.lean for each in seen) < OVER_RAD
-            and abs(seen[-1].spin - seen[0].spin) > AROUND_RAD
-        ):
-            yield _turned(grip, AROUND, *_course(seen))
+        spin = abs(seen[-1].spin - seen[0].spin)
+        faces = thing in self._large and any(each.name == "Carry" for each in grip)
+        if max(each.lean for each in seen) < OVER_RAD:
+            if spin > AROUND_RAD:
+                yield _turned(grip, AROUND, *_course(seen))
+            elif faces and spin > QUARTER_RAD:
+                yield _turned(grip, BY_A_QUARTER, *_course(seen))
 
     def _between(self, thing: str, start_s: float, end_s: float) -> list[Attitude]:
         """Its postures from the last one before the start to the one nearest to the end."""

@@ -102,8 +102,7 @@ def test_what_is_left_out_is_listed_as_people_call_it() -> None:
         objects=9,
     )
     assert reservation_lines((left,))[-1] == (
-        "note: Nothing is told of the half egg carton and the tooth brush, whose shapes are not "
-        "known."
+        "note: The half egg carton and the tooth brush are left out: their shapes are not known."
     )
 
 

@@ -23,15 +23,15 @@ def judged(code: str, *pairs: tuple[str, str]) -> list[Notice]:
 TOLD: tuple[tuple[list[Notice], str], ...] = (
     (
         rough("right_hand", "left_hand"),
-        "Rough shapes are assumed for the right hand and the left hand: the recording has none.",
+        "Rough shapes are assumed for both hands: the recording has none.",
     ),
     (
         rough("pelvis", "l_hip", "r_hip", "l_knee", "r_knee"),
-        "The body is drawn with rough shapes: the recording has none.",
+        "Rough shapes are assumed for the body: the recording has none.",
     ),
     (
         rough("pelvis", "l_hip", "r_hip", "l_knee", "r_thumb1"),
-        "The body is drawn with rough shapes, also the hands: the recording has none.",
+        "Rough shapes are assumed for the body, including the hands: the recording has none.",
     ),
     (
         [lost("bowl", fixed=False, moved_m=0.004)],
@@ -64,19 +64,21 @@ TOLD: tuple[tuple[list[Notice], str], ...] = (
     ),
     (
         judged("pivot-distance", ("right_hand", "mug"), ("right_hand", "cup")),
-        "What the right hand touches is judged by how near it is: it has no shape.",
+        "Contacts of the right hand are inferred from distance: the recording has no shape of the "
+        "hand.",
     ),
     (
         judged("touch-estimated", ("right_hand", "mug"), ("cup", "table")),
-        "What touches what is judged by how near it is: the recording has no shapes.",
+        "Contacts are inferred from distance: the recording has no shapes.",
     ),
     (
         [notice("objects-left-out", "100 half egg carton(Clone)-18146", objects=9)],
-        "Nothing is told of the half egg carton, whose shape is not known.",
+        "The half egg carton is left out: its shape is not known.",
     ),
     (
         [notice("mount-gap", "r_middle1", "chair", touch_m=0.02, shown_m=0.04, frames=9)],
-        "The right middle finger and the chair moved as one, but were measured 4 cm apart.",
+        "The right hand is taken to have held the chair, though its middle finger was measured "
+        "4 cm away.",
     ),
     (
         [notice("no-mover", "chair", start_s=1.0, end_s=2.0, share=0.3, times=1, why="nobody")],

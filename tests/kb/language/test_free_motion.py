@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from observations import MUG, Piece, observation
+from observations import MUG, TABLE, Piece, observation
 
+from capar.model.observation import ObservedObject
 from capar.model.sampled_track import sampled_track
 from kb.language.describe import describe
 
@@ -22,6 +23,7 @@ def told(
     *,
     back: bool = True,
     head: Sequence[float] = (0.0, 0.0, 0.0),
+    things: tuple[ObservedObject, ...] = (MUG,),
 ) -> str:
     """What is told of a right hand that goes that way from rest, in a person who faces so [rad].
 
@@ -32,7 +34,7 @@ def told(
     made = observation(
         "Reaching",
         {"right_hand": pieces, "left_hand": still},
-        (MUG,),
+        things,
         frames=301,
         rate_hz=100.0,
     )
@@ -104,3 +106,10 @@ def test_who_goes_down_and_along_with_the_hand_leans(facing: float) -> None:
     assert " and straightened up again (" in text
     for head in ((0.25, 0.0, 0.0), (0.1, 0.0, -0.15), (0.0, 0.25, -0.15)):
         assert "leaned" not in told((0.5, 0.0, 0.0), facing, head=head)
+
+
+def test_where_there_is_nothing_to_touch_it_is_not_told_that_nothing_was_touched() -> None:
+    for things in ((), (TABLE,)):
+        text = told((0.5, 0.0, 0.0), things=things)
+        assert text.startswith("The agent reached forward")
+        assert "touching" not in text

@@ -275,3 +275,32 @@ def test_what_sinks_as_it_rises_is_moved_up_and_down(low_m: float, words: str) -
     turned = Piece("Turn", 220, ("mug",), features=OWN)
     text = told(REACHED, LIFTED, turned, Piece("Raise", 500, ("mug",), features=OWN), way=way)
     assert words in text
+
+
+@pytest.mark.parametrize(
+    ("size_m", "words"),
+    [
+        (0.6, "carried it, and put it down, turning it by about a quarter on the way."),
+        (0.1, "carried it, and put it down."),
+    ],
+)
+def test_a_large_thing_that_faces_aside_in_the_end_is_turned_on_the_way(
+    size_m: float, words: str
+) -> None:
+    way = (*TAKEN, (0.8, 0.0, 1.0), (1.6, 0.0, 1.0), (1.6, 0.0, 0.0))
+    pieces = (
+        REACHED,
+        LIFTED,
+        CARRIED,
+        Piece("Lower", 500, ("mug", "floor"), features=PLACED),
+    )
+    spins = (0, 0, 0, 500, 1000, 1500)
+    facts = (
+        *(Posture("mug", 100 * at, 0, spin) for at, spin in enumerate(spins)),
+        Posture("mug", 450, 0, 1450),
+        Touching("mug", "floor", 0, 100),
+        Touching("mug", "floor", 495, 500),
+    )
+    large = replace(MUG, size_m=(size_m, size_m, size_m))
+    text = told(*pieces, way=way, facts=facts, things=(large, TABLE, FLOOR))
+    assert text.endswith(words)
