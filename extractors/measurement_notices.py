@@ -3,9 +3,12 @@
 import math
 from collections.abc import Iterator
 
+import numpy as np
+from jaxtyping import Float
+
 from capar.model.calibration import Calibration, Found
 from capar.model.capture import Capture, Sensor, ShapeSource, TagObject, TagType
-from capar.model.notices import Notice, notice
+from capar.model.notices import Notice, Value, notice
 from extractors.signals.gaps import long_gaps
 from extractors.thresholds import Thresholds
 
@@ -67,13 +70,32 @@ def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
         ]
         if lost:
             fixed = isinstance(body, TagObject) and body.tag is TagType.FIXED
-            yield _loss(body.name, lost, capture, fixed=fixed)
+            yield _loss(body, lost, capture.times, fixed=fixed)
 
 
-def _loss(name: str, lost: list[tuple[int, int]], capture: Capture, *, fixed: bool) -> Notice:
-    """How often a body was lost for long, and when at most; without times if it was throughout."""
+def _loss(
+    body: Sensor | TagObject,
+    lost: list[tuple[int, int]],
+    times: Float[np.ndarray, "frames"],
+    *,
+    fixed: bool,
+) -> Notice:
+    """How often a body was lost for long, and when at most; without times if it was throughout.
+
+    With times, also for how long in all [s], of how much [s]; and how far it was then [m] from
+    where it was before, where that is known.
+    """
     first, last = max(lost, key=lambda gap: gap[1] - gap[0])
-    if last - first + 1 == len(capture.times):
-        return notice(LOSS, name, times=len(lost), fixed=fixed)
-    start_s, end_s = float(capture.times[first]), float(capture.times[last])
-    return notice(LOSS, name, start_s=start_s, end_s=end_s, times=len(lost), fixed=fixed)
+    if last - first + 1 == len(times):
+        return notice(LOSS, body.name, times=len(lost), fixed=fixed)
+    values: dict[str, Value] = {
+        "times": len(lost),
+        "fixed": fixed,
+        "lost_s": float(sum(times[until] - times[since] for since, until in lost)),
+        "of_s": float(times[-1] - times[0]),
+    }
+    if first > 0 and last < len(times) - 1:
+        places = body.stream.positions[[first - 1, last + 1]]
+        values["moved_m"] = float(np.linalg.norm(places[1] - places[0]))
+    start_s, end_s = float(times[first]), float(times[last])
+    return notice(LOSS, body.name, start_s=start_s, end_s=end_s, **values)

@@ -12,7 +12,7 @@ from kb.lexicon.tables import table
 WORDS = Vocabulary(primitive_words(primitive_files()))
 VERBS = {
     *(past(row["pattern"].split()[0]) for row in table("phrases")),
-    past("crouch"),
+    *map(past, ("bend", "crouch", "lean", "shift")),
     past("pack"),
     past("straighten"),
     *(in_progress(pattern).split()[0] for pattern in TURNED),

@@ -47,20 +47,23 @@ def describe(
     from capar.cli._options import rule_words
     from capar.cli._output import print_json
     from capar.pipelines.observation import observe
-    from capar.views.notices import reservation_lines, reservations
+    from capar.views.notices import reservation_lines, reservations_on_told
     from kb.language.describe import describe as told
+    from kb.language.realisation import nouns
 
     observation = observe(capture, rules=rule_base(profile, rules, actionary))
     if corrected:
         observation = _corrected(observation, actionary)
     words = rule_words(rules, actionary)
     text = told(observation, detail=detail.value, timed=timed, words=words)
-    notices = reservations(observation.notices)
+    notices = reservations_on_told(observation)
     if json:
         told_of = {"capture": observation.capture, "description": text}
         print_json(told_of | {"notices": [each.document() for each in notices]}, sort_keys=True)
     else:
-        typer.echo("\n".join((text, *reservation_lines(notices))))
+        typer.echo(
+            "\n".join((text, *reservation_lines(notices, called=nouns(observation.objects))))
+        )
 
 
 def _corrected(observation: "Observation", actionary: str | None) -> "Observation":

@@ -215,15 +215,8 @@ class NoticeKind:
     Without one that does, what is told would be taken for more certain than it is.
     """
 
-    plain: str = ""
-    """What it means to whoever reads what was done, of all the ``{names}`` that it is about; empty
-    where its text says that."""
-
     fault: bool = False
     """Whether it tells of a fault of the recording, or of what was stated of it."""
-
-    listed: bool = False
-    """Whether it is about each of its bodies by itself, not about one with another."""
 
 
 KINDS: Mapping[str, NoticeKind] = {
@@ -244,7 +237,6 @@ KINDS: Mapping[str, NoticeKind] = {
     "stand-in-shape": NoticeKind(
         "{0!r} is a stand-in: {shape}",
         "stand-in shapes",
-        "rough shapes are assumed for {names}",
     ),
     "no-shape": NoticeKind(
         "{0!r} has no shape, so no contact of it is known", "bodies without a shape"
@@ -252,13 +244,10 @@ KINDS: Mapping[str, NoticeKind] = {
     "objects-left-out": NoticeKind(
         _objects_left_out,
         "groups of objects left out",
-        "left out because the shape is not known: {names}",
-        listed=True,
     ),
     "assumed-support": NoticeKind(
         "{0!r} is assumed: {assumed}",
         "assumed supports",
-        "the recording lacks {names}; the place is assumed",
     ),
     "moving-ground": NoticeKind(
         "{0!r} goes by under the feet of {agent} at {speed_mps:.2f} m/s, as a treadmill does: feet "
@@ -268,12 +257,10 @@ KINDS: Mapping[str, NoticeKind] = {
     "pivot-distance": NoticeKind(
         _pivot_distance,
         "pairs that touch by the distance of their origins",
-        "contact is judged by distance alone for {names}",
     ),
     "touch-estimated": NoticeKind(
         _touch_estimated,
         "pairs that touch by a distance estimated from the recording",
-        "contact is judged by distance alone for {names}",
     ),
     "distance-contradicted": NoticeKind(
         lambda each: distance_contradicted(each.bodies, each.fields),
@@ -283,13 +270,11 @@ KINDS: Mapping[str, NoticeKind] = {
     "mount-gap": NoticeKind(
         lambda each: mount_gap(each.bodies, each.fields),
         "bodies carried with a gap",
-        "a gap was measured between bodies that move as one: {names}",
         fault=True,
     ),
     "no-mover": NoticeKind(
         lambda each: no_mover(each.bodies, each.fields),
         "objects that move and nothing moves them",
-        "at times, nothing that was recorded moved {names}",
         fault=True,
     ),
     "up-contradicted": NoticeKind(

@@ -1,21 +1,21 @@
 """Notices as people read them: one a line, many alike as one, reservations by themselves."""
 
-import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
 
 from capar.model.notices import KINDS, Notice
-from kb.lexicon.english import joined, number
+from capar.model.observation import Observation
+from capar.views.plain_notices import NAMED, sentences_of
+from kb.lexicon.english import capital
 
 HEADING = "Known with reservations:"
 
+LOSS = "long-gap"
+"""The code of a body that was not tracked for some time."""
+
 MOST = 5
 """So many notices of one code are listed one by one."""
-
-_NUMBERED = re.compile(r"^\d+ +([A-Za-z][^(]*)\(.*$")
-"""What a game's export calls a thing: ``100 half egg carton(Clone)-18146``."""
-
-NAMED = 3
-"""Of more, so many are named."""
 
 
 def reservations(
@@ -29,6 +29,16 @@ def reservations(
     )
 
 
+def reservations_on_told(observation: Observation) -> tuple[Notice, ...]:
+    """The notices that affect a telling: without losses of what neither acts nor is a thing."""
+    told = {link.ee for link in observation.links} | {each.name for each in observation.objects}
+    return tuple(
+        each
+        for each in reservations(observation.notices)
+        if each.code != LOSS or told.intersection(each.bodies)
+    )
+
+
 def note_lines(notices: Iterable[Notice], *, most: int = MOST) -> tuple[str, ...]:
     """Notices one a line; those of a code that has more of them than most as one line."""
     return tuple(
@@ -38,9 +48,20 @@ def note_lines(notices: Iterable[Notice], *, most: int = MOST) -> tuple[str, ...
     )
 
 
-def reservation_lines(notices: Sequence[Notice]) -> tuple[str, ...]:
-    """What follows a text whose reservations those are: a gap, a heading, and the notes."""
-    lines = (line for code, group in _by_code(notices).items() for line in _plain(code, group))
+def reservation_lines(
+    notices: Sequence[Notice], *, called: Mapping[str, str] = MappingProxyType({})
+) -> tuple[str, ...]:
+    """What follows a text whose reservations those are: a gap, a heading, and the notes.
+
+    Args:
+        notices: What is known with reservations.
+        called: What bodies are called in the text, where that is not their name.
+    """
+    groups = (
+        (code, [replace(each, bodies=_called(each, called)) for each in group])
+        for code, group in _by_code(notices).items()
+    )
+    lines = (line for code, group in groups for line in _plain(code, group))
     return ("", HEADING, *lines) if notices else ()
 
 
@@ -51,26 +72,14 @@ def _by_code(notices: Iterable[Notice]) -> dict[str, list[Notice]]:
     return alike
 
 
+def _called(notice: Notice, called: Mapping[str, str]) -> tuple[str, ...]:
+    return tuple(called.get(body, body) for body in notice.bodies)
+
+
 def _plain(code: str, group: Sequence[Notice]) -> Iterable[str]:
     """What notices of one code mean to whoever reads what was done."""
-    if KINDS[code].plain:
-        names = [*dict.fromkeys(name for notice in group for name in _about(notice))]
-        left = len(names) - NAMED
-        others = f"{number(left)} other{'s' if left > 1 else ''}"
-        named = joined([*names[:NAMED], others] if left > 0 else names)
-        return [f"note: {KINDS[code].plain.format(names=named)}"]
-    return [f"note: {text}" for text in _texts(code, group, most=1)]
-
-
-def _about(notice: Notice) -> Iterable[str]:
-    """What it is about, as people call it: each of its bodies, or one with another."""
-    called = [f"the {_called(body)}" for body in notice.bodies]
-    return called if KINDS[notice.code].listed else (" with ".join(called),)
-
-
-def _called(body: str) -> str:
-    """A body's name without numbers of a file's before it, and what stands in brackets after it."""
-    return _NUMBERED.sub(r"\1", body).replace("_", " ").strip()
+    said = sentences_of(code, group)
+    return [f"note: {text}." for text in said or map(capital, _texts(code, group, most=1))]
 
 
 def _texts(code: str, group: Sequence[Notice], most: int) -> Iterable[str]:

@@ -13,14 +13,15 @@ FEWEST_TURNS = 3
 """So many times one hand after another has the thing, where the turns are told as one deed."""
 
 MOST_TURNS = 3
-"""Of more turns, it is told that there were several, and not which."""
+"""Of more turns, it is not told which hand had which."""
 
 
 def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses of a summary; where hands mostly turn one thing about in turn, that as one.
 
     What is done before the first turn and after the last stays, but for putting the thing down; so
-    does all where other things are handled, too.
+    does all where other things are handled, too. Of many turns, and of those after something else,
+    it is told that there were some, and not which.
 
     Args:
         steps: What was done, in order of time.
@@ -43,11 +44,6 @@ def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     lifted = rises >= len(turns) - 1
     verbs = f"lift{JOINT}turn {{1}} about" if lifted else THIS_WAY
     main = whole(turning, pattern=verbs)
-    if len(turns) > MOST_TURNS:
-        hands = {ee for part in turns for ee in part[0].ees}
-        main = replace(main, ees=tuple(sorted(hands)), often=BY_TURNS)
-    else:
-        main = replace(main, ees=first.ees, in_turn=tuple(part[0].ees for part in turns[1:]))
     before = [
         step
         for step in steps
@@ -55,6 +51,11 @@ def in_turns(steps: Sequence[Clause]) -> tuple[Clause, ...]:
         and not (lifted and _rises(step))
         and not (step.pattern in {TURN, THIS_WAY} and _helps(step, steps))
     ]
+    if before or len(turns) > MOST_TURNS:
+        hands = {ee for part in turns for ee in part[0].ees}
+        main = replace(main, ees=tuple(sorted(hands)), often=BY_TURNS)
+    else:
+        main = replace(main, ees=first.ees, in_turn=tuple(part[0].ees for part in turns[1:]))
     after = [step for step in steps if step.start_s >= last.end_s and step.pattern != DOWN]
     return tuple(sorted((*before, main, *after), key=in_time))
 

@@ -1,12 +1,21 @@
 """What a whole body does: feet that walk, parts of the arm beside the hand that does the work."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from capar.model.observation import ObservedLink, ObservedObject
 from kb.language.clause import Clause, in_time
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import ON_FOOT, REACH, STEP, WALK, WALK_UP
+from kb.language.lexicalisation import (
+    ON_FOOT,
+    REACH,
+    STEP,
+    STEP_AWAY,
+    STEP_UP,
+    WALK,
+    WALK_AWAY,
+    WALK_UP,
+)
 from kb.language.thresholds import STEP_M, STRIDE_S
 
 Told = tuple[Clause, ...]
@@ -127,29 +136,51 @@ def with_walks(
         scene: Measured contacts and places.
     """
     manual = [step for step in steps if step.objects]
-    if not (manual and told) or not _ground(links, told, objects):
+    if not (manual and told):
         return tuple(steps)
-    feet = [
-        step for link, part in zip(links, told, strict=True) for step in part if link.kind == FOOT
-    ]
+    feet = [step for link in links if link.kind == FOOT for step in _strides(link, scene)]
+    if not feet and _ground(links, told, objects):
+        feet = [
+            step
+            for link, part in zip(links, told, strict=True)
+            for step in part
+            if link.kind == FOOT
+        ]
     acts = [step for step in manual if step.changes] or manual
     begin_s, end_s = min(step.start_s for step in acts), max(step.end_s for step in manual)
     out = list(steps)
-    for walk in _walks(feet, scene):
-        if walk.end_s <= begin_s:
-            out = [_after(walk, step) for step in out if not _within(step, walk)]
-            first = min((step for step in out if step.objects), key=in_time)
-            thing = first.objects[0]
-            up_to = any(
-                scene.nears(foot, thing, walk.start_s, walk.end_s, STEP_M) for foot in walk.ees
-            )
-            walked = replace(walk, ees=first.ees)
-            if up_to and walk.pattern == WALK:
-                walked = replace(walked, pattern=WALK_UP, objects=(thing,))
-            out.append(walked)
-        elif walk.start_s >= end_s:
-            out.append(replace(walk, ees=max(manual, key=_end_s).ees))
+    for walk in _walks((step for step in feet if step.end_s <= begin_s), scene):
+        out = [_after(walk, step) for step in out if not _within(step, walk)]
+        first = min((step for step in out if step.objects), key=in_time)
+        thing = first.objects[0]
+        up_to = any(
+            scene.nears_m(foot, thing, walk.start_s, walk.end_s) > STEP_M for foot in walk.ees
+        )
+        walked = replace(walk, ees=first.ees)
+        if up_to:
+            pattern = WALK_UP if walk.pattern == WALK else STEP_UP
+            walked = replace(walked, pattern=pattern, objects=(thing,))
+        out.append(walked)
+    for walk in _walks((step for step in feet if step.start_s >= end_s), scene):
+        out.append(_away(walk, max(manual, key=_end_s), scene))
     return tuple(sorted(out, key=in_time))
+
+
+def _strides(link: ObservedLink, scene: Scene) -> Iterator[Clause]:
+    """The steps of a foot whose way was measured."""
+    for start_s, end_s in scene.strides(link.ee):
+        yield Clause(STEP, (), (link.ee,), start_s, end_s, changes=False, name="Step")
+
+
+def _away(walk: Clause, last: Clause, scene: Scene) -> Clause:
+    """A walk after the last deed, as one away from the thing where it is that."""
+    thing, own = last.objects[0], replace(walk, ees=last.ees)
+    leaves = all(
+        scene.nears_m(foot, thing, walk.start_s, walk.end_s) < -STEP_M for foot in walk.ees
+    )
+    if not leaves:
+        return own
+    return replace(own, pattern=WALK_AWAY if walk.pattern == WALK else STEP_AWAY)
 
 
 def _end_s(step: Clause) -> float:

@@ -1,10 +1,14 @@
 """What a summary tells: the few deeds that matter, each once, in the order in which they began."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from kb.language.clause import Clause
-from kb.language.lexicalisation import MOVING, PICKED_UP, THIS_WAY, TRANSPORT
+from kb.language.lexicalisation import MOVING, PICKED_UP, SUSTAINED, THIS_WAY, TRANSPORT
 from kb.language.thresholds import MINOR_SHARE, MOST_DEEDS
+
+FETCHED = ("take {1} from", "put {1} back")
+"""How patterns begin of a thing that is fetched for some work, or put back after it."""
 
 
 def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
@@ -13,6 +17,8 @@ def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     Where a hand does the same for longer the next time, that is told, too; alone if it takes so
     much longer that the first was but its beginning.
 
+    That a hand takes what it works with, and puts it back, goes without saying.
+
     Where more was done, what only leads to the next deed is left out first (to bring a whisk to the
     bowl in which it stirs), then help, then motions without a goal, the shortest first, and of each
     time that a hand had a thing one deed stays; and then whatever took least time.
@@ -20,6 +26,7 @@ def chosen(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     Args:
         steps: What was done, in order of time.
     """
+    steps = [_at_work(each, steps) for each in steps if not _clears(each, steps)]
     told: list[Clause] = []
     repeated: list[Clause] = []
     longest_s: dict[Clause, float] = {}
@@ -54,6 +61,29 @@ def mattering(told: Sequence[Clause]) -> tuple[Clause, ...]:
 def longest(steps: Sequence[Clause]) -> tuple[str, ...]:
     """The end-effectors of what took longest: a summary begins with it where it can."""
     return max(steps, key=_lasts_s).ees if steps else ()
+
+
+def _clears(step: Clause, steps: Sequence[Clause]) -> bool:
+    """Whether a hand only fetches what it works with then, or puts it back afterwards."""
+    own = (step.ees, step.grip, step.objects[:1])
+    return step.pattern.startswith(FETCHED) and any(
+        each.name in SUSTAINED
+        and len(each.objects) > 1
+        and (each.ees, each.grip, each.objects[:1]) == own
+        for each in steps
+    )
+
+
+def _at_work(step: Clause, steps: Sequence[Clause]) -> Clause:
+    """Help as given since another hand works in the thing."""
+    if not step.helps:
+        return step
+    begins = [
+        each.start_s
+        for each in steps
+        if each.ees != step.ees and each.objects[1:] == step.objects and each.overlaps(step)
+    ]
+    return replace(step, start_s=max(step.start_s, min(begins, default=step.start_s)))
 
 
 def _without_shortest(told: list[Clause], minor: Callable[[Clause], bool]) -> list[Clause]:

@@ -55,6 +55,9 @@ class Clause:
     in_turn: tuple[tuple[str, ...], ...] = ()
     """The end-effectors that do it afterwards, one after the other."""
 
+    along: tuple["Clause", ...] = ()
+    """How the first object is turned meanwhile, and before, on its way."""
+
     grip: int = 0
     """How often the end-effector had come to a thing, or left one, when it was done."""
 
@@ -103,9 +106,9 @@ class Clause:
         return tuple(zip(begins, (*(start_s for start_s, _ in own), self.end_s), strict=True))
 
     def within(self, other: "Clause") -> bool:
-        """Whether it is a turning of the same thing that is over before the other clause is."""
+        """Whether it is a turning of the same thing that is over as the other clause is."""
         turns = self.pattern in TURNED and self.objects[:1] == other.objects[:1]
-        return turns and other.start_s <= self.start_s and self.end_s < other.end_s
+        return turns and other.start_s <= self.start_s and self.end_s <= other.end_s
 
     def overlaps(self, other: "Clause") -> bool:
         """Whether both go on at some time."""

@@ -57,9 +57,6 @@ def clauses(
             ipar = ipars.get((segment.ee, segment.start_s))
             cases = _cases(segment, last, scene, ipar, turning, held=held)
             clause = _clause(segment, before, book, cases, names)
-            if clause.helps:
-                since_s = scene.steadies_since_s(segment)
-                clause = replace(clause, start_s=clause.start_s if since_s is None else since_s)
             if SOMEONE in clause.pattern:
                 named = clause.pattern.replace(SOMEONE, scene.taker(segment) or SOMEONE)
                 clause = replace(clause, pattern=named)

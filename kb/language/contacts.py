@@ -20,13 +20,18 @@ from kb.language.thresholds import (
     RISEN_M,
     RUNNING_MPS,
     STEADY_S,
+    STEP_M,
     STILL_M,
+    SWING_MPS,
     UNSEEN_S,
 )
 from kb.lexicon.english import the_agent
 
-HEAD = "head"
-"""The body above which a thing is held overhead."""
+LEFT_OUT = "objects-left-out"
+"""The code of a notice that not all things are observed that were there."""
+
+FOOT, HEAD = "foot", "head"
+"""The kind of links that step, and the body above which a thing is held overhead."""
 
 
 class Scene:
@@ -54,6 +59,8 @@ class Scene:
         self._owners = {each.body: each.agent for each in owners}
         self._kinds = {each.name: each.kind for each in (observation.agent, *observation.others)}
         self._tracks = {each.body: each for each in observation.tracks}
+        self._complete = all(each.code != LEFT_OUT for each in observation.notices)
+        self._feet = [link.ee for link in observation.links if link.kind == FOOT]
         self._worked_in = [
             each
             for each in observation.segments
@@ -84,6 +91,33 @@ class Scene:
             return math.inf, math.inf
         ways = np.linalg.norm(places[:, :2] - places[0, :2], axis=1)
         return float(ways[-1]), float(ways.max())
+
+    def strides(self, foot: str) -> tuple[tuple[float, float], ...]:
+        """From when to when a foot goes a step's way over the ground, as it swings [s]."""
+        track = self._tracks.get(foot)
+        if track is None or track.step_s == 0.0 or len(track.positions) < 2:
+            return ()
+        level, brief = track.positions[:, :2], max(round(UNSEEN_S / track.step_s), 1)
+        ends = np.arange(len(level))
+        before, after = (
+            np.maximum(ends - brief // 2, 0),
+            np.minimum(ends + brief // 2 + 1, ends[-1]),
+        )
+        gone_m = np.linalg.norm(level[after] - level[before], axis=1)
+        swings = gone_m > SWING_MPS * np.maximum(after - before, 1) * track.step_s
+        edges = np.flatnonzero(np.diff(np.r_[False, swings, False].astype(int)))
+        spans = ((int(edges[at]), int(edges[at + 1]) - 1) for at in range(0, len(edges), 2))
+        return tuple(
+            (first * track.step_s, last * track.step_s)
+            for first, last in spans
+            if float(np.linalg.norm(level[last] - level[first])) >= STEP_M
+        )
+
+    def steps(self, start_s: float, end_s: float) -> int:
+        """How many steps the feet take mostly within a time."""
+        strides = (stride for foot in self._feet for stride in self.strides(foot))
+        middles = (0.5 * (first + last) for first, last in strides)
+        return sum(start_s <= middle_s <= end_s for middle_s in middles)
 
     def overhead(self, body: str, ees: Collection[str], start_s: float, end_s: float) -> bool:
         """Whether a body's middle is above the head for most of a time, and the hands are as well.
@@ -134,13 +168,32 @@ class Scene:
         step_s = (end_s - start_s) / max(len(above) - 1, 1)
         return start_s + float(max(high, default=0)) * step_s
 
-    def nears(self, body: str, thing: str, start_s: float, end_s: float, by_m: float) -> bool:
-        """Whether a body is nearer to where a thing is at the end, by so much [m]."""
+    def rises_s(self, thing: str, start_s: float, end_s: float) -> float:
+        """Since when, within a time, a thing is off the height at which it was at first [s]."""
+        places = self._places(thing, start_s, end_s)
+        if places is None or float(places[-1, 2] - places[0, 2]) < STILL_M:
+            return start_s
+        low = np.flatnonzero(places[:, 2] - places[0, 2] < STILL_M)
+        step_s = (end_s - start_s) / max(len(places) - 1, 1)
+        return start_s + float(max(low)) * step_s
+
+    def sinks_m(self, thing: str, start_s: float, end_s: float) -> float:
+        """How far a thing comes down within a time from as high as it was [m]; 0 if unknown."""
+        places = self._places(thing, start_s, end_s)
+        if places is None:
+            return 0.0
+        return float((np.maximum.accumulate(places[:, 2]) - places[:, 2]).max())
+
+    def nears_m(self, body: str, thing: str, start_s: float, end_s: float) -> float:
+        """How much nearer a body gets, over the ground, to where a thing is at the end [m].
+
+        Negative where it gets further away; 0 where that was not kept.
+        """
         places, there = self._places(body, start_s, end_s), self._places(thing, end_s, end_s)
         if places is None or there is None:
-            return False
+            return 0.0
         ways = np.linalg.norm(places[[0, -1], :2] - there[-1, :2], axis=1)
-        return bool(ways[0] - ways[1] > by_m)
+        return float(ways[0] - ways[1])
 
     def leads_m(self, body: str, thing: str, start_s: float, end_s: float) -> float:
         """How far a body is mostly ahead of a thing that goes over the ground, where it goes [m].
@@ -163,6 +216,15 @@ class Scene:
         there = {each.body for each in over if each.last == last}
         before = {each.body for each in over if each.first == 0}
         return there >= set(things) and before.isdisjoint(things)
+
+    def are_all(self, things: Sequence[str], goal: ObservedObject) -> bool:
+        """Whether those are all that can be moved and were not in a box at first.
+
+        Not where things were left out of what was observed.
+        """
+        movable = {name for name, tag in self._tags.items() if tag == "mobile"}
+        there = {name for name in movable if self.inside(name, goal, 0.0)}
+        return self._complete and movable - there == set(things)
 
     def inside(self, thing: str, container: ObservedObject, time_s: float) -> bool:
         """Whether a thing is in an open box, or heaped on what is in it.

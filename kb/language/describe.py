@@ -26,11 +26,13 @@ from kb.language.hands import (
     told_in_order,
 )
 from kb.language.holding import Holding
-from kb.language.lexicalisation import FREE, STEP, Phrasebook
+from kb.language.lexicalisation import FREE, LEAVES, STEP, WALK, Phrasebook
 from kb.language.listing import listed
 from kb.language.omitting import set_down, without_coming
-from kb.language.placing import placed
+from kb.language.pauses import pauses
+from kb.language.placing import placed, turned_on_the_way
 from kb.language.planning import sentences
+from kb.language.pouring import poured
 from kb.language.realisation import Realiser
 from kb.language.repeating import as_segmented, deeds, whole
 from kb.language.stowing import stowed
@@ -39,6 +41,9 @@ from kb.lexicon.english import PEOPLE, capital, the_agent
 from kb.lexicon.links import PrimitiveWords
 
 Detail = Literal["steps", "summary"]
+
+AGENT = "the agent"
+"""Whoever acts alone and has no name."""
 
 INITIALS = 2
 """So many letters at most before a number are no name."""
@@ -86,7 +91,7 @@ def _story(
         plain = [replace(each, pauses=0) for each in told_in_order(links, told)]
         if any(each.changes for each in plain):
             walked = with_walks(plain, links, seen, observation.objects, scene)
-            plain = [each for each in walked if each.pattern != STEP]
+            plain = [each for each in walked if each.pattern not in {STEP, WALK, *LEAVES}]
         steps = mostly_together(links, plain)
     else:
         steps = with_walks(told_in_order(links, told), links, seen, observation.objects, scene)
@@ -94,15 +99,17 @@ def _story(
             steps = mostly_together(links, steps)
             steps = with_crouching(steps, observation.links, observation.tracks)
     if observation.profile != TO_THE_LETTER:
-        steps = stowed(steps, observation.objects, scene)
-        there = placed(steps, observation.objects, scene, Turning(observation))
-        steps = in_sequence(without_coming(set_down(there, scene), scene))
+        turning = Turning(observation)
+        steps = stowed(poured(steps, turning), observation.objects, scene)
+        there = placed(steps, observation.objects, scene, turning)
+        steps = turned_on_the_way(in_sequence(without_coming(set_down(there, scene), scene)))
     if detail == "summary":
         steps = chosen(gathered(in_turns(steps), observation.objects, scene))
+    paused = pauses(steps) if observation.profile != TO_THE_LETTER and detail == "steps" else {}
     if not timed:
         steps = edited(steps)
     if observation.profile != TO_THE_LETTER:
-        steps = listed(steps)
+        steps = listed(steps, paused)
     subject = _subject(observation)
     realiser = Realiser(links, observation.objects, timed=timed)
     if not steps:
@@ -111,17 +118,22 @@ def _story(
         return f"{capital(subject)} {realiser.idle(moved, reached)}."
     return " ".join(
         capital(f"{part.opening}{subject} {realiser.sentence(part)}.")
-        for part in sentences(steps, lead=longest(steps) if detail == "summary" else ())
+        for part in sentences(
+            steps,
+            lead=longest(steps) if detail == "summary" else (),
+            paused=paused,
+            timed=timed,
+        )
     )
 
 
 def _subject(observation: Observation) -> str:
-    """Who acts; one performer alone, who has a number instead of a name, as the performer."""
+    """Who acts; one alone, who has a number instead of a name, as the agent."""
     name = observation.agent.name
     code = name.rstrip("0123456789").rstrip("_- ").lower()
     numbered = name[-1:].isdigit() and (code in PEOPLE or len(code) <= INITIALS)
     if numbered and not observation.others:
-        return "the performer"
+        return AGENT
     return the_agent(name, observation.agent.kind)
 
 

@@ -12,10 +12,13 @@ from jaxtyping import Float
 from capar.model.observation import Observation, ObservedLink
 from capar.model.sampled_track import SampledTrack
 from kb.language.thresholds import (
+    ALONG_SHARE,
     APEX_M,
     ASIDE_SHARE,
+    LEANT_M,
     REACHED_M,
     REST_S,
+    STANDING_M,
     STILL_M,
     SWAYING,
     UNSEEN_S,
@@ -43,6 +46,9 @@ class Reached:
 
     down: bool
     """Whether it comes back downward."""
+
+    leans: bool
+    """Whether the person leans there with the head."""
 
 
 def reaches(
@@ -105,8 +111,8 @@ def _reached(
     where = _direction(furthest - places[0], furthest - middle, ahead)
     if furthest_m < REACHED_M or not where:
         return None
+    apex = first + int(ways.argmax())
     if head is not None:
-        apex = first + int(ways.argmax())
         above = track.positions[apex, 2] > head.positions[min(apex, len(head.positions) - 1), 2]
         where += " above the head" if above else ""
     there = np.flatnonzero(ways > furthest_m - STILL_M)
@@ -121,8 +127,27 @@ def _reached(
         end_s=(first + max(home, int(there[-1]))) * track.step_s,
         back=float(ways[-1]) < 0.5 * furthest_m,
         down=-float(returns[2]) > ASIDE_SHARE * float(np.linalg.norm(returns)),
+        leans=head is not None and _leans(head, first, apex, furthest - places[0]),
     )
     return found, furthest_m
+
+
+def _leans(head: SampledTrack, first: int, apex: int, way: Float[np.ndarray, "3"]) -> bool:
+    """Whether the head goes down and with the hand, as that reaches from a frame to another.
+
+    Args:
+        head: Where the head is.
+        first: The frame since which the hand reaches.
+        apex: The frame at which it is as far as it gets.
+        way: Its way until then [m].
+    """
+    places = head.positions[
+        [min(first, len(head.positions) - 1), min(apex, len(head.positions) - 1)]
+    ]
+    gone = places[1] - places[0]
+    level_m, along = float(np.linalg.norm(gone[:2])), float(gone[:2] @ way[:2])
+    with_it = along > ALONG_SHARE * level_m * float(np.linalg.norm(way[:2]))
+    return level_m > LEANT_M and -float(gone[2]) > STANDING_M and with_it
 
 
 def _stops(places: Float[np.ndarray, "frames 3"], brief: int) -> int:

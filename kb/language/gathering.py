@@ -21,8 +21,8 @@ def gathered(
 ) -> tuple[Clause, ...]:
     """The clauses of a summary; where one hand packs things, or moves too many, that as one.
 
-    What is only moved within the box is left out beside that. Of more than can be named it is told
-    how many there are.
+    What is only moved within the box is told beside that. Of more than can be named it is told how
+    many there are, and whether those are all that there were.
 
     Args:
         steps: What was done, in order of time.
@@ -30,11 +30,17 @@ def gathered(
         scene: Measured contacts and places.
     """
     boxes = containers(objects)
-    packing = [step for step in steps if not _moved_within(step, boxes, scene)]
+    within = [step for step in steps if _moved_within(step, boxes, scene)]
+    packing = [step for step in steps if step not in within]
     one = _as_one(packing, objects, scene)
-    if one is not None and len(packing) < len(steps) and not one.pattern.startswith("pack"):
-        one = _as_one(steps, objects, scene)
+    if one is not None and one.pattern.startswith("pack"):
+        return (one, *(step for step in within if step.objects[:1] not in _things(packing)))
+    one = _as_one(steps, objects, scene) if within else one
     return tuple(steps) if one is None else (one,)
+
+
+def _things(steps: Sequence[Clause]) -> set[tuple[str, ...]]:
+    return {step.objects[:1] for step in steps}
 
 
 def _moved_within(step: Clause, boxes: Sequence[ObservedObject], scene: Scene) -> bool:
@@ -53,19 +59,20 @@ def _as_one(
     if len(hands) != 1 or len(things) < FEWEST_PACKED or not alike:
         return None
     goal = next((place for place in objects if _gathers(place, steps, things, scene)), None)
-    packed = goal is not None and is_container(goal)
-    if len(things) <= MOST_DEEDS and not packed:
+    if len(things) <= MOST_DEEDS and not (goal is not None and is_container(goal)):
         return None
     source = [place.name for place in objects if _bore(place, things, scene)][:1]
-    if packed and len(things) > MOST_DEEDS:
-        told, things = f"{number(len(things))} things", ()
+    if goal is not None and is_container(goal) and len(things) > MOST_DEEDS:
+        every = "all " if scene.are_all(things, goal) else ""
+        told, things = f"{every}{number(len(things))} things", ()
     else:
         told = joined([f"{{{place}}}" for place in range(1, len(things) + 1)])
-    if goal is not None and packed:
+    if goal is not None and is_container(goal):
         there = (*source, goal.name)
         last = len(things) + len(source)
         origin = f" from {{{last}}}" if source else ""
-        pattern = f"pack {told}{origin} into {{{last + 1}}}"
+        how = "" if things else " one by one"
+        pattern = f"pack {told}{origin} into {{{last + 1}}}{how}"
     else:
         there = (goal.name,) if goal is not None else ()
         to_there = f" to {{{len(things) + 1}}}" if goal is not None else ""

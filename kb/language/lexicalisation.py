@@ -81,6 +81,9 @@ FREE = "move {ee}"
 RAISE, LOWER = "raise {1}", "lower {1}"
 """Patterns of a thing that goes up or down, wherever to."""
 
+UP_AND_DOWN = "move {1} up and down"
+"""The pattern of a thing that rises, sinks and rises again."""
+
 DOWN = "put {1} down"
 """The pattern of a thing that stands somewhere then."""
 
@@ -136,6 +139,9 @@ UPSIDE_DOWN, AROUND = "turn {1} upside down", "turn {1} around"
 UPRIGHT, BACK_UPRIGHT = "turn {1} upright", "turn {1} back upright"
 """Patterns of a thing that is set on its base; the second where the hand had turned it over."""
 
+HELD_OVER = "hold {1} upside down"
+"""The pattern of a thing that stays turned over in the hands."""
+
 TURNED = frozenset({TURN, BY_A_QUARTER, UPSIDE_DOWN, AROUND, UPRIGHT, BACK_UPRIGHT})
 """Patterns of how a thing is turned, which goes on beside what else is done to it."""
 
@@ -151,13 +157,19 @@ STIR = "stir in {2} with {1}"
 WALK, STEP = "walk", "take a step"
 """What the whole body does, with no word of the feet."""
 
-WALK_UP = "walk up to {1}"
+WALK_UP, STEP_UP = "walk up to {1}", "step up to {1}"
 """The same, to the thing that a hand takes next."""
 
-CROUCH, STAND_UP = "crouch", "straighten up"
-"""Patterns of a body that goes down with bent knees, and comes up again."""
+STEP_AWAY, WALK_AWAY = "step away", "walk away"
+"""The same, from the thing that a hand has left."""
 
-BODILY = frozenset({WALK, STEP, WALK_UP, CROUCH, STAND_UP})
+CROUCH, BEND, STAND_UP = "crouch", "bend down", "straighten up"
+"""Patterns of a body that goes down with bent knees, or by the trunk, and comes up again."""
+
+LEAVES = frozenset({STEP_AWAY, WALK_AWAY})
+"""Patterns of who goes away when all is done."""
+
+BODILY = LEAVES | {WALK, STEP, WALK_UP, STEP_UP, CROUCH, BEND, STAND_UP}
 """Patterns that name no end-effector."""
 
 ON_FOOT = frozenset({"Step", "Stand", "Walk", "StandOnOneLeg", "RestFoot"})

@@ -1,24 +1,25 @@
 """What a hand does alike to one thing after another, told as one list: each with its own time."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
 from kb.language.clause import Clause
 from kb.language.repeating import whole
-from kb.language.thresholds import MOST_DEEDS
+from kb.language.thresholds import MOST_LISTED
 from kb.lexicon.english import joined
 
 
-def listed(steps: Sequence[Clause]) -> tuple[Clause, ...]:
+def listed(steps: Sequence[Clause], paused: Mapping[float, float]) -> tuple[Clause, ...]:
     """The clauses; where a hand puts several things on end in or on one other, those as one.
 
     Args:
         steps: What was done, in order of time.
+        paused: How long each noticed pause lasted [s], by when it ended [s].
     """
     runs: list[list[Clause]] = []
     for step in steps:
-        if runs and _goes_on(runs[-1], step):
+        if runs and step.start_s not in paused and _goes_on(runs[-1], step):
             runs[-1].append(step)
         else:
             runs.append([step])
@@ -27,23 +28,12 @@ def listed(steps: Sequence[Clause]) -> tuple[Clause, ...]:
 
 
 def _parts(run: Sequence[Clause]) -> list[Sequence[Clause]]:
-    """A run in as few parts as can be told as lists, parted at the longest pauses."""
-    best: list[tuple[int, float, tuple[int, ...]]] = [(0, 0.0, ())]
-    for end in range(1, len(run) + 1):
-        ways = []
-        for first in range(max(end - MOST_DEEDS, 0), end):
-            parts, without_s, cuts = best[first]
-            pause_s = run[first].start_s - run[first - 1].end_s if first else 0.0
-            ways.append((parts + 1, without_s - pause_s, (*cuts, first)))
-        best.append(min(ways, key=_preference))
-    cuts = (*best[-1][2], len(run))
-    return [run[first:last] for first, last in pairwise(cuts)]
-
-
-def _preference(way: tuple[int, float, tuple[int, ...]]) -> tuple[int, float, list[int]]:
-    """Fewer parts first, then longer pauses between them, then longer lists before shorter ones."""
-    parts, without_s, cuts = way
-    return parts, round(without_s, 3), [-cut for cut in cuts]
+    """A run, parted where it waits longest until no part is too long for a list."""
+    if len(run) <= MOST_LISTED:
+        return [run]
+    waits_s = [after.start_s - before.end_s for before, after in pairwise(run)]
+    cut = waits_s.index(max(waits_s)) + 1
+    return [*_parts(run[:cut]), *_parts(run[cut:])]
 
 
 def _goes_on(run: Sequence[Clause], step: Clause) -> bool:

@@ -51,7 +51,8 @@ def set_down(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
     out: list[Clause] = []
     for step in steps:
         turns = step.pattern in {THIS_WAY, TURN, TILT} and step.possessed and step.changes
-        if not turns or not scene.sets_down(step.objects[0], step.start_s, step.end_s):
+        beside = any(each is not step and step.within(each) for each in steps)
+        if not turns or beside or not scene.sets_down(step.objects[0], step.start_s, step.end_s):
             out.append(step)
             continue
         begin_s = scene.comes_down_s(step.objects[0], step.start_s, step.end_s)

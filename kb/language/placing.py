@@ -9,8 +9,19 @@ from dataclasses import replace
 from capar.model.observation import ObservedObject
 from kb.language.clause import Clause
 from kb.language.contacts import Scene
-from kb.language.lexicalisation import DOWN, GOALS, GROUNDS, LOWER, SLID, TURN
+from kb.language.lexicalisation import (
+    DOWN,
+    GOALS,
+    GROUNDS,
+    LOWER,
+    RAISE,
+    SLID,
+    TURN,
+    TURNED,
+    UP_AND_DOWN,
+)
 from kb.language.thresholds import (
+    FEW_STEPS,
     FURTHER_M,
     HELD_M,
     LEADS_M,
@@ -18,7 +29,9 @@ from kb.language.thresholds import (
     OVER_RAD,
     PLACE_M,
     REST_S,
+    RISEN_M,
     SETTLING_S,
+    UNSEEN_S,
 )
 from kb.language.turning import Turning
 
@@ -54,15 +67,47 @@ def placed(
             out.append(replace(step, pattern=turning.seen_to_turn(step) or TURN))
         elif step.pattern.startswith(SLIDE):
             out.append(_drawn(step, scene))
-        elif step.pattern in RISES and scene.overhead(
-            step.objects[0], step.ees, step.end_s, step.end_s
-        ):
-            out.append(replace(step, pattern=f"{step.pattern} overhead"))
+        elif step.pattern in RISES:
+            own = (step.ees, step.grip)
+            same = [each for each in out if each.changes and (each.ees, each.grip) == own]
+            out.append(_raised(step, same[-1] if same else None, scene))
         else:
             brought = _brought(step, out)
             works = _works_there(step, steps[at + 1 :]) and not _has_it(step, out)
             out.append(_taken(brought, objects, scene) if works else brought)
     return tuple(out)
+
+
+def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses; turning that outlasts what it began in, with what the hands do next.
+
+    Args:
+        steps: What was done, in order of time.
+    """
+    out = list(steps)
+    for turning in steps:
+        own = [step for step in out if _moves_it_beside(turning, step)]
+        if turning.pattern not in TURNED or any(map(turning.within, own)):
+            continue
+        begins = [step for step in own if step.start_s - UNSEEN_S < turning.start_s < step.end_s]
+        ends = [
+            step for step in own if turning.start_s < step.start_s < turning.end_s <= step.end_s
+        ]
+        if begins and ends:
+            start_s = max(turning.start_s, begins[0].start_s)
+            out[out.index(ends[0])] = replace(ends[0], along=(replace(turning, start_s=start_s),))
+            out.remove(turning)
+    return tuple(out)
+
+
+def _moves_it_beside(turning: Clause, step: Clause) -> bool:
+    """Whether the same hands move the same thing otherwise, in the same grip."""
+    same = (step.ees, step.grip, step.objects[:1]) == (
+        turning.ees,
+        turning.grip,
+        turning.objects[:1],
+    )
+    return same and step.changes and step.pattern not in TURNED
 
 
 def _settles(step: Clause, before: Clause, scene: Scene) -> bool:
@@ -143,7 +188,26 @@ def _carried(step: Clause, scene: Scene, turning: Turning) -> Clause:
     leant = turning.leant(thing, *span)
     if leant > OVER_RAD:
         return replace(step, pattern=f"{CARRY} upside down")
-    return replace(step, pattern=f"{CARRY} tilted to one side") if leant > LEANT_RAD else step
+    if leant > LEANT_RAD:
+        return replace(step, pattern=f"{CARRY} tilted to one side")
+    few = 1 < scene.steps(*span) <= FEW_STEPS
+    return replace(step, pattern=f"{CARRY} a few steps") if few else step
+
+
+def _raised(step: Clause, before: Clause | None, scene: Scene) -> Clause:
+    """What is lifted, and how; what comes down meanwhile as moved up and down.
+
+    Of what was not moved just before, since it rises.
+    """
+    thing = step.objects[0]
+    if before is None or before.end_s < step.start_s:
+        start_s = scene.rises_s(thing, step.start_s, step.end_s)
+        step = replace(step, start_s=min(start_s, max(step.start_s, step.end_s - UNSEEN_S)))
+    if scene.overhead(thing, step.ees, step.end_s, step.end_s):
+        return replace(step, pattern=f"{step.pattern} overhead")
+    if step.pattern == RAISE and scene.sinks_m(thing, step.start_s, step.end_s) > RISEN_M:
+        return replace(step, pattern=UP_AND_DOWN)
+    return step
 
 
 def _on_the_ground(step: Clause, before: Sequence[Clause], scene: Scene) -> Clause:
@@ -154,7 +218,9 @@ def _on_the_ground(step: Clause, before: Sequence[Clause], scene: Scene) -> Clau
     gone_m, _ = scene.over_ground_m(step.objects[0], taken_s, step.end_s)
     if gone_m < PLACE_M:
         return replace(step, pattern=IN_ITS_PLACE)
-    return replace(step, pattern=f"{DOWN} elsewhere" if gone_m > FURTHER_M else DOWN)
+    carried = any(each.pattern.startswith(CARRY) for each in since)
+    elsewhere = gone_m > FURTHER_M and not carried
+    return replace(step, pattern=f"{DOWN} elsewhere" if elsewhere else DOWN)
 
 
 def _puts(step: Clause) -> bool:

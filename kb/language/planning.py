@@ -5,8 +5,9 @@ of what the sentence tells was done during that. What stands beside the first ha
 ``while``, was done during them, too.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 from kb.language.clause import Clause, in_time
 from kb.language.lexicalisation import HANDED_OVER, REACH
@@ -33,11 +34,20 @@ ENOUGH_OF_ONE = 2
 OPENINGS = ("Then ", "Next, ", "After that, ")
 """How sentences begin that tell what was done afterwards, in turn."""
 
+LATER = "Later, "
+"""How a sentence begins after a noticed pause, where times are not told."""
+
+ALSO = "Also, "
+"""How a sentence begins that tells what the same hand did in between."""
+
 MEANWHILE = "Meanwhile, "
 """How a sentence begins that tells what was done during what was told before."""
 
 ONCE_MORE = "Once more, "
 """How a sentence begins that tells what was counted before."""
+
+Paused = Mapping[float, float]
+"""How long each noticed pause lasted [s], by when it ended [s]."""
 
 Streams = dict[tuple[str, ...], list[Clause]]
 """What is still to be told, by end-effectors."""
@@ -70,12 +80,20 @@ class Part:
         return (*self.told, *(step for part in self.passed for step in part), *self.beside)
 
 
-def sentences(steps: Sequence[Clause], *, lead: tuple[str, ...] = ()) -> list[Part]:
+def sentences(
+    steps: Sequence[Clause],
+    *,
+    lead: tuple[str, ...] = (),
+    paused: Paused = MappingProxyType({}),
+    timed: bool = False,
+) -> list[Part]:
     """The clauses by sentence, each sentence with how it begins.
 
     Args:
         steps: What was done.
         lead: End-effectors whose deeds are told before those that others did meanwhile.
+        paused: How long each noticed pause lasted [s], by when it ended [s].
+        timed: Whether it is told how long they lasted.
     """
     streams: Streams = {}
     for clause in sorted(steps, key=in_time):
@@ -84,8 +102,11 @@ def sentences(steps: Sequence[Clause], *, lead: tuple[str, ...] = ()) -> list[Pa
     afterwards = 0
     end_s = float("-inf")
     while any(streams.values()):
-        part = _next_part(streams, lead)
+        part = _next_part(streams, lead, paused)
         opening = _opening(part, out, end_s, OPENINGS[afterwards % len(OPENINGS)])
+        waited_s = paused.get(min(each.start_s for each in part.steps))
+        if out and waited_s is not None and opening in OPENINGS:
+            opening = f"About {waited_s:.0f} s later, " if timed else LATER
         if opening == ONCE_MORE:
             out[-1] = replace(out[-1], more=True)
         afterwards = afterwards + 1 if opening in OPENINGS else 0
@@ -102,6 +123,8 @@ def _opening(part: Part, told: Sequence[Part], end_s: float, afterwards: str) ->
         before = told[-1]
         recurs = before.often and _said(part.steps) == _said(before.steps)[: len(part.steps)]
         return ONCE_MORE if recurs else afterwards
+    if all(each.ees == part.told[0].ees for each in (*part.steps, *told[-1].steps)):
+        return ALSO if part.end_s < end_s else ""
     during = min(part.end_s, end_s) - start_s
     return MEANWHILE if during >= 0.5 * (part.end_s - start_s) else ""
 
@@ -110,7 +133,7 @@ def _said(steps: Sequence[Clause]) -> list[tuple[object, ...]]:
     return [(each.signature, each.ees) for each in steps]
 
 
-def _next_part(streams: Streams, lead: tuple[str, ...]) -> Part:
+def _next_part(streams: Streams, lead: tuple[str, ...], paused: Paused) -> Part:
     """What the next sentence tells; it is taken from what is still to be told."""
     waiting = [key for key, rest in streams.items() if rest]
     ees = min(waiting, key=lambda key: in_time(streams[key][0]))
@@ -122,7 +145,7 @@ def _next_part(streams: Streams, lead: tuple[str, ...]) -> Part:
         block, end_s = own[:size], own[size * count - 1].end_s
         del own[: size * count]
         return Part(tuple(block), often=times(count), end_s=end_s)
-    taken = _taken(streams, ees)
+    taken = _taken(streams, ees, paused)
     beside = [
         clause
         for other, rest in streams.items()
@@ -130,25 +153,25 @@ def _next_part(streams: Streams, lead: tuple[str, ...]) -> Part:
         for clause in _beside(taken, rest, streams)
     ]
     part = Part(tuple(taken), beside=tuple(beside))
-    passed = () if beside else tuple(map(tuple, _passed(taken, streams)))
+    passed = () if beside else tuple(map(tuple, _passed(taken, streams, paused)))
     part = replace(part, passed=passed)
     return replace(part, end_s=max(each.end_s for each in part.steps))
 
 
-def _taken(streams: Streams, ees: tuple[str, ...]) -> list[Clause]:
+def _taken(streams: Streams, ees: tuple[str, ...], paused: Paused) -> list[Clause]:
     """What one sentence tells of some hand; it is taken from what is still to be told."""
     own = streams[ees]
     taken = [own.pop(0)]
-    while own and not _ends(taken, streams, ees):
+    while own and own[0].start_s not in paused and not _ends(taken, streams, ees):
         taken.append(own.pop(0))
     return taken
 
 
-def _passed(taken: Sequence[Clause], streams: Streams) -> Iterator[list[Clause]]:
+def _passed(taken: Sequence[Clause], streams: Streams, paused: Paused) -> Iterator[list[Clause]]:
     """What hands do to which a thing is handed over, as long as that is what comes next."""
     last = taken[-1]
     while (ees := _receiver(last, streams)) is not None:
-        stream = _taken(streams, ees)
+        stream = _taken(streams, ees, paused)
         yield stream
         last = stream[-1]
 
@@ -205,7 +228,7 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
     if (last.start_s, last.end_s) == (following.start_s, following.end_s):
         return False
     long = len(taken) >= LONGEST and following.objects and not _soon_over(streams[ees])
-    left = last.frees and bool(following.objects)
+    left = (last.frees or _goes_on_beyond(last, following)) and bool(following.objects)
     if left or _turns_away(taken, following) or long or _crowded(taken, following):
         return True
     manual = [each for each in taken if each.objects]
@@ -224,6 +247,11 @@ def _ends(taken: Sequence[Clause], streams: Streams, ees: tuple[str, ...]) -> bo
     apart = any(not _during(each, taken) for each in waiting)
     helped = any(each.objects[:1] == last.objects[:1] for each in waiting)
     return apart or helped or len(waiting) >= ENOUGH_BESIDE
+
+
+def _goes_on_beyond(last: Clause, following: Clause) -> bool:
+    """Whether what is done with things goes on after the next is over."""
+    return bool(last.objects) and following.end_s < last.end_s
 
 
 def _crowded(taken: Sequence[Clause], following: Clause) -> bool:

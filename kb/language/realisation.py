@@ -11,7 +11,7 @@ from kb.language.free_motion import Reached
 from kb.language.lexicalisation import BIT_BY_BIT, BODILY, STIR, SUSTAINED, in_past, in_progress
 from kb.language.planning import Part
 from kb.language.vocabulary import SIDES
-from kb.lexicon.english import joined, noun, number, the, times
+from kb.lexicon.english import a, joined, noun, number, the, times
 
 _ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
 """Places of several objects that a verb has as one."""
@@ -26,16 +26,18 @@ class Realiser:
     def __init__(
         self, links: Sequence[ObservedLink], objects: Sequence[ObservedObject], *, timed: bool
     ) -> None:
-        self._nouns = _nouns(objects)
+        self._nouns = nouns(objects)
         self._kinds = {link.ee: link.kind for link in links}
         self._names = {link.ee: _spoken(link) for link in links}
         self._timed = timed
         self._spans = timed
         self._fixed = {each.name for each in objects if each.tag in FIXED}
+        self._touchable = any(each.tag == "mobile" for each in objects)
         self._topic = ""
         self._rivals = set[str]()
         self._several: tuple[str, ...] = ()
         self._ees: tuple[str, ...] = ()
+        self._known = set[str]()
 
     def sentence(self, part: Part) -> str:
         """What a sentence tells, as the rest of one whose subject is the agent."""
@@ -65,15 +67,16 @@ class Realiser:
     def idle(
         self, moved: Mapping[str, tuple[float, float]], reached: Sequence[Reached] = ()
     ) -> str:
-        """That nothing was touched, and what was moved, as the rest of a sentence.
+        """What was moved, and that nothing was touched where there was something to touch.
 
         Args:
             moved: From when to when each end-effector moved [s].
             reached: Where hands reached, if that is known.
         """
+        untouched = " without touching anything" if self._touchable else ""
         if reached:
             parts = [part for each in reached for part in self._there_and_back(each)]
-            return f"{joined(parts)} without touching anything"
+            return f"{joined(parts)}{untouched}"
         kinds: dict[str, list[str]] = {}
         for ee in moved:
             kinds.setdefault(self._kinds[ee], []).append(ee)
@@ -83,15 +86,18 @@ class Realiser:
             end_s = max(moved[ee][1] for ee in ees)
             span = f" ({start_s:.2f}–{end_s:.2f} s)" if self._timed else ""
             parts.append(f"moved {self._hands(tuple(ees))}{span}")
-        return f"{joined(parts)} without touching anything" if parts else "touched nothing"
+        return f"{joined(parts)}{untouched}" if parts else "touched nothing"
 
     def _there_and_back(self, reached: Reached) -> list[str]:
         hand, kind = self._hands((reached.ee,)), self._kinds[reached.ee]
         there = f" ({reached.start_s:.2f}–{reached.there_s:.2f} s)" if self._timed else ""
         back = f" ({reached.leaves_s:.2f}–{reached.end_s:.2f} s)" if self._timed else ""
-        parts = [f"reached {reached.where} with {hand}{there}"]
         verb = f"brought the {kind} back"
-        if reached.down:
+        parts = [f"reached {reached.where} with {hand}{there}"]
+        if reached.leans:
+            parts = [f"leaned and reached {reached.where} with {hand}{there}"]
+            verb = "straightened up again"
+        elif reached.down:
             verb = f"lowered the {kind} again"
         elif reached.where == "backward":
             verb = f"brought the {kind} forward again"
@@ -116,7 +122,7 @@ class Realiser:
             elif hand:
                 text = f"{text} {hand}"
             self._ees = self._ees if bodily else step.ees
-            parts.append(f"{text}{self._end(step)}")
+            parts.append(f"{text}{self._end(step)}{self._on_the_way(step)}")
         return joined(parts)
 
     def _with_hands(self, step: Clause) -> str:
@@ -149,7 +155,7 @@ class Realiser:
             last = step
             own = replace(step, pattern="move away") if "{ee}" in step.pattern else step
             text = self._verb_phrase(own).replace("{with}", "")
-            parts.append(f"{text}{self._end(step)}")
+            parts.append(f"{text}{self._end(step)}{self._on_the_way(step)}")
         return joined(parts)
 
     def _begin(self, topic: str) -> None:
@@ -161,6 +167,11 @@ class Realiser:
         """How the thing was turned during what was told last."""
         text = in_progress(step.pattern).replace("{1}", self._mention(step.objects[0], 1))
         return f", {text}{self._end(step)}"
+
+    def _on_the_way(self, step: Clause) -> str:
+        """How the thing was turned until it was put there."""
+        ways = (replace(each, pattern=f"{each.pattern} on the way") for each in step.along)
+        return "".join(map(self._meanwhile, ways))
 
     def _end(self, step: Clause) -> str:
         often = f" {times(step.count)}" if step.count > 1 else ""
@@ -182,6 +193,8 @@ class Realiser:
             pattern = pattern.removesuffix(" with {1}")
         if step.pattern == "let go of {1}" and step.objects[0] == self._topic:
             pattern = in_past("let go")
+        if pattern.endswith(" from {1} into {2}") and step.objects[1] == self._topic:
+            pattern = pattern.replace("{2}", "it")
         if pattern.endswith(" there") and step.objects[0] != self._topic:
             pattern = f"{pattern.removesuffix('there')}in place"
         if "{1}" in pattern and step.objects == self._several:
@@ -192,11 +205,16 @@ class Realiser:
         spans = [*map(_span, step.apart)] if self._spans else []
         for place, name in enumerate(step.objects, 1):
             when = f" ({spans[place - 1]})" if place <= len(spans) else ""
-            filled = filled.replace(f"{{{place}}}", f"{self._mention(name, place)}{when}")
+            mention = self._mention(name, place)
+            tool = place == 1 and pattern.endswith(" with {1}")
+            if tool and name not in self._known and mention != "it":
+                mention = a(self._nouns.get(name, name))
+            filled = filled.replace(f"{{{place}}}", f"{mention}{when}")
         if "{" in pattern:
             self._rivals = set(_named(pattern, step.objects[1:], first=2)) - self._fixed
         if step.pauses and step.name not in SUSTAINED:
             filled += f" {BIT_BY_BIT}"
+        self._known |= set(step.objects)
         named = "{1}" in step.pattern or step.objects[:1] == (self._topic,)
         if step.objects:
             self._topic = step.objects[0] if named and not self._several else ""
@@ -218,7 +236,7 @@ class Realiser:
         return f"the {self._names[ees[0]]}"
 
 
-def _nouns(objects: Sequence[ObservedObject]) -> dict[str, str]:
+def nouns(objects: Sequence[ObservedObject]) -> dict[str, str]:
     """Objects by what they are called, where that is their kind.
 
     So it is where a capture says of one object alone that it is a ``large_table``, whatever short

@@ -61,11 +61,11 @@ def stowed(
 
 
 def _moved_within(step: Clause, goals: Collection[str]) -> Clause:
-    """What is moved along a box as moved in it: in there, nobody goes along it."""
-    verb, _, place = step.pattern.partition(" {1} ")
+    """What is moved along a box as shifted inside it: in there, nobody goes along it."""
+    _, _, place = step.pattern.partition(" {1} ")
     if place != "along {2}" or step.objects[1] not in goals:
         return step
-    return replace(step, pattern=f"{verb} {{1}} in {{2}}")
+    return replace(step, pattern="shift {1} inside {2}")
 
 
 def _last_way(own: Sequence[Clause], goals: Collection[str]) -> list[Clause]:

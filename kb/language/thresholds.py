@@ -44,6 +44,10 @@ FURTHER_M = 0.5
 """What is put down further than this [m] from where it was taken is somewhere else on the ground:
 about a step."""
 
+POURING_RAD = 1.57
+"""What a hand has poured from goes on pouring while it leans more than this [rad]: its mouth is
+below level."""
+
 LEVEL_M = 0.03
 """What is let go at this height [m], more or less, stood there already: a finger's width."""
 
@@ -73,9 +77,16 @@ TURNED_RAD = 0.35
 """What is turned by more than this [rad] is seen to be: 20 degrees, as in the rules
 (``turn_mrad``)."""
 
+NOTICED_SHARE = 0.1
+"""A turn goes on between its first and its last such share [1], or ``TURNED_RAD`` of a long one."""
+
 SOMEWHAT_RAD = 0.7
 """What is only moved, and turned about the vertical by more than this [rad], is turned: 40 degrees,
 twice what happens in carrying."""
+
+FACING_M = 0.4
+"""What is larger than this [m], as furniture, is seen to face aside when it is carried: smaller
+things turn in every hand."""
 
 QUARTER_RAD = 1.05
 """What is turned about the vertical by more than this [rad], and does not face another way, is
@@ -89,12 +100,27 @@ STEP_M = 0.2
 """A foot that comes down less far than this [m] from where it left has not walked: less than the
 length of a foot."""
 
+SWING_MPS = 0.3
+"""A foot that goes faster than this [m/s] over the ground is on its way: one that stands turns and
+rolls more slowly."""
+
+FEW_STEPS = 5
+"""Of more steps while a thing is carried, it is not told that they were a few."""
+
 STRIDE_S = 1.0
 """Who stands for longer than this [s] between two steps has stopped walking (``halt_ms``)."""
 
 CROUCHED_M = 0.25
 """A pelvis that is so far [m] lower than when the body stands has bent knees below it: a quarter of
 a leg, which nobody needs for stooping."""
+
+BENT_M = 0.3
+"""A head that is so far [m] lower than when the body stands is that of one who has bent down: who
+nods or leans lowers it by less."""
+
+LEANT_M = 0.2
+"""A head that goes so far [m] with a hand that reaches is that of one who leans: nobody moves it so
+far by the neck."""
 
 STANDING_M = 0.08
 """A body stands while its pelvis is lower than this [m] at most than it gets: what walking and
@@ -114,9 +140,23 @@ ASIDE_SHARE = 0.5
 """A direction counts in words where a way goes along it by more than this share of the whole [1]:
 within 60 degrees."""
 
+ALONG_SHARE = 0.87
+"""A head goes the way of a hand where more than this share of its way is along that [1]: within 30
+degrees."""
+
 BESIDE_MM = 80
 """What moves as one with a hand that is no further than this [mm] from touching it is in the hand,
 where that has touched it before or touches it again (``reach_mm``)."""
+
+PAUSE_S = 8.0
+"""Where nothing is done for so long [s], the time is told: an onlooker has begun to wait."""
+
+PAUSE_SHARE = 2.0
+"""Such a time is this often [1] as long as half of the others, or longer: else it is how things go
+on."""
+
+MOST_LISTED = 10
+"""A sentence lists at most so many things."""
 
 MOST_DEEDS = 6
 """A summary names at most so many deeds."""

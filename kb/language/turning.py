@@ -17,6 +17,7 @@ from kb.language.lexicalisation import (
     AROUND,
     BACK_UPRIGHT,
     BY_A_QUARTER,
+    HELD_OVER,
     SHIFTED,
     SLID,
     THIS_WAY,
@@ -27,7 +28,10 @@ from kb.language.lexicalisation import (
 )
 from kb.language.thresholds import (
     AROUND_RAD,
+    FACING_M,
+    NOTICED_SHARE,
     OVER_RAD,
+    POURING_RAD,
     QUARTER_RAD,
     REST_S,
     SCRAP_S,
@@ -61,6 +65,7 @@ class Turning:
         for fact in sorted(each for each in observation.facts if isinstance(each, Posture)):
             found = Attitude(fact.frame * self._step_s, fact.lean / 1000.0, fact.spin / 1000.0)
             self._postures[fact.body].append(found)
+        self._large = {each.name for each in observation.objects if max(each.size_m) > FACING_M}
         for way in observation.facts:
             if isinstance(way, Travelled):
                 self._turns[way.body][way.frame] = way.turn
@@ -107,6 +112,14 @@ class Turning:
                 if until.time_s < clause.end_s:
                     yield _turned((clause,), pattern, since, until)
 
+    def tipped_s(self, thing: str, start_s: float, end_s: float) -> float:
+        """Until when, from a time on, it leans so far that it is poured from [s]."""
+        for seen in self._between(thing, start_s, end_s):
+            if seen.time_s > start_s and seen.lean < POURING_RAD:
+                break
+            start_s = max(start_s, seen.time_s)
+        return start_s
+
     def leant(self, thing: str, start_s: float, end_s: float) -> float:
         """How far it leans from upright most of that time [rad]; 0 where that is not known."""
         seen = self._between(thing, start_s, end_s)
@@ -136,11 +149,13 @@ class Turning:
             elif (over or leant) and after.lean < UPRIGHT_RAD:
                 yield _turned(grip, BACK_UPRIGHT if turned_over else UPRIGHT, since, after)
                 over, leant, since = False, False, after
-        if (
-            max(each.lean for each in seen) < OVER_RAD
-            and abs(seen[-1].spin - seen[0].spin) > AROUND_RAD
-        ):
-            yield _turned(grip, AROUND, *_course(seen))
+        spin = abs(seen[-1].spin - seen[0].spin)
+        faces = thing in self._large and any(each.name == "Carry" for each in grip)
+        if max(each.lean for each in seen) < OVER_RAD:
+            if spin > AROUND_RAD:
+                yield _turned(grip, AROUND, *_course(seen))
+            elif faces and spin > QUARTER_RAD:
+                yield _turned(grip, BY_A_QUARTER, *_course(seen))
 
     def _between(self, thing: str, start_s: float, end_s: float) -> list[Attitude]:
         """Its postures from the last one before the start to the one nearest to the end."""
@@ -159,8 +174,9 @@ def _time(attitude: Attitude) -> float:
 
 def _course(seen: Sequence[Attitude]) -> tuple[Attitude, Attitude]:
     """From where it still is turned as at first to where it is turned as at last."""
-    moved = [abs(each.spin - seen[0].spin) > TURNED_RAD for each in seen]
-    rest = [abs(each.spin - seen[-1].spin) > TURNED_RAD for each in seen]
+    noticed = min(TURNED_RAD, NOTICED_SHARE * abs(seen[-1].spin - seen[0].spin))
+    moved = [abs(each.spin - seen[0].spin) > noticed for each in seen]
+    rest = [abs(each.spin - seen[-1].spin) > noticed for each in seen]
     last = len(seen) - 1 - rest[::-1].index(True)
     return seen[max(moved.index(True) - 1, 0)], seen[min(last + 1, len(seen) - 1)]
 
@@ -204,7 +220,20 @@ def turned(told: Sequence[Clause], turning: Turning) -> tuple[list[Clause], list
         ways += [] if ways else turning.beside(moved)
         rest += (step for step in (_turn(each, ways, turning) for each in grip) if step)
         found += ways
+        found += _held_over(moved, ways)
     return rest, found
+
+
+def _held_over(moved: Sequence[Clause], ways: Sequence[Clause]) -> Iterator[Clause]:
+    """That a thing is held upside down, of which no more is said meanwhile than that it moves."""
+    for over, back in pairwise(ways):
+        turned_over = (over.pattern, back.pattern) == (UPSIDE_DOWN, BACK_UPRIGHT)
+        if not turned_over or back.start_s - over.end_s < SETTLING_S:
+            continue
+        held = replace(over, pattern=HELD_OVER, start_s=over.end_s, end_s=back.start_s)
+        meanwhile = [each for each in moved if each.overlaps(held)]
+        if all(moves_only(each.pattern) for each in meanwhile):
+            yield held
 
 
 def _turn(clause: Clause, ways: Sequence[Clause], turning: Turning) -> Clause | None:

@@ -89,7 +89,9 @@ def run(*arguments: str) -> str:
 def test_stand_ins_are_told_after_the_text(bundle: Callable[[int, int], str]) -> None:
     told, _, notes = run("describe", bundle(0, 0)).partition(f"\n{HEADING}\n")
     assert told == "Anna touched the box with the right hand.\n"
-    assert notes == "note: rough shapes are assumed for the box and the post\n"
+    assert notes == (
+        "note: Rough shapes are assumed for the box and the post: the recording has none.\n"
+    )
 
 
 def test_what_is_left_out_is_listed_as_people_call_it() -> None:
@@ -100,7 +102,7 @@ def test_what_is_left_out_is_listed_as_people_call_it() -> None:
         objects=9,
     )
     assert reservation_lines((left,))[-1] == (
-        "note: left out because the shape is not known: the half egg carton and the tooth brush"
+        "note: The half egg carton and the tooth brush are left out: their shapes are not known."
     )
 
 
@@ -116,16 +118,16 @@ def test_what_was_never_tracked_is_said_to_be_lost_throughout_and_once(
     place = bundle(0, 10_000)
     told = run("describe", place)
     assert told.startswith("Anna moved the right hand without touching anything.")
-    line = "note: 'box' was lost throughout; no contact of it is known"
-    assert [each for each in told.splitlines() if "lost" in each] == [line]
+    line = "note: The box was not tracked at all; what it touched is not known."
+    assert [each for each in told.splitlines() if "tracked" in each] == [line]
 
 
 def test_a_loss_is_counted_in_words_and_told_once(bundle: Callable[[int, int], str]) -> None:
     told = run("describe", bundle(20, 60))
-    (line,) = [each for each in told.splitlines() if "lost" in each]
+    (line,) = [each for each in told.splitlines() if "tracked" in each]
     assert line == (
-        "note: 'box' was lost from 0.19 to 0.57 s; what touched it before and after is assumed to "
-        "have touched it then"
+        "note: The box was not tracked from 0.19 to 0.57 s; it is assumed to have stayed where it "
+        "was."
     )
 
 
@@ -136,7 +138,7 @@ def test_explain_tells_those_of_the_bodies_that_its_segment_is_about(
     for arguments in ((place,), (place, "right_hand/1"), (place, "--why-not", "Hit")):
         told, _, notes = run("explain", *arguments).partition(f"\n{HEADING}\n")
         assert "the right hand touched the box" in told or "Hit" in told
-        assert notes.startswith("note: rough shapes are assumed for the box\n")
+        assert notes.startswith("note: Rough shapes are assumed for the box: ")
         assert "post" not in notes
     for arguments in ((), ("--why-not", "Hit")):
         rows = json.loads(run("explain", place, *arguments, "--json"))

@@ -165,9 +165,10 @@ def _known(reader: Reader, at: int) -> Noun | None:
 
 
 def _counted(reader: Reader, at: int) -> Noun | None:
-    """Things of which only the number is said: ``sixteen things``."""
+    """Things of which only the number is said: ``sixteen things``, ``all sixteen things``."""
     cursor = reader.cursor
     start = cursor.at
+    cursor.accept("all")
     if number_at(cursor) is not None and cursor.accept("things"):
         return Noun(("",), at=at)
     cursor.at = start

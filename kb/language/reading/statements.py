@@ -6,12 +6,13 @@ from dataclasses import dataclass, field, replace
 from kb.language.instruction import Condition, Instruction, Plan, Window
 from kb.language.reading.adjuncts import Adjuncts, adjunct, window_at
 from kb.language.reading.clauses import conditions, helpers, predicate, subject
-from kb.language.reading.function_words import is_next, of_class
+from kb.language.reading.function_words import is_next, number_at, of_class
 from kb.language.reading.matching import AFTER, matched
 from kb.language.reading.noun_phrases import Noun, noun_phrase
 from kb.language.reading.performed import performed
 from kb.language.reading.reader import Reader
 from kb.language.reading.verb_phrases import begin, complete
+from kb.language.tokens import Cursor
 from kb.lexicon.inflection import Form
 
 BETWEEN = (",", ";", ":", "and", "but", "then", "or")
@@ -185,13 +186,23 @@ def _opened(reader: Reader) -> tuple[str, Window | None]:
             before = "again" if word == "again" else before
         else:
             found = window_at(cursor)
-            if found is None:
+            if found is None and not _some_time_later(cursor):
                 return before, window
-            window = found
+            window = found or window
         cursor.accept(",")
         if cursor.done:
             cursor.at = start
             return before, window
+
+
+def _some_time_later(cursor: Cursor) -> bool:
+    """Read ``about 40 s later``, which tells of no time of its own."""
+    start = cursor.at
+    known = number_at(cursor) is not None and cursor.longest(of_class("unit")) is not None
+    if known and cursor.accept("later"):
+        return True
+    cursor.at = start
+    return False
 
 
 def _leading_condition(reader: Reader) -> tuple[Condition, ...]:

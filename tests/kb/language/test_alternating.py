@@ -9,7 +9,9 @@ from tellings import steps_of
 from capar.model.facts import Lies
 from capar.model.observation import Observation
 from capar.model.par import FeatureSet
+from kb.language.clause import Clause
 from kb.language.describe import describe
+from kb.language.planning import sentences
 
 OWN = FeatureSet("1", "1", "1", "hand", "0")
 SHELF = replace(TABLE, name="shelf", kind="shelf")
@@ -141,10 +143,23 @@ def test_few_things_are_told_one_by_one() -> None:
 
 def test_of_more_things_than_can_be_told_that_are_packed_only_the_number_is() -> None:
     text = gathered(7, kind="carton")
-    assert text == "The agent packed seven things into the shelf with the right hand."
+    assert text == (
+        "The agent packed all seven things into the shelf one by one with the right hand."
+    )
     (step,) = steps_of(text)
     assert step.call.objects == ("", "shelf")
     assert gathered(4, kind="carton") == (
         "The agent packed the red cup, the blue cup, the green cup, and the white cup into the "
         "shelf with the right hand."
     )
+
+
+def test_what_the_same_hand_does_in_between_is_told_besides() -> None:
+    packing = Clause("pack two things into {1}", ("carton",), ("right_hand",), 0.0, 9.0, True)
+    shifting = replace(packing, pattern="shift {1} inside {2}", start_s=4.0, end_s=5.0)
+    shifting = replace(shifting, objects=("sugar", "carton"))
+    _, also = sentences((packing, shifting))
+    assert also.opening == "Also, "
+    beside = replace(shifting, ees=("left_hand",))
+    (both,) = sentences((packing, beside))
+    assert both.beside == (beside,)

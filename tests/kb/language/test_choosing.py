@@ -97,3 +97,19 @@ def test_what_leads_to_a_deed_and_what_is_on_the_way_goes_first() -> None:
         ("PutDown", "cup"),
         ("PutDown", "jar"),
     ]
+
+
+def test_a_tool_is_neither_fetched_nor_put_back_in_a_summary() -> None:
+    take = replace(deed("MoveObjTo", 0.0, 1.0), pattern="take {1} from {2}")
+    stir, back = deed("Stir", 1.0, 3.0), deed("PutDown", 3.0, 4.0)
+    back = replace(back, pattern="put {1} back on {2}", objects=("mug", "table"))
+    assert chosen((take, stir, back)) == (stir,)
+    assert chosen((take, back)) == (take, back)
+    assert chosen((take, stir, replace(back, grip=1))) == (stir, replace(back, grip=1))
+
+
+def test_help_is_told_beside_the_work_that_it_helps() -> None:
+    stir = deed("Stir", 2.0, 5.0)
+    steady = replace(stir, pattern="steady {1}", objects=("bowl",), ees=("left_hand",))
+    steady = replace(steady, start_s=1.0, end_s=4.0, changes=False)
+    assert chosen((steady, stir)) == (replace(steady, start_s=2.0), stir)

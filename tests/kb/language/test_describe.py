@@ -158,8 +158,9 @@ def test_a_hand_that_stays_at_what_the_other_works_in_steadies_it() -> None:
     made = observation("Stirring", links, (MUG, BOWL), frames=401, rate_hz=100.0)
     right, left = made.links
     segments = tuple(replace(each, possessed=each.index > 0) for each in right.segments)
-    told = describe(replace(made, links=(replace(right, segments=segments), left)))
-    assert told.endswith("while the left hand steadied the bowl.")
+    seen = replace(made, links=(replace(right, segments=segments), left))
+    assert describe(seen).endswith("while the left hand steadied the bowl.")
+    assert "steadied the bowl (0.60–4.00 s)" in describe(seen, timed=True), "as long as it stays"
 
 
 def test_a_thing_is_called_by_the_words_of_its_kind() -> None:

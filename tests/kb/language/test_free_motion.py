@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from observations import MUG, Piece, observation
+from observations import MUG, TABLE, Piece, observation
 
+from capar.model.observation import ObservedObject
 from capar.model.sampled_track import sampled_track
 from kb.language.describe import describe
 
@@ -16,14 +17,24 @@ AT = {"right_hand": (0.3, -0.2, 0.9), "left_hand": (0.3, 0.2, 0.9)}
 """Hands of a person who looks along x, with y to the left."""
 
 
-def told(way: Sequence[float], facing: float = 0.0, *, back: bool = True) -> str:
-    """What is told of a right hand that goes that way from rest, in a person who faces so [rad]."""
+def told(
+    way: Sequence[float],
+    facing: float = 0.0,
+    *,
+    back: bool = True,
+    head: Sequence[float] = (0.0, 0.0, 0.0),
+    things: tuple[ObservedObject, ...] = (MUG,),
+) -> str:
+    """What is told of a right hand that goes that way from rest, in a person who faces so [rad].
+
+    The head goes its own way meanwhile.
+    """
     pieces = (Piece("Rest", 50, ()), Piece("PostureChange", 250, ()), Piece("Rest", 300, ()))
     still = (Piece("Rest", 300, ()),)
     made = observation(
         "Reaching",
         {"right_hand": pieces, "left_hand": still},
-        (MUG,),
+        things,
         frames=301,
         rate_hz=100.0,
     )
@@ -37,7 +48,8 @@ def told(way: Sequence[float], facing: float = 0.0, *, back: bool = True) -> str
     share = np.clip((np.arange(301) - 50) / 100.0, 0.0, 1.0)
     if back:
         share -= np.clip((np.arange(301) - 150) / 100.0, 0.0, 1.0)
-    tracks = [sampled_track("head", 0.01, np.tile((0.0, 0.0, 1.6), (301, 1)))]
+    over = (np.array((0.0, 0.0, 1.6)) + share[:, None] * np.asarray(head)) @ turn.T
+    tracks = [sampled_track("head", 0.01, over)]
     for ee, place in AT.items():
         gone = share[:, None] * np.asarray(way) if ee == "right_hand" else np.zeros((301, 3))
         tracks.append(sampled_track(ee, 0.01, (np.asarray(place) + gone) @ turn.T))
@@ -85,3 +97,19 @@ def test_a_hand_that_hardly_goes_reaches_nowhere() -> None:
 @given(st.floats(-3.1, 3.1))
 def test_directions_are_the_persons_own(facing: float) -> None:
     assert told((0.5, 0.1, 0.1), facing) == told((0.5, 0.1, 0.1))
+
+
+@pytest.mark.parametrize("facing", [0.0, 2.0])
+def test_who_goes_down_and_along_with_the_hand_leans(facing: float) -> None:
+    text = told((0.5, 0.0, 0.0), facing, head=(0.25, 0.0, -0.15))
+    assert text.startswith("The agent leaned and reached forward with the right hand (0.50–")
+    assert " and straightened up again (" in text
+    for head in ((0.25, 0.0, 0.0), (0.1, 0.0, -0.15), (0.0, 0.25, -0.15)):
+        assert "leaned" not in told((0.5, 0.0, 0.0), facing, head=head)
+
+
+def test_where_there_is_nothing_to_touch_it_is_not_told_that_nothing_was_touched() -> None:
+    for things in ((), (TABLE,)):
+        text = told((0.5, 0.0, 0.0), things=things)
+        assert text.startswith("The agent reached forward")
+        assert "touching" not in text

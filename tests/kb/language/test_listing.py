@@ -15,27 +15,31 @@ from kb.language.describe import describe
 from kb.language.vocabulary import Vocabulary
 
 PLACED = FeatureSet("100", "101", "10", "hand", "00")
-NAMES = ("mug", "bowl", "bottle", "plate", "spoon", "jar", "cup_2", "fork", "cup")
+NAMES = (
+    *("mug", "bowl", "bottle", "plate", "spoon", "jar", "cup_2", "fork", "cup", "pan", "pot"),
+    *("tray", "dish"),
+)
 SHELF = replace(TABLE, name="shelf", kind="shelf")
 
 
-def told(*places: str, timed: bool = True, late: int = 99) -> str:
+def told(*places: str, timed: bool = True, late: int = 99, waits: int = 400) -> str:
     """What is told of a hand that puts one thing after another on places, each in two seconds.
 
     Args:
         places: Where it puts them.
         timed: Whether times are told.
-        late: How many things it puts before it pauses for four seconds.
+        late: How many things it puts before it pauses.
+        waits: For how long it pauses then [frames at 100 Hz].
     """
     pieces: list[Piece] = []
     facts: list[Touching] = []
     for at, (name, place) in enumerate(zip(NAMES, places, strict=False)):
-        first = 200 * at + (400 if at >= late else 0)
+        first = 200 * at + (waits if at >= late else 0)
         pieces.append(Piece("Reach", first + 50, (name,)))
         pieces.append(Piece("MoveObjTo", first + 150, (name, place), features=PLACED))
         pieces.append(Piece("ResumePosture", first + 200, (name,)))
         facts += [
-            Touching(name, place, first + 149, 200 * len(places) + 400),
+            Touching(name, place, first + 149, 200 * len(places) + waits),
             Touching("right_hand", name, first + 50, first + 155),
         ]
     things = tuple(replace(MUG, name=name, kind=name) for name in NAMES)
@@ -44,7 +48,7 @@ def told(*places: str, timed: bool = True, late: int = 99) -> str:
         {"right_hand": tuple(pieces)},
         (*things, TABLE, SHELF),
         facts=tuple(facts),
-        frames=200 * len(places) + 401,
+        frames=200 * len(places) + waits + 1,
         rate_hz=100.0,
     )
     (link,) = made.links
@@ -73,22 +77,27 @@ def test_another_place_begins_another_list() -> None:
 
 
 @pytest.mark.parametrize("timed", [True, False])
-def test_a_list_names_six_things_at_most_and_a_numbered_thing_without_article(
+def test_a_list_is_not_too_long_and_names_a_numbered_thing_without_article(
     timed: bool,
 ) -> None:
-    text = told(*["table"] * 8, timed=timed)
+    text = told(*["table"] * 13, timed=timed, late=8)
     first, second = steps_of(text)
-    assert (*first.call.objects[:-1], *second.call.objects[:-1]) == NAMES[:8]
-    assert max(len(first.call.objects), len(second.call.objects)) <= 7
-    assert " cup 2 " in text
+    assert (*first.call.objects[:-1], *second.call.objects[:-1]) == NAMES
+    assert len(first.call.objects) == 9
+    assert " cup 2" in text
     assert "the cup 2" not in text
+    assert "Then the agent put" in text
     if timed:
-        assert first.circumstances.window == (0.5, 2.0 * len(first.call.objects) - 2.5)
+        assert first.circumstances.window == (0.5, 15.5)
 
 
-def test_lists_are_parted_at_the_longest_pause() -> None:
-    text = told(*["table"] * 8, late=4)
+@pytest.mark.parametrize("timed", [True, False])
+def test_a_noticed_pause_parts_a_list_and_is_told(timed: bool) -> None:
+    text = told(*["table"] * 8, late=4, waits=1500, timed=timed)
     assert [len(step.call.objects) - 1 for step in steps_of(text)] == [4, 4]
+    later = "About 16 s later, the agent put" if timed else "Later, the agent put"
+    assert later in text
+    assert "later" not in told(*["table"] * 8, late=4, waits=600, timed=timed).lower()
 
 
 @given(st.lists(st.sampled_from(["table", "shelf"]), min_size=1, max_size=9))

@@ -46,8 +46,8 @@ def test_what_ends_over_is_turned_upside_down() -> None:
 
 def test_what_stands_again_is_turned_upright() -> None:
     assert told("MoveObj", (0.0, 0.0), (3.0, 0.0), (3.0, 0.0), (0.1, 0.0)) == (
-        "turned the mug upside down with the right hand (0.00–1.00 s) and turned it back upright "
-        "(2.00–3.00 s)."
+        "turned the mug upside down with the right hand (0.00–1.00 s), held it upside down "
+        "(1.00–2.00 s), and turned it back upright (2.00–3.00 s)."
     )
 
 
@@ -100,7 +100,7 @@ def test_what_goes_up_and_turns_much_beside_turning_about_is_turned_about() -> N
 
 def test_what_is_lifted_and_turned_over_is_both() -> None:
     text = told("Lift", (0.0, 0.0), (3.0, 0.0))
-    assert text.startswith("lifted the mug with the right hand (0.00–1.00 s) and turned it upside")
+    assert text.startswith("lifted the mug with the right hand (0.00–1.00 s), turning it upside")
 
 
 def test_what_is_turned_over_while_it_is_lifted_is_told_beside_it() -> None:

@@ -1,0 +1,113 @@
+"""Notes under a text are sentences that its reader can understand, and check."""
+
+import pytest
+
+from capar.model.notices import Notice, notice
+from capar.views.notices import reservation_lines
+from capar.views.plain_notices import PLAIN
+
+
+def rough(*names: str) -> list[Notice]:
+    return [notice("stand-in-shape", name, shape="a ball") for name in names]
+
+
+def lost(name: str, times: int = 1, **values: float | bool) -> Notice:
+    return notice("long-gap", name, start_s=2.0, end_s=4.5, times=times, **values)
+
+
+def judged(code: str, *pairs: tuple[str, str]) -> list[Notice]:
+    values = {"touch_m": 0.1, "found": "rest", "frames": 9, "distance_m": 0.1}
+    return [notice(code, *pair, **values) for pair in pairs]
+
+
+TOLD: tuple[tuple[list[Notice], str], ...] = (
+    (
+        rough("right_hand", "left_hand"),
+        "Rough shapes are assumed for both hands: the recording has none.",
+    ),
+    (
+        rough("pelvis", "l_hip", "r_hip", "l_knee", "r_knee"),
+        "Rough shapes are assumed for the body: the recording has none.",
+    ),
+    (
+        rough("pelvis", "l_hip", "r_hip", "l_knee", "r_thumb1"),
+        "Rough shapes are assumed for the body, including the hands: the recording has none.",
+    ),
+    (
+        [lost("bowl", fixed=False, moved_m=0.004)],
+        "The bowl was not tracked from 2.00 to 4.50 s; it is assumed to have stayed where it was.",
+    ),
+    (
+        [lost("table", fixed=True)],
+        "The table was not tracked from 2.00 to 4.50 s; it is assumed to have stayed where it was.",
+    ),
+    (
+        [lost("bottle", fixed=False, moved_m=0.3)],
+        "The bottle was not tracked from 2.00 to 4.50 s; what touched it before and after is "
+        "assumed to have touched it meanwhile.",
+    ),
+    (
+        [lost("right_hand", 7, fixed=False, lost_s=31.2, of_s=60.0)],
+        "The right hand was not tracked for 31 of 60 s; what it did then is not known.",
+    ),
+    (
+        [notice("long-gap", "box", times=1, fixed=False)],
+        "The box was not tracked at all; what it touched is not known.",
+    ),
+    (
+        [notice("assumed-support", each, assumed="a box") for each in ("table", "carton")],
+        "The table and the carton are assumed: neither is in the recording.",
+    ),
+    (
+        [notice("assumed-support", "floor", assumed="a plate")],
+        "The floor is assumed: it is not in the recording.",
+    ),
+    (
+        judged("pivot-distance", ("right_hand", "mug"), ("right_hand", "cup")),
+        "Contacts of the right hand are inferred from distance: the recording has no shape of the "
+        "hand.",
+    ),
+    (
+        judged("touch-estimated", ("right_hand", "mug"), ("cup", "table")),
+        "Contacts are inferred from distance: the recording has no shapes.",
+    ),
+    (
+        [notice("objects-left-out", "100 half egg carton(Clone)-18146", objects=9)],
+        "The half egg carton is left out: its shape is not known.",
+    ),
+    (
+        [notice("mount-gap", "r_middle1", "chair", touch_m=0.02, shown_m=0.04, frames=9)],
+        "The right hand is taken to have held the chair, though its middle finger was measured "
+        "4 cm away.",
+    ),
+    (
+        [notice("no-mover", "chair", start_s=1.0, end_s=2.0, share=0.3, times=1, why="nobody")],
+        "From 1.00 to 2.00 s, nothing that was recorded moved the chair.",
+    ),
+    (
+        [
+            notice("bone-stretches", "head", "neck", "jaw", shortest_m=0.1, longest_m=long_m)
+            for long_m in (0.15, 0.32)
+        ],
+        "Joints of the skeleton come apart by up to 22 cm, which bones do not.",
+    ),
+)
+
+
+@pytest.mark.parametrize(("group", "text"), TOLD, ids=[text[:40] for _, text in TOLD])
+def test_each_kind_has_its_sentence(group: list[Notice], text: str) -> None:
+    assert reservation_lines(group)[2:] == (f"note: {text}",)
+
+
+def test_every_kind_is_told_here() -> None:
+    assert {group[0].code for group, _ in TOLD} == set(PLAIN)
+
+
+def test_other_kinds_have_their_own_words_as_a_sentence() -> None:
+    (line,) = reservation_lines([notice("no-shape", "mug")])[2:]
+    assert line == "note: 'mug' has no shape, so no contact of it is known."
+
+
+def test_a_note_calls_a_thing_as_the_text_does() -> None:
+    (line,) = reservation_lines([lost("chair", fixed=True)], called={"chair": "wooden_chair"})[2:]
+    assert line.startswith("note: The wooden chair was not tracked")
