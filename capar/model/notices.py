@@ -225,6 +225,9 @@ class NoticeKind:
     listed: bool = False
     """Whether it is about each of its bodies by itself, not about one with another."""
 
+    of_pair: bool = False
+    """Whether it bears on nothing but what is told of its two bodies together."""
+
 
 KINDS: Mapping[str, NoticeKind] = {
     "long-gap": NoticeKind(
@@ -269,11 +272,13 @@ KINDS: Mapping[str, NoticeKind] = {
         _pivot_distance,
         "pairs that touch by the distance of their origins",
         "contact is judged by distance alone for {names}",
+        of_pair=True,
     ),
     "touch-estimated": NoticeKind(
         _touch_estimated,
         "pairs that touch by a distance estimated from the recording",
         "contact is judged by distance alone for {names}",
+        of_pair=True,
     ),
     "distance-contradicted": NoticeKind(
         lambda each: distance_contradicted(each.bodies, each.fields),

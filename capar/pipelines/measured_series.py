@@ -8,13 +8,26 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from capar.model.calibration import Found, PairCalibration
-from capar.model.facts import ClosingSpeed, Leans, Moving, Observed, Resting, Swings, Touching
+from capar.model.facts import (
+    ClosingSpeed,
+    ContactNormal,
+    Leans,
+    Lies,
+    Moving,
+    Observed,
+    Opening,
+    Resting,
+    Swings,
+    Touching,
+)
 from capar.pipelines.explanation import Explained
 from capar.views.lettering import Span
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
-from capar_rules.explain.claims import Measure, Quantity
-from capar_rules.explain.quantities import LEAST_M, degrees, length, spread
+from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG, steepest_deg
+from capar_rules.explain.claims import ANY, Measure, Quantity
+from capar_rules.explain.quantities import change as change_of
+from capar_rules.explain.quantities import LEAST_M, degrees, length, percent, spread, upward
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.calibration import thresholds_of
 from extractors.contact.contacts import points_apart
@@ -24,6 +37,7 @@ from extractors.motion.impacts import closing_speed
 from extractors.motion.leaning import lean, spin_steps
 from extractors.motion.object_motion import pace_at_rest, paces
 from extractors.motion.turning_points import most_turns
+from extractors.relations.arrangement import Pair
 from extractors.relations.places import turned_and_gone
 from extractors.signals.clock import frame_rate
 
@@ -92,6 +106,22 @@ class Recording:
             for begin, end in ends
             if begin <= last and end >= first
         )
+
+    def lost(self, *names: str) -> tuple[Span, ...]:
+        """When a body of those was not tracked, within what is shown."""
+        first, last = self.span
+        gaps = (
+            gap for name in names for gap in self.seen.explainer.measured.lost.get(name, ())
+        )
+        return tuple(
+            Span(self.at(max(begin, first)), self.at(min(end, last)), "")
+            for begin, end in gaps
+            if begin <= last and end >= first
+        )
+
+    def inside(self, frame: int) -> bool:
+        """Whether a frame is shown."""
+        return self.span[0] <= frame <= self.span[1]
 
     def is_object(self, name: str) -> bool:
         """Whether it is a thing, whose motion counts, and no end-effector."""
@@ -242,18 +272,20 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         far = math.degrees(thresholds_of(measurements.calibration).lean_rad)
         limits.append(Limit(far, f"far over is {far:.0f}° or more"))
         most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
-        marks.append(Mark(known.at(most), float(angle[most]), f"{angle[most]:.0f}° at most"))
+        bound = upward(float(angle[most]))
+        marks.append(Mark(known.at(most), float(angle[most]), f"{bound:.0f}° at most"))
     if forms & {"lean", "not_leant"}:
         change = math.degrees(constants()["turn_mrad"] / 1000.0)
-        start, by = float(angle[told.first]), abs(float(np.diff(angle[[told.first, told.last]])[0]))
-        marks[1] = replace(marks[1], label=f"{labels[1]} (a change of {by:.0f}°)")
+        start = float(angle[told.first])
+        ends = (round(MILLI * math.radians(angle[frame])) for frame in (told.first, told.last))
+        marks[1] = replace(marks[1], label=f"{labels[1]} (a change of {change_of(*ends)})")
         limits += [
             Limit(value, f"{change:.0f}° {sense} than at the start")
             for value, sense in ((start + change, "more"), (start - change, "less"))
             if value > 0.0
         ]
     return Panel(
-        f"{known.called(name)}: lean from upright",
+        f"{known.called(name)}: lean from {known.seen.explainer.measured.upright(name)}",
         "°",
         (known.curve(angle),),
         tuple(limits),
@@ -299,15 +331,31 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
         limits = {MILLI * pair.touch_m: "counts as contact within {:.0f} mm"}
     if pair.found is Found.NEVER:
         limits = {}
+    highest = CLOSE * max([*limits, 20.0])
+    at_borders = dict(zip(frames.tolist(), apart.tolist(), strict=True))
+    marks = [
+        Mark(known.at(frame), min(at_borders[frame], highest), _gap(at_borders[frame]))
+        for frame in (told.first, told.last)
+        if math.isfinite(at_borders.get(frame, math.nan))
+    ]
+    rough = [name for name in (one, other) if name in known.seen.explainer.measured.stand_ins]
+    about = f" (rough: the shape of the {known.called(rough[0])} is a stand-in)" if rough else ""
     return Panel(
-        f"{known.called(one)} to {known.called(other)}: distance of {_between(pair)}",
+        f"{known.called(one)} to {known.called(other)}: distance of {_between(pair)}{about}",
         "mm",
         (Curve(frames / known.rate, apart),),
-        tuple(Limit(value, label.format(value)) for value, label in limits.items()),
+        tuple(Limit(value, label.format(upward(value))) for value, label in limits.items()),
+        tuple(marks),
         bars=touching,
         bars_label="counts as contact",
-        highest=CLOSE * max([*limits, 20.0]),
+        highest=highest,
+        lost=known.lost(one, other),
     )
+
+
+def _gap(millimetres: float) -> str:
+    """A distance of two bodies, as a mark has it."""
+    return f"{millimetres:.0f} mm" if millimetres < 100.0 else length(millimetres / MILLI)
 
 
 def _between(pair: PairCalibration) -> str:
@@ -365,14 +413,20 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     limits = thresholds_of(known.seen.measurements.calibration)
     rate = frame_rate(poses.smooth.times)
     slow = MILLI * pace_at_rest(poses.noise, rate, limits)[0]
+    since = ""
+    if forms & SINCE_BEGIN:
+        known = replace(known, span=(0, known.span[1]))
+        since = " since the recording began"
     return Panel(
-        f"{known.called(name)}: speed",
+        f"{known.called(name)}: speed{since}",
         "mm/s",
         (known.curve(MILLI * paces(poses.smooth, rate, limits)[0]),),
         (Limit(slow, f"may be at rest below {slow:.0f} mm/s"),),
         bars=known.bars(Resting, ee=name),
-        bars_label="counts as at rest",
+        bars_label=f"counts as at rest; a rest lasts {constants()['rest_ms'] / 1000.0:.2f} s or more",
         highest=FAST * slow,
+        lost=known.lost(name),
+        span_s=(known.at(known.span[0]), known.at(known.span[1])) if since else None,
     )
 
 
@@ -395,6 +449,170 @@ def _to_and_fro(known: Recording, told: Quantity, forms: frozenset[str]) -> Pane
     )
 
 
+def _bearing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
+    """The level angle of the way so far to the line from the end-effector at the start."""
+    hand, name = told.bodies
+    middles, first = known.body(name).middles, told.first
+    line = (middles[first] - known.body(hand).middles[first])[:2]
+    way = (middles - middles[first])[:, :2]
+    across = line[0] * way[:, 1] - line[1] * way[:, 0]
+    angle = np.degrees(np.abs(np.arctan2(across, way @ line)))
+    angle[np.linalg.norm(way, axis=1) < LEAST_M] = np.nan
+    angle[:first] = np.nan
+    curves = [known.curve(angle, "to the line from the end-effector to it")]
+    ends = [float(angle[told.last])]
+    contacts = known.seen.explainer.measured
+    met = contacts.contact(hand, name, first, round(0.15 * known.rate))
+    press = contacts.presses.get((hand, name), {}).get(met[0]) if met else None
+    if press is not None:
+        across = press[0] * way[:, 1] - press[1] * way[:, 0]
+        pressed = np.degrees(np.abs(np.arctan2(across, way @ np.array(press))))
+        pressed[np.isnan(angle)] = np.nan
+        curves.append(known.curve(pressed, "to where it is pressed"))
+        ends.append(float(pressed[told.last]))
+    return Panel(
+        f"{known.called(name)}: level angle of its way since {known.at(first):.2f} s to the line from "
+        f"the {known.called(hand)} to its middle",
+        "°",
+        tuple(curves),
+        (
+            Limit(AHEAD_DEG, f"ahead: {AHEAD_DEG:.0f}° or less"),
+            Limit(AFTER_DEG, f"after: {AFTER_DEG:.0f}° or more"),
+        ),
+        tuple(
+            Mark(known.at(told.last), end, f"{end:.0f}°") for end in ends if math.isfinite(end)
+        ),
+    )
+
+
+def _pair(known: Recording, told: Quantity) -> Pair:
+    name, other = told.bodies
+    limits = thresholds_of(known.seen.measurements.calibration)
+    return Pair(known.body(name), known.body(other), limits)
+
+
+def _above(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
+    name, other = told.bodies
+    pair = _pair(known, told)
+    rise = pair.body.middles[:, 2] - pair.other.boxes[1][:, 2]
+    frames = [frame for frame in (told.first, told.last) if np.isfinite(rise[frame])]
+    top = "top" if pair.other.shape is not None else "origin"
+    marks = [
+        Mark(known.at(frame), CENTI * float(value[frame]), length(abs(float(value[frame]))))
+        for value in (rise, pair.aside)
+        for frame in frames
+    ]
+    return Panel(
+        f"{known.called(name)}: its middle over the {top} of the {known.called(other)}; above it is "
+        "no further aside than over it",
+        "cm",
+        (known.curve(CENTI * rise), known.curve(CENTI * pair.aside, "aside of it")),
+        (),
+        tuple(marks),
+        known.bars(Lies, body=name, how="above", other=other),
+        "counts as above",
+    )
+
+
+def _inside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
+    name, other = told.bodies
+    pair = _pair(known, told)
+    share, deep = (CENTI * value for value in pair.shares)
+    limits = pair.thresholds
+    merge = round(0.15 * known.rate)
+    spans = known.seen.explainer.measured.lies.get(("inside", name, other), ())
+    starts = [
+        max(first, border)
+        for border in (told.first, told.last)
+        for first, last in spans
+        if first <= border + merge and last >= border
+    ]
+    at = dict.fromkeys([told.first, told.last, *starts])
+    known_at = [frame for frame in at if frame < len(share)]
+    return Panel(
+        f"{known.called(name)}: share of it inside the {known.called(other)}",
+        "%",
+        (known.curve(share), known.curve(deep, "share of its ends well inside")),
+        (
+            Limit(
+                CENTI * limits.inside_share,
+                f"inside from {percent(limits.inside_share)} on, while no less than "
+                f"{percent(limits.inside_stays_share)}",
+            ),
+        ),
+        tuple(Mark(known.at(one), float(share[one]), f"{share[one]:.0f} %") for one in known_at),
+        known.bars(Lies, body=name, how="inside", other=other),
+        "counts as inside",
+    )
+
+
+def _borne(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel | None:
+    """From how far off straight up each contact of a body pushes it, while it lasts."""
+    name, wanted = told.bodies
+    found = known.seen.explainer.measured
+    times, values, marks = [], [], []
+    for (one, two), contacts in sorted(found.contacts.items()):
+        other = two if one == name else one
+        if name not in (one, two) or wanted not in (ANY, other):
+            continue
+        for first, last in contacts:
+            permille = found.upward(name, other, first)
+            if permille is None or last < known.span[0] or first > known.span[1]:
+                continue
+            angle = math.degrees(math.acos(max(-1.0, min(1.0, permille / MILLI))))
+            ends = known.at(max(first, known.span[0])), known.at(min(last, known.span[1]))
+            times += [*ends, ends[1]]
+            values += [angle, angle, math.nan]
+            label = f"{angle:.0f}°" + f" ({known.called(other)})" * (wanted == ANY)
+            inside = first <= told.last and last >= told.first
+            at = max(ends[0], known.at(told.first)) if inside else ends[0]
+            marks.append(Mark(at, angle, label))
+    if not values:
+        return None
+    most = steepest_deg()
+    of = "what touches it pushes it" if wanted == ANY else f"the {known.called(wanted)} pushes it"
+    return Panel(
+        f"{known.called(name)}: how far off straight up {of}, as their contact began",
+        "°",
+        (Curve(np.array(times), np.array(values)),),
+        (Limit(most, f"bears it from below up to {most:.0f}°"),),
+        tuple(marks),
+    )
+
+
+def _opening(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel | None:
+    (name,) = told.bodies
+    facts = [
+        fact
+        for fact in known.seen.observation.facts
+        if isinstance(fact, Opening) and fact.object == name and known.inside(fact.frame)
+    ]
+    if not facts:
+        return None
+    guide = known.seen.measurements.guides[name]
+    unit = "m" if guide.kind == "rail" else "rad"
+    facts.sort(key=lambda fact: fact.frame)
+    values = {fact.frame: fact.amount / MILLI for fact in facts}
+    return Panel(
+        f"{known.called(name)}: how far it is open",
+        unit,
+        (
+            Curve(
+                np.array([known.at(frame) for frame in values]), np.array(list(values.values()))
+            ),
+        ),
+        (),
+        tuple(
+            Mark(known.at(frame), values[frame], f"{values[frame]:.2f} {unit}")
+            for frame in (told.first, told.last)
+            if frame in values
+        ),
+    )
+
+
+SINCE_BEGIN = frozenset({"away", "back"})
+"""Formats that tell of earlier rests: what is shown for them begins with the recording."""
+
 Series = Callable[[Recording, Quantity, frozenset[str]], Panel | None]
 
 SERIES: Mapping[Measure, Series] = {
@@ -410,5 +628,10 @@ SERIES: Mapping[Measure, Series] = {
     Measure.CLOSING: _closing,
     Measure.SPEED: _speed,
     Measure.TO_AND_FRO: _to_and_fro,
+    Measure.BEARING: _bearing,
+    Measure.ABOVE: _above,
+    Measure.INSIDE: _inside,
+    Measure.BORNE: _borne,
+    Measure.OPENING: _opening,
 }
 """The panel of each quantity."""

@@ -1,7 +1,8 @@
 """What moves the objects of a segment, in words."""
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from capar.model.body_names import is_plural, limb_names
 from capar.model.facts import MovedBy
@@ -47,6 +48,49 @@ def mover_lines(
         index: Its number in the link.
         staying: Objects whose motion does not count there; nothing is told of what moves them.
     """
+    names = limb_names(seen)
+    return tuple(
+        _line(names.get(thing, spoken(thing)), frames)
+        for thing, frames in _moved(seen, ee, index, staying)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class MoverStretches:
+    """When something moves a thing, in one way, within a segment."""
+
+    thing: str
+    words: str
+    """What it does, as a sentence says it: moved by the right hand."""
+
+    spans: tuple[tuple[int, int], ...]
+    """First and last frames."""
+
+    percent: int
+    """Its share of the frames in which the thing moves [%]."""
+
+
+def mover_stretches(
+    seen: Observation, ee: str, index: int, *, staying: Collection[str] = ()
+) -> tuple[MoverStretches, ...]:
+    """When each mover moves each object that moves in a segment; arguments as of the lines."""
+    names, found = limb_names(seen), []
+    for thing, frames in _moved(seen, ee, index, staying):
+        ways: dict[str, list[int]] = defaultdict(list)
+        for frame, movers in sorted(frames.items()):
+            for words in {WORDS[how].format(f"the {spoken(who)}") for how, who in movers}:
+                ways[words].append(frame)
+        for words, held in sorted(ways.items(), key=lambda way: (-len(way[1]), way[0])):
+            share = round(100.0 * len(held) / len(frames))
+            called = names.get(thing, spoken(thing))
+            found.append(MoverStretches(called, words, tuple(_spans(held)), share))
+    return tuple(found)
+
+
+def _moved(
+    seen: Observation, ee: str, index: int, staying: Collection[str]
+) -> Iterator[tuple[str, Mapping[int, Collection[tuple[str, str]]]]]:
+    """Each object that moves in a segment, and how what moves it in each of its frames."""
     segment = next(
         each
         for link in seen.links
@@ -59,12 +103,20 @@ def mover_lines(
         if isinstance(fact, MovedBy) and fact.object in segment.objects:
             for frame in range(max(fact.first, segment.first), min(fact.last + 1, segment.last)):
                 frames[fact.object][frame].add((fact.how, names.get(fact.mover, fact.mover)))
-    things = [each for each in segment.objects if each not in staying]
-    return tuple(
-        _line(names.get(thing, spoken(thing)), frames[thing])
-        for thing in things
-        if frames.get(thing)
-    )
+    for thing in segment.objects:
+        if thing not in staying and frames.get(thing):
+            yield thing, frames[thing]
+
+
+def _spans(frames: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """First and last of the frames that follow each other."""
+    first = last = frames[0]
+    for frame in frames[1:]:
+        if frame != last + 1:
+            yield first, last
+            first = frame
+        last = frame
+    yield first, last
 
 
 def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:

@@ -50,6 +50,14 @@ class Mark:
 
 
 @dataclass(frozen=True)
+class Row:
+    """When something held, without a number."""
+
+    label: str
+    bars: tuple[Span, ...]
+
+
+@dataclass(frozen=True)
 class Panel:
     """One quantity of one body, or of two, over time."""
 
@@ -66,6 +74,12 @@ class Panel:
 
     highest: float = np.inf
     """What is greater is not shown, in the panel's unit."""
+
+    lost: tuple[Span, ...] = ()
+    """When a body of it was not tracked."""
+
+    span_s: tuple[float, float] | None = None
+    """The first and the last time of it [s], where it shows others than the picture."""
 
     def range(self, start_s: float, end_s: float) -> tuple[float, float]:
         """The lowest and highest value that are drawn: of the curves in a span, and all else."""

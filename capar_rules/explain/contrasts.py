@@ -77,6 +77,11 @@ class Contrast:
     """What would have been seen of the names, and was so."""
 
     @property
+    def weak(self) -> bool:
+        """Whether it is too far off to be told where a more general name can be told instead."""
+        return (self.by_features or self.failing > 1) and not self.though
+
+    @property
     def clause(self) -> str:
         """The clauses as one."""
         return _joined(self.clauses)

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from capar_rules.explain.quantities import upward
+
 NEAR_MM = 10
 """Bodies that count as touching while they are further apart are told to be near [mm]."""
 
@@ -27,8 +29,8 @@ class Reach:
 
     @property
     def told_mm(self) -> int:
-        """The distance in whole millimetres, as it is told."""
-        return round(1000.0 * self.distance_m)
+        """The distance in whole millimetres, as it is told: rounded up, so that contacts are within."""
+        return round(upward(1000.0 * self.distance_m))
 
     @property
     def is_touch(self) -> bool:
