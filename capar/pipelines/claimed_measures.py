@@ -20,7 +20,7 @@ from capar_rules.explain.explanation import Explanation
 AROUND_S = 1.0
 """So long before and after the segment is shown [s]."""
 
-FURTHEST_S = 10.0
+FURTHEST_S = 20.0
 """What an explanation tells of longer before or after it is not shown [s]."""
 
 
@@ -97,7 +97,7 @@ def measured_panels(seen: Explained, told: Explanation) -> tuple[Panel, ...]:
 def measured_rows(
     seen: Explained, told: Explanation, *, staying: Collection[str] = ()
 ) -> tuple[Row, ...]:
-    """A row for what held when, of what the summary and the lines of movers say without a number."""
+    """A row for what held when, of what the summary and lines of movers say without a number."""
     known = Recording(seen, shown_span(seen, told))
     moved = mover_stretches(seen.observation, told.ee, told.index, staying=staying)
     return (*claimed_rows(known, told.claims), *mover_rows(known, moved))

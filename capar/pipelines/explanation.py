@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from capar.model import geometry
 from capar.model.body_names import body_names
 from capar.model.calibration import Found, PairCalibration
-from capar.model import geometry
 from capar.model.capture import Capture
 from capar.model.facts import Moving
 from capar.model.observation import Observation, Segment
@@ -180,7 +180,9 @@ def _lost(observation: Observation, measurements: Measurements) -> dict[str, lis
     least = GAP_S * observation.rate_hz
     bodies = measurements.bodies
     return {
-        name: [(first, last) for first, last in geometry.runs(body.poses.lost) if last - first >= least]
+        name: [
+            (first, last) for first, last in geometry.runs(body.poses.lost) if last - first >= least
+        ]
         for name, body in {**bodies.objects, **bodies.sensors}.items()
     }
 

@@ -84,8 +84,7 @@ def _rows(known: Recording, wanted: Stretches) -> Iterator[Row]:
 
 def _matches(fact: Fact, bodies: Sequence[str]) -> bool:
     return all(
-        body in (ANY, value)
-        for body, value in zip(bodies, _about(fact, len(bodies)), strict=True)
+        body in (ANY, value) for body, value in zip(bodies, _about(fact, len(bodies)), strict=True)
     )
 
 
@@ -114,4 +113,6 @@ def _kinds(known: Recording, name: str) -> Iterator[Row]:
     whole = Span(known.at(known.span[0]), known.at(known.span[1]), "")
     for fact in known.seen.observation.facts:
         if isinstance(fact, Link) and fact.ee == name:
-            yield Row(f"{known.called(name)}: counts as the {fact.kind.replace('_', ' ')}", (whole,))
+            yield Row(
+                f"{known.called(name)}: counts as the {fact.kind.replace('_', ' ')}", (whole,)
+            )

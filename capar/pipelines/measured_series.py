@@ -10,7 +10,6 @@ from jaxtyping import Float, Int
 from capar.model.calibration import Found, PairCalibration
 from capar.model.facts import (
     ClosingSpeed,
-    ContactNormal,
     Leans,
     Lies,
     Moving,
@@ -23,11 +22,11 @@ from capar.model.facts import (
 from capar.pipelines.explanation import Explained
 from capar.views.lettering import Span
 from capar.views.panels import Curve, Limit, Mark, Panel
-from capar_rules.borders.times import constants
+from capar_rules.borders.times import constants, in_frames, times
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG, steepest_deg
 from capar_rules.explain.claims import ANY, Measure, Quantity
-from capar_rules.explain.quantities import change as change_of
 from capar_rules.explain.quantities import LEAST_M, degrees, length, percent, spread, upward
+from capar_rules.explain.quantities import change as change_of
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.calibration import thresholds_of
 from extractors.contact.contacts import points_apart
@@ -76,6 +75,11 @@ class Recording:
         """Frames a second [Hz]."""
         return self.seen.explainer.windows.rate
 
+    @property
+    def merged(self) -> float:
+        """How many frames apart events are one."""
+        return in_frames(times().merge_ms, self.rate)
+
     def at(self, frame: int) -> float:
         """The time of a frame [s]."""
         return frame / self.rate
@@ -110,9 +114,7 @@ class Recording:
     def lost(self, *names: str) -> tuple[Span, ...]:
         """When a body of those was not tracked, within what is shown."""
         first, last = self.span
-        gaps = (
-            gap for name in names for gap in self.seen.explainer.measured.lost.get(name, ())
-        )
+        gaps = (gap for name in names for gap in self.seen.explainer.measured.lost.get(name, ()))
         return tuple(
             Span(self.at(max(begin, first)), self.at(min(end, last)), "")
             for begin, end in gaps
@@ -339,7 +341,7 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
         if math.isfinite(at_borders.get(frame, math.nan))
     ]
     rough = [name for name in (one, other) if name in known.seen.explainer.measured.stand_ins]
-    about = f" (rough: the shape of the {known.called(rough[0])} is a stand-in)" if rough else ""
+    about = f" (shape of the {known.called(rough[0])}: a stand-in)" if rough else ""
     return Panel(
         f"{known.called(one)} to {known.called(other)}: distance of {_between(pair)}{about}",
         "mm",
@@ -413,7 +415,7 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     limits = thresholds_of(known.seen.measurements.calibration)
     rate = frame_rate(poses.smooth.times)
     slow = MILLI * pace_at_rest(poses.noise, rate, limits)[0]
-    since = ""
+    since, least = "", constants()["rest_ms"] / 1000.0
     if forms & SINCE_BEGIN:
         known = replace(known, span=(0, known.span[1]))
         since = " since the recording began"
@@ -423,7 +425,7 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         (known.curve(MILLI * paces(poses.smooth, rate, limits)[0]),),
         (Limit(slow, f"may be at rest below {slow:.0f} mm/s"),),
         bars=known.bars(Resting, ee=name),
-        bars_label=f"counts as at rest; a rest lasts {constants()['rest_ms'] / 1000.0:.2f} s or more",
+        bars_label=f"counts as at rest; a rest lasts {least:.2f} s or more",
         highest=FAST * slow,
         lost=known.lost(name),
         span_s=(known.at(known.span[0]), known.at(known.span[1])) if since else None,
@@ -452,36 +454,35 @@ def _to_and_fro(known: Recording, told: Quantity, forms: frozenset[str]) -> Pane
 def _bearing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     """The level angle of the way so far to the line from the end-effector at the start."""
     hand, name = told.bodies
-    middles, first = known.body(name).middles, told.first
-    line = (middles[first] - known.body(hand).middles[first])[:2]
+    middles, first = np.rint(MILLI * known.body(name).middles), told.first
+    line = (middles[first] - np.rint(MILLI * known.body(hand).middles[first]))[:2]
     way = (middles - middles[first])[:, :2]
-    across = line[0] * way[:, 1] - line[1] * way[:, 0]
-    angle = np.degrees(np.abs(np.arctan2(across, way @ line)))
-    angle[np.linalg.norm(way, axis=1) < LEAST_M] = np.nan
-    angle[:first] = np.nan
-    curves = [known.curve(angle, "to the line from the end-effector to it")]
-    ends = [float(angle[told.last])]
+    far = np.linalg.norm(way, axis=1) >= MILLI * LEAST_M
+    shown = far & (np.arange(len(way)) >= first)
+    shown[told.last] = True
+    directions = [(line, "to the line from the end-effector to it")]
     contacts = known.seen.explainer.measured
-    met = contacts.contact(hand, name, first, round(0.15 * known.rate))
+    met = contacts.contact(hand, name, first, known.merged)
     press = contacts.presses.get((hand, name), {}).get(met[0]) if met else None
-    if press is not None:
-        across = press[0] * way[:, 1] - press[1] * way[:, 0]
-        pressed = np.degrees(np.abs(np.arctan2(across, way @ np.array(press))))
-        pressed[np.isnan(angle)] = np.nan
-        curves.append(known.curve(pressed, "to where it is pressed"))
-        ends.append(float(pressed[told.last]))
+    if press is not None and np.hypot(*press) >= constants()["steep_permille"]:
+        directions.append((np.array(press, dtype=float), "to where it is pressed"))
+    curves, ends = [], []
+    for direction, label in directions:
+        across = direction[0] * way[:, 1] - direction[1] * way[:, 0]
+        angle = np.degrees(np.abs(np.arctan2(across, way @ direction)))
+        angle[~shown] = np.nan
+        curves.append(known.curve(angle, label))
+        ends.append(float(angle[told.last]))
     return Panel(
-        f"{known.called(name)}: level angle of its way since {known.at(first):.2f} s to the line from "
-        f"the {known.called(hand)} to its middle",
+        f"{known.called(name)}: level angle of its way since {known.at(first):.2f} s to the line "
+        f"from the {known.called(hand)} to its middle",
         "°",
         tuple(curves),
         (
             Limit(AHEAD_DEG, f"ahead: {AHEAD_DEG:.0f}° or less"),
             Limit(AFTER_DEG, f"after: {AFTER_DEG:.0f}° or more"),
         ),
-        tuple(
-            Mark(known.at(told.last), end, f"{end:.0f}°") for end in ends if math.isfinite(end)
-        ),
+        tuple(Mark(known.at(told.last), end, f"{end:.0f}°") for end in ends if math.isfinite(end)),
     )
 
 
@@ -503,8 +504,8 @@ def _above(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         for frame in frames
     ]
     return Panel(
-        f"{known.called(name)}: its middle over the {top} of the {known.called(other)}; above it is "
-        "no further aside than over it",
+        f"{known.called(name)}: its middle over the {top} of the {known.called(other)}; above it "
+        "is no further aside than over it",
         "cm",
         (known.curve(CENTI * rise), known.curve(CENTI * pair.aside, "aside of it")),
         (),
@@ -519,7 +520,7 @@ def _inside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     pair = _pair(known, told)
     share, deep = (CENTI * value for value in pair.shares)
     limits = pair.thresholds
-    merge = round(0.15 * known.rate)
+    merge = known.merged
     spans = known.seen.explainer.measured.lies.get(("inside", name, other), ())
     starts = [
         max(first, border)
@@ -590,17 +591,13 @@ def _opening(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel |
     if not facts:
         return None
     guide = known.seen.measurements.guides[name]
-    unit = "m" if guide.kind == "rail" else "rad"
+    unit = "m" if guide.fit.kind == "rail" else "rad"
     facts.sort(key=lambda fact: fact.frame)
     values = {fact.frame: fact.amount / MILLI for fact in facts}
     return Panel(
         f"{known.called(name)}: how far it is open",
         unit,
-        (
-            Curve(
-                np.array([known.at(frame) for frame in values]), np.array(list(values.values()))
-            ),
-        ),
+        (Curve(np.array([known.at(frame) for frame in values]), np.array(list(values.values()))),),
         (),
         tuple(
             Mark(known.at(frame), values[frame], f"{values[frame]:.2f} {unit}")

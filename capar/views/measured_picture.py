@@ -22,9 +22,12 @@ LEFT_IN, RIGHT_IN, EDGE_IN = 0.75, 0.3, 0.25
 PANEL_IN, CAPTION_IN, STRIP_IN = 0.95, 0.34, 0.3
 """Heights of a panel, of the caption above it, and of the strip of segments [inches]."""
 
+CAPTION_WIDE_IN = WIDTH_IN - LEFT_IN - RIGHT_IN
+"""How wide a caption in letters of the usual size may be [inches]; longer ones get smaller."""
+
 FOOT_IN = 0.55
 ROW_IN, GAP_IN, TICKS_IN = 0.3, 0.15, 0.2
-"""Heights of a row of bars, of the room before the first, and of the times below a panel [inches]."""
+"""Heights of a row of bars, of the room before it, and of times below a panel [inches]."""
 
 LINE_IN = 0.19
 """Height of a line of the summary [inches]."""
@@ -175,7 +178,9 @@ def _panel(axes: "Axes", panel: Panel, chosen: Span, span_s: tuple[float, float]
     axes.set_ylim(low, high)
     axes.axvspan(chosen.start_s, chosen.end_s, color=SHADE, zorder=0)
     for gap in panel.lost:
-        axes.axvspan(gap.start_s, gap.end_s, facecolor="none", edgecolor=QUIET, hatch="////", alpha=0.5)
+        axes.axvspan(
+            gap.start_s, gap.end_s, facecolor="none", edgecolor=QUIET, hatch="////", alpha=0.5
+        )
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     for side in ("left", "bottom"):
@@ -255,7 +260,7 @@ def _caption(axes: "Axes", panel: Panel) -> None:
         xycoords="axes fraction",
         xytext=(0, 4),
         textcoords="offset points",
-        fontsize=9,
+        fontsize=9 * min(1.0, CAPTION_WIDE_IN / max(width_in(text, points=9.0), 1.0)),
         color=INK,
         va="bottom",
     )

@@ -77,14 +77,21 @@ def mover_stretches(
     names, found = limb_names(seen), []
     for thing, frames in _moved(seen, ee, index, staying):
         ways: dict[str, list[int]] = defaultdict(list)
+        touching = _touching(frames.values())
         for frame, movers in sorted(frames.items()):
-            for words in {WORDS[how].format(f"the {spoken(who)}") for how, who in movers}:
+            for words in {_words(each, touching) for each in movers}:
                 ways[words].append(frame)
         for words, held in sorted(ways.items(), key=lambda way: (-len(way[1]), way[0])):
             share = round(100.0 * len(held) / len(frames))
             called = names.get(thing, spoken(thing))
             found.append(MoverStretches(called, words, tuple(_spans(held)), share))
     return tuple(found)
+
+
+def _words(mover: tuple[str, str], touching: Collection[str]) -> str:
+    """What a mover does at a time, to stand after the thing."""
+    how, who = mover
+    return ("touched by {0}" if who in touching else WORDS[how]).format(f"the {spoken(who)}")
 
 
 def _moved(

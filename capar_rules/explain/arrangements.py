@@ -36,7 +36,7 @@ class Bearing:
 
 
 def bearing(clock: Clock, segment: str) -> Bearing | None:
-    """At which angles a segment's thing goes; None where a place is not known, or it goes nowhere."""
+    """At which angles a segment's thing goes; None where it goes nowhere, or that is not known."""
     span, thing, hand = clock.span(segment), clock.objects.get(segment, ""), hand_of(segment)
     if span is None:
         return None
@@ -80,7 +80,9 @@ def normal_deg(clock: Clock, body: str, other: str, frame: int) -> float | None:
     known = clock.measured
     met = known.contact(body, other, frame, in_frames(times().merge_ms, clock.rate_hz))
     permille = known.upward(body, other, met[0]) if met else None
-    return None if permille is None else math.degrees(math.acos(max(-1.0, min(1.0, permille / 1e3))))
+    return (
+        None if permille is None else math.degrees(math.acos(max(-1.0, min(1.0, permille / 1e3))))
+    )
 
 
 def steepest_deg() -> float:
@@ -120,7 +122,8 @@ def laid(clock: Clock, segment: str) -> str:
         return ""
     return (
         f"came down by {least} or more and did not move again in the hand (the "
-        f"{clock.called(hand)} touched it until {clock.at(held[1])}; it touched {others} at the end)"
+        f"{clock.called(hand)} touched it until {clock.at(held[1])}; at the end it touched "
+        f"{others})"
     )
 
 

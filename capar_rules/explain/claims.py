@@ -1,6 +1,6 @@
 """What a summary claims: its clauses, and what was measured of which bodies for each."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import product
@@ -117,15 +117,14 @@ PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
     "event": ((Measure.SPEED, (0,)),),
     "member": ((Measure.SPEED, (0,)),),
     "at_rest": ((Measure.SPEED, (END,)),),
-    **dict.fromkeys(
-        ("turns_back_fast", "strokes", "stirring"), ((Measure.TO_AND_FRO, (THING,)),)
-    ),
+    **dict.fromkeys(("turns_back_fast", "strokes", "stirring"), ((Measure.TO_AND_FRO, (THING,)),)),
     "goes_ahead": ((Measure.BEARING, (END, THING)),),
     "comes_to_lie": ((Measure.HEIGHT, (THING,)), _HELD),
     "from_rest": ((Measure.DISTANCE, (THING, LEFT)),),
     "free": ((Measure.DISTANCE, (THING, MET)),),
     "slides": ((Measure.DISTANCE, (THING, 1)), (Measure.BORNE, (THING, 1))),
     "on": ((Measure.BORNE, (2, 3)),),
+    "under_palm": ((Measure.BORNE, (END, THING)),),
     **dict.fromkeys(("opens", "closes", "swept"), ((Measure.OPENING, (1,)),)),
 }
 """By the predicate of an atom: what was measured for its clause, also where that has no number, and
@@ -161,7 +160,7 @@ ROWS: Mapping[str, tuple[tuple[str, Bodies], ...]] = {
     "stirring": (("touching", (THING, KEPT)), ("thing", (KEPT,))),
     "rolls_on": (("rolls", (THING,)), ("touching", (THING, 1))),
 }
-"""By the predicate of an atom: of which facts the stretches are shown as bars, and of which bodies."""
+"""By the predicate of an atom: which facts, of which bodies, are shown as bars."""
 
 OVERLAPPING = ("rolls", "lengthwise")
 """Courses of a body that are shown as bars."""
@@ -237,6 +236,8 @@ def claim(
             frames.append(int(text_of))
         if form == "tick":
             frames.append(clock.frames[arguments[0]][int(text_of)])
+    if predicate == "support":
+        frames += _since(clock, own[0])
     stretches = [
         Stretches(kind, bodies)
         for kind, places in _rows(predicate, arguments)
@@ -245,8 +246,15 @@ def claim(
     return Claim(text, tuple(dict.fromkeys(found)), tuple(frames), tuple(dict.fromkeys(stretches)))
 
 
+def _since(clock: Clock, frame: int) -> list[int]:
+    """Since when the end-effector of the explained segment touches its object."""
+    thing, hand = clock.objects.get(clock.own, ""), arrangements.hand_of(clock.own)
+    met = clock.measured.contact(hand, thing, frame, 1)
+    return [met[0]] if met else []
+
+
 def resting_on(found: Claim, reason: Reason) -> Claim:
-    """The claim of a clause that tells a node: what was measured below it, if nothing else is shown."""
+    """The claim of a clause that tells a node, with what was measured below, if it had nothing."""
     if found.shown:
         return found
     below: dict[Stretches, None] = {}
@@ -287,7 +295,7 @@ def _at(place: int | str, arguments: Sequence[str], clock: Clock) -> tuple[str, 
         body = arguments[place]
         return () if UNBOUND in body else (body,)
     segment = arguments[0]
-    of_segment = {
+    of_segment: Mapping[str, Callable[[], tuple[str, ...]]] = {
         THING: lambda: (clock.objects.get(segment, ""),),
         END: lambda: (arrangements.hand_of(segment),),
         KEPT: lambda: arrangements.kept(clock, segment),

@@ -131,7 +131,7 @@ class Measured:
         """The posture from which a body's lean is measured, in words."""
         return "how it was first seen" if body in self.unrested else "how it first rested"
 
-    def contact(self, one: str, other: str, frame: int, slack: int) -> Frames | None:
+    def contact(self, one: str, other: str, frame: int, slack: float) -> Frames | None:
         """The contact of two bodies at a frame, or the nearest so few frames from it."""
         found = [*self.contacts.get((one, other), ()), *self.contacts.get((other, one), ())]
         near = [
@@ -161,12 +161,7 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
     rests: dict[str, list[tuple[int, int]]] = defaultdict(list)
     swings: dict[str, list[tuple[int, int]]] = defaultdict(list)
     held: dict[str, list[tuple[str, int, int]]] = defaultdict(list)
-    contacts: dict[Pair, list[Frames]] = defaultdict(list)
-    normals: dict[Pair, dict[int, int]] = defaultdict(dict)
-    presses: dict[Pair, dict[int, Pressing]] = defaultdict(dict)
-    lies: dict[tuple[str, str, str], list[Frames]] = defaultdict(list)
     places, postures, travelled, touched = {}, {}, {}, False
-    shapeless: set[str] = set()
     every = list(facts)
     acting = {fact.ee for fact in every if isinstance(fact, Link)}
     for fact in every:
@@ -185,13 +180,31 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
                 swings[fact.body].append((fact.first, fact.last))
             case Travelled():
                 travelled[fact.body, fact.frame] = fact.way, fact.turn
-            case Touching():
-                contacts[fact.body, fact.other].append((fact.first, fact.last))
-                if fact.body in acting:
-                    touched = True
-                    held[fact.other].append((fact.body, fact.first, fact.last))
+            case Touching() if fact.body in acting:
+                touched = True
+                held[fact.other].append((fact.body, fact.first, fact.last))
             case Tag(type="mobile"):
                 touched = True
+            case _:
+                pass
+    found = replace(known, moving=moving, rests=rests, places=places, postures=postures)
+    found = _of_pairs(every, found)
+    return replace(
+        found, displaced=displaced, swings=swings, travelled=travelled, held=held, tracked=touched
+    )
+
+
+def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
+    """What is known, with what facts say of two bodies and of shapes."""
+    contacts: dict[Pair, list[Frames]] = defaultdict(list)
+    normals: dict[Pair, dict[int, int]] = defaultdict(dict)
+    presses: dict[Pair, dict[int, Pressing]] = defaultdict(dict)
+    lies: dict[tuple[str, str, str], list[Frames]] = defaultdict(list)
+    shapeless: set[str] = set()
+    for fact in facts:
+        match fact:
+            case Touching():
+                contacts[fact.body, fact.other].append((fact.first, fact.last))
             case ContactNormal():
                 normals[fact.body, fact.other][fact.first] = fact.permille
             case PressDirection():
@@ -202,17 +215,8 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
                 shapeless.add(fact.object)
             case _:
                 pass
-    found = replace(known, moving=moving, rests=rests, places=places, postures=postures)
-    found = replace(found, contacts=contacts, normals=normals, presses=presses, lies=lies)
-    return replace(
-        found,
-        displaced=displaced,
-        swings=swings,
-        travelled=travelled,
-        held=held,
-        tracked=touched,
-        shapeless=frozenset(shapeless),
-    )
+    found = replace(known, contacts=contacts, normals=normals, presses=presses, lies=lies)
+    return replace(found, shapeless=frozenset(shapeless))
 
 
 @dataclass(frozen=True)

@@ -101,6 +101,7 @@ class Argument:
             "share": self._share,
             "borne": self._borne,
             "unborne": self._unborne,
+            "palm": self._palm,
             "hollow": self._hollow,
             "not_at_rest": self._not_at_rest,
             "rest_s": self._rest_s,
@@ -184,8 +185,7 @@ class Argument:
         line = f"to the level line from the {hand} to the middle of the {thing}"
         ahead, after = f"{AHEAD_DEG:.0f}° or less is ahead", f"{AFTER_DEG:.0f}° or more after it"
         if form.startswith("not_"):
-            told = f" at {found.offset_deg:.0f}° {line} from start to end ({ahead} of it, {after})"
-            return told
+            return f" at {found.offset_deg:.0f}° {line} from start to end ({ahead} of it, {after})"
         if form == "ahead" and found.by_press:
             line = f"to the direction in which the {hand} pressed it"
             return f" (at {found.press_deg:.0f}° {line}; {ahead})"
@@ -206,15 +206,16 @@ class Argument:
         return quantities.over(over(self.beside[3], self.beside[4], frame))
 
     def _share(self) -> str:
-        """Which share of the fourth argument is inside the fifth at the side that this one names."""
+        """Which share of the fourth argument is in the fifth at the side that this one names."""
         frame = arrangements.frame_of(self.clock, self.beside[0], self.text)
         over = self.clock.measured.over
         if over is None or frame is None:
             return UNBOUND
-        at = arrangements.lying(self.clock, self.beside[2], *self.beside[3:5], frame)
+        how, body, other = self.beside[2:5]
+        at = arrangements.lying(self.clock, how, body, other, frame)
         if at is None:
             return UNBOUND
-        share = quantities.percent(over(self.beside[3], self.beside[4], at).share)
+        share = quantities.percent(over(body, other, at).share)
         return f" ({share} of it{f' at {self.clock.at(at)}' * (at > frame)})"
 
     def _borne(self) -> str:
@@ -222,16 +223,26 @@ class Argument:
         frame = arrangements.frame_of(self.clock, self.beside[0], self.text)
         if frame is None:
             return UNBOUND
-        angle = arrangements.normal_deg(self.clock, *self.beside[2:4], frame)
+        thing, other = self.beside[2:4]
+        angle = arrangements.normal_deg(self.clock, thing, other, frame)
         if angle is None:
             return UNBOUND
         most = arrangements.steepest_deg()
         return f" (pushing it {angle:.0f}° off straight up; {most:.0f}° or less bears)"
 
+    def _palm(self) -> str:
+        """From which side the segment's object pushes the end-effector that lies on it."""
+        span, thing = self.clock.span(self.text), self.clock.objects.get(self.text, "")
+        angle = arrangements.normal_deg(self.clock, self._hand, thing, span[0]) if span else None
+        if angle is None:
+            return UNBOUND
+        most = arrangements.steepest_deg()
+        return f" (which pushed it {angle:.0f}° off straight up; {most:.0f}° or less bears)"
+
     def _unborne(self) -> str:
         """Why nothing bears the third argument at the side that this one names."""
         frame = arrangements.frame_of(self.clock, self.beside[0], self.text)
-        thing = self.beside[2]
+        thing, most = self.beside[2], arrangements.steepest_deg()
         if frame is None or self.clock.objects.get(self.beside[0]) != thing:
             return UNBOUND
         found = arrangements.met_at(self.clock, self.beside[0], self.text)
@@ -240,16 +251,16 @@ class Argument:
         told = []
         for other in found:
             angle = arrangements.normal_deg(self.clock, thing, other, frame)
-            if angle is None or angle <= arrangements.steepest_deg():
+            if angle is None or angle <= most:
                 return UNBOUND
             told.append(f"the {self.clock.called(other)} {angle:.0f}° off straight up")
         return (
             f"what touched the {self.clock.called(thing)} at the {self.text} pushed it from the "
-            f"side or from above ({', '.join(told)}; {arrangements.steepest_deg():.0f}° or less bears)"
+            f"side or from above ({', '.join(told)}; {most:.0f}° or less bears)"
         )
 
     def _hollow(self) -> str:
-        """What is known of the shapes of the movable things that the segment's object is kept at."""
+        """What is known of the shapes of what the segment's object touches at both borders."""
         found = arrangements.kept(self.clock, self.text)
         unknown = any(body in self.clock.measured.shapeless for body in found)
         return "whose shape is not known" if unknown else "which has a hollow"

@@ -29,7 +29,7 @@ class Reach:
 
     @property
     def told_mm(self) -> int:
-        """The distance in whole millimetres, as it is told: rounded up, so that contacts are within."""
+        """The distance in whole millimetres, as it is told: rounded up, so that it bounds."""
         return round(upward(1000.0 * self.distance_m))
 
     @property

@@ -77,9 +77,7 @@ class Briefs:
         text = self.sentences.tell(predicate, arguments, self.clock, mood=mood)
         return self._kept(text, (predicate, arguments, mood), reason)
 
-    def _kept(
-        self, text: str, told: tuple[str, Sequence[str], str], reason: Reason | None
-    ) -> str:
+    def _kept(self, text: str, told: tuple[str, Sequence[str], str], reason: Reason | None) -> str:
         if not text or UNBOUND in text:
             return text
         if text not in self.claims:
@@ -153,7 +151,6 @@ class Briefs:
             lost = sum(last - first for first, last in gaps) / self.clock.rate_hz
             spans = [f"{len(gaps)} times, for {lost:.2f} s in all"]
         return f"the {self.clock.called(body)} {was} not tracked {_listed(spans)}"
-
 
     def clauses(self, nodes: Sequence[Reason]) -> list[str]:
         """What is said of nodes, each once; contacts of two bodies at both borders are one.
