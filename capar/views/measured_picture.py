@@ -10,7 +10,7 @@ import numpy as np
 
 from capar.views.lettering import Span, shortened, width_in
 from capar.views.painter import CONTACT, FAINT, INK, QUIET, SPEED, UNNAMED, colour_of
-from capar.views.panels import Panel, Row
+from capar.views.panels import Mark, Panel, Row
 from capar.views.picture import save
 
 if TYPE_CHECKING:
@@ -202,8 +202,12 @@ def _panel(axes: "Axes", panel: Panel, chosen: Span, span_s: tuple[float, float]
         axes.axhline(limit.value, color=LIMIT, linewidth=0.9, linestyle=(0, (4, 2)), zorder=2.5)
     _limits(axes, panel, low, high)
     for mark in panel.marks:
-        axes.plot([mark.time], [mark.value], "o", color=MARK, markersize=5, zorder=4)
-        _mark(axes, mark.time, mark.value, mark.label, span_s, (low, high))
+        axes.plot(
+            [mark.time], [mark.value], "o", color=MARK, markersize=5, zorder=4, clip_on=False
+        )
+        beside = [other.value for other in panel.marks if other.time == mark.time]
+        lowest = len(beside) > 1 and mark.value == min(beside) and mark.value < max(beside)
+        _mark(axes, mark, span_s, (low, high), below=lowest)
     _bars(axes, panel, low, high)
     _caption(axes, panel)
 
@@ -286,18 +290,19 @@ def _limits(axes: "Axes", panel: Panel, low: float, high: float) -> None:
 
 def _mark(
     axes: "Axes",
-    time: float,
-    value: float,
-    label: str,
+    mark: Mark,
     span_s: tuple[float, float],
     range_: tuple[float, float],
+    *,
+    below: bool,
 ) -> None:
+    """The number of a mark beside it; below the mark where another one is above."""
     low, high = range_
-    right = time > span_s[0] + 0.85 * (span_s[1] - span_s[0])
-    upper = value < low + 0.75 * (high - low)
+    right = mark.time > span_s[0] + 0.85 * (span_s[1] - span_s[0])
+    upper = mark.value < low + 0.75 * (high - low) and not below
     axes.annotate(
-        label,
-        (time, value),
+        mark.label,
+        (mark.time, mark.value),
         xytext=(-5 if right else 5, 3 if upper else -3),
         textcoords="offset points",
         fontsize=8.5,

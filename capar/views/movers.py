@@ -79,7 +79,8 @@ def mover_stretches(
         ways: dict[str, list[int]] = defaultdict(list)
         touching = _touching(frames.values())
         for frame, movers in sorted(frames.items()):
-            for words in {_words(each, touching) for each in movers}:
+            moving = _movers(movers) - touching
+            for words in {_words(*each, moving=moving) for each in movers}:
                 ways[words].append(frame)
         for words, held in sorted(ways.items(), key=lambda way: (-len(way[1]), way[0])):
             share = round(100.0 * len(held) / len(frames))
@@ -88,10 +89,10 @@ def mover_stretches(
     return tuple(found)
 
 
-def _words(mover: tuple[str, str], touching: Collection[str]) -> str:
-    """What a mover does at a time, to stand after the thing."""
-    how, who = mover
-    return ("touched by {0}" if who in touching else WORDS[how]).format(f"the {spoken(who)}")
+def _words(how: str, who: str, *, moving: Collection[str]) -> str:
+    """What a mover does at a time, to stand after the thing: of those that touch it some move it."""
+    moves = who in moving or how in WITHOUT_MOVER
+    return (WORDS[how] if moves else "touched by {0}").format(f"the {spoken(who)}")
 
 
 def _moved(

@@ -7,6 +7,9 @@ from jaxtyping import Float
 
 from capar.views.lettering import Span
 
+EDGE = 0.05
+"""Which part of the room above is left where curves go on beyond what is shown [1]."""
+
 PADDING = 0.15
 """Room above and below what a panel shows, as a share of it [1]."""
 
@@ -93,4 +96,5 @@ class Panel:
         known = [min(value, self.highest) for value in values if np.isfinite(value)]
         low, high = min(known, default=0.0), max(known, default=1.0)
         room = PADDING * ((high - low) or abs(high) or 1.0)
-        return low - room, high + room
+        cut_off = high == self.highest
+        return low - room, high + room * (EDGE if cut_off else 1.0)

@@ -108,6 +108,7 @@ PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
     **dict.fromkeys((*NAMES.values(), *NEAR, *NEAR.values()), (_APART,)),
     **dict.fromkeys(("contact_at", "touched_before", "near_before", "takes", "lets_go"), (_APART,)),
     **dict.fromkeys(("no_contact", "uncounted"), ((Measure.DISTANCE, (2, 3)),)),
+    "parted_from": ((Measure.DISTANCE, (THING, 2)),),
     "newly_met": ((Measure.DISTANCE, (THING, 1)),),
     "support": ((Measure.DISTANCE, (THING, 1)), _HELD),
     "met_gently": ((Measure.CLOSING, (END, 1)),),

@@ -128,7 +128,7 @@ class Argument:
         """Where the border of an event stands, if not at its frame, which is the sixth argument."""
         frame = self.clock.frames[self.beside[0]][int(self.text)]
         told = self.clock.at(frame)
-        return "" if told == self.clock.at(int(self.beside[5])) else f", which counts at {told}"
+        return "" if told == self.clock.at(int(self.beside[5])) else f", and truly came down at {told}"
 
     def _reach(self) -> str:
         """Up to which distance the second and the third argument count as touching."""
@@ -394,7 +394,7 @@ class Argument:
         if span is None:
             return "its start and its end" * (form in ("segment", "motion"))
         if form in ("motion", "distance", "ended"):
-            span = self.clock.motion(self.beside[0], span)
+            span = self.clock.displacement(self.beside[0], span)
         if form in ("segment", "motion"):
             return f"{self.clock.at(span[0])} and {self.clock.at(span[1])}"
         moved = self._moved(self.beside[0], span)

@@ -107,7 +107,8 @@ class Briefs:
 
         What the segment's own reasons, below the top, tell of the same contact, is told alike.
         """
-        pairs = merged_contacts([*top.walk(), *reason.walk()], self.clock)
+        pairs = merged_contacts(list(reason.walk()), self.clock)
+        pairs |= merged_contacts(list(top.walk()), self.clock)
         for each in _resting_on([reason], set()):
             if each.atom.startswith(CLEAR):
                 continue  # what decides against a name is what the thing did
@@ -258,9 +259,9 @@ def summary(
     fresh = [each for each in against if each.though or each.clause not in clauses]
     same = [each for each in against if each not in fresh and each.failing == 1]
     alike = [name for each in same for name in each.names]
-    apart = bool(generals and own) and all(each.weak for each in fresh)
+    apart = bool(generals and own) and not alike and all(each.weak for each in fresh)
     fresh = [] if apart else fresh
-    beside = [*alike, f"just {_listed(generals, 'or')}"] if apart else alike
+    beside = [f"just {_listed(generals, 'or')}"] if apart else alike
     other = f", and not {_listed(beside, 'or')}" * bool(beside)
     told = f"{name}{other}, because "
     if apart:

@@ -144,7 +144,7 @@ def test_every_quantity_is_claimed_by_some_clause_and_has_a_panel() -> None:
 
 
 FURNITURE = re.compile(
-    r"[A-Z]\w+(?:, and not(?: just)? [\w, ]+)?, because |[Nn]ot \w+(?:, \w+)*(?:,? or \w+)?|"
+    r"the rules say so|[A-Z]\w+(?:, and not(?: just)? [\w, ]+)?, because |[Nn]ot \w+(?:, \w+)*(?:,? or \w+)?|"
     r", though|, because |Also, |For this, |, and at the end|"
     r"The shape of the [\w ]+ is a stand-in \([^)]*\): when it touches is known only roughly\.|"
     r"(?:Contact is counted within|The) \d+ mm(?: \([^)]*\))?(?:,? (?:and )?\d+ mm \([^)]*\))*"
@@ -155,8 +155,11 @@ bodies count as touching, which stands in the panels of their distances."""
 
 
 @pytest.mark.parametrize("name", STORIES)
-def test_whatever_a_summary_says_is_a_claim_that_is_drawn(name: str) -> None:
+def test_whatever_a_summary_says_is_a_claim_that_is_drawn(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Each clause has a panel or a row of bars, and nothing is said but clauses."""
+    monkeypatch.setattr("capar.pipelines.measured_series.SAMPLES", 2)  # distances take long
     story = told(name)
     for explanation in story.explanations:
         known = Recording(story.seen, shown_span(story.seen, explanation))

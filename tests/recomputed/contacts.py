@@ -108,7 +108,7 @@ def no_support(known: Known, other: str, what: str, hand: str) -> bool:
 
 
 FORMS = (
-    (rf"the {NAME} still touched the {NAME} at {TIME}", touched),
+    (rf"the {NAME} left the {NAME} at {TIME}", touched),
     (rf"no relation of the {NAME} with the {NAME} counted at {TIME}", uncounted),
     (rf"the {NAME} touched the {NAME} at {TIME}", touched),
     (rf"the {NAME} did not touch the {NAME} at {TIME}", not_touched),
@@ -118,12 +118,15 @@ FORMS = (
         ended_within,
     ),
     (rf"contact of the {NAME} with the {NAME} was measured from {TIME} to {TIME}", measured),
-    (rf"the {NAME} began to touch the {NAME} at {TIME}, which counts at {TIME}", counts),
+    (
+        rf"the {NAME} began to touch the {NAME} at {TIME}, and truly came down at {TIME}",
+        counts,
+    ),
     (rf"the {NAME} began to touch the {NAME} at {TIME}", begins),
     (
-        rf"the {NAME} had hold of the {NAME}: it moved at some time in their contact, which "
-        rf"began at {TIME}",
-        possessed,
+        rf"the {NAME} counts as held by the {NAME} in the contact that began at {TIME}, as it moves "
+        "at some time in that",
+        lambda known, thing, hand, at: possessed(known, hand, thing, at),
     ),
     (rf"the {NAME} moved in the contact with the {NAME} that began at {TIME}", moved_in_contact),
     (
