@@ -8,7 +8,7 @@ from capar_rules.explain.arrangements import untracked
 from capar_rules.explain.claims import ANY, Claim, Stretches, claim, resting_on
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
-from capar_rules.explain.contrasts import Contrast
+from capar_rules.explain.contrasts import MOST_NAMES, MOST_TOLD, Contrast
 from capar_rules.explain.formatting import UNBOUND
 from capar_rules.explain.reaches import Between
 from capar_rules.explain.reason import Reason
@@ -258,9 +258,10 @@ def summary(
     ]
     fresh = [each for each in against if each.though or each.clause not in clauses]
     same = [each for each in against if each not in fresh and each.failing == 1]
-    alike = [name for each in same for name in each.names]
+    alike = [name for each in same for name in each.names][:MOST_NAMES]
     apart = bool(generals and own) and not alike and all(each.weak for each in fresh)
-    fresh = [] if apart else fresh
+    fresh = [] if apart else [each for each in fresh if each.by_features or not each.weak]
+    fresh = fresh[: max(MOST_TOLD - len(alike), sum(bool(each.though) for each in fresh))]
     beside = [f"just {_listed(generals, 'or')}"] if apart else alike
     other = f", and not {_listed(beside, 'or')}" * bool(beside)
     told = f"{name}{other}, because "
