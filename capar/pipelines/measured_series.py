@@ -424,11 +424,25 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         "mm/s",
         (known.curve(MILLI * paces(poses.smooth, rate, limits)[0]),),
         (Limit(slow, f"may be at rest below {slow:.0f} mm/s"),),
-        bars=known.bars(Resting, ee=name),
-        bars_label=f"counts as at rest; a rest lasts {least:.2f} s or more",
+        bars=_free_rests(known, name) if since else known.bars(Resting, ee=name),
+        bars_label=f"at rest for {least:.2f} s or more, touching nothing"
+        if since
+        else f"counts as at rest; a rest lasts {least:.2f} s or more",
         highest=FAST * slow,
         lost=known.lost(name),
         span_s=(known.at(known.span[0]), known.at(known.span[1])) if since else None,
+    )
+
+
+def _free_rests(known: Recording, name: str) -> tuple[Span, ...]:
+    """Rests of an end-effector that are long enough and in which it touches nothing."""
+    least = constants()["rest_ms"] / MILLI
+    met = known.bars(Touching, body=name)
+    return tuple(
+        rest
+        for rest in known.bars(Resting, ee=name)
+        if rest.end_s - rest.start_s >= least
+        and not any(one.start_s <= rest.end_s and one.end_s >= rest.start_s for one in met)
     )
 
 

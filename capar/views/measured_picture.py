@@ -202,9 +202,7 @@ def _panel(axes: "Axes", panel: Panel, chosen: Span, span_s: tuple[float, float]
         axes.axhline(limit.value, color=LIMIT, linewidth=0.9, linestyle=(0, (4, 2)), zorder=2.5)
     _limits(axes, panel, low, high)
     for mark in panel.marks:
-        axes.plot(
-            [mark.time], [mark.value], "o", color=MARK, markersize=5, zorder=4, clip_on=False
-        )
+        axes.plot([mark.time], [mark.value], "o", color=MARK, markersize=5, zorder=4, clip_on=False)
         beside = [other.value for other in panel.marks if other.time == mark.time]
         lowest = len(beside) > 1 and mark.value == min(beside) and mark.value < max(beside)
         _mark(axes, mark, span_s, (low, high), below=lowest)

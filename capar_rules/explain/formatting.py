@@ -128,7 +128,8 @@ class Argument:
         """Where the border of an event stands, if not at its frame, which is the sixth argument."""
         frame = self.clock.frames[self.beside[0]][int(self.text)]
         told = self.clock.at(frame)
-        return "" if told == self.clock.at(int(self.beside[5])) else f", and truly came down at {told}"
+        began = self.clock.at(int(self.beside[5]))
+        return "" if told == began else f", and truly came down at {told}"
 
     def _reach(self) -> str:
         """Up to which distance the second and the third argument count as touching."""

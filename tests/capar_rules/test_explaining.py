@@ -194,7 +194,7 @@ def test_every_leaf_with_a_time_is_linked_to_its_frames(name: str) -> None:
 @pytest.mark.parametrize("name", STORIES)
 def test_the_summary_names_the_segment_and_its_reasons(name: str) -> None:
     for known, found in zip(told(name).known, told(name).explanations, strict=True):
-        opening = rf"{known.segment.name}(, and not(?: just)? \w+(, \w+)*( or \w+)?)?, because "
+        opening = rf"{known.segment.name}(, and not(?: just)? \w+(, \w+)*(,? or \w+)?)?, because "
         assert re.match(opening, found.summary)
         assert found.summary.endswith(".")
 

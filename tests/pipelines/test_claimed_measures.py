@@ -144,7 +144,8 @@ def test_every_quantity_is_claimed_by_some_clause_and_has_a_panel() -> None:
 
 
 FURNITURE = re.compile(
-    r"the rules say so|[A-Z]\w+(?:, and not(?: just)? [\w, ]+)?, because |[Nn]ot \w+(?:, \w+)*(?:,? or \w+)?|"
+    r"the rules say so|[A-Z]\w+(?:, and not(?: just)? [\w, ]+)?, because |"
+    r"[Nn]ot \w+(?:, \w+)*(?:,? or \w+)?|"
     r", though|, because |Also, |For this, |, and at the end|"
     r"The shape of the [\w ]+ is a stand-in \([^)]*\): when it touches is known only roughly\.|"
     r"(?:Contact is counted within|The) \d+ mm(?: \([^)]*\))?(?:,? (?:and )?\d+ mm \([^)]*\))*"

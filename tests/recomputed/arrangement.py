@@ -196,8 +196,8 @@ FORMS = (
     (rf"the {NAME} went ahead of the {NAME} \([^)]*; 45° or less is ahead\)", went_ahead),
     (rf"the {NAME} went after the {NAME} \([^)]*; 135° or more after\)", went_after),
     (
-        rf"the {NAME} came down by 5 cm or more and did not move again in the hand \(the {NAME} touched "
-        rf"it until {TIME}; at the end it touched [\w ]+\)",
+        rf"the {NAME} came down by 5 cm or more and did not move again in the hand \(the {NAME} "
+        rf"touched it until {TIME}; at the end it touched [\w ]+\)",
         came_to_lie,
     ),
 )

@@ -170,8 +170,20 @@ def came_elsewhere(known: Known, what: str, far: str, unit: str, at: str) -> boo
 
 
 def never_rested(known: Known, what: str, at: str) -> bool:
+    """No rest before lasts so long while it touches nothing."""
     first = known.segment.first
-    return near(first, known.at(at)) and not any(each.first < first for each in known.resting(what))
+    touched = [each for each in known.of(Touching) if each.body == name(what)]
+    rests = [
+        each
+        for each in known.resting(what)
+        if each.last <= first and each.last - each.first >= 0.4 * known.rate
+    ]
+    free = [
+        each
+        for each in rests
+        if not any(met.first <= each.last and met.last >= each.first for met in touched)
+    ]
+    return near(first, known.at(at)) and not free
 
 
 def came_to_rest(known: Known, what: str, at: str) -> bool:

@@ -591,7 +591,6 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"came down by {LENGTH} or more", came_down),
     (rf"the {NAME} touched it until {TIME}", lambda known, body, hand, at: held_until(
         known, known.segment.objects[0], hand, at)),
-    (rf"\((?:which pushed|pushing) it {DEGREES} off straight up; {DEGREES} or less bears\)", pushed_at),
     (rf"{DEGREES} off straight up; {DEGREES} or less bears", pushed_at),
     (rf"\({LENGTH} above its top and (?:{LENGTH} aside of it|over it)\)", above),
     (r"\((\d+) % of it(?: at \d+\.\d\d s)?\)", shared),
