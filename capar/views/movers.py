@@ -90,7 +90,7 @@ def mover_stretches(
 
 
 def _words(how: str, who: str, *, moving: Collection[str]) -> str:
-    """What a mover does at a time, to stand after the thing: of those that touch it some move it."""
+    """What a mover does at a time, to stand after the thing; some merely touch it."""
     moves = who in moving or how in WITHOUT_MOVER
     return (WORDS[how] if moves else "touched by {0}").format(f"the {spoken(who)}")
 

@@ -171,6 +171,9 @@ class Shortfall:
 
 NOTHING = Shortfall("", 0.0)
 
+FAR_OFF = 0.02
+"""How near what did nothing of the kind is taken to come to it: it is told if nothing else is [1]."""
+
 
 def not_up(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     """Why a displacement is no rise."""
@@ -185,7 +188,8 @@ def not_down(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
 def _not_steep(aside_mm: float, height_mm: float, verb: str, sense: str) -> Shortfall:
     least = constants()["height_mm"]
     if height_mm < LEVEL_MM:
-        return NOTHING
+        plain = "rise" if sense == "up" else "sink"
+        return Shortfall(f"did not {plain} ({length(least / 1000.0)} or more count)", FAR_OFF)
     if height_mm < least:
         far, wanted = _apart(height_mm, least)
         return Shortfall(f"{verb} by {far}, less than the {wanted} that count", height_mm / least)

@@ -124,7 +124,8 @@ FORMS = (
     ),
     (rf"the {NAME} began to touch the {NAME} at {TIME}", begins),
     (
-        rf"the {NAME} counts as held by the {NAME} in the contact that began at {TIME}, as it moves "
+        rf"the {NAME} counts as held by the {NAME} in the contact that began at {TIME}, as it "
+        "moves "
         "at some time in that",
         lambda known, thing, hand, at: possessed(known, hand, thing, at),
     ),

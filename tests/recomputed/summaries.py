@@ -201,6 +201,12 @@ def too_low(known: Known, body: str, verb: str, far: str, asked: str) -> bool:
     return _is(height, far) and 0.0 < height < 0.05 + SMOOTHED_M and _asked("height_mm", asked)
 
 
+def not_steep(known: Known, body: str, verb: str, asked: str) -> bool:
+    """It ended no higher, or no lower, than can be seen."""
+    height = float(_shifted(known, body)[2]) * (1.0 if verb == "rise" else -1.0)
+    return height < 0.005 + SMOOTHED_M and _asked("height_mm", asked)
+
+
 def too_far_aside(known: Known, body: str, aside: str, sense: str, rise: str) -> bool:
     """It went further to the side than up or down."""
     way = _shifted(known, body)
@@ -553,6 +559,7 @@ def turned_back_so_often(known: Known, _: str, count: str) -> bool:
 
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"(rose|sank) by {LENGTH}, less than the {LENGTH} that count", too_low),
+    (rf"did not (rise|sink) \({LENGTH} or more count\)", not_steep),
     (rf"went further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
     (rf"went further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
     (rf"went {LENGTH} to the side, less than the {LENGTH} that count", too_little_aside),
