@@ -39,6 +39,7 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "awaited", 1, ""): "no story has hands that meet; the scenes of hands have",
     ("", "uncounted", 4, ""): "no story has a contact that ends within the border it is read at",
     ("", "event", 6, "turns"): "no named segment of a story begins or ends where the hand turns",
+    ("", "parted_from", 3, ""): "no story takes a thing off a support and puts it there again",
     ("", "walks", 1, ""): "no story has feet; tests/test_whole_bodies.py has",
 }
 """Templates of what holds that no explanation tells, and why."""

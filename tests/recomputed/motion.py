@@ -6,7 +6,7 @@ import numpy as np
 from motions.rolling import CAN
 
 from capar.model.facts import Flies, Lengthwise, Rolls, Swings, Touching
-from recomputed.known import NAME, ROUNDED, TIME, Known, near
+from recomputed.known import NAME, ROUNDED, TIME, Known, name, near
 
 GONE_M, GONE_RAD = 0.009, 0.07
 """What has left its place is further away than this [m], [rad]."""

@@ -295,7 +295,7 @@ def not_put_down(known: Known, _: str) -> bool:
 
 FORMS = (
     (
-        rf"the {NAME} (?:started from rest|left [\w ]+)",
+        rf"the {NAME} (?:started from rest|left the [\w ]+)",
         lambda known, what: name(what) == known.segment.objects[0] and started_from_rest(known),
     ),
     (rf"the {NAME} did not slide on anything from start to end", not_slid),
