@@ -123,7 +123,6 @@ PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
     "comes_to_lie": ((Measure.HEIGHT, (THING,)), _HELD),
     "from_rest": ((Measure.DISTANCE, (THING, LEFT)),),
     "free": ((Measure.DISTANCE, (THING, MET)),),
-    "slides": ((Measure.DISTANCE, (THING, 1)), (Measure.BORNE, (THING, 1))),
     "on": ((Measure.BORNE, (2, 3)),),
     "under_palm": ((Measure.BORNE, (END, THING)),),
     **dict.fromkeys(("opens", "closes", "swept"), ((Measure.OPENING, (1,)),)),

@@ -77,7 +77,7 @@ def spread(metres: float) -> str:
 
 
 def upward(value: float, digits: int = 0) -> float:
-    """The least number of so many decimals that a value does not exceed, but for its last digit."""
+    """The least number of so many decimals that a value does not exceed."""
     scale = 10.0**digits
     return math.ceil(round(value * scale, 6)) / scale
 
@@ -172,7 +172,7 @@ class Shortfall:
 NOTHING = Shortfall("", 0.0)
 
 FAR_OFF = 0.02
-"""How near what did nothing of the kind is taken to come to it: it is told if nothing else is [1]."""
+"""How near what did nothing of the kind is taken to come: it is told if nothing else is [1]."""
 
 
 def not_up(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:

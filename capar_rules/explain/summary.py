@@ -114,7 +114,7 @@ class Briefs:
                 continue  # what decides against a name is what the thing did
             predicate, arguments = _parsed(each.atom)
             told = self.tell(predicate, arguments, "despite", each)
-            if each.atom in pairs:
+            if each.atom in pairs and _rank(each):
                 told = self.tell(*pairs[each.atom], "brief")
             told = told or (self.of(each) if each.leading and _rank(each) else "")
             if told and UNBOUND not in told:
