@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 
 from capar.model.facts import Fact, Link, Tag
-from capar.pipelines.measured_series import Recording
+from capar.pipelines.shown_recording import Recording
 from capar.views.lettering import Span
 from capar.views.movers import MoverStretches
 from capar.views.panels import Row

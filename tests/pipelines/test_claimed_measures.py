@@ -17,7 +17,7 @@ from capar.pipelines.claimed_measures import (
 )
 from capar.pipelines.explanation import Explained
 from capar.pipelines.measured_rows import claimed_rows
-from capar.pipelines.measured_series import Recording
+from capar.pipelines.shown_recording import Recording
 from capar.views.movers import mover_lines
 from capar.views.panels import Mark, Panel
 from capar_rules.explain.claims import ARRANGED, FORMS, PREDICATES, Measure
@@ -160,7 +160,7 @@ def test_whatever_a_summary_says_is_a_claim_that_is_drawn(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Each clause has a panel or a row of bars, and nothing is said but clauses."""
-    monkeypatch.setattr("capar.pipelines.measured_series.SAMPLES", 2)  # distances take long
+    monkeypatch.setattr("capar.pipelines.measured_relations.SAMPLES", 2)  # distances take long
     story = told(name)
     for explanation in story.explanations:
         known = Recording(story.seen, shown_span(story.seen, explanation))
