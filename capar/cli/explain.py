@@ -137,7 +137,8 @@ def _print_notices(
 ) -> None:
     from capar.views.notices import reservation_lines
 
-    for line in reservation_lines(_notices(segments, seen, told)):
+    names = seen.explainer.measured.names
+    for line in reservation_lines(_notices(segments, seen, told), names):
         typer.echo(line)
 
 

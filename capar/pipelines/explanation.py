@@ -18,7 +18,7 @@ from capar.model.segment_address import SegmentAddress, find_segment
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.explain.clock import Leans, Measured, Places, TurnsBack, Ways
+from capar_rules.explain.clock import Heights, Leans, Measured, Places, TurnsBack, Ways
 from capar_rules.explain.explanation import Explainer, Explanation
 from capar_rules.explain.quantities import Over, Turns, Way
 from capar_rules.explain.reaches import Between, Reach
@@ -149,10 +149,21 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
             if notice.code == "stand-in-shape"
             for body in notice.bodies
         },
+        heights=_heights(measurements),
         over=_over(measurements),
         lost=_lost(observation, measurements),
         unrested=_unrested(observation),
     )
+
+
+def _heights(measurements: Measurements) -> Heights:
+    """How low and how high bodies were."""
+
+    def extremes(name: str, first: int, last: int) -> tuple[float, float]:
+        height = measurements.bodies.named(name).middles[first : last + 1, 2]
+        return float(np.nanmin(height) - height[0]), float(np.nanmax(height) - height[0])
+
+    return extremes
 
 
 def _over(measurements: Measurements) -> Places:
@@ -238,16 +249,18 @@ def _turns(measurements: Measurements) -> TurnsBack:
 def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
     """Up to which distance, and of what, two bodies are counted as touching, in either order."""
     return {
-        names: Reach(max(pair.touch_m, pair.release_m), _measured_between(pair))
+        names: Reach(max(pair.touch_m, pair.release_m), _measured_between(pair, measurements))
         for pair in measurements.calibration.pairs
         if pair.found is not Found.NEVER
         for names in ((pair.first, pair.second), (pair.second, pair.first))
     }
 
 
-def _measured_between(pair: PairCalibration) -> Between:
+def _measured_between(pair: PairCalibration, measurements: Measurements) -> Between:
     if not pair.pivots:
-        return Between.SURFACES
+        bodies = (measurements.bodies.named(name) for name in (pair.first, pair.second))
+        shaped = all(body.shape is not None for body in bodies)
+        return Between.SURFACES if shaped else Between.POINT
     stated = pair.found in (Found.STATED, Found.TOLERANCE)
     return Between.ORIGINS if stated else Between.POINTS
 

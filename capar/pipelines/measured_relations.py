@@ -55,10 +55,11 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
         for frame in (told.first, told.last)
         if math.isfinite(at_borders.get(frame, math.nan))
     ]
+    between = _between(pair, shaped=all(known.body(name).shape for name in (one, other)))
     rough = [name for name in (one, other) if name in known.seen.explainer.measured.stand_ins]
     about = f" (shape of the {known.called(rough[0])}: a stand-in)" if rough else ""
     return Panel(
-        f"{known.called(one)} to {known.called(other)}: distance of {_between(pair)}{about}",
+        f"{known.called(one)} to {known.called(other)}: distance of {between}{about}",
         "mm",
         (Curve(frames / known.rate, apart),),
         tuple(Limit(value, label.format(upward(value))) for value, label in limits.items()),
@@ -75,9 +76,9 @@ def _gap(millimetres: float) -> str:
     return f"{millimetres:.0f} mm" if millimetres < 100.0 else length(millimetres / MILLI)
 
 
-def _between(pair: PairCalibration) -> str:
+def _between(pair: PairCalibration, *, shaped: bool) -> str:
     if not pair.pivots:
-        return "their surfaces"
+        return "their surfaces" if shaped else "the surface of one and the origin of the other"
     return "their origins" if pair.found is Found.STATED else "a point of each"
 
 

@@ -134,12 +134,20 @@ def _height(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     up = height - height[told.first]
     end = float(up[told.last])
     rounded = np.diff(np.rint(MILLI * height[[told.first, told.last]]))[0] / MILLI
+    marks = [Mark(known.at(told.last), CENTI * end, length(abs(rounded)))]
+    inside, least = up[told.first : told.last + 1], constants()["height_mm"] / MILLI
+    if "course" in forms and np.nanmax(inside) - max(end, 0.0) >= least:
+        top = told.first + int(np.nanargmax(inside))
+        marks.append(Mark(known.at(top), CENTI * float(up[top]), f"{spread(up[top])} at most"))
+    if "course" in forms and min(end, 0.0) - np.nanmin(inside) >= least:
+        low = told.first + int(np.nanargmin(inside))
+        marks.append(Mark(known.at(low), CENTI * float(up[low]), f"{spread(-up[low])} at most"))
     return Panel(
         f"{known.called(name)}: height above where it was at {known.at(told.first):.2f} s",
         "cm",
         (known.curve(CENTI * up),),
         (_limit("height_mm", "up: {} or more"), _limit("height_mm", "down: {} or more", sign=-1.0)),
-        (Mark(known.at(told.last), CENTI * end, length(abs(rounded))),),
+        tuple(marks),
     )
 
 
@@ -172,6 +180,13 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         far = math.degrees(thresholds_of(measurements.calibration).lean_rad)
         limits.append(Limit(far, f"far over is {far:.0f}° or more"))
         most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
+        bound = upward(float(angle[most]))
+        marks.append(Mark(known.at(most), float(angle[most]), f"{bound:.0f}° at most"))
+    inside = angle[told.first : told.last + 1]
+    most = told.first + int(np.nanargmax(inside))
+    change_deg = math.degrees(constants()["turn_mrad"] / MILLI)
+    beyond = float(np.nanmax(inside)) - max(inside[0], inside[-1]) >= change_deg
+    if "not_leant" in forms and beyond and "far_over" not in forms:
         bound = upward(float(angle[most]))
         marks.append(Mark(known.at(most), float(angle[most]), f"{bound:.0f}° at most"))
     if forms & {"lean", "not_leant"}:

@@ -152,8 +152,13 @@ def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
     told = [share.removesuffix(OF_TIME) for share in told[:-1]] + told[-1:]
     others = len(shares) - len(most)
     told += [f"by {others} other{'s' * (others > 1)}"] if others else []
+    alike_at = sum(len(_movers(found) - touching) > 1 for found in frames.values())
+    word = "both" if len(shares) == 2 else "several"
+    percent = round(100.0 * alike_at / len(frames))
+    both = f" ({percent} % of it {word} at once)" * bool(percent)
+    both = both if len(shares) > 1 and " throughout" not in " ".join(told) else ""
     remainder = _remainder(movers.values(), it="they were" if is_plural(thing) else "it was")
-    return f"The {thing} {was} moved {joined(told)}{remainder}{beside}."
+    return f"The {thing} {was} moved {joined(told)}{both}{remainder}{beside}."
 
 
 def _movers(found: Collection[tuple[str, str]]) -> set[str]:

@@ -1,7 +1,7 @@
 """Notices as people read them: one a line, many alike as one, reservations by themselves."""
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from capar.model.notices import KINDS, Notice
 from kb.lexicon.english import joined, number
@@ -38,9 +38,18 @@ def note_lines(notices: Iterable[Notice], *, most: int = MOST) -> tuple[str, ...
     )
 
 
-def reservation_lines(notices: Sequence[Notice]) -> tuple[str, ...]:
-    """What follows a text whose reservations those are: a gap, a heading, and the notes."""
-    lines = (line for code, group in _by_code(notices).items() for line in _plain(code, group))
+def reservation_lines(
+    notices: Sequence[Notice], names: Mapping[str, str] | None = None
+) -> tuple[str, ...]:
+    """What follows a text whose reservations those are: a gap, a heading, and the notes.
+
+    Args:
+        notices: The reservations.
+        names: What the text calls bodies, where it is not their name.
+    """
+    called = names or {}
+    groups = _by_code(notices).items()
+    lines = (line for code, group in groups for line in _plain(code, group, called))
     return ("", HEADING, *lines) if notices else ()
 
 
@@ -51,10 +60,10 @@ def _by_code(notices: Iterable[Notice]) -> dict[str, list[Notice]]:
     return alike
 
 
-def _plain(code: str, group: Sequence[Notice]) -> Iterable[str]:
+def _plain(code: str, group: Sequence[Notice], called: Mapping[str, str]) -> Iterable[str]:
     """What notices of one code mean to whoever reads what was done."""
     if KINDS[code].plain:
-        names = [*dict.fromkeys(name for notice in group for name in _about(notice))]
+        names = [*dict.fromkeys(name for notice in group for name in _about(notice, called))]
         left = len(names) - NAMED
         others = f"{number(left)} other{'s' if left > 1 else ''}"
         named = joined([*names[:NAMED], others] if left > 0 else names)
@@ -62,10 +71,10 @@ def _plain(code: str, group: Sequence[Notice]) -> Iterable[str]:
     return [f"note: {text}" for text in _texts(code, group, most=1)]
 
 
-def _about(notice: Notice) -> Iterable[str]:
+def _about(notice: Notice, called: Mapping[str, str]) -> Iterable[str]:
     """What it is about, as people call it: each of its bodies, or one with another."""
-    called = [f"the {_called(body)}" for body in notice.bodies]
-    return called if KINDS[notice.code].listed else (" with ".join(called),)
+    names = [f"the {called.get(body) or _called(body)}" for body in notice.bodies]
+    return names if KINDS[notice.code].listed else (" with ".join(names),)
 
 
 def _called(body: str) -> str:

@@ -11,6 +11,9 @@ from capar_rules.explain.clock import Clock
 AHEAD_DEG, AFTER_DEG = 45.0, 135.0
 """Up to which angle a thing goes ahead of what moves it, and from which on after it [degrees]."""
 
+MOVED_ON = 0.5
+"""How near what came down and was moved on is taken to come to being put down [1]."""
+
 
 @dataclass(frozen=True, slots=True)
 class Bearing:
@@ -111,20 +114,53 @@ def left(clock: Clock, segment: str) -> tuple[str, ...]:
 
 def laid(clock: Clock, segment: str) -> str:
     """How a thing that came down was left there; empty where its hold is not known."""
+    span, hand = clock.span(segment), hand_of(segment)
+    held = _held(clock, segment)
+    if span is None or held is None:
+        return ""
+    alone = ", touching no other tracked object" * (not met_at(clock, segment, "end"))
+    let_go = f"the {clock.called(hand)} let go of it at {clock.at(held[1])}"
+    return f"was not moved again before {let_go}{alone}"
+
+
+def not_laid(clock: Clock, segment: str) -> str:
+    """Why a thing was not put down; empty where that is not known."""
     span, thing, hand = clock.span(segment), clock.objects.get(segment, ""), hand_of(segment)
+    places, held = clock.measured.places, _held(clock, segment)
+    if span is None or held is None:
+        return ""
+    start, end = (places.get((thing, frame)) for frame in span)
+    if start is None or end is None:
+        return ""
+    if start[2] - end[2] < constants()["height_mm"]:
+        x, y, z = (after - before for before, after in zip(start, end, strict=True))
+        return quantities.not_down(x, y, z).text
+    moves = clock.measured.moving.get(thing, ())
+    again = [first for first, last in moves if last > span[1] and first < held[1]]
+    if not again:
+        return ""
+    when = clock.at(max(min(again), span[1]))
+    until = f"the {clock.called(hand)} held it until {clock.at(held[1])}"
+    return f"was moved on in the hand from {when} on ({until})"
+
+
+def nearly_laid(clock: Clock, segment: str) -> float:
+    """How near a thing that was not put down came to that: a share of what is asked for."""
+    span, thing = clock.span(segment), clock.objects.get(segment, "")
+    ends = [clock.measured.places.get((thing, frame)) for frame in span or ()]
+    if len(ends) < 2 or ends[0] is None or ends[1] is None:
+        return 0.0
+    share = (ends[0][2] - ends[1][2]) / constants()["height_mm"]
+    return max(share, quantities.FAR_OFF) if share < 1.0 else MOVED_ON
+
+
+def _held(clock: Clock, segment: str) -> tuple[int, int] | None:
+    """The contact of a segment's end-effector with its thing at the segment's end."""
+    span, thing = clock.span(segment), clock.objects.get(segment, "")
     if span is None:
-        return ""
-    least = quantities.length(constants()["height_mm"] / 1000.0)
-    held = clock.measured.contact(hand, thing, span[1], in_frames(times().merge_ms, clock.rate_hz))
-    touched = [f"the {clock.called(other)}" for other in met_at(clock, segment, "end")]
-    others = " and ".join(touched) if touched else "no other tracked object"
-    if held is None:
-        return ""
-    return (
-        f"came down by {least} or more and did not move again in the hand (the "
-        f"{clock.called(hand)} touched it until {clock.at(held[1])}; at the end it touched "
-        f"{others})"
-    )
+        return None
+    merge = in_frames(times().merge_ms, clock.rate_hz)
+    return clock.measured.contact(hand_of(segment), thing, span[1], merge)
 
 
 def lying(clock: Clock, how: str, body: str, other: str, frame: int) -> int | None:

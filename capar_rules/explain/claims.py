@@ -108,7 +108,7 @@ PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
     **dict.fromkeys((*NAMES.values(), *NEAR, *NEAR.values()), (_APART,)),
     **dict.fromkeys(("contact_at", "touched_before", "near_before", "takes", "lets_go"), (_APART,)),
     **dict.fromkeys(("no_contact", "uncounted"), ((Measure.DISTANCE, (2, 3)),)),
-    "parted_from": ((Measure.DISTANCE, (THING, 2)),),
+    "pours": ((Measure.LEAN, (THING,)), (Measure.ABOVE, (THING, 1))),
     "newly_met": ((Measure.DISTANCE, (THING, 1)),),
     "support": ((Measure.DISTANCE, (THING, 1)), _HELD),
     "met_gently": ((Measure.CLOSING, (END, 1)),),
@@ -251,6 +251,14 @@ def _since(clock: Clock, frame: int) -> list[int]:
     thing, hand = clock.objects.get(clock.own, ""), arrangements.hand_of(clock.own)
     met = clock.measured.contact(hand, thing, frame, 1)
     return [met[0]] if met else []
+
+
+def joined_claims(text: str, claims: Sequence[Claim]) -> Claim:
+    """The claim of a clause that says as much as several."""
+    quantities = dict.fromkeys(one for each in claims for one in each.quantities)
+    stretches = dict.fromkeys(one for each in claims for one in each.stretches)
+    frames = tuple(frame for each in claims for frame in each.frames)
+    return Claim(text, tuple(quantities), frames, tuple(stretches))
 
 
 def resting_on(found: Claim, reason: Reason) -> Claim:

@@ -38,6 +38,9 @@ Leans = Callable[[str, int, int], float]
 TurnsBack = Callable[[str, int, int], Turns]
 """How often a body turned back between two frames."""
 
+Heights = Callable[[str, int, int], tuple[float, float]]
+"""How low and how high a body was between two frames, from where it was at the first [m]."""
+
 Places = Callable[[str, str, int], Over]
 """Where a body is to another one at a frame."""
 
@@ -114,6 +117,9 @@ class Measured:
 
     lies: Mapping[tuple[str, str, str], Sequence[Frames]] = field(default_factory=dict)
     """First and last frames of how a body lies to another, by that and the two bodies."""
+
+    heights: Heights | None = None
+    """How low and how high bodies were; None where that is not known."""
 
     over: Places | None = None
     """Where a body is to another one; None where that is not known."""

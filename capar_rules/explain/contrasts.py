@@ -153,7 +153,7 @@ def contrasts(
     indirect = list(_nearest([each for each in features if not each.direct], most=1))
     direct = list(_nearest([each for each in features if each.direct], most=1))
     supported = list(_supported(base, derived, atoms, clock, tell))
-    return tuple(supported + own or indirect or direct)
+    return tuple(supported + own + direct + indirect)
 
 
 def _nearest(

@@ -30,13 +30,16 @@ SHORT_WAYS: Mapping[str, Callable[[int, int, int], Shortfall]] = {
 BEARINGS = ("ahead", "after", "not_ahead", "not_after")
 """Formats of a segment that tell at which angle its thing goes to the end-effector."""
 
-SHORTFALLS = (*SHORT_WAYS, "not_turned", "not_leant", "not_ahead", "not_after")
+OF_ACTS = ("not_ahead", "not_after", "not_laid")
+"""Formats of a segment that tell what it falls short of."""
+
+SHORTFALLS = (*SHORT_WAYS, "not_turned", "not_leant", *OF_ACTS)
 """... and of how an angle does."""
 
 OF_BODIES = (
     "way",
     *SHIFTS,
-    *(form for form in SHORTFALLS if form not in BEARINGS),
+    *(form for form in SHORTFALLS if form not in OF_ACTS),
     "spread",
     "lean",
     "far_over",
@@ -102,6 +105,14 @@ class Argument:
             "borne": self._borne,
             "unborne": self._unborne,
             "palm": self._palm,
+            "poised": self._poised,
+            "until": lambda: self._contact("start", 1),
+            "since": lambda: self._contact("end", 0),
+            "on": self._on,
+            "ended_at": self._ended_at,
+            "placed_end": self._placed_end,
+            "not_laid": lambda: arrangements.not_laid(self.clock, self.text) or UNBOUND,
+            "least_height": lambda: quantities.length(constants()["height_mm"] / 1000.0),
             "hollow": self._hollow,
             "not_at_rest": self._not_at_rest,
             "rest_s": self._rest_s,
@@ -129,7 +140,7 @@ class Argument:
         frame = self.clock.frames[self.beside[0]][int(self.text)]
         told = self.clock.at(frame)
         began = self.clock.at(int(self.beside[5]))
-        return "" if told == began else f", and truly came down at {told}"
+        return "" if told == began else f", and settled there by {told}"
 
     def _reach(self) -> str:
         """Up to which distance the second and the third argument count as touching."""
@@ -184,13 +195,19 @@ class Argument:
             return UNBOUND
         hand, thing = self.clock.called(self._hand), self.clock.about(self.text)
         line = f"to the level line from the {hand} to the middle of the {thing}"
-        ahead, after = f"{AHEAD_DEG:.0f}° or less is ahead", f"{AFTER_DEG:.0f}° or more after it"
+        ahead, after = f"{AHEAD_DEG:.0f}° or less is ahead", f"{AFTER_DEG:.0f}° or more is after"
         if form.startswith("not_"):
-            return f" at {found.offset_deg:.0f}° {line} from start to end ({ahead} of it, {after})"
+            whither = f"neither after the {hand} nor ahead of it, but"
+            if found.offset_deg >= AFTER_DEG:
+                whither = f"after the {hand}, and not ahead of it,"
+            if found.offset_deg <= AHEAD_DEG:
+                whither = f"ahead of the {hand}, and not after it,"
+            angle = f"{found.offset_deg:.0f}°"
+            return f" {whither} at {angle} {line} ({after}, {ahead})"
         if form == "ahead" and found.by_press:
             line = f"to the direction in which the {hand} pressed it"
             return f" (at {found.press_deg:.0f}° {line}; {ahead})"
-        asked = ahead if form == "ahead" else after.removesuffix(" it")
+        asked = ahead if form == "ahead" else after
         return f" (at {found.offset_deg:.0f}° {line}; {asked})"
 
     def _kept(self) -> str:
@@ -204,7 +221,8 @@ class Argument:
         over = self.clock.measured.over
         if over is None or frame is None:
             return UNBOUND
-        return quantities.over(over(self.beside[3], self.beside[4], frame))
+        other = self.clock.called(self.beside[4])
+        return quantities.over(over(self.beside[3], self.beside[4], frame), other)
 
     def _share(self) -> str:
         """Which share of the fourth argument is in the fifth at the side that this one names."""
@@ -231,6 +249,53 @@ class Argument:
         most = arrangements.steepest_deg()
         return f" (pushing it {angle:.0f}° off straight up; {most:.0f}° or less bears)"
 
+    def _poised(self) -> str:
+        """Where the segment's object is to this one at the start."""
+        frame, thing = arrangements.frame_of(self.clock, self.beside[0], "start"), ""
+        thing = self.clock.objects.get(self.beside[0], "")
+        if frame is None:
+            return UNBOUND
+        for how, told in (("above", "above"), ("inside", "inside")):
+            if arrangements.lying(self.clock, how, thing, self.text, frame) is not None:
+                return told
+        reach = self.clock.measured.reaches.get((thing, self.text))
+        if self.clock.measured.near(thing, self.text) and reach is not None:
+            return f"within {reach.told_mm} mm of"
+        return "in contact with"
+
+    def _contact(self, side: str, end: int) -> str:
+        """When the contact of the two bodies beside this that there is at a side begins or ends."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], side)
+        found = None if frame is None else self._met_near(self.beside[1], self.beside[2], frame)
+        return UNBOUND if found is None else self.clock.at(found[end])
+
+    def _met_near(self, one: str, other: str, frame: int) -> tuple[int, int] | None:
+        merge = in_frames(times().merge_ms, self.clock.rate_hz)
+        return self.clock.measured.contact(one, other, frame, merge)
+
+    def _on(self) -> str:
+        """Until when the contact that there is at the start lasts, if longer than a border."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], "start")
+        found = None if frame is None else self._met_near(self.beside[1], self.beside[2], frame)
+        late = found and found[1] - (frame or 0) >= in_frames(times().merge_ms, self.clock.rate_hz)
+        return f" and until {self.clock.at(found[1])}," if found and late else ""
+
+    def _ended_at(self) -> str:
+        """When the contact ends that began at this frame, of the fourth argument and the fifth."""
+        first = int(self.text)
+        pair = (self.beside[3], self.beside[4])
+        contacts = self.clock.measured.contacts
+        found = [*contacts.get(pair, ()), *contacts.get(pair[::-1], ())]
+        last = next((end for begin, end in found if begin == first), None)
+        tick = self.clock.frames[self.beside[0]][int(self.beside[1])]
+        return self.clock.at(tick if last is None else last)
+
+    def _placed_end(self) -> str:
+        """Where the border of the end of a contact stands, if not where that ends."""
+        ended = Argument(self.beside[5], self.beside, self.clock)._ended_at()
+        told = self.clock.at(self.clock.frames[self.beside[0]][int(self.text)])
+        return "" if told == ended else f"; the border is at {told}"
+
     def _palm(self) -> str:
         """From which side the segment's object pushes the end-effector that lies on it."""
         span, thing = self.clock.span(self.text), self.clock.objects.get(self.text, "")
@@ -254,10 +319,12 @@ class Argument:
             angle = arrangements.normal_deg(self.clock, thing, other, frame)
             if angle is None or angle <= most:
                 return UNBOUND
-            told.append(f"the {self.clock.called(other)} {angle:.0f}° off straight up")
+            side = "from above" if angle >= 180.0 - most else "from the side"
+            called = self.clock.called(other)
+            told.append(f"the {called} was met {side}, {angle:.0f}° off straight up")
         return (
-            f"what touched the {self.clock.called(thing)} at the {self.text} pushed it from the "
-            f"side or from above ({', '.join(told)}; {most:.0f}° or less bears)"
+            f"nothing bore the {self.clock.called(thing)} at the {self.text}: {', '.join(told)} "
+            f"({most:.0f}° or less bears)"
         )
 
     def _hollow(self) -> str:
@@ -312,7 +379,8 @@ class Argument:
             return UNBOUND
         if not self._earlier_postures():
             start = self.clock.at(span[0])
-            return f"had no rest of {self._rest_s()} or more, touching nothing, before {start}"
+            none = f"no rest of {self._rest_s()} or more, touching nothing, before {start}"
+            return f"had no posture to resume ({none})"
         found = self._nearest_posture()
         if found is None or found[0] < near:
             return UNBOUND
@@ -456,6 +524,8 @@ class Argument:
 
     def nearness(self, form: str) -> float:
         """How near the body came to what such a format says that it falls short of."""
+        if form == "not_laid":
+            return arrangements.nearly_laid(self.clock, self.text)
         if form in BEARINGS:
             found = arrangements.bearing(self.clock, self.text)
             if found is None:
@@ -474,7 +544,8 @@ class Argument:
                 return quantities.NOTHING
             if form == "not_turned":
                 return quantities.not_turned(last[1] - first[1])
-            return quantities.not_leant(first[0], last[0], self._posture_of(body))
+            most = round(1000.0 * known.leans(body, *span)) if known.leans else 0
+            return quantities.not_leant(first[0], last[0], most, self._posture_of(body))
         start, end = (known.places.get((body, frame)) for frame in span)
         if start is None or end is None:
             return quantities.NOTHING
@@ -489,7 +560,8 @@ class Argument:
             if start is None or end is None:
                 return "elsewhere"
             shift = [after - before for before, after in zip(start, end, strict=True)]
-            return SHIFTS[form](*shift)
+            told = SHIFTS[form](*shift)
+            return told + self._extremes(body, span, shift[2]) * (form == "course")
         first, last = (known.postures.get((body, frame)) for frame in span)
         if first is None or last is None:
             return "by an unknown angle"
@@ -498,6 +570,18 @@ class Argument:
             return f"{quantities.degrees(last[1] - first[1])} about the vertical{least}"
         change = f", a change of {quantities.change(first[0], last[0])}"
         return f"{_leant(first[0], last[0])} from {self._posture_of(body)}{change}{least}"
+
+    def _extremes(self, body: str, span: tuple[int, int], end_mm: int) -> str:
+        """How high or low a body was in between, where that is much beyond its start and end."""
+        if self.clock.measured.heights is None:
+            return ""
+        low, high = (1000.0 * each for each in self.clock.measured.heights(body, *span))
+        found = []
+        if high - max(end_mm, 0) >= constants()["height_mm"]:
+            found.append(f"up to {quantities.spread(high / 1000.0)} higher")
+        if min(end_mm, 0) - low >= constants()["height_mm"]:
+            found.append(f"down to {quantities.spread(-low / 1000.0)} lower")
+        return f" ({' and '.join(found)} in between)" if found else ""
 
     def _far_over(self, body: str, span: tuple[int, int]) -> str:
         """How far a body leant, and from where on that is far over."""

@@ -141,9 +141,9 @@ class Over:
     """Whether the other has a shape; its top and its shadow are its origin else."""
 
 
-def over(at: Over) -> str:
-    """How far a body is above another, in brackets."""
-    top = "its top" if at.shaped else "its origin"
+def over(at: Over, other: str) -> str:
+    """How far a body is above another one of that name, in brackets."""
+    top = f"the {'top' if at.shaped else 'origin'} of the {other}"
     aside = "over it" if at.aside_m < 0.0005 else f"{length(at.aside_m)} aside of it"
     return f" ({length(at.rise_m)} above {top} and {aside})"
 
@@ -170,6 +170,9 @@ class Shortfall:
 
 
 NOTHING = Shortfall("", 0.0)
+
+NEAR_BY = 0.9
+"""How near what leant over and back is taken to come to a tilting [1]."""
 
 FAR_OFF = 0.02
 """How near what did nothing of the kind is taken to come: it is told if nothing else is [1]."""
@@ -233,14 +236,17 @@ def not_turned(turned_mrad: int) -> Shortfall:
     return Shortfall(text, abs(turned_mrad) / least)
 
 
-def not_leant(before_mrad: int, after_mrad: int, posture: str) -> Shortfall:
-    """Why a change of lean is no tilting."""
+def not_leant(before_mrad: int, after_mrad: int, most_mrad: int, posture: str) -> Shortfall:
+    """Why a change of lean is no tilting; near to one is what leant much more in between."""
     least, change = constants()["turn_mrad"], abs(after_mrad - before_mrad)
+    beyond = most_mrad - max(before_mrad, after_mrad) >= least
+    bound = upward(math.degrees(most_mrad / 1000.0))
+    most = f" ({bound:.0f}° at most in between)" * beyond
     text = (
         f"leant {degrees(before_mrad)} at the start and {degrees(after_mrad)} at the end from "
-        f"{posture}, a change of less than {degrees(least)}"
+        f"{posture}{most}, a change of less than {degrees(least)}"
     )
-    return Shortfall(text, change / least)
+    return Shortfall(text, max(change / least, NEAR_BY * beyond))
 
 
 def _apart(one_mm: float, other_mm: float) -> tuple[str, str]:

@@ -13,10 +13,11 @@ class Between(StrEnum):
     """What of two bodies a distance is between, as a sentence says it."""
 
     SURFACES = "between their surfaces"
-    ORIGINS = "between their origins, as not both have a shape"
+    POINT = "between the surface of the one and the origin of the other, of which no shape is known"
+    ORIGINS = "between their origins, as not both shapes are known"
     POINTS = (
-        "between a point of each body, estimated from how the two moved together, and not between "
-        "their origins, as not both have a shape"
+        "between a point of each body, estimated from how the two moved together, as not both "
+        "shapes are known"
     )
 
 

@@ -1,11 +1,19 @@
 """The summary of an explanation: the name's conditions, and what decided against neighbours."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from capar_rules.engine.syntax import split_arguments
 from capar_rules.explain.arrangements import untracked
-from capar_rules.explain.claims import ANY, Claim, Stretches, claim, resting_on
+from capar_rules.explain.claims import (
+    ANY,
+    Claim,
+    Stretches,
+    claim,
+    joined_claims,
+    resting_on,
+)
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.contrasts import MOST_NAMES, MOST_TOLD, Contrast
@@ -171,7 +179,24 @@ class Briefs:
                 told.append(self.tell(*pair, "brief"))
             elif not (courses and each.atom.startswith("moved(")):
                 told.append(self.of(each))
-        return _at_both([each for each in dict.fromkeys(told) if each and UNBOUND not in each])
+        told = [each for each in dict.fromkeys(told) if each and UNBOUND not in each]
+        return self._of_both(_at_both(told))
+
+    def _of_both(self, clauses: Sequence[str]) -> list[str]:
+        """The clauses, of which two that differ in the side, and in numbers of it, are one."""
+        joined: dict[str, list[str]] = {}
+        for clause in clauses:
+            found = _SIDED.fullmatch(clause)
+            joined.setdefault(found[1] if found else clause, []).append(clause)
+        out = []
+        for begin, parts in joined.items():
+            text = " and ".join([parts[0], *(part.removeprefix(begin) for part in parts[1:])])
+            text = text.replace(" and  at ", " and at ")
+            if len(parts) > 1:
+                claims = [self.claims[part] for part in parts if part in self.claims]
+                self.claims[text] = joined_claims(text, claims)
+            out.append(text)
+        return out
 
     def _within_border(self, reason: Reason, nodes: Iterable[Reason]) -> bool:
         """Whether it is a contact at a time within a border, at which the two are told about."""
@@ -257,7 +282,10 @@ def summary(
         for each in against
     ]
     fresh = [each for each in against if each.though or each.clause not in clauses]
+    if any(not each.by_features for each in fresh):
+        fresh = [each for each in fresh if not each.by_features or each.though]
     same = [each for each in against if each not in fresh and each.failing == 1]
+    same = [each for each in same if each.clause in clauses]
     alike = [name for each in same for name in each.names][:MOST_NAMES]
     apart = bool(generals and own) and not alike and all(each.weak for each in fresh)
     fresh = [] if apart else [each for each in fresh if each.by_features or not each.weak]
@@ -393,6 +421,9 @@ def _by_subject(clauses: Sequence[str], subjects: Sequence[str]) -> str:
         return f"{'; '.join(told[:-1])}; and {told[-1]}"
     return _listed(told)
 
+
+_SIDED = re.compile(r"(.*) at the (?:start|end) \([^()]*\)")
+"""A clause that tells a number of one side."""
 
 _START, _END, _BOTH = " at the start", " at the end", " and at the end"
 

@@ -194,10 +194,10 @@ FORMS = (
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),
     (rf"the {NAME} dipped into the {NAME} at the segment's (start|end)", dipped),
     (rf"the {NAME} went ahead of the {NAME} \([^)]*; 45° or less is ahead\)", went_ahead),
-    (rf"the {NAME} went after the {NAME} \([^)]*; 135° or more after\)", went_after),
+    (rf"the {NAME} went after the {NAME} \([^)]*; 135° or more is after\)", went_after),
     (
-        rf"the {NAME} came down by 5 cm or more and did not move again in the hand \(the {NAME} "
-        rf"touched it until {TIME}; at the end it touched [\w ]+\)",
+        rf"the {NAME} was not moved again before the {NAME} let go of it at {TIME}"
+        r"(?:, touching no other tracked object)?",
         came_to_lie,
     ),
 )

@@ -367,7 +367,7 @@ def flew_on(known: Known) -> bool:
 
 
 FORMS = (
-    (rf"the {NAME} went further than a thing is shifted that is merely gripped", went_further),
+    (rf"the {NAME} went further than a hand shifts a thing by gripping it", went_further),
     (rf"the {NAME} (began|ceased) to be moved to and fro at {TIME}", swing_border),
     (rf"the {NAME} was gone at once", gone_at_once),
     (rf"the path of the {NAME} became level, or ceased to be, at {TIME}", levelled),
@@ -418,7 +418,8 @@ FORMS = (
         came_elsewhere,
     ),
     (
-        rf"the {NAME} had no rest of 0\.40 s or more, touching nothing, before {TIME}",
+        rf"the {NAME} had no posture to resume \(no rest of 0\.40 s or more, touching nothing, "
+        rf"before {TIME}\)",
         never_rested,
     ),
     (rf"the {NAME} began to move at {TIME}", left_rest),

@@ -169,6 +169,14 @@ def ended(known: Known, body: str, rise: str, sense: str, aside: str) -> bool:
     return level and (_is(beside, aside) if aside else beside <= 2 * SMOOTHED_M)
 
 
+def been_beyond(known: Known, body: str, up: str, high: str, _: str, low: str, deep: str) -> bool:
+    """At some frame it is so much higher, or lower, than at the start, and never more."""
+    height = known.track(body, known.segment.first, known.segment.last)[:, 2]
+    rise, fall = float(height.max() - height[0]), float(height[0] - height.min())
+    above = not up or _is(rise, high)
+    return above and all(_is(fall, told) for told in (low, deep) if told)
+
+
 def _asked(name: str, told: str) -> bool:
     """Whether a length or an angle is the threshold of that name, as the rules have it."""
     text = rule_file("thresholds.lp").read_text(encoding="utf-8")
@@ -244,8 +252,12 @@ def turned_too_little(known: Known, body: str, told: str, asked: str) -> bool:
     return spun(known, body, told) and _asked("turn_mrad", asked) and float(told) <= float(asked)
 
 
-def leant_too_little(known: Known, body: str, before: str, after: str, asked: str) -> bool:
+def leant_too_little(
+    known: Known, body: str, before: str, after: str, most: str, asked: str
+) -> bool:
     change = abs(float(before) - float(after))
+    if most and not far_over(known, body, before, after, most, "30"):
+        return False
     return (
         leant(known, body, before, after)
         and _asked("turn_mrad", asked)
@@ -495,20 +507,38 @@ def pushed_at(known: Known, _: str, angle: str, asked: str) -> bool:
     return float(asked) == 45.0 and any(abs(found - float(angle)) <= 0.6 for found in angles)
 
 
-def above(known: Known, body: str, rise: str, aside: str) -> bool:
-    """So high above the top of another thing of the segment, and so far aside of its box."""
-    for other in _bodies(known):
-        if other == body or known.shape_of(other) is None:
-            continue
-        for frame in (known.segment.first, known.segment.last):
-            points, middle = known.points(other, frame), known.middle(body, frame)
-            beyond = np.maximum(points.min(axis=0) - middle, middle - points.max(axis=0))[:2]
-            away = float(np.hypot(*np.maximum(beyond, 0.0)))
-            if _is(float(middle[2] - points[:, 2].max()), rise) and (
-                _is(away, aside) if aside else away < SMOOTHED_M
-            ):
-                return True
+def above(known: Known, body: str, rise: str, other: str, aside: str) -> bool:
+    """So high above the top of the other thing, and so far aside of its box."""
+    for frame in (known.segment.first, known.segment.last):
+        points, middle = known.points(other, frame), known.middle(body, frame)
+        beyond = np.maximum(points.min(axis=0) - middle, middle - points.max(axis=0))[:2]
+        away = float(np.hypot(*np.maximum(beyond, 0.0)))
+        if _is(float(middle[2] - points[:, 2].max()), rise) and (
+            _is(away, aside) if aside else away < SMOOTHED_M
+        ):
+            return True
     return False
+
+
+def moved_on(known: Known, body: str, at: str) -> bool:
+    """It moves then, at the segment's end or later."""
+    later = known.at(at) >= known.segment.last - 1
+    return later and any(covers(each, known.at(at)) for each in known.moving(body))
+
+
+def again(known: Known, body: str, other: str, until_: str, since: str) -> bool:
+    """A contact of the two ends then, and a later one begins then."""
+    met = known.touching(body, other) or known.touching(other, body)
+    return any(near(each.last, known.at(until_)) for each in met) and any(
+        near(each.first, known.at(since)) for each in met
+    )
+
+
+def touched_until(known: Known, body: str, other: str, at: str, until_: str) -> bool:
+    """A contact of the two at the start lasts until then."""
+    met = known.touching(body, other) or known.touching(other, body)
+    lasts = any(near(each.last, known.at(until_)) for each in met)
+    return lasts and starts(known, body, at)
 
 
 def shared(known: Known, body: str, share: str) -> bool:
@@ -567,8 +597,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"went only {LENGTH}, less than the {LENGTH} of a slide", too_short_to_slide),
     (rf"turned by {DEGREES} about the vertical, less than {DEGREES}", turned_too_little),
     (
-        rf"leant {DEGREES} at the start and {DEGREES} at the end {POSTURE}, a change of less "
-        rf"than {DEGREES}",
+        rf"leant {DEGREES} at the start and {DEGREES} at the end {POSTURE}(?: \({DEGREES} at most "
+        rf"in between\))?, a change of less than {DEGREES}",
         leant_too_little,
     ),
     (rf"met the {NAME} at (\d+) mm/s, less than the 1000 mm/s of a blow", met_gently),
@@ -593,15 +623,27 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         rf"of rest the nearest; within {LENGTH} it is back there\)",
         rested_there,
     ),
-    (rf"had no rest of {TIME} or more, touching nothing, before {TIME}", never_rested),
+    (rf"no rest of {TIME} or more, touching nothing, before {TIME}", never_rested),
     (rf"rested from {TIME} on", rests_from),
-    (rf"came down by {LENGTH} or more", came_down),
-    (rf"the {NAME} touched it until {TIME}", lambda known, body, hand, at: held_until(
+    (rf"\({LENGTH} or more down count\)", came_down),
+    (rf"the {NAME} let go of it at {TIME}", lambda known, body, hand, at: held_until(
         known, known.segment.objects[0], hand, at)),
+    (rf"the {NAME} held it until {TIME}", lambda known, body, hand, at: held_until(
+        known, known.segment.objects[0], hand, at)),
+    (rf"was moved on in the hand from {TIME} on", moved_on),
+    (
+        rf"(?:of|touched) the {NAME} at the start \(until {TIME}\) and again at the end \(from "
+        rf"{TIME}\)",
+        again,
+    ),
+    (rf"the {NAME} at the start \({TIME}\) and until {TIME}", touched_until),
+    (rf"{DEGREES} off straight up \({DEGREES} or less bears\)", pushed_at),
     (rf"{DEGREES} off straight up; {DEGREES} or less bears", pushed_at),
-    (rf"\({LENGTH} above its top and (?:{LENGTH} aside of it|over it)\)", above),
+    (rf"\({LENGTH} above the top of the {NAME} and (?:{LENGTH} aside of it|over it)\)", above),
     (r"\((\d+) % of it(?: at \d+\.\d\d s)?\)", shared),
     (rf"ended {LENGTH} from where it began", ended_away),
+    (rf"\((?:(up) to {LENGTH} higher|(down) to {LENGTH} lower)(?: and down to {LENGTH} lower)? in "
+     r"between\)", been_beyond),
     (rf"ended {LENGTH} (higher|lower)(?: and {LENGTH} to the side)?", ended),
     (rf"ended (at the same height)() and {LENGTH} to the side",
      lambda known, body, _, sense, aside: ended(known, body, "", sense, aside)),
@@ -626,9 +668,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         turned_in_all,
     ),
     (
-        rf"at {DEGREES} to the level line from the {NAME} to the middle of the {NAME}(?:; | from "
-        r"start to end \()(?:45° or less is ahead of it, |45° or less is ahead)?(?:135° or more "
-        r"after(?: it)?)?",
+        rf"at {DEGREES} to the level line from the {NAME} to the middle of the {NAME}(?:; | \()"
+        r"(?:135° or more is after)?(?:, )?(?:45° or less is ahead)?",
         goes_at,
     ),
     (
