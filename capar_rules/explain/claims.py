@@ -111,6 +111,7 @@ PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
     "pours": ((Measure.LEAN, (THING,)), (Measure.ABOVE, (THING, 1))),
     "newly_met": ((Measure.DISTANCE, (THING, 1)),),
     "support": ((Measure.DISTANCE, (THING, 1)), _HELD),
+    "strikes_with": ((Measure.CLOSING, (THING, 1)),),
     "met_gently": ((Measure.CLOSING, (END, 1)),),
     "met_hard": ((Measure.CLOSING, (END, 1)),),
     "rests": ((Measure.SPEED, (0,)),),

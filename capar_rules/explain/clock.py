@@ -8,6 +8,7 @@ from functools import cached_property
 
 from capar.model.body_names import is_plural
 from capar.model.facts import (
+    ClosingSpeed,
     ContactNormal,
     Displaced,
     Fact,
@@ -112,6 +113,9 @@ class Measured:
     """By two bodies and the first frame of their contact: how far its normal points up, from the
     second to the first [1/1000]."""
 
+    closing: Mapping[Pair, Mapping[int, int]] = field(default_factory=dict)
+    """By two bodies and the first frame of their contact: how fast they came together [mm/s]."""
+
     presses: Mapping[Pair, Mapping[int, Pressing]] = field(default_factory=dict)
     """The same: which way the first presses aside on the second [1/1000]."""
 
@@ -205,6 +209,7 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
     contacts: dict[Pair, list[Frames]] = defaultdict(list)
     normals: dict[Pair, dict[int, int]] = defaultdict(dict)
     presses: dict[Pair, dict[int, Pressing]] = defaultdict(dict)
+    closing: dict[Pair, dict[int, int]] = defaultdict(dict)
     lies: dict[tuple[str, str, str], list[Frames]] = defaultdict(list)
     shapeless: set[str] = set()
     for fact in facts:
@@ -213,6 +218,8 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
                 contacts[fact.body, fact.other].append((fact.first, fact.last))
             case ContactNormal():
                 normals[fact.body, fact.other][fact.first] = fact.permille
+            case ClosingSpeed():
+                closing[fact.body, fact.other][fact.first] = fact.speed
             case PressDirection():
                 presses[fact.body, fact.other][fact.first] = fact.x, fact.y
             case Lies():
@@ -222,7 +229,7 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
             case _:
                 pass
     found = replace(known, contacts=contacts, normals=normals, presses=presses, lies=lies)
-    return replace(found, shapeless=frozenset(shapeless))
+    return replace(found, closing=closing, shapeless=frozenset(shapeless))
 
 
 @dataclass(frozen=True)

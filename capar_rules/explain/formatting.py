@@ -106,6 +106,7 @@ class Argument:
             "unborne": self._unborne,
             "palm": self._palm,
             "poised": self._poised,
+            "struck": self._struck,
             "until": lambda: self._contact("start", 1),
             "since": lambda: self._contact("end", 0),
             "on": self._on,
@@ -248,6 +249,18 @@ class Argument:
             return UNBOUND
         most = arrangements.steepest_deg()
         return f" (pushing it {angle:.0f}° off straight up; {most:.0f}° or less bears)"
+
+    def _struck(self) -> str:
+        """How fast the segment's object met this one at the end."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], "end")
+        thing = self.clock.objects.get(self.beside[0], "")
+        speeds = self.clock.measured.closing.get((thing, self.text), {})
+        merge = in_frames(times().merge_ms, self.clock.rate_hz)
+        near = [(abs(first - frame), first) for first in speeds] if frame is not None else []
+        if not near or min(near)[0] > merge:
+            return UNBOUND
+        blow = f"a blow has {constants()['blow_mm_s']} mm/s or more"
+        return f"at {speeds[min(near)[1]]} mm/s ({blow})"
 
     def _poised(self) -> str:
         """Where the segment's object is to this one at the start."""

@@ -282,14 +282,16 @@ def summary(
         for each in against
     ]
     fresh = [each for each in against if each.though or each.clause not in clauses]
-    if any(not each.by_features for each in fresh):
-        fresh = [each for each in fresh if not each.by_features or each.though]
     same = [each for each in against if each not in fresh and each.failing == 1]
-    same = [each for each in same if each.clause in clauses]
-    alike = [name for each in same for name in each.names][:MOST_NAMES]
-    apart = bool(generals and own) and not alike and all(each.weak for each in fresh)
-    fresh = [] if apart else [each for each in fresh if each.by_features or not each.weak]
+    alike = [name for each in same for name in each.names if not each.by_features]
+    alike = alike[:MOST_NAMES]
+    apart = bool(generals and own) and not same and all(each.weak for each in fresh)
+    near = [each for each in fresh if not each.by_features and not each.weak]
+    fresh = [] if apart else near or [each for each in fresh if each.by_features]
     fresh = fresh[: max(MOST_TOLD - len(alike), sum(bool(each.though) for each in fresh))]
+    if len(alike) + len(fresh) < MOST_TOLD:
+        more = [name for each in same for name in each.names if each.by_features]
+        alike += more[: MOST_TOLD - len(alike) - len(fresh)]
     beside = [f"just {_listed(generals, 'or')}"] if apart else alike
     other = f", and not {_listed(beside, 'or')}" * bool(beside)
     told = f"{name}{other}, because "

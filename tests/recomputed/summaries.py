@@ -603,6 +603,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"met the {NAME} at (\d+) mm/s, less than the 1000 mm/s of a blow", met_gently),
     (rf"met the {NAME} at (\d+) mm/s, fast enough for a blow \(1000 mm/s\)", met_hard),
+    (rf"met the {NAME} at (\d+) mm/s \(a blow has 1000 mm/s or more\)", met_hard),
     (rf"had come to touch the {NAME} (?:before this, )?at {TIME}", met_first),
     (rf"had the {NAME} already, and let go of it (?:after this, )?at {TIME}", let_go),
     (rf"took the {NAME} (?:before this, )?at {TIME}", took),
