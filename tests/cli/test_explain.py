@@ -50,7 +50,7 @@ def test_a_summary_leads_with_the_name_s_own_conditions_and_tells_no_mere_border
     assert "table" not in told[1]
     assert "rested" not in told[1]
     own = "because the mug touched the head throughout, leant "
-    assert told[3].startswith(f"Drink, and not Raise, Tilt, or Lift, {own}")
+    assert told[3].startswith(f"Drink, and not Tilt, Raise, or Lift, {own}")
     assert told[3].index(" leant ") < told[3].index(" moved ")
 
 

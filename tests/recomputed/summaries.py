@@ -627,9 +627,9 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"no rest of {TIME} or more, touching nothing, before {TIME}", never_rested),
     (rf"rested from {TIME} on", rests_from),
     (rf"\({LENGTH} or more down count\)", came_down),
-    (rf"the {NAME} let go of it at {TIME}", lambda known, body, hand, at: held_until(
+    (rf"before the {NAME} let go of it at {TIME}", lambda known, body, hand, at: held_until(
         known, known.segment.objects[0], hand, at)),
-    (rf"the {NAME} held it until {TIME}", lambda known, body, hand, at: held_until(
+    (rf"\(the {NAME} held it until {TIME}", lambda known, body, hand, at: held_until(
         known, known.segment.objects[0], hand, at)),
     (rf"was moved on in the hand from {TIME} on", moved_on),
     (
