@@ -112,6 +112,7 @@ def _notices(
     segments: "Sequence[Segment]", seen: "Explained", told: "Sequence[Explanation]" = ()
 ) -> "tuple[Notice, ...]":
     """Reservations about the bodies of segments, and about what touches there by explanations."""
+    from capar.model.notices import KINDS
     from capar.views.notices import reservations
     from capar_rules.engine.syntax import split_arguments
 
@@ -124,7 +125,11 @@ def _notices(
     )
     others = {segment.ee for segment in seen.observation.segments}
     about |= {body for atom in contacts for body in split_arguments(atom)[:2]} - others
-    return reservations(seen.observation.notices, about=about)
+    return tuple(
+        notice
+        for notice in reservations(seen.observation.notices, about=about)
+        if not KINDS[notice.code].of_pair or about >= {*notice.bodies}
+    )
 
 
 def _print_notices(
@@ -132,7 +137,8 @@ def _print_notices(
 ) -> None:
     from capar.views.notices import reservation_lines
 
-    for line in reservation_lines(_notices(segments, seen, told)):
+    names = seen.explainer.measured.names
+    for line in reservation_lines(_notices(segments, seen, told), called=names):
         typer.echo(line)
 
 
@@ -250,14 +256,12 @@ def _draw(told: "list[Explanation]", path: Path) -> None:
 def _plot(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
     from capar.cli._output import written
     from capar.pipelines.claimed_measures import draw_claims
-    from capar.views.movers import mover_lines
 
     if len(told) != 1:
         raise typer.BadParameter(
             "draws one segment: name one, such as right_hand/3.", param_hint="--plot"
         )
     (one,) = told
-    movers = mover_lines(seen.observation, one.ee, one.index, staying=_staying(one))
     with written(path) as draft:
-        draw_claims(seen, one, draft, beside=movers)
+        draw_claims(seen, one, draft, staying=_staying(one))
     typer.echo(f"drew {path}", err=True)

@@ -218,6 +218,9 @@ class NoticeKind:
     fault: bool = False
     """Whether it tells of a fault of the recording, or of what was stated of it."""
 
+    of_pair: bool = False
+    """Whether it bears on nothing but what is told of its two bodies together."""
+
 
 KINDS: Mapping[str, NoticeKind] = {
     "long-gap": NoticeKind(
@@ -257,10 +260,12 @@ KINDS: Mapping[str, NoticeKind] = {
     "pivot-distance": NoticeKind(
         _pivot_distance,
         "pairs that touch by the distance of their origins",
+        of_pair=True,
     ),
     "touch-estimated": NoticeKind(
         _touch_estimated,
         "pairs that touch by a distance estimated from the recording",
+        of_pair=True,
     ),
     "distance-contradicted": NoticeKind(
         lambda each: distance_contradicted(each.bodies, each.fields),

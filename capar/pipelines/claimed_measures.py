@@ -1,16 +1,19 @@
 """What the summary of an explanation claims, as a picture: a panel for each quantity."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
 from capar.model.segment_address import SegmentAddress
 from capar.pipelines.explanation import Explained, segment_named
-from capar.pipelines.measured_series import SERIES, Recording
+from capar.pipelines.measured_rows import claimed_rows, mover_rows
+from capar.pipelines.measured_series import SERIES
+from capar.pipelines.shown_recording import Recording
 from capar.views.lettering import Span
 from capar.views.measured_picture import MeasuredPicture, draw_measured
-from capar.views.panels import Panel
+from capar.views.movers import mover_lines, mover_stretches
+from capar.views.panels import Panel, Row
 from capar.views.rows import kind_of
 from capar_rules.explain.claims import Quantity
 from capar_rules.explain.explanation import Explanation
@@ -18,20 +21,20 @@ from capar_rules.explain.explanation import Explanation
 AROUND_S = 1.0
 """So long before and after the segment is shown [s]."""
 
-FURTHEST_S = 10.0
+FURTHEST_S = 20.0
 """What an explanation tells of longer before or after it is not shown [s]."""
 
 
 def draw_claims(
-    seen: Explained, told: Explanation, path: Path, *, beside: Sequence[str] = ()
+    seen: Explained, told: Explanation, path: Path, *, staying: Collection[str] = ()
 ) -> None:
-    """Draw what a summary claims to a PNG, SVG or PDF file: its quantities over time.
+    """Draw what a summary claims, and what moved what, to a PNG, SVG or PDF file.
 
     Args:
         seen: The capture.
         told: The explanation of one of its segments.
         path: The file, which is overwritten.
-        beside: What else is told of the segment, a line each.
+        staying: Objects whose motion does not count there; nothing is told of what moves them.
     """
     rate = seen.explainer.windows.rate
     first, last = shown_span(seen, told)
@@ -41,14 +44,16 @@ def draw_claims(
         if segment.ee == told.ee
     }
     address = SegmentAddress(told.ee, told.index)
+    about = seen.observation, told.ee, told.index
     title = f"{address}  {told.name}  {told.start_s:.2f} to {told.end_s:.2f} s"
     picture = MeasuredPicture(
         title,
-        "\n".join([told.summary, *beside]),
+        "\n".join([told.summary, *mover_lines(*about, staying=staying)]),
         list(spans.values()),
         spans[told.index],
         measured_panels(seen, told),
         (first / rate, last / rate),
+        measured_rows(seen, told, staying=staying),
     )
     draw_measured(picture, path)
 
@@ -88,3 +93,12 @@ def measured_panels(seen: Explained, told: Explanation) -> tuple[Panel, ...]:
         for quantity, said in forms.items()
     )
     return tuple(panel for panel in found if panel is not None)
+
+
+def measured_rows(
+    seen: Explained, told: Explanation, *, staying: Collection[str] = ()
+) -> tuple[Row, ...]:
+    """A row for what held when, of what the summary and lines of movers say without a number."""
+    known = Recording(seen, shown_span(seen, told))
+    moved = mover_stretches(seen.observation, told.ee, told.index, staying=staying)
+    return (*claimed_rows(known, told.claims), *mover_rows(known, moved))

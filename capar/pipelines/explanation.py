@@ -1,22 +1,26 @@
 """The pipeline from a capture to reasons: observe it, then say why, and why not."""
 
 import re
+from collections import defaultdict
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
+from capar.model import geometry
 from capar.model.body_names import body_names
 from capar.model.calibration import Found, PairCalibration
 from capar.model.capture import Capture
+from capar.model.facts import Moving
 from capar.model.observation import Observation, Segment
 from capar.model.segment_address import SegmentAddress, find_segment
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.explain.clock import Leans, Measured, TurnsBack, Ways
+from capar_rules.explain.clock import Heights, Leans, Measured, Places, TurnsBack, Ways
 from capar_rules.explain.explanation import Explainer, Explanation
-from capar_rules.explain.quantities import Turns, Way
+from capar_rules.explain.quantities import Over, Turns, Way
 from capar_rules.explain.reaches import Between, Reach
 from capar_rules.explain.why_not import Alternative
 from capar_rules.explain.why_not import why_not as alternatives
@@ -24,6 +28,10 @@ from extractors.calibration import thresholds_of
 from extractors.measure import Measurements, measure
 from extractors.motion.leaning import lean
 from extractors.motion.turning_points import most_turns
+from extractors.relations.arrangement import Pair
+
+GAP_S = 0.1
+"""Shorter gaps in a track are not told of [s]."""
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
@@ -141,7 +149,62 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
             if notice.code == "stand-in-shape"
             for body in notice.bodies
         },
+        heights=_heights(measurements),
+        over=_over(measurements),
+        lost=_lost(observation, measurements),
+        unrested=_unrested(observation),
     )
+
+
+def _heights(measurements: Measurements) -> Heights:
+    """How low and how high bodies were."""
+
+    def extremes(name: str, first: int, last: int) -> tuple[float, float]:
+        height = measurements.bodies.named(name).middles[first : last + 1, 2]
+        return float(np.nanmin(height) - height[0]), float(np.nanmax(height) - height[0])
+
+    return extremes
+
+
+def _over(measurements: Measurements) -> Places:
+    """Where bodies are to others at frames."""
+    limits = thresholds_of(measurements.calibration)
+    bodies = measurements.bodies
+
+    @cache
+    def pair(name: str, other: str) -> Pair:
+        return Pair(bodies.named(name), bodies.named(other), limits)
+
+    def at(name: str, other: str, frame: int) -> Over:
+        known = pair(name, other)
+        rise = known.body.middles[frame, 2] - known.other.boxes[1][frame, 2]
+        share, deep = known.shares
+        shaped = known.other.shape is not None
+        aside = float(known.aside[frame])
+        return Over(float(rise), aside, float(share[frame]), float(deep[frame]), shaped)
+
+    return at
+
+
+def _lost(observation: Observation, measurements: Measurements) -> dict[str, list[tuple[int, int]]]:
+    """The gaps in the tracks of bodies, by body."""
+    least = GAP_S * observation.rate_hz
+    bodies = measurements.bodies
+    return {
+        name: [
+            (first, last) for first, last in geometry.runs(body.poses.lost) if last - first >= least
+        ]
+        for name, body in {**bodies.objects, **bodies.sensors}.items()
+    }
+
+
+def _unrested(observation: Observation) -> frozenset[str]:
+    """Objects that move in every frame."""
+    count: dict[str, int] = defaultdict(int)
+    for fact in observation.facts:
+        if isinstance(fact, Moving):
+            count[fact.object] += fact.last - fact.first + 1
+    return frozenset(name for name, moving in count.items() if moving >= observation.frames)
 
 
 def ways(measurements: Measurements) -> Ways:
@@ -186,16 +249,18 @@ def _turns(measurements: Measurements) -> TurnsBack:
 def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
     """Up to which distance, and of what, two bodies are counted as touching, in either order."""
     return {
-        names: Reach(max(pair.touch_m, pair.release_m), _measured_between(pair))
+        names: Reach(max(pair.touch_m, pair.release_m), _measured_between(pair, measurements))
         for pair in measurements.calibration.pairs
         if pair.found is not Found.NEVER
         for names in ((pair.first, pair.second), (pair.second, pair.first))
     }
 
 
-def _measured_between(pair: PairCalibration) -> Between:
+def _measured_between(pair: PairCalibration, measurements: Measurements) -> Between:
     if not pair.pivots:
-        return Between.SURFACES
+        bodies = (measurements.bodies.named(name) for name in (pair.first, pair.second))
+        shaped = all(body.shape is not None for body in bodies)
+        return Between.SURFACES if shaped else Between.POINT
     stated = pair.found in (Found.STATED, Found.TOLERANCE)
     return Between.ORIGINS if stated else Between.POINTS
 

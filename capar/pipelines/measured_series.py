@@ -1,106 +1,36 @@
 """Each quantity that a claim rests on as a panel over time, with its limits and its numbers."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from capar.model.calibration import Found, PairCalibration
-from capar.model.facts import ClosingSpeed, Leans, Moving, Observed, Resting, Swings, Touching
-from capar.pipelines.explanation import Explained
+from capar.model.facts import (
+    Leans,
+    Moving,
+    Opening,
+    Resting,
+    Swings,
+    Touching,
+)
+from capar.pipelines.measured_relations import RELATIONS, Series
+from capar.pipelines.shown_recording import CENTI, MILLI, Recording
 from capar.views.lettering import Span
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
 from capar_rules.explain.claims import Measure, Quantity
-from capar_rules.explain.quantities import LEAST_M, degrees, length, spread
-from extractors.bodies.body_geometry import BodyGeometry
+from capar_rules.explain.quantities import LEAST_M, degrees, length, spread, upward
+from capar_rules.explain.quantities import change as change_of
 from extractors.calibration import thresholds_of
-from extractors.contact.contacts import points_apart
-from extractors.contact.proximity import separation
-from extractors.contact.touch_distances import touchable
-from extractors.motion.impacts import closing_speed
 from extractors.motion.leaning import lean, spin_steps
 from extractors.motion.object_motion import pace_at_rest, paces
 from extractors.motion.turning_points import most_turns
 from extractors.relations.places import turned_and_gone
 from extractors.signals.clock import frame_rate
 
-SAMPLES = 240
-"""At so many frames at most distances of surfaces are measured [1]."""
-
-CLOSE = 5.0
-"""A distance is shown up to so many times what counts as contact: beyond, it only is far [1]."""
-
 FAST = 10.0
 """A speed is shown up to so many times what may be rest [1]."""
-
-MILLI, CENTI = 1000.0, 100.0
-
-
-@dataclass(frozen=True)
-class Recording:
-    """What was measured, and which of its frames are shown."""
-
-    seen: Explained
-    span: tuple[int, int]
-    """First and last frame."""
-
-    @property
-    def frames(self) -> Int[np.ndarray, "shown"]:
-        """The numbers of the shown frames."""
-        return np.arange(self.span[0], self.span[1] + 1)
-
-    @property
-    def times(self) -> Float[np.ndarray, "shown"]:
-        """Their times [s]."""
-        return self.frames / self.rate
-
-    @property
-    def rate(self) -> float:
-        """Frames a second [Hz]."""
-        return self.seen.explainer.windows.rate
-
-    def at(self, frame: int) -> float:
-        """The time of a frame [s]."""
-        return frame / self.rate
-
-    def body(self, name: str) -> BodyGeometry:
-        """The object of a name, or else the sensor."""
-        return self.seen.measurements.bodies.named(name)
-
-    def called(self, name: str) -> str:
-        """A body as sentences call it."""
-        return self.seen.explainer.measured.names.get(name, name.replace("_", " "))
-
-    def curve(self, values: Float[np.ndarray, "frames"], label: str = "") -> Curve:
-        """The shown part of what is known at every frame."""
-        return Curve(self.times, values[self.span[0] : self.span[1] + 1], label)
-
-    def bars(self, kind: type[Observed], **about: str) -> tuple[Span, ...]:
-        """When facts of a kind about certain bodies hold, within what is shown."""
-        first, last = self.span
-        ends = (
-            (fact.ends()[0], fact.ends()[-1])
-            for fact in self.seen.observation.facts
-            if isinstance(fact, kind)
-            and all(getattr(fact, name) == value for name, value in about.items())
-        )
-        return tuple(
-            Span(self.at(max(begin, first)), self.at(min(end, last)), "")
-            for begin, end in ends
-            if begin <= last and end >= first
-        )
-
-    def is_object(self, name: str) -> bool:
-        """Whether it is a thing, whose motion counts, and no end-effector."""
-        return name in self.seen.measurements.bodies.objects
-
-    def floor(self, body: str) -> Limit:
-        """From where on a body counts as moved."""
-        floor_m = self.seen.measurements.calibration.body(body).motion_floor_m
-        return Limit(CENTI * floor_m, f"counts as moved from {length(floor_m)}")
 
 
 def _way(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
@@ -204,12 +134,20 @@ def _height(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     up = height - height[told.first]
     end = float(up[told.last])
     rounded = np.diff(np.rint(MILLI * height[[told.first, told.last]]))[0] / MILLI
+    marks = [Mark(known.at(told.last), CENTI * end, length(abs(rounded)))]
+    inside, least = up[told.first : told.last + 1], constants()["height_mm"] / MILLI
+    if "course" in forms and np.nanmax(inside) - max(end, 0.0) >= least:
+        top = told.first + int(np.nanargmax(inside))
+        marks.append(Mark(known.at(top), CENTI * float(up[top]), f"{spread(up[top])} at most"))
+    if "course" in forms and min(end, 0.0) - np.nanmin(inside) >= least:
+        low = told.first + int(np.nanargmin(inside))
+        marks.append(Mark(known.at(low), CENTI * float(up[low]), f"{spread(-up[low])} at most"))
     return Panel(
         f"{known.called(name)}: height above where it was at {known.at(told.first):.2f} s",
         "cm",
         (known.curve(CENTI * up),),
         (_limit("height_mm", "up: {} or more"), _limit("height_mm", "down: {} or more", sign=-1.0)),
-        (Mark(known.at(told.last), CENTI * end, length(abs(rounded))),),
+        tuple(marks),
     )
 
 
@@ -242,18 +180,27 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         far = math.degrees(thresholds_of(measurements.calibration).lean_rad)
         limits.append(Limit(far, f"far over is {far:.0f}° or more"))
         most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
-        marks.append(Mark(known.at(most), float(angle[most]), f"{angle[most]:.0f}° at most"))
+        bound = upward(float(angle[most]))
+        marks.append(Mark(known.at(most), float(angle[most]), f"{bound:.0f}° at most"))
+    inside = angle[told.first : told.last + 1]
+    most = told.first + int(np.nanargmax(inside))
+    change_deg = math.degrees(constants()["turn_mrad"] / MILLI)
+    beyond = float(np.nanmax(inside)) - max(inside[0], inside[-1]) >= change_deg
+    if "not_leant" in forms and beyond and "far_over" not in forms:
+        bound = upward(float(angle[most]))
+        marks.append(Mark(known.at(most), float(angle[most]), f"{bound:.0f}° at most"))
     if forms & {"lean", "not_leant"}:
         change = math.degrees(constants()["turn_mrad"] / 1000.0)
-        start, by = float(angle[told.first]), abs(float(np.diff(angle[[told.first, told.last]])[0]))
-        marks[1] = replace(marks[1], label=f"{labels[1]} (a change of {by:.0f}°)")
+        start = float(angle[told.first])
+        ends = (round(MILLI * math.radians(angle[frame])) for frame in (told.first, told.last))
+        marks[1] = replace(marks[1], label=f"{labels[1]} (a change of {change_of(*ends)})")
         limits += [
             Limit(value, f"{change:.0f}° {sense} than at the start")
             for value, sense in ((start + change, "more"), (start - change, "less"))
             if value > 0.0
         ]
     return Panel(
-        f"{known.called(name)}: lean from upright",
+        f"{known.called(name)}: lean from {known.seen.explainer.measured.upright(name)}",
         "°",
         (known.curve(angle),),
         tuple(limits),
@@ -279,100 +226,40 @@ def _turn(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     )
 
 
-def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel | None:
-    one, other = told.bodies
-    calibration = known.seen.measurements.calibration
-    pair = calibration.sought(one, other)
-    if pair is None:
-        one, other = other, one
-        pair = calibration.sought(one, other)
-    if pair is None:
-        return None
-    touching = known.bars(Touching, body=one, other=other)
-    every = known.frames
-    some = every[:: max(1, math.ceil(len(every) / SAMPLES))]
-    frames = np.unique([*some, every[-1], *(at for at in (told.first, told.last) if at in every)])
-    apart = MILLI * np.min(list(_apart(known, pair, frames)), axis=0)
-    limits = {MILLI * pair.touch_m: "contact begins within {:.0f} mm"}
-    limits[MILLI * pair.release_m] = "contact ends beyond {:.0f} mm"
-    if pair.touch_m >= pair.release_m:
-        limits = {MILLI * pair.touch_m: "counts as contact within {:.0f} mm"}
-    if pair.found is Found.NEVER:
-        limits = {}
-    return Panel(
-        f"{known.called(one)} to {known.called(other)}: distance of {_between(pair)}",
-        "mm",
-        (Curve(frames / known.rate, apart),),
-        tuple(Limit(value, label.format(value)) for value, label in limits.items()),
-        bars=touching,
-        bars_label="counts as contact",
-        highest=CLOSE * max([*limits, 20.0]),
-    )
-
-
-def _between(pair: PairCalibration) -> str:
-    if not pair.pivots:
-        return "their surfaces"
-    return "their origins" if pair.found is Found.STATED else "a point of each"
-
-
-def _apart(
-    known: Recording, pair: PairCalibration, frames: Int[np.ndarray, "some"]
-) -> Iterator[Float[np.ndarray, "some"]]:
-    """How far each part of an end-effector, or a thing, is from a thing [m]."""
-    bodies, calibration = known.seen.measurements.bodies, known.seen.measurements.calibration
-    other = bodies.objects[pair.second]
-    hand = pair.first in bodies.sensors
-    parts = bodies.on_end_effector(pair.first) if hand else (bodies.objects[pair.first],)
-    nowhere = np.full(len(frames), np.inf)
-    for part in parts:
-        own = calibration.sought(part.name, other.name)
-        if own is None or own.found is Found.NEVER:
-            yield nowhere
-        elif own.pivots:
-            yield points_apart(own, part, other)[frames]
-        else:
-            yield separation(touchable(part), touchable(other), frames)
-
-
-def _closing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
-    one, other = told.bodies
-    own, thing = known.body(one), known.body(other)
-    speeds = MILLI * np.array([closing_speed(own, thing, int(frame)) for frame in known.frames])
-    met = [
-        fact
-        for fact in known.seen.observation.facts
-        if isinstance(fact, ClosingSpeed)
-        and (fact.body, fact.other) == (one, other)
-        and known.span[0] <= fact.first <= known.span[1]
-    ]
-    near = min(met, key=lambda fact: abs(fact.first - told.last), default=None)
-    blow = constants()["blow_mm_s"]
-    return Panel(
-        f"{known.called(one)} and {known.called(other)}: how fast they come together",
-        "mm/s",
-        (Curve(known.times, speeds),),
-        (Limit(float(blow), f"a blow: {blow} mm/s or more"),),
-        (Mark(known.at(near.first), float(near.speed), f"{near.speed} mm/s"),) if near else (),
-        known.bars(Touching, body=one, other=other),
-        "counts as contact",
-    )
-
-
 def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
     poses = known.body(name).poses
     limits = thresholds_of(known.seen.measurements.calibration)
     rate = frame_rate(poses.smooth.times)
     slow = MILLI * pace_at_rest(poses.noise, rate, limits)[0]
+    since, least = "", constants()["rest_ms"] / 1000.0
+    if forms & SINCE_BEGIN:
+        known = replace(known, span=(0, known.span[1]))
+        since = " since the recording began"
     return Panel(
-        f"{known.called(name)}: speed",
+        f"{known.called(name)}: speed{since}",
         "mm/s",
         (known.curve(MILLI * paces(poses.smooth, rate, limits)[0]),),
         (Limit(slow, f"may be at rest below {slow:.0f} mm/s"),),
-        bars=known.bars(Resting, ee=name),
-        bars_label="counts as at rest",
+        bars=_free_rests(known, name) if since else known.bars(Resting, ee=name),
+        bars_label=f"at rest for {least:.2f} s or more, touching nothing"
+        if since
+        else f"counts as at rest; a rest lasts {least:.2f} s or more",
         highest=FAST * slow,
+        lost=known.lost(name),
+        span_s=(known.at(known.span[0]), known.at(known.span[1])) if since else None,
+    )
+
+
+def _free_rests(known: Recording, name: str) -> tuple[Span, ...]:
+    """Rests of an end-effector that are long enough and in which it touches nothing."""
+    least = constants()["rest_ms"] / MILLI
+    met = known.bars(Touching, body=name)
+    return tuple(
+        rest
+        for rest in known.bars(Resting, ee=name)
+        if rest.end_s - rest.start_s >= least
+        and not any(one.start_s <= rest.end_s and one.end_s >= rest.start_s for one in met)
     )
 
 
@@ -395,10 +282,37 @@ def _to_and_fro(known: Recording, told: Quantity, forms: frozenset[str]) -> Pane
     )
 
 
-Series = Callable[[Recording, Quantity, frozenset[str]], Panel | None]
+def _opening(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel | None:
+    (name,) = told.bodies
+    facts = [
+        fact
+        for fact in known.seen.observation.facts
+        if isinstance(fact, Opening) and fact.object == name and known.inside(fact.frame)
+    ]
+    if not facts:
+        return None
+    guide = known.seen.measurements.guides[name]
+    unit = "m" if guide.fit.kind == "rail" else "rad"
+    facts.sort(key=lambda fact: fact.frame)
+    values = {fact.frame: fact.amount / MILLI for fact in facts}
+    return Panel(
+        f"{known.called(name)}: how far it is open",
+        unit,
+        (Curve(np.array([known.at(frame) for frame in values]), np.array(list(values.values()))),),
+        (),
+        tuple(
+            Mark(known.at(frame), values[frame], f"{values[frame]:.2f} {unit}")
+            for frame in (told.first, told.last)
+            if frame in values
+        ),
+    )
+
+
+SINCE_BEGIN = frozenset({"away", "back"})
+"""Formats that tell of earlier rests: what is shown for them begins with the recording."""
 
 SERIES: Mapping[Measure, Series] = {
-    Measure.DISTANCE: _distance,
+    **RELATIONS,
     Measure.WAY: _way,
     Measure.SPREAD: _spread,
     Measure.HEIGHT: _height,
@@ -407,8 +321,8 @@ SERIES: Mapping[Measure, Series] = {
     Measure.TURN: _turn,
     Measure.TURN_IN_ALL: _turn_in_all,
     Measure.PATH: _path,
-    Measure.CLOSING: _closing,
     Measure.SPEED: _speed,
     Measure.TO_AND_FRO: _to_and_fro,
+    Measure.OPENING: _opening,
 }
 """The panel of each quantity."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from capar.views.lettering import Span, shortened, width_in
 from capar.views.painter import CONTACT, FAINT, INK, QUIET, SPEED, UNNAMED, colour_of
-from capar.views.panels import Panel
+from capar.views.panels import Mark, Panel, Row
 from capar.views.picture import save
 
 if TYPE_CHECKING:
@@ -22,7 +22,13 @@ LEFT_IN, RIGHT_IN, EDGE_IN = 0.75, 0.3, 0.25
 PANEL_IN, CAPTION_IN, STRIP_IN = 0.95, 0.34, 0.3
 """Heights of a panel, of the caption above it, and of the strip of segments [inches]."""
 
+CAPTION_WIDE_IN = WIDTH_IN - LEFT_IN - RIGHT_IN
+"""How wide a caption in letters of the usual size may be [inches]; longer ones get smaller."""
+
 FOOT_IN = 0.55
+ROW_IN, GAP_IN, TICKS_IN = 0.3, 0.15, 0.2
+"""Heights of a row of bars, of the room before it, and of times below a panel [inches]."""
+
 LINE_IN = 0.19
 """Height of a line of the summary [inches]."""
 
@@ -54,6 +60,9 @@ class MeasuredPicture:
     span_s: tuple[float, float]
     """First and last time that are shown [s]."""
 
+    rows: Sequence[Row] = ()
+    """What held when."""
+
 
 def draw_measured(picture: MeasuredPicture, path: Path) -> None:
     """Draw a picture to a PNG, SVG or PDF file, which is overwritten, as its suffix says."""
@@ -70,7 +79,9 @@ def _figure(picture: MeasuredPicture) -> "Figure":
         for line in wrap(part, int((WIDTH_IN - 0.5) / letter))
     ]
     head = 0.55 + LINE_IN * len(lines) + 0.1
+    apart = sum(panel.span_s is not None for panel in picture.panels)
     height = head + STRIP_IN + len(picture.panels) * (CAPTION_IN + PANEL_IN) + FOOT_IN
+    height += apart * TICKS_IN + ROW_IN * len(picture.rows) + GAP_IN * bool(picture.rows)
     figure = Figure(figsize=(WIDTH_IN, height), facecolor="white")
     figure.text(
         EDGE_IN / WIDTH_IN,
@@ -88,14 +99,24 @@ def _figure(picture: MeasuredPicture) -> "Figure":
     span_s, chosen = picture.span_s, picture.chosen
     _strip(_axes(figure, top, STRIP_IN, span_s), picture.segments, chosen, span_s)
     top += STRIP_IN
-    for number, panel in enumerate(picture.panels):
-        axes = _axes(figure, top + CAPTION_IN, PANEL_IN, span_s)
-        _panel(axes, panel, chosen, span_s)
+    last = None
+    for panel in sorted(picture.panels, key=lambda panel: panel.span_s is None):
+        own = panel.span_s or span_s
+        last = _axes(figure, top + CAPTION_IN, PANEL_IN, own)
+        _panel(last, panel, chosen, own)
         top += CAPTION_IN + PANEL_IN
-        if number == len(picture.panels) - 1:
-            axes.set_xlabel("time [s]", fontsize=9, color=QUIET, labelpad=2)
+        if panel.span_s is None:
+            last.tick_params(axis="x", labelbottom=False)
         else:
-            axes.tick_params(axis="x", labelbottom=False)
+            top += TICKS_IN
+    if picture.rows:
+        top += GAP_IN
+        tall = ROW_IN * len(picture.rows)
+        last = _axes(figure, top, tall, span_s)
+        _rows(last, picture.rows, chosen)
+    if last is not None:
+        last.tick_params(axis="x", labelbottom=True)
+        last.set_xlabel("time [s]", fontsize=9, color=QUIET, labelpad=2)
     return figure
 
 
@@ -156,6 +177,10 @@ def _panel(axes: "Axes", panel: Panel, chosen: Span, span_s: tuple[float, float]
         low -= 2.0 * BAR_SHARE * (high - low)
     axes.set_ylim(low, high)
     axes.axvspan(chosen.start_s, chosen.end_s, color=SHADE, zorder=0)
+    for gap in panel.lost:
+        axes.axvspan(
+            gap.start_s, gap.end_s, facecolor="none", edgecolor=QUIET, hatch="////", alpha=0.5
+        )
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     for side in ("left", "bottom"):
@@ -177,16 +202,57 @@ def _panel(axes: "Axes", panel: Panel, chosen: Span, span_s: tuple[float, float]
         axes.axhline(limit.value, color=LIMIT, linewidth=0.9, linestyle=(0, (4, 2)), zorder=2.5)
     _limits(axes, panel, low, high)
     for mark in panel.marks:
-        axes.plot([mark.time], [mark.value], "o", color=MARK, markersize=5, zorder=4)
-        _mark(axes, mark.time, mark.value, mark.label, span_s, (low, high))
+        axes.plot([mark.time], [mark.value], "o", color=MARK, markersize=5, zorder=4, clip_on=False)
+        beside = [other.value for other in panel.marks if other.time == mark.time]
+        lowest = len(beside) > 1 and mark.value == min(beside) and mark.value < max(beside)
+        _mark(axes, mark, span_s, (low, high), below=lowest)
     _bars(axes, panel, low, high)
     _caption(axes, panel)
+
+
+def _rows(axes: "Axes", rows: Sequence[Row], chosen: Span) -> None:
+    """Each row's name, and below it bars where it holds."""
+    from matplotlib.patches import Rectangle
+
+    axes.set_ylim(len(rows), 0.0)
+    axes.set_yticks([])
+    axes.axvspan(chosen.start_s, chosen.end_s, color=SHADE, zorder=0)
+    for side in ("top", "right", "left"):
+        axes.spines[side].set_visible(False)
+    axes.spines["bottom"].set_color(QUIET)
+    axes.tick_params(colors=QUIET, labelsize=8, length=3)
+    axes.grid(axis="x", color=FAINT, linewidth=0.5)
+    axes.set_axisbelow(True)
+    for number, row in enumerate(rows):
+        axes.annotate(
+            row.label,
+            (0.0, number + 0.12),
+            xycoords=("axes fraction", "data"),
+            xytext=(2, 0),
+            textcoords="offset points",
+            fontsize=8.5,
+            color=INK,
+            va="top",
+            zorder=5,
+        )
+        axes.axhline(number + 0.84, color=FAINT, linewidth=0.5, zorder=1)
+        for bar in row.bars:
+            axes.add_patch(
+                Rectangle(
+                    (bar.start_s, number + 0.72),
+                    bar.end_s - bar.start_s,
+                    0.24,
+                    facecolor=CONTACT,
+                    zorder=2,
+                )
+            )
 
 
 def _caption(axes: "Axes", panel: Panel) -> None:
     """What the panel shows, and what its bars and its dashed curve are."""
     notes = [f"{curve.label}: dashed" for curve in panel.curves[1:] if curve.label]
     notes += [f"blue: {panel.bars_label}"] if panel.bars else []
+    notes += ["hatched: not tracked"] if panel.lost else []
     if any(np.nanmax(curve.values, initial=-np.inf) > panel.highest for curve in panel.curves):
         notes.append("what is further is cut off")
     text = f"{panel.title} [{panel.unit}]" + f" ({'; '.join(notes)})" * bool(notes)
@@ -196,7 +262,7 @@ def _caption(axes: "Axes", panel: Panel) -> None:
         xycoords="axes fraction",
         xytext=(0, 4),
         textcoords="offset points",
-        fontsize=9,
+        fontsize=9 * min(1.0, CAPTION_WIDE_IN / max(width_in(text, points=9.0), 1.0)),
         color=INK,
         va="bottom",
     )
@@ -222,18 +288,19 @@ def _limits(axes: "Axes", panel: Panel, low: float, high: float) -> None:
 
 def _mark(
     axes: "Axes",
-    time: float,
-    value: float,
-    label: str,
+    mark: Mark,
     span_s: tuple[float, float],
     range_: tuple[float, float],
+    *,
+    below: bool,
 ) -> None:
+    """The number of a mark beside it; below the mark where another one is above."""
     low, high = range_
-    right = time > span_s[0] + 0.85 * (span_s[1] - span_s[0])
-    upper = value < low + 0.75 * (high - low)
+    right = mark.time > span_s[0] + 0.85 * (span_s[1] - span_s[0])
+    upper = mark.value < low + 0.75 * (high - low) and not below
     axes.annotate(
-        label,
-        (time, value),
+        mark.label,
+        (mark.time, mark.value),
         xytext=(-5 if right else 5, 3 if upper else -3),
         textcoords="offset points",
         fontsize=8.5,

@@ -1,7 +1,8 @@
 """What moves the objects of a segment, in words."""
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from capar.model.body_names import is_plural, limb_names
 from capar.model.facts import MovedBy
@@ -47,6 +48,57 @@ def mover_lines(
         index: Its number in the link.
         staying: Objects whose motion does not count there; nothing is told of what moves them.
     """
+    names = limb_names(seen)
+    return tuple(
+        _line(names.get(thing, spoken(thing)), frames)
+        for thing, frames in _moved(seen, ee, index, staying)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class MoverStretches:
+    """When something moves a thing, in one way, within a segment."""
+
+    thing: str
+    words: str
+    """What it does, as a sentence says it: moved by the right hand."""
+
+    spans: tuple[tuple[int, int], ...]
+    """First and last frames."""
+
+    percent: int
+    """Its share of the frames in which the thing moves [%]."""
+
+
+def mover_stretches(
+    seen: Observation, ee: str, index: int, *, staying: Collection[str] = ()
+) -> tuple[MoverStretches, ...]:
+    """When each mover moves each object that moves in a segment; arguments as of the lines."""
+    names, found = limb_names(seen), []
+    for thing, frames in _moved(seen, ee, index, staying):
+        ways: dict[str, list[int]] = defaultdict(list)
+        touching = _touching(frames.values())
+        for frame, movers in sorted(frames.items()):
+            moving = _movers(movers) - touching
+            for words in {_words(*each, moving=moving) for each in movers}:
+                ways[words].append(frame)
+        for words, held in sorted(ways.items(), key=lambda way: (-len(way[1]), way[0])):
+            share = round(100.0 * len(held) / len(frames))
+            called = names.get(thing, spoken(thing))
+            found.append(MoverStretches(called, words, tuple(_spans(held)), share))
+    return tuple(found)
+
+
+def _words(how: str, who: str, *, moving: Collection[str]) -> str:
+    """What a mover does at a time, to stand after the thing; some merely touch it."""
+    moves = who in moving or how in WITHOUT_MOVER
+    return (WORDS[how] if moves else "touched by {0}").format(f"the {spoken(who)}")
+
+
+def _moved(
+    seen: Observation, ee: str, index: int, staying: Collection[str]
+) -> Iterator[tuple[str, Mapping[int, Collection[tuple[str, str]]]]]:
+    """Each object that moves in a segment, and how what moves it in each of its frames."""
     segment = next(
         each
         for link in seen.links
@@ -59,12 +111,20 @@ def mover_lines(
         if isinstance(fact, MovedBy) and fact.object in segment.objects:
             for frame in range(max(fact.first, segment.first), min(fact.last + 1, segment.last)):
                 frames[fact.object][frame].add((fact.how, names.get(fact.mover, fact.mover)))
-    things = [each for each in segment.objects if each not in staying]
-    return tuple(
-        _line(names.get(thing, spoken(thing)), frames[thing])
-        for thing in things
-        if frames.get(thing)
-    )
+    for thing in segment.objects:
+        if thing not in staying and frames.get(thing):
+            yield thing, frames[thing]
+
+
+def _spans(frames: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """First and last of the frames that follow each other."""
+    first = last = frames[0]
+    for frame in frames[1:]:
+        if frame != last + 1:
+            yield first, last
+            first = frame
+        last = frame
+    yield first, last
 
 
 def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
@@ -92,8 +152,13 @@ def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
     told = [share.removesuffix(OF_TIME) for share in told[:-1]] + told[-1:]
     others = len(shares) - len(most)
     told += [f"by {others} other{'s' * (others > 1)}"] if others else []
+    alike_at = sum(len(_movers(found) - touching) > 1 for found in frames.values())
+    word = "both" if len(shares) == 2 else "several"
+    percent = round(100.0 * alike_at / len(frames))
+    both = f" ({percent} % of it {word} at once)" * bool(percent)
+    both = both if len(shares) > 1 and " throughout" not in " ".join(told) else ""
     remainder = _remainder(movers.values(), it="they were" if is_plural(thing) else "it was")
-    return f"The {thing} {was} moved {joined(told)}{remainder}{beside}."
+    return f"The {thing} {was} moved {joined(told)}{both}{remainder}{beside}."
 
 
 def _movers(found: Collection[tuple[str, str]]) -> set[str]:

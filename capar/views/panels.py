@@ -7,6 +7,9 @@ from jaxtyping import Float
 
 from capar.views.lettering import Span
 
+EDGE = 0.05
+"""Which part of the room above is left where curves go on beyond what is shown [1]."""
+
 PADDING = 0.15
 """Room above and below what a panel shows, as a share of it [1]."""
 
@@ -50,6 +53,14 @@ class Mark:
 
 
 @dataclass(frozen=True)
+class Row:
+    """When something held, without a number."""
+
+    label: str
+    bars: tuple[Span, ...]
+
+
+@dataclass(frozen=True)
 class Panel:
     """One quantity of one body, or of two, over time."""
 
@@ -67,6 +78,12 @@ class Panel:
     highest: float = np.inf
     """What is greater is not shown, in the panel's unit."""
 
+    lost: tuple[Span, ...] = ()
+    """When a body of it was not tracked."""
+
+    span_s: tuple[float, float] | None = None
+    """The first and the last time of it [s], where it shows others than the picture."""
+
     def range(self, start_s: float, end_s: float) -> tuple[float, float]:
         """The lowest and highest value that are drawn: of the curves in a span, and all else."""
         shown = [
@@ -79,4 +96,5 @@ class Panel:
         known = [min(value, self.highest) for value in values if np.isfinite(value)]
         low, high = min(known, default=0.0), max(known, default=1.0)
         room = PADDING * ((high - low) or abs(high) or 1.0)
-        return low - room, high + room
+        cut_off = high == self.highest
+        return low - room, high + room * (EDGE if cut_off else 1.0)

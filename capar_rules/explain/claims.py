@@ -1,12 +1,16 @@
 """What a summary claims: its clauses, and what was measured of which bodies for each."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import product
 
+from capar_rules.explain import arrangements
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import NAMES, NEAR
-from capar_rules.explain.formatting import Argument
+from capar_rules.explain.formatting import UNBOUND, Argument
+from capar_rules.explain.instants import STRETCHES
+from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
 
 
@@ -49,6 +53,21 @@ class Measure(StrEnum):
     TO_AND_FRO = "to_and_fro"
     """Where it is along the line on which it goes to and fro."""
 
+    BEARING = "bearing"
+    """At which level angle a body has gone since the first frame to the line to it from another."""
+
+    ABOVE = "above"
+    """How much higher a body's middle is than another's top, and how far aside of it."""
+
+    INSIDE = "inside"
+    """Which share of a body is inside another one."""
+
+    BORNE = "borne"
+    """How far from straight up another body pushes it where they touch."""
+
+    OPENING = "opening"
+    """How far it is open on its hinge or rail."""
+
 
 FORMS: Mapping[str, tuple[Measure, ...]] = {
     "way": (Measure.WAY,),
@@ -56,8 +75,8 @@ FORMS: Mapping[str, tuple[Measure, ...]] = {
     "place": (Measure.WAY,),
     "not_near": (Measure.WAY,),
     "not_slid": (Measure.WAY,),
-    "away": (Measure.WAY,),
-    "back": (Measure.WAY,),
+    "away": (Measure.WAY, Measure.SPEED),
+    "back": (Measure.WAY, Measure.SPEED),
     "spread": (Measure.SPREAD,),
     "still": (Measure.SPREAD,),
     "course": (Measure.HEIGHT, Measure.ASIDE),
@@ -75,35 +94,77 @@ FORMS: Mapping[str, tuple[Measure, ...]] = {
 }
 """By the format in which a clause tells a number of a body: what that number was measured of."""
 
-THING, END = "thing", "end"
-"""Of the segment that stands first: what it is about, and its end-effector."""
+THING, END, KEPT, LEFT, MET = "thing", "end", "kept", "left", "met"
+"""Of the segment that stands first: what it is about, its end-effector; what that thing touches at
+both borders, at the start alone, and at the side that stands second."""
+
+Bodies = tuple[int | str, ...]
+"""Which bodies of an atom: places of its arguments, or what they are of the segment."""
 
 _APART = (Measure.DISTANCE, (1, 2))
+_HELD = (Measure.DISTANCE, (END, THING))
 
-PREDICATES: Mapping[str, tuple[Measure, tuple[int | str, ...]]] = {
-    **dict.fromkeys((*NAMES.values(), *NEAR, *NEAR.values()), _APART),
-    "contact_at": _APART,
-    "touched_before": _APART,
-    "near_before": _APART,
-    "takes": _APART,
-    "lets_go": _APART,
-    "no_contact": (Measure.DISTANCE, (2, 3)),
-    "uncounted": (Measure.DISTANCE, (2, 3)),
-    "newly_met": (Measure.DISTANCE, (THING, 1)),
-    "met_gently": (Measure.CLOSING, (END, 1)),
-    "met_hard": (Measure.CLOSING, (END, 1)),
-    "rests": (Measure.SPEED, (0,)),
-    "rests_afterwards": (Measure.SPEED, (0,)),
-    "at_rest": (Measure.SPEED, (END,)),
-    "turns_back_fast": (Measure.TO_AND_FRO, (THING,)),
-    "strokes": (Measure.TO_AND_FRO, (THING,)),
-    "stirs": (Measure.TO_AND_FRO, (THING,)),
-    "cuts": (Measure.TO_AND_FRO, (THING,)),
-    "wipes": (Measure.TO_AND_FRO, (THING,)),
-    "shakes": (Measure.TO_AND_FRO, (THING,)),
+PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
+    **dict.fromkeys((*NAMES.values(), *NEAR, *NEAR.values()), (_APART,)),
+    **dict.fromkeys(("contact_at", "touched_before", "near_before", "takes", "lets_go"), (_APART,)),
+    **dict.fromkeys(("no_contact", "uncounted"), ((Measure.DISTANCE, (2, 3)),)),
+    "pours": ((Measure.LEAN, (THING,)), (Measure.ABOVE, (THING, 1))),
+    "newly_met": ((Measure.DISTANCE, (THING, 1)),),
+    "support": ((Measure.DISTANCE, (THING, 1)), _HELD),
+    "strikes_with": ((Measure.CLOSING, (THING, 1)),),
+    "met_gently": ((Measure.CLOSING, (END, 1)),),
+    "met_hard": ((Measure.CLOSING, (END, 1)),),
+    "rests": ((Measure.SPEED, (0,)),),
+    "rests_afterwards": ((Measure.SPEED, (0,)),),
+    "event": ((Measure.SPEED, (0,)),),
+    "member": ((Measure.SPEED, (0,)),),
+    "at_rest": ((Measure.SPEED, (END,)),),
+    **dict.fromkeys(("turns_back_fast", "strokes", "stirring"), ((Measure.TO_AND_FRO, (THING,)),)),
+    "goes_ahead": ((Measure.BEARING, (END, THING)),),
+    "comes_to_lie": ((Measure.HEIGHT, (THING,)), _HELD),
+    "from_rest": ((Measure.DISTANCE, (THING, LEFT)),),
+    "free": ((Measure.DISTANCE, (THING, MET)),),
+    "on": ((Measure.BORNE, (2, 3)),),
+    "under_palm": ((Measure.BORNE, (END, THING)),),
+    **dict.fromkeys(("opens", "closes", "swept"), ((Measure.OPENING, (1,)),)),
 }
-"""By the predicate of an atom whose clause need not have a number: what was measured, and of which
-of its arguments."""
+"""By the predicate of an atom: what was measured for its clause, also where that has no number, and
+of which bodies."""
+
+ARRANGED: Mapping[str, tuple[Measure, ...]] = {
+    "above": (Measure.ABOVE,),
+    "inside": (Measure.INSIDE,),
+    "dips": (Measure.INSIDE,),
+}
+"""What is measured of how a body lies to another one, by how it does."""
+
+ANY = "*"
+"""Stands for each body there is."""
+
+ROWS: Mapping[str, tuple[tuple[str, Bodies], ...]] = {
+    "touches_no_object": (("touching", (END, ANY)),),
+    "rests": (("touching", (0, ANY)),),
+    "rests_afterwards": (("resting", (0,)),),
+    "accompanied": (("touching", (END, ANY)),),
+    "comes_to_lie": (("touching", (THING, ANY)), ("moving", (THING,))),
+    "from_rest": (("touching", (THING, ANY)), ("moving", (THING,))),
+    "on": (("touching", (2, ANY)),),
+    "sliding": (("touching", (THING, ANY)),),
+    "hands_over": (("touching", (ANY, THING)),),
+    "from_another": (("touching", (ANY, THING)),),
+    "to_another": (("touching", (ANY, THING)),),
+    "gazed": (("looking_at", (ANY, 1)),),
+    "bears_in": (("bears", (END,)),),
+    "kind": (("link", (END,)),),
+    "throws": (("flies", (THING,)),),
+    "catches": (("flies", (THING,)),),
+    "stirring": (("touching", (THING, KEPT)), ("thing", (KEPT,))),
+    "rolls_on": (("rolls", (THING,)), ("touching", (THING, 1))),
+}
+"""By the predicate of an atom: which facts, of which bodies, are shown as bars."""
+
+OVERLAPPING = ("rolls", "lengthwise")
+"""Courses of a body that are shown as bars."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +180,15 @@ class Quantity:
 
 
 @dataclass(frozen=True, slots=True)
+class Stretches:
+    """When facts of a kind about certain bodies hold."""
+
+    predicate: str
+    bodies: tuple[str, ...]
+    """Those that the fact names, in its order; ``ANY`` for all."""
+
+
+@dataclass(frozen=True, slots=True)
 class Claim:
     """A clause of a summary."""
 
@@ -128,6 +198,14 @@ class Claim:
 
     frames: tuple[int, ...] = ()
     """The frames whose times it tells."""
+
+    stretches: tuple[Stretches, ...] = ()
+    """What held when, of what it says."""
+
+    @property
+    def shown(self) -> bool:
+        """Whether anything of it can be drawn."""
+        return bool(self.quantities or self.stretches)
 
 
 def claim(
@@ -145,28 +223,93 @@ def claim(
     found: list[Quantity] = []
     frames: list[int] = []
     own = clock.span(clock.own) or (0, 0)
-    if predicate in PREDICATES:
-        measure, places = PREDICATES[predicate]
-        bodies = tuple(_body(place, arguments, clock) for place in places)
-        found.append(Quantity(measure, bodies, *own))
+    for measure, places in _measures(predicate, arguments):
+        for bodies in _bodies(places, arguments, clock):
+            found.append(Quantity(measure, bodies, *own))
     for text_of, form in sentences.formats(predicate, arguments, mood=mood):
         argument = Argument(text_of, arguments, clock)
         span = argument.measured_between(form)
-        found += [
-            Quantity(measure, (argument.body,), *span, form)
-            for measure in FORMS.get(form, ())
-            if span is not None
-        ]
+        for measure in FORMS.get(form, ()):
+            measured = own if measure is Measure.SPEED else span
+            if measured is not None:
+                found.append(Quantity(measure, (argument.body,), *measured, form))
         if form in ("when", "frame"):
             frames.append(int(text_of))
         if form == "tick":
             frames.append(clock.frames[arguments[0]][int(text_of)])
-    return Claim(text, tuple(dict.fromkeys(found)), tuple(frames))
+    if predicate == "support":
+        frames += _since(clock, own[0])
+    stretches = [
+        Stretches(kind, bodies)
+        for kind, places in _rows(predicate, arguments)
+        for bodies in _bodies(places, arguments, clock)
+    ]
+    return Claim(text, tuple(dict.fromkeys(found)), tuple(frames), tuple(dict.fromkeys(stretches)))
 
 
-def _body(place: int | str, arguments: Sequence[str], clock: Clock) -> str:
-    if place == THING:
-        return clock.objects.get(arguments[0], "")
-    if isinstance(place, str):
-        return arguments[0].removeprefix("seg(").split(",")[0]
-    return arguments[place]
+def _since(clock: Clock, frame: int) -> list[int]:
+    """Since when the end-effector of the explained segment touches its object."""
+    thing, hand = clock.objects.get(clock.own, ""), arrangements.hand_of(clock.own)
+    met = clock.measured.contact(hand, thing, frame, 1)
+    return [met[0]] if met else []
+
+
+def joined_claims(text: str, claims: Sequence[Claim]) -> Claim:
+    """The claim of a clause that says as much as several."""
+    quantities = dict.fromkeys(one for each in claims for one in each.quantities)
+    stretches = dict.fromkeys(one for each in claims for one in each.stretches)
+    frames = tuple(frame for each in claims for frame in each.frames)
+    return Claim(text, tuple(quantities), frames, tuple(stretches))
+
+
+def resting_on(found: Claim, reason: Reason) -> Claim:
+    """The claim of a clause that tells a node, with what was measured below, if it had nothing."""
+    if found.shown:
+        return found
+    below: dict[Stretches, None] = {}
+    for node in reason.walk():
+        predicate, _, rest = node.atom.removesuffix(")").partition("(")
+        if not node.rule and predicate in STRETCHES:
+            bodies = tuple(rest.split(",")[: STRETCHES[predicate]])
+            below[Stretches(predicate, bodies)] = None
+    return replace(found, stretches=tuple(below))
+
+
+def _measures(predicate: str, arguments: Sequence[str]) -> tuple[tuple[Measure, Bodies], ...]:
+    if predicate == "lies_at":
+        return tuple((measure, (3, 4)) for measure in ARRANGED.get(arguments[2], ()))
+    if predicate == "overlaps":
+        return tuple((measure, (2, 3)) for measure in ARRANGED.get(arguments[1], ()))
+    if predicate == "on" and UNBOUND in arguments[3]:
+        return ((Measure.BORNE, (2, ANY)),)
+    return PREDICATES.get(predicate, ())
+
+
+def _rows(predicate: str, arguments: Sequence[str]) -> tuple[tuple[str, Bodies], ...]:
+    if predicate == "overlaps" and arguments[1] in OVERLAPPING:
+        return ((arguments[1], (2,)),)
+    if predicate == "lies_at" and arguments[2] not in ARRANGED:
+        return ()
+    return ROWS.get(predicate, ())
+
+
+def _bodies(places: Bodies, arguments: Sequence[str], clock: Clock) -> list[tuple[str, ...]]:
+    """The bodies at some places, in each combination; none if one is not known."""
+    ways = [_at(place, arguments, clock) for place in places]
+    return [bodies for bodies in product(*ways) if all(bodies)]
+
+
+def _at(place: int | str, arguments: Sequence[str], clock: Clock) -> tuple[str, ...]:
+    if isinstance(place, int):
+        body = arguments[place]
+        return () if UNBOUND in body else (body,)
+    segment = arguments[0]
+    of_segment: Mapping[str, Callable[[], tuple[str, ...]]] = {
+        THING: lambda: (clock.objects.get(segment, ""),),
+        END: lambda: (arrangements.hand_of(segment),),
+        KEPT: lambda: arrangements.kept(clock, segment),
+        LEFT: lambda: arrangements.left(clock, segment),
+        MET: lambda: arrangements.met_at(clock, segment, arguments[1]),
+        ANY: lambda: (ANY,),
+    }
+    return of_segment[place]()

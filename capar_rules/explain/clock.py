@@ -8,19 +8,24 @@ from functools import cached_property
 
 from capar.model.body_names import is_plural
 from capar.model.facts import (
+    ClosingSpeed,
+    ContactNormal,
     Displaced,
     Fact,
+    Lies,
     Link,
     Moving,
     Place,
     Posture,
+    PressDirection,
     Resting,
+    Shapeless,
     Swings,
     Tag,
     Touching,
     Travelled,
 )
-from capar_rules.explain.quantities import Turns, Way
+from capar_rules.explain.quantities import Over, Turns, Way
 from capar_rules.explain.reaches import Reach
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
@@ -33,6 +38,17 @@ Leans = Callable[[str, int, int], float]
 
 TurnsBack = Callable[[str, int, int], Turns]
 """How often a body turned back between two frames."""
+
+Heights = Callable[[str, int, int], tuple[float, float]]
+"""How low and how high a body was between two frames, from where it was at the first [m]."""
+
+Places = Callable[[str, str, int], Over]
+"""Where a body is to another one at a frame."""
+
+Pair = tuple[str, str]
+Pressing = tuple[int, int]
+Frames = tuple[int, int]
+"""First and last frame."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +106,57 @@ class Measured:
     tracked: bool = True
     """Whether there is an object that could be touched."""
 
+    contacts: Mapping[Pair, Sequence[Frames]] = field(default_factory=dict)
+    """First and last frames of the measured contacts, by the two bodies."""
+
+    normals: Mapping[Pair, Mapping[int, int]] = field(default_factory=dict)
+    """By two bodies and the first frame of their contact: how far its normal points up, from the
+    second to the first [1/1000]."""
+
+    closing: Mapping[Pair, Mapping[int, int]] = field(default_factory=dict)
+    """By two bodies and the first frame of their contact: how fast they came together [mm/s]."""
+
+    presses: Mapping[Pair, Mapping[int, Pressing]] = field(default_factory=dict)
+    """The same: which way the first presses aside on the second [1/1000]."""
+
+    lies: Mapping[tuple[str, str, str], Sequence[Frames]] = field(default_factory=dict)
+    """First and last frames of how a body lies to another, by that and the two bodies."""
+
+    heights: Heights | None = None
+    """How low and how high bodies were; None where that is not known."""
+
+    over: Places | None = None
+    """Where a body is to another one; None where that is not known."""
+
+    lost: Mapping[str, Sequence[Frames]] = field(default_factory=dict)
+    """First and last frames of the gaps in the tracks of bodies that are long enough to matter."""
+
+    unrested: frozenset[str] = frozenset()
+    """Objects that never rest; from how others first rest their lean is measured."""
+
+    shapeless: frozenset[str] = frozenset()
+    """Objects of which no shape is known."""
+
+    def upright(self, body: str) -> str:
+        """The posture from which a body's lean is measured, in words."""
+        return "how it was first seen" if body in self.unrested else "how it first rested"
+
+    def contact(self, one: str, other: str, frame: int, slack: float) -> Frames | None:
+        """The contact of two bodies at a frame, or the nearest so few frames from it."""
+        found = [*self.contacts.get((one, other), ()), *self.contacts.get((other, one), ())]
+        near = [
+            (max(first - frame, frame - last, 0), first, last)
+            for first, last in found
+            if first - slack <= frame <= last + slack
+        ]
+        return min(near)[1:] if near else None
+
+    def upward(self, one: str, other: str, first: int) -> int | None:
+        """How far the normal of the contact that begins then points up, to the first [1/1000]."""
+        own = self.normals.get((one, other), {}).get(first)
+        opposite = self.normals.get((other, one), {}).get(first)
+        return -opposite if own is None and opposite is not None else own
+
     def near(self, one: str, other: str) -> bool:
         """Whether two bodies that count as touching may be apart, so that they are told as near."""
         reach = self.reaches.get((one, other))
@@ -123,18 +190,46 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
                 swings[fact.body].append((fact.first, fact.last))
             case Travelled():
                 travelled[fact.body, fact.frame] = fact.way, fact.turn
-            case Touching():
+            case Touching() if fact.body in acting:
                 touched = True
-                if fact.body in acting:
-                    held[fact.other].append((fact.body, fact.first, fact.last))
+                held[fact.other].append((fact.body, fact.first, fact.last))
             case Tag(type="mobile"):
                 touched = True
             case _:
                 pass
     found = replace(known, moving=moving, rests=rests, places=places, postures=postures)
+    found = _of_pairs(every, found)
     return replace(
         found, displaced=displaced, swings=swings, travelled=travelled, held=held, tracked=touched
     )
+
+
+def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
+    """What is known, with what facts say of two bodies and of shapes."""
+    contacts: dict[Pair, list[Frames]] = defaultdict(list)
+    normals: dict[Pair, dict[int, int]] = defaultdict(dict)
+    presses: dict[Pair, dict[int, Pressing]] = defaultdict(dict)
+    closing: dict[Pair, dict[int, int]] = defaultdict(dict)
+    lies: dict[tuple[str, str, str], list[Frames]] = defaultdict(list)
+    shapeless: set[str] = set()
+    for fact in facts:
+        match fact:
+            case Touching():
+                contacts[fact.body, fact.other].append((fact.first, fact.last))
+            case ContactNormal():
+                normals[fact.body, fact.other][fact.first] = fact.permille
+            case ClosingSpeed():
+                closing[fact.body, fact.other][fact.first] = fact.speed
+            case PressDirection():
+                presses[fact.body, fact.other][fact.first] = fact.x, fact.y
+            case Lies():
+                lies[fact.how, fact.body, fact.other].append((fact.first, fact.last))
+            case Shapeless():
+                shapeless.add(fact.object)
+            case _:
+                pass
+    found = replace(known, contacts=contacts, normals=normals, presses=presses, lies=lies)
+    return replace(found, closing=closing, shapeless=frozenset(shapeless))
 
 
 @dataclass(frozen=True)

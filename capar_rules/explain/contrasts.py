@@ -43,6 +43,9 @@ LEAST_TOLD = 0.01
 MOST_TOLD = 2
 """So many conditions are told at most."""
 
+MOST_FOUND = 6
+"""So many are found at most: some of them may be told as the name's own."""
+
 
 @dataclass(frozen=True)
 class Wording:
@@ -76,6 +79,19 @@ class Contrast:
     though: tuple[str, ...] = ()
     """What would have been seen of the names, and was so."""
 
+    numbered: bool = False
+    """Whether what is told has a number."""
+
+    @property
+    def weak(self) -> bool:
+        """Whether it is too far off to be told where a more general name can be told instead."""
+        far = self.failing > 1 and not self.numbered
+        return (self.by_features or far) and not self.though
+
+    def told_as(self, other: "Contrast") -> bool:
+        """Whether the same is told of the names of both."""
+        return (self.clause, self.though) == (other.clause, other.though)
+
     @property
     def clause(self) -> str:
         """The clauses as one."""
@@ -103,7 +119,8 @@ class _Found:
     """By how much what decided missed being otherwise: a share of what was asked for."""
 
     order: tuple[float, ...]
-    """The less, the nearer: conditions that fail, by how much, and how the names are related."""
+    """The less, the nearer: of what was seen of a name, or of a more specific one, first; then by
+    how many conditions fail, by how much, and how the names are related."""
 
     contrast: Contrast
 
@@ -136,11 +153,11 @@ def contrasts(
     indirect = list(_nearest([each for each in features if not each.direct], most=1))
     direct = list(_nearest([each for each in features if each.direct], most=1))
     supported = list(_supported(base, derived, atoms, clock, tell))
-    return tuple((supported + own or indirect or direct)[:MOST_TOLD])
+    return tuple(supported + own + direct + indirect)
 
 
 def _nearest(
-    found: Sequence[_Found], *, most: int = MOST_TOLD, least: float = LEAST_NEARNESS
+    found: Sequence[_Found], *, most: int = MOST_FOUND, least: float = LEAST_NEARNESS
 ) -> Iterator[Contrast]:
     """The nearest of some neighbours, each with those of which the same condition decided."""
     near = (refused for refused in found if refused.nearness >= least)
@@ -151,13 +168,11 @@ def _nearest(
         if not waiting:
             return
         first = waiting[0]
-        waiting = [each for each in waiting if each.order[0] == first.order[0]]
-        alike = [each for each in waiting if each.contrast.clause == first.contrast.clause]
+        alike = [each for each in waiting if each.contrast.told_as(first.contrast)]
         names = tuple(dict.fromkeys(each.contrast.names[0] for each in alike))[:MOST_NAMES]
         told |= {*names}
-        though = (clause for each in alike for clause in each.contrast.though)
-        yield replace(first.contrast, names=names, though=tuple(dict.fromkeys(though)))
-        waiting = [each for each in waiting if each.contrast.clause != first.contrast.clause]
+        yield replace(first.contrast, names=names)
+        waiting = [each for each in waiting if not each.contrast.told_as(first.contrast)]
 
 
 def _supported(
@@ -211,8 +226,11 @@ def _of_neighbour(
             by_features=featured,
             failing=len(clauses),
             though=though,
+            numbered=bool(re.search(r"\d", "".join(clauses[place]))),
         )
-        order = len(match.failing), -round(near, 1), other.steps, *other.distance(form)
+        related = other.steps, *other.distance(form)
+        seen_first = not though, not other.below
+        order = *seen_first, len(match.failing), -round(near, 1), *related
         yield _Found(direct, near, order, contrast)
 
 

@@ -178,7 +178,7 @@ class Explainer:
                 return briefs.contrasted(bit(top, atom, clock), top)
             if not derived.holds(atom):
                 return []  # it was measured
-            return briefs.first(self._reason(derived.why(atom), clock, {}))
+            return briefs.first(self._reason(derived.why(atom), clock, {}), top)
 
         return contrasts(self.base, name, derived, clock, Wording(tell, briefs.tell))
 

@@ -4,7 +4,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 from capar_rules.borders.times import constants, in_frames, times
-from capar_rules.explain import quantities
+from capar_rules.explain import arrangements, quantities
+from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.quantities import LEAST_M, Shortfall, Way
 
@@ -26,13 +27,19 @@ SHORT_WAYS: Mapping[str, Callable[[int, int, int], Shortfall]] = {
 }
 """Formats of how a displacement falls short of what a condition asks for."""
 
-SHORTFALLS = (*SHORT_WAYS, "not_turned", "not_leant")
+BEARINGS = ("ahead", "after", "not_ahead", "not_after")
+"""Formats of a segment that tell at which angle its thing goes to the end-effector."""
+
+OF_ACTS = ("not_ahead", "not_after", "not_laid")
+"""Formats of a segment that tell what it falls short of."""
+
+SHORTFALLS = (*SHORT_WAYS, "not_turned", "not_leant", *OF_ACTS)
 """... and of how an angle does."""
 
 OF_BODIES = (
     "way",
     *SHIFTS,
-    *SHORTFALLS,
+    *(form for form in SHORTFALLS if form not in OF_ACTS),
     "spread",
     "lean",
     "far_over",
@@ -88,17 +95,33 @@ class Argument:
             "blow": lambda: f"{constants()['blow_mm_s']} mm/s",
             "met": self._met,
             "from_rest": self._from_rest,
-            "elsewhere": self._elsewhere,
             "away": self._away,
             "back": self._back,
             "keeper": self._keeper,
-            "ahead": lambda: self._bearing("ahead is 45° or less"),
-            "after": lambda: self._bearing("after is 135° or more"),
+            "laid": lambda: arrangements.laid(self.clock, self.text) or UNBOUND,
+            "kept": self._kept,
+            "over": self._over,
+            "share": self._share,
+            "borne": self._borne,
+            "unborne": self._unborne,
+            "palm": self._palm,
+            "poised": self._poised,
+            "struck": self._struck,
+            "until": lambda: self._contact("start", 1),
+            "since": lambda: self._contact("end", 0),
+            "on": self._on,
+            "ended_at": self._ended_at,
+            "placed_end": self._placed_end,
+            "not_laid": lambda: arrangements.not_laid(self.clock, self.text) or UNBOUND,
+            "least_height": lambda: quantities.length(constants()["height_mm"] / 1000.0),
+            "hollow": self._hollow,
             "not_at_rest": self._not_at_rest,
             "rest_s": self._rest_s,
             "long": self._long,
             "when": self._when,
         }
+        if form in BEARINGS:
+            return self._bearing(form)
         if form in of_itself:
             return of_itself[form]()
         return self._of_span(form) if form in OF_SEGMENTS else None
@@ -117,7 +140,8 @@ class Argument:
         """Where the border of an event stands, if not at its frame, which is the sixth argument."""
         frame = self.clock.frames[self.beside[0]][int(self.text)]
         told = self.clock.at(frame)
-        return "" if told == self.clock.at(int(self.beside[5])) else f", which counts at {told}"
+        began = self.clock.at(int(self.beside[5]))
+        return "" if told == began else f", and settled there by {told}"
 
     def _reach(self) -> str:
         """Up to which distance the second and the third argument count as touching."""
@@ -165,22 +189,168 @@ class Argument:
         since, keeper = min(before)
         return f"was held by the {keeper} already (since {self.clock.at(since)})"
 
-    def _bearing(self, asked: str) -> str:
-        """At which level angle to the line from the end-effector to it the thing went."""
+    def _bearing(self, form: str) -> str:
+        """At which level angle to the line from the end-effector to its middle the thing went."""
+        found = arrangements.bearing(self.clock, self.text)
+        if found is None:
+            return UNBOUND
+        hand, thing = self.clock.called(self._hand), self.clock.about(self.text)
+        line = f"to the level line from the {hand} to the middle of the {thing}"
+        ahead, after = f"{AHEAD_DEG:.0f}° or less is ahead", f"{AFTER_DEG:.0f}° or more is after"
+        if form.startswith("not_"):
+            whither = f"neither after the {hand} nor ahead of it, but"
+            if found.offset_deg >= AFTER_DEG:
+                whither = f"after the {hand}, and not ahead of it,"
+            if found.offset_deg <= AHEAD_DEG:
+                whither = f"ahead of the {hand}, and not after it,"
+            angle = f"{found.offset_deg:.0f}°"
+            return f" {whither} at {angle} {line} ({after}, {ahead})"
+        if form == "ahead" and found.by_press:
+            line = f"to the direction in which the {hand} pressed it"
+            return f" (at {found.press_deg:.0f}° {line}; {ahead})"
+        asked = ahead if form == "ahead" else after
+        return f" (at {found.offset_deg:.0f}° {line}; {asked})"
+
+    def _kept(self) -> str:
+        """What the segment's object touches at the start and at the end."""
+        found = arrangements.kept(self.clock, self.text)
+        return " and ".join(f"the {self.clock.called(other)}" for other in found) or UNBOUND
+
+    def _over(self) -> str:
+        """How far the fourth argument is above the fifth at the side that this one names."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], self.text)
+        over = self.clock.measured.over
+        if over is None or frame is None:
+            return UNBOUND
+        other = self.clock.called(self.beside[4])
+        return quantities.over(over(self.beside[3], self.beside[4], frame), other)
+
+    def _share(self) -> str:
+        """Which share of the fourth argument is in the fifth at the side that this one names."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], self.text)
+        over = self.clock.measured.over
+        if over is None or frame is None:
+            return UNBOUND
+        how, body, other = self.beside[2:5]
+        at = arrangements.lying(self.clock, how, body, other, frame)
+        if at is None:
+            return UNBOUND
+        share = quantities.percent(over(body, other, at).share)
+        return f" ({share} of it{f' at {self.clock.at(at)}' * (at > frame)})"
+
+    def _borne(self) -> str:
+        """From which side the fourth argument pushes the third, at the side that this one names."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], self.text)
+        if frame is None:
+            return UNBOUND
+        thing, other = self.beside[2:4]
+        angle = arrangements.normal_deg(self.clock, thing, other, frame)
+        if angle is None:
+            return UNBOUND
+        most = arrangements.steepest_deg()
+        return f" (pushing it {angle:.0f}° off straight up; {most:.0f}° or less bears)"
+
+    def _struck(self) -> str:
+        """How fast the segment's object met this one at the end."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], "end")
+        thing = self.clock.objects.get(self.beside[0], "")
+        speeds = self.clock.measured.closing.get((thing, self.text), {})
+        merge = in_frames(times().merge_ms, self.clock.rate_hz)
+        near = [(abs(first - frame), first) for first in speeds] if frame is not None else []
+        if not near or min(near)[0] > merge:
+            return UNBOUND
+        blow = f"a blow has {constants()['blow_mm_s']} mm/s or more"
+        return f"at {speeds[min(near)[1]]} mm/s ({blow})"
+
+    def _poised(self) -> str:
+        """Where the segment's object is to this one at the start."""
+        frame, thing = arrangements.frame_of(self.clock, self.beside[0], "start"), ""
+        thing = self.clock.objects.get(self.beside[0], "")
+        if frame is None:
+            return UNBOUND
+        for how, told in (("above", "above"), ("inside", "inside")):
+            if arrangements.lying(self.clock, how, thing, self.text, frame) is not None:
+                return told
+        reach = self.clock.measured.reaches.get((thing, self.text))
+        if self.clock.measured.near(thing, self.text) and reach is not None:
+            return f"within {reach.told_mm} mm of"
+        return "in contact with"
+
+    def _contact(self, side: str, end: int) -> str:
+        """When the contact of the two bodies beside this that there is at a side begins or ends."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], side)
+        found = None if frame is None else self._met_near(self.beside[1], self.beside[2], frame)
+        return UNBOUND if found is None else self.clock.at(found[end])
+
+    def _met_near(self, one: str, other: str, frame: int) -> tuple[int, int] | None:
+        merge = in_frames(times().merge_ms, self.clock.rate_hz)
+        return self.clock.measured.contact(one, other, frame, merge)
+
+    def _on(self) -> str:
+        """Until when the contact that there is at the start lasts, if longer than a border."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], "start")
+        found = None if frame is None else self._met_near(self.beside[1], self.beside[2], frame)
+        late = found and found[1] - (frame or 0) >= in_frames(times().merge_ms, self.clock.rate_hz)
+        return f" and until {self.clock.at(found[1])}," if found and late else ""
+
+    def _ended_at(self) -> str:
+        """When the contact ends that began at this frame, of the fourth argument and the fifth."""
+        first = int(self.text)
+        pair = (self.beside[3], self.beside[4])
+        contacts = self.clock.measured.contacts
+        found = [*contacts.get(pair, ()), *contacts.get(pair[::-1], ())]
+        last = next((end for begin, end in found if begin == first), None)
+        tick = self.clock.frames[self.beside[0]][int(self.beside[1])]
+        return self.clock.at(tick if last is None else last)
+
+    def _placed_end(self) -> str:
+        """Where the border of the end of a contact stands, if not where that ends."""
+        ended = Argument(self.beside[5], self.beside, self.clock)._ended_at()
+        told = self.clock.at(self.clock.frames[self.beside[0]][int(self.text)])
+        return "" if told == ended else f"; the border is at {told}"
+
+    def _palm(self) -> str:
+        """From which side the segment's object pushes the end-effector that lies on it."""
         span, thing = self.clock.span(self.text), self.clock.objects.get(self.text, "")
-        places = self.clock.measured.places
-        if span is None:
-            return ""
-        hand, start = places.get((self._hand, span[0])), places.get((thing, span[0]))
-        end = places.get((thing, span[1]))
-        if hand is None or start is None or end is None:
-            return ""
-        line = start[0] - hand[0], start[1] - hand[1]
-        course = end[0] - start[0], end[1] - start[1]
-        across = line[0] * course[1] - line[1] * course[0]
-        along = line[0] * course[0] + line[1] * course[1]
-        angle = math.degrees(abs(math.atan2(across, along)))
-        return f" (its way was at {angle:.0f}° to the line from that to its middle; {asked})"
+        angle = arrangements.normal_deg(self.clock, self._hand, thing, span[0]) if span else None
+        if angle is None:
+            return UNBOUND
+        most = arrangements.steepest_deg()
+        return f" (which pushed it {angle:.0f}° off straight up; {most:.0f}° or less bears)"
+
+    def _unborne(self) -> str:
+        """Why nothing bears the third argument at the side that this one names."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], self.text)
+        thing, most = self.beside[2], arrangements.steepest_deg()
+        if frame is None or self.clock.objects.get(self.beside[0]) != thing:
+            return UNBOUND
+        found = arrangements.met_at(self.clock, self.beside[0], self.text)
+        if not found:
+            return f"the {self.clock.called(thing)} touched {self._nothing()} at the {self.text}"
+        told = []
+        for other in found:
+            angle = arrangements.normal_deg(self.clock, thing, other, frame)
+            if angle is None or angle <= most:
+                return UNBOUND
+            side = "from above" if angle >= 180.0 - most else "from the side"
+            called = self.clock.called(other)
+            told.append(f"the {called} was met {side}, {angle:.0f}° off straight up")
+        return (
+            f"nothing bore the {self.clock.called(thing)} at the {self.text}: {', '.join(told)} "
+            f"({most:.0f}° or less bears)"
+        )
+
+    def _hollow(self) -> str:
+        """What is known of the shapes of what the segment's object touches at both borders."""
+        found = arrangements.kept(self.clock, self.text)
+        unknown = any(body in self.clock.measured.shapeless for body in found)
+        return "whose shape is not known" if unknown else "which has a hollow"
+
+    def _nothing(self) -> str:
+        """That none of what is tracked was touched."""
+        if self.clock.measured.tracked:
+            return "none of the tracked objects"
+        return "no tracked object (the recording has none)"
 
     def _not_at_rest(self) -> str:
         """Why the segment is no rest: it lasted too briefly, or its end-effector moved."""
@@ -193,8 +363,7 @@ class Argument:
 
     def _met(self) -> str:
         """What the segment's object touches at the side of the segment that stands second."""
-        thing = self.clock.objects.get(self.text, "")
-        found = self.clock.met.get((self.text, self.beside[1], thing), ())
+        found = arrangements.met_at(self.clock, self.text, self.beside[1])
         return " and ".join(f"the {self.clock.called(each)}" for each in found) or UNBOUND
 
     def _long(self) -> str:
@@ -213,39 +382,45 @@ class Argument:
 
     def _from_rest(self) -> str:
         """What the segment's object left in it, if it touched anything."""
-        thing = self.clock.objects.get(self.text, "")
-        met, at_end = (self.clock.met.get((self.text, at, thing), ()) for at in ("start", "end"))
-        left = [f"the {self.clock.called(body)}" for body in met if body not in at_end]
+        left = [f"the {self.clock.called(one)}" for one in arrangements.left(self.clock, self.text)]
         return f"left {' and '.join(left)}" if left else "started from rest"
-
-    def _elsewhere(self) -> str:
-        """That the end-effector did not come back to a rest, or had none to come back to."""
-        span, rests = self.clock.span(self.text), self.clock.measured.rests.get(self._hand, ())
-        if span is None or any(first < span[0] for first, _ in rests):
-            return "did not come back to where it had rested before"
-        return "had not rested before"
 
     def _away(self) -> str:
         """How far from where it had rested the end-effector ended, or that it had not rested."""
-        if not self._earlier_rests():
-            return "had not rested before without touching anything"
-        found = self._nearest_rest()
-        if found is None or found[0] < constants()["aside_mm"] / 1000.0:
-            return "did not come back to where it had rested before"
-        near = quantities.length(constants()["aside_mm"] / 1000.0)
+        span, near = self.clock.span(self.text), constants()["aside_mm"] / 1000.0
+        if span is None:
+            return UNBOUND
+        if not self._earlier_postures():
+            start = self.clock.at(span[0])
+            none = f"no rest of {self._rest_s()} or more, touching nothing, before {start}"
+            return f"had no posture to resume ({none})"
+        found = self._nearest_posture()
+        if found is None or found[0] < near:
+            return UNBOUND
         far = quantities.length(found[0])
-        return f"ended {far} from the nearest place where it had rested before ({near} is near)"
+        return f"ended {far} from {self._posture(found[1], near)}"
 
     def _back(self) -> str:
         """How near to where it had rested the end-effector came back."""
-        found, near_mm = self._nearest_rest(), constants()["aside_mm"]
-        if found is None or found[0] >= near_mm / 1000.0:
-            return "came back to where it had rested before"
-        far, near = quantities.length(found[0]), quantities.length(near_mm / 1000.0)
-        return f"ended {far} from where it had rested before, and within {near} it is back there"
+        found, near = self._nearest_posture(), constants()["aside_mm"] / 1000.0
+        if found is None or found[0] >= near:
+            return UNBOUND
+        told = "less than 1 cm" if found[0] < LEAST_M else quantities.length(found[0])
+        return f"ended {told} from {self._posture(found[1], near)}"
 
-    def _earlier_rests(self) -> list[int]:
-        """The last frames of the rests before the segment in which it touched nothing."""
+    def _posture(self, frame: int, near_m: float) -> str:
+        """A place where the end-effector had been, touching nothing."""
+        how = "was" if frame == self.clock.frames[self._hand][0] else "rested"
+        return (
+            f"where it {how} at {self.clock.at(frame)} (of its earlier places of rest the nearest; "
+            f"within {quantities.length(near_m)} it is back there)"
+        )
+
+    def _earlier_postures(self) -> list[int]:
+        """The last frames of the rests before the segment in which it touched nothing.
+
+        The first frame counts as one if it touches nothing then.
+        """
         span, known = self.clock.span(self.text), self.clock.measured
         touching = [
             (first, last)
@@ -253,24 +428,29 @@ class Argument:
             for ee, first, last in contacts
             if ee == self._hand
         ]
+        begin = self.clock.frames.get(self._hand, (0,))[0]
         least = in_frames(constants()["rest_ms"], self.clock.rate_hz)
-        rests = known.rests.get(self._hand, ())
+        rests = [
+            (first, last)
+            for first, last in known.rests.get(self._hand, ())
+            if last - first >= least
+        ]
         return [
             last
-            for first, last in rests
+            for first, last in ((begin, begin), *rests)
             if span is not None
             and last <= span[0]
-            and last - first >= least
-            and not any(begin <= last and end >= first for begin, end in touching)
+            and not any(start <= last and end >= first for start, end in touching)
         ]
 
-    def _nearest_rest(self) -> tuple[float, int] | None:
+    def _nearest_posture(self) -> tuple[float, int] | None:
         """How far it ended from the nearest of its places of rest before [m], and that frame."""
-        span, rests = self.clock.span(self.text), self._earlier_rests()
+        span, rests = self.clock.span(self.text), self._earlier_postures()
         if span is None or not rests:
             return None
         ways = ((self._moved(self._hand, (first, span[1])), first) for first in rests)
-        return min(((way.straight_m, first) for way, first in ways if way), default=None)
+        found = ((way.straight_m, first) for way, first in ways if way)
+        return min((one for one in found if not math.isnan(one[0])), default=None)
 
     def _rest_s(self) -> str:
         return f"{constants()['rest_ms'] / 1000.0:.2f} s"
@@ -296,7 +476,7 @@ class Argument:
         if span is None:
             return "its start and its end" * (form in ("segment", "motion"))
         if form in ("motion", "distance", "ended"):
-            span = self.clock.motion(self.beside[0], span)
+            span = self.clock.displacement(self.beside[0], span)
         if form in ("segment", "motion"):
             return f"{self.clock.at(span[0])} and {self.clock.at(span[1])}"
         moved = self._moved(self.beside[0], span)
@@ -309,7 +489,7 @@ class Argument:
     def _of_body(self, form: str) -> str:
         """What was measured of the body that this argument, or the segment in it, names."""
         if form == "none":
-            return "none of the tracked objects" if self.clock.measured.tracked else "nothing"
+            return self._nothing()
         body, span = self.body, self._span_beside(form)
         if span is None:
             return ""
@@ -351,12 +531,21 @@ class Argument:
         """The frames between which what such a format tells of a body was measured."""
         span = self._span_beside(form)
         if form in ("away", "back"):
-            nearest = self._nearest_rest()
+            nearest = self._nearest_posture()
             return (nearest[1], span[1]) if nearest and span else None
         return self.clock.displacement(self.body, span) if span and form == "way" else span
 
     def nearness(self, form: str) -> float:
         """How near the body came to what such a format says that it falls short of."""
+        if form == "not_laid":
+            return arrangements.nearly_laid(self.clock, self.text)
+        if form in BEARINGS:
+            found = arrangements.bearing(self.clock, self.text)
+            if found is None:
+                return 0.0
+            if form == "not_after":
+                return found.offset_deg / AFTER_DEG
+            return AHEAD_DEG / max(found.ahead_deg, AHEAD_DEG)
         span = self._span_beside(form)
         return 0.0 if span is None else self._shortfall(form, self.body, span).nearness
 
@@ -368,7 +557,8 @@ class Argument:
                 return quantities.NOTHING
             if form == "not_turned":
                 return quantities.not_turned(last[1] - first[1])
-            return quantities.not_leant(first[0], last[0])
+            most = round(1000.0 * known.leans(body, *span)) if known.leans else 0
+            return quantities.not_leant(first[0], last[0], most, self._posture_of(body))
         start, end = (known.places.get((body, frame)) for frame in span)
         if start is None or end is None:
             return quantities.NOTHING
@@ -383,15 +573,28 @@ class Argument:
             if start is None or end is None:
                 return "elsewhere"
             shift = [after - before for before, after in zip(start, end, strict=True)]
-            return SHIFTS[form](*shift)
+            told = SHIFTS[form](*shift)
+            return told + self._extremes(body, span, shift[2]) * (form == "course")
         first, last = (known.postures.get((body, frame)) for frame in span)
         if first is None or last is None:
             return "by an unknown angle"
         least = f" ({quantities.degrees(constants()['turn_mrad'])} or more count)"
         if form == "turn":
             return f"{quantities.degrees(last[1] - first[1])} about the vertical{least}"
-        change = f", a change of {quantities.degrees(last[0] - first[0])}"
-        return f"{_leant(first[0], last[0])}{change}{least}"
+        change = f", a change of {quantities.change(first[0], last[0])}"
+        return f"{_leant(first[0], last[0])} from {self._posture_of(body)}{change}{least}"
+
+    def _extremes(self, body: str, span: tuple[int, int], end_mm: int) -> str:
+        """How high or low a body was in between, where that is much beyond its start and end."""
+        if self.clock.measured.heights is None:
+            return ""
+        low, high = (1000.0 * each for each in self.clock.measured.heights(body, *span))
+        found = []
+        if high - max(end_mm, 0) >= constants()["height_mm"]:
+            found.append(f"up to {quantities.spread(high / 1000.0)} higher")
+        if min(end_mm, 0) - low >= constants()["height_mm"]:
+            found.append(f"down to {quantities.spread(-low / 1000.0)} lower")
+        return f" ({' and '.join(found)} in between)" if found else ""
 
     def _far_over(self, body: str, span: tuple[int, int]) -> str:
         """How far a body leant, and from where on that is far over."""
@@ -399,9 +602,14 @@ class Argument:
         first, last = (known.postures.get((body, frame)) for frame in span)
         if first is None or last is None or known.leans is None:
             return "far over"
-        most = quantities.degrees(round(1000.0 * known.leans(body, *span)))
+        most = quantities.upward(math.degrees(known.leans(body, *span)))
         least = quantities.degrees(round(1000.0 * known.far_over_rad))
-        return f"{_leant(first[0], last[0])} ({most} at most; far over is {least} or more)"
+        told = f"{_leant(first[0], last[0])} from {self._posture_of(body)}"
+        return f"{told} ({most:.0f}° at most; far over is {least} or more)"
+
+    def _posture_of(self, body: str) -> str:
+        """The posture from which a body's lean is measured."""
+        return self.clock.measured.upright(body)
 
     def _turns_back(self, body: str, span: tuple[int, int]) -> str:
         """How often it turned back within the span, and in the motion of which that is a part."""
@@ -439,10 +647,8 @@ class Argument:
 
 
 def _leant(first_mrad: int, last_mrad: int) -> str:
-    return (
-        f"{quantities.degrees(first_mrad)} from upright at the start and "
-        f"{quantities.degrees(last_mrad)} at the end"
-    )
+    first, last = quantities.degrees(first_mrad), quantities.degrees(last_mrad)
+    return f"{first} at the start and {last} at the end"
 
 
 def _brief(form: str, moved: Way) -> str:

@@ -16,6 +16,13 @@ _FIELDS = {
     for each in _KINDS
 }
 
+STRETCHES = {
+    each.predicate: sum(field.name not in ("first", "last", "gap") for field in fields(each))
+    for each in ALL_FACT_KINDS
+    if {"first", "last"} <= {field.name for field in fields(each)} and each is not FlickerCorrection
+}
+"""Facts of what holds from frame to frame: how many of their first arguments say of what."""
+
 
 def frames_of(predicate: str, arguments: Sequence[str], clock: Clock) -> tuple[int, int] | None:
     """First and last frame of a measurement, a tick or a segment; None for other atoms."""

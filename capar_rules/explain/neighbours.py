@@ -28,6 +28,9 @@ class Neighbour:
     steps: int
     """Zero if a name of which both are kinds, or one of the two, is directly above; else one."""
 
+    below: bool
+    """Whether it specialises the other one."""
+
     forms: tuple[Form, ...]
     shared: frozenset[tuple[Signature, int]]
     """The conditions of the rules for the name that it is next to."""
@@ -146,7 +149,13 @@ def neighbours(base: RuleBase, name: str) -> tuple[Neighbour, ...]:
     others = (names.related(name) | beside) - {name, *names.generals.get(name, ())}
     shared = frozenset(each for form in _forms(base, name) for each in _asked(form))
     return tuple(
-        Neighbour(other, names.steps(name, other), tuple(_forms(base, other)), shared)
+        Neighbour(
+            other,
+            names.steps(name, other),
+            name in names.generals.get(other, ()),
+            tuple(_forms(base, other)),
+            shared,
+        )
         for other in sorted(others)
     )
 

@@ -68,8 +68,18 @@ def _from_start(metres: float) -> str:
 
 
 def spread(metres: float) -> str:
-    """Within what a body stayed, to stand after ``within``."""
-    return "1 mm" if metres < 0.0015 else length(metres)
+    """Within what a body stayed, to stand after ``within``: rounded up, so that it is so."""
+    for unit, scale, digits in (("mm", 1000.0, 0), ("cm", 100.0, 0), ("m", 1.0, 1)):
+        bound = upward(scale * metres, digits)
+        if unit == "m" or bound < (10 if unit == "mm" else 100):
+            return f"{max(bound, 1.0):.{digits}f} {unit}"
+    raise AssertionError
+
+
+def upward(value: float, digits: int = 0) -> float:
+    """The least number of so many decimals that a value does not exceed."""
+    scale = 10.0**digits
+    return math.ceil(round(value * scale, 6)) / scale
 
 
 def course(x_mm: int, y_mm: int, z_mm: int) -> str:
@@ -111,6 +121,38 @@ class Turns:
         return f"turned back {often(self.count)} after ways of {length(self.least_m)} or more"
 
 
+@dataclass(frozen=True, slots=True)
+class Over:
+    """Where a body is to another one."""
+
+    rise_m: float
+    """How much higher its middle is than the other's top [m]."""
+
+    aside_m: float
+    """How far its middle is outside the other's shadow, to the side [m]; zero over it."""
+
+    share: float
+    """Which share of it is in the other's convex hull [1]."""
+
+    deep: float
+    """Which share of its ends is well within that: deeper than bodies that touch cut each other."""
+
+    shaped: bool
+    """Whether the other has a shape; its top and its shadow are its origin else."""
+
+
+def over(at: Over, other: str) -> str:
+    """How far a body is above another one of that name, in brackets."""
+    top = f"the {'top' if at.shaped else 'origin'} of the {other}"
+    aside = "over it" if at.aside_m < 0.0005 else f"{length(at.aside_m)} aside of it"
+    return f" ({length(at.rise_m)} above {top} and {aside})"
+
+
+def percent(share: float) -> str:
+    """A share, to stand alone."""
+    return f"{100.0 * share:.0f} %"
+
+
 def often(count: int) -> str:
     """A number of times."""
     return {1: "once", 2: "twice"}.get(count, f"{count} times")
@@ -129,6 +171,12 @@ class Shortfall:
 
 NOTHING = Shortfall("", 0.0)
 
+NEAR_BY = 0.9
+"""How near what leant over and back is taken to come to a tilting [1]."""
+
+FAR_OFF = 0.02
+"""How near what did nothing of the kind is taken to come: it is told if nothing else is [1]."""
+
 
 def not_up(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     """Why a displacement is no rise."""
@@ -143,7 +191,8 @@ def not_down(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
 def _not_steep(aside_mm: float, height_mm: float, verb: str, sense: str) -> Shortfall:
     least = constants()["height_mm"]
     if height_mm < LEVEL_MM:
-        return NOTHING
+        plain = "rise" if sense == "up" else "sink"
+        return Shortfall(f"did not {plain} ({length(least / 1000.0)} or more count)", FAR_OFF)
     if height_mm < least:
         far, wanted = _apart(height_mm, least)
         return Shortfall(f"{verb} by {far}, less than the {wanted} that count", height_mm / least)
@@ -187,20 +236,35 @@ def not_turned(turned_mrad: int) -> Shortfall:
     return Shortfall(text, abs(turned_mrad) / least)
 
 
-def not_leant(before_mrad: int, after_mrad: int) -> Shortfall:
-    """Why a change of lean is no tilting."""
+def not_leant(before_mrad: int, after_mrad: int, most_mrad: int, posture: str) -> Shortfall:
+    """Why a change of lean is no tilting; near to one is what leant much more in between."""
     least, change = constants()["turn_mrad"], abs(after_mrad - before_mrad)
+    beyond = most_mrad - max(before_mrad, after_mrad) >= least
+    bound = upward(math.degrees(most_mrad / 1000.0))
+    most = f" ({bound:.0f}° at most in between)" * beyond
     text = (
-        f"leant {degrees(before_mrad)} from upright at the start and {degrees(after_mrad)} at the "
-        f"end, a change of less than {degrees(least)}"
+        f"leant {degrees(before_mrad)} at the start and {degrees(after_mrad)} at the end from "
+        f"{posture}{most}, a change of less than {degrees(least)}"
     )
-    return Shortfall(text, change / least)
+    return Shortfall(text, max(change / least, NEAR_BY * beyond))
 
 
 def _apart(one_mm: float, other_mm: float) -> tuple[str, str]:
     """Two lengths, in millimetres if they would else read as the same."""
     told = length(one_mm / 1000.0), length(other_mm / 1000.0)
     return told if told[0] != told[1] else (f"{one_mm:.0f} mm", f"{other_mm:.0f} mm")
+
+
+def change(before_mrad: int, after_mrad: int) -> str:
+    """The angle between two, as the difference of what is told of them.
+
+    Where that would be on the other side of what counts as turned, the angle itself is rounded.
+    """
+    least = constants()["turn_mrad"]
+    told = abs(round(math.degrees(after_mrad / 1000.0)) - round(math.degrees(before_mrad / 1000.0)))
+    counts = abs(after_mrad - before_mrad) >= least
+    agrees = counts == (told >= round(math.degrees(least / 1000.0)))
+    return f"{told}°" if agrees else degrees(after_mrad - before_mrad)
 
 
 def degrees(milliradians: int) -> str:

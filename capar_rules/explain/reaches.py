@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from capar_rules.explain.quantities import upward
+
 NEAR_MM = 10
 """Bodies that count as touching while they are further apart are told to be near [mm]."""
 
@@ -11,10 +13,11 @@ class Between(StrEnum):
     """What of two bodies a distance is between, as a sentence says it."""
 
     SURFACES = "between their surfaces"
-    ORIGINS = "between their origins, as not both have a shape"
+    POINT = "between the surface of the one and the origin of the other, of which no shape is known"
+    ORIGINS = "between their origins, as not both shapes are known"
     POINTS = (
-        "between a point of each body, estimated from how the two moved together, and not between "
-        "their origins, as not both have a shape"
+        "between a point of each body, estimated from how the two moved together, as not both "
+        "shapes are known"
     )
 
 
@@ -27,8 +30,8 @@ class Reach:
 
     @property
     def told_mm(self) -> int:
-        """The distance in whole millimetres, as it is told."""
-        return round(1000.0 * self.distance_m)
+        """The distance in whole millimetres, as it is told: rounded up, so that it bounds."""
+        return round(upward(1000.0 * self.distance_m))
 
     @property
     def is_touch(self) -> bool:

@@ -1,13 +1,22 @@
 """The summary of an explanation: the name's conditions, and what decided against neighbours."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from capar_rules.engine.syntax import split_arguments
-from capar_rules.explain.claims import Claim, claim
+from capar_rules.explain.arrangements import untracked
+from capar_rules.explain.claims import (
+    ANY,
+    Claim,
+    Stretches,
+    claim,
+    joined_claims,
+    resting_on,
+)
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
-from capar_rules.explain.contrasts import Contrast
+from capar_rules.explain.contrasts import MOST_NAMES, MOST_TOLD, Contrast
 from capar_rules.explain.formatting import UNBOUND
 from capar_rules.explain.reaches import Between
 from capar_rules.explain.reason import Reason
@@ -41,6 +50,9 @@ COURSES = ("rises", "comes_down", "travels", "stays_near")
 NUMBERED = ("stays(", "met_gently(")
 """Prefixes of atoms of which a contrast tells the number that decided."""
 
+MOST_GAPS = 3
+"""So many gaps of a track are told one by one."""
+
 OWN = 3
 """Rank of what is no feature, but a name's own condition."""
 
@@ -63,37 +75,58 @@ class Briefs:
     claims: dict[str, Claim] = field(default_factory=dict)
     """Each clause so far, by its text."""
 
-    def tell(self, predicate: str, arguments: Sequence[str], mood: str) -> str:
-        """The clause for an atom, which is kept with what was measured for it."""
+    def tell(
+        self, predicate: str, arguments: Sequence[str], mood: str, reason: Reason | None = None
+    ) -> str:
+        """The clause for an atom, kept with what was measured for it; empty if nothing was.
+
+        Of the atom of a node, what was measured below it counts too.
+        """
         text = self.sentences.tell(predicate, arguments, self.clock, mood=mood)
-        if text and UNBOUND not in text and text not in self.claims:
-            told = predicate, arguments, mood
-            self.claims[text] = claim(self.sentences, self.clock, told, text)
+        return self._kept(text, (predicate, arguments, mood), reason)
+
+    def _kept(self, text: str, told: tuple[str, Sequence[str], str], reason: Reason | None) -> str:
+        if not text or UNBOUND in text:
+            return text
+        if text not in self.claims:
+            found = claim(self.sentences, self.clock, told, text)
+            found = found if reason is None else resting_on(found, reason)
+            if not found.shown:
+                return ""
+            self.claims[text] = found
         return text
 
     def of(self, reason: Reason) -> str:
         """The clause for a node; its sentence if there is no shorter one."""
         absent = reason.atom.startswith("not ")
         predicate, arguments = _parsed(reason.atom.removeprefix("not "))
-        plain = self.tell(predicate, arguments, "not" * absent)
-        if plain != reason.sentence:
-            told = predicate, arguments, "mended"
-            self.claims[reason.sentence] = claim(self.sentences, self.clock, told, reason.sentence)
-            return reason.sentence  # part of it is doubted
+        plain = self.sentences.tell(predicate, arguments, self.clock, mood="not" * absent)
+        if plain != reason.sentence:  # part of it is doubted
+            return self._kept(reason.sentence, (predicate, arguments, "mended"), reason)
         if predicate == "rests" and self.clock.side(arguments[0], int(arguments[1])) == "end":
-            return self.tell("rests_afterwards", arguments, "brief")
+            return self.tell("rests_afterwards", arguments, "brief", reason)
         mood = "brief not" if absent else "brief"
-        return self.tell(predicate, arguments, mood) or plain
+        if self.sentences.template(predicate, arguments, mood=mood):
+            return self.tell(predicate, arguments, mood, reason)
+        return self.tell(predicate, arguments, "not" * absent, reason)
 
-    def first(self, reason: Reason) -> list[str]:
-        """What the first node says, at or below one, that has something to say in a summary."""
+    def first(self, reason: Reason, top: Reason) -> list[str]:
+        """What the first node says, at or below one, that has something to say in a summary.
+
+        What the segment's own reasons, below the top, tell of the same contact, is told alike.
+        """
+        pairs = merged_contacts(list(reason.walk()), self.clock)
+        pairs |= merged_contacts(list(top.walk()), self.clock)
         for each in _resting_on([reason], set()):
             if each.atom.startswith(CLEAR):
                 continue  # what decides against a name is what the thing did
             predicate, arguments = _parsed(each.atom)
-            told = self.tell(predicate, arguments, "despite")
-            if told or (each.leading and _rank(each)):
-                return [told or self.of(each)]
+            told = self.tell(predicate, arguments, "despite", each)
+            if each.atom in pairs and _rank(each):
+                told = self.tell(*pairs[each.atom], "brief")
+            told = told or (self.of(each) if each.leading and _rank(each) else "")
+            if told and UNBOUND not in told:
+                return [told]
         return []
 
     def contrasted(self, nodes: Sequence[Reason], top: Reason) -> list[str]:
@@ -103,12 +136,30 @@ class Briefs:
         """
         pairs = merged_contacts(list(top.walk()), self.clock)
         for each in nodes:
-            told = self.tell(*pairs.get(each.atom, ("", ())), "despite")
+            told = self.tell(*pairs.get(each.atom, ("", ())), "brief")
             if each.atom.startswith(NUMBERED):
                 told = self.tell(*_parsed(each.atom), "despite")
-            if told:
+            if told and UNBOUND not in told:
                 return [told]
         return self.clauses(nodes)
+
+    def lost(self, claims: Iterable[Claim]) -> list[Claim]:
+        """That bodies of which claims tell were not tracked at times within the segment."""
+        shown = [quantity.bodies for each in claims for quantity in each.quantities]
+        shown += [stretches.bodies for each in claims for stretches in each.stretches]
+        bodies = tuple(dict.fromkeys(body for each in shown for body in each if body != ANY))
+        return [
+            Claim(self._lost(body, gaps), (), (), (Stretches("lost", (body,)),))
+            for body, gaps in untracked(self.clock, bodies)
+        ]
+
+    def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:
+        was = "were" if self.clock.called(body) in self.clock.several else "was"
+        spans = [f"from {self.clock.at(first)} to {self.clock.at(last)}" for first, last in gaps]
+        if len(spans) > MOST_GAPS:
+            lost = sum(last - first for first, last in gaps) / self.clock.rate_hz
+            spans = [f"{len(gaps)} times, for {lost:.2f} s in all"]
+        return f"the {self.clock.called(body)} {was} not tracked {_listed(spans)}"
 
     def clauses(self, nodes: Sequence[Reason]) -> list[str]:
         """What is said of nodes, each once; contacts of two bodies at both borders are one.
@@ -128,7 +179,24 @@ class Briefs:
                 told.append(self.tell(*pair, "brief"))
             elif not (courses and each.atom.startswith("moved(")):
                 told.append(self.of(each))
-        return _at_both([each for each in dict.fromkeys(told) if each and UNBOUND not in each])
+        told = [each for each in dict.fromkeys(told) if each and UNBOUND not in each]
+        return self._of_both(_at_both(told))
+
+    def _of_both(self, clauses: Sequence[str]) -> list[str]:
+        """The clauses, of which two that differ in the side, and in numbers of it, are one."""
+        joined: dict[str, list[str]] = {}
+        for clause in clauses:
+            found = _SIDED.fullmatch(clause)
+            joined.setdefault(found[1] if found else clause, []).append(clause)
+        out = []
+        for begin, parts in joined.items():
+            text = " and ".join([parts[0], *(part.removeprefix(begin) for part in parts[1:])])
+            text = text.replace(" and  at ", " and at ")
+            if len(parts) > 1:
+                claims = [self.claims[part] for part in parts if part in self.claims]
+                self.claims[text] = joined_claims(text, claims)
+            out.append(text)
+        return out
 
     def _within_border(self, reason: Reason, nodes: Iterable[Reason]) -> bool:
         """Whether it is a contact at a time within a border, at which the two are told about."""
@@ -213,25 +281,36 @@ def summary(
         replace(each, though=tuple(clause for clause in each.though if clause not in clauses))
         for each in against
     ]
-    fresh = [each for each in against if each.clause not in clauses]
-    alike = [each.called for each in against if each not in fresh]
-    apart = bool(generals and own) and all(each.by_features or each.failing > 1 for each in fresh)
+    fresh = [each for each in against if each.though or each.clause not in clauses]
+    same = [each for each in against if each not in fresh and each.failing == 1]
+    alike = [name for each in same for name in each.names if not each.by_features]
+    alike = alike[:MOST_NAMES]
+    apart = bool(generals and own) and not same and all(each.weak for each in fresh)
+    near = [each for each in fresh if not each.by_features and not each.weak]
+    fresh = [] if apart else near or [each for each in fresh if each.by_features]
+    fresh = fresh[: max(MOST_TOLD - len(alike), sum(bool(each.though) for each in fresh))]
+    if len(alike) + len(fresh) < MOST_TOLD:
+        more = [name for each in same for name in each.names if each.by_features]
+        alike += more[: MOST_TOLD - len(alike) - len(fresh)]
+    beside = [f"just {_listed(generals, 'or')}"] if apart else alike
+    other = f", and not {_listed(beside, 'or')}" * bool(beside)
+    told = f"{name}{other}, because "
     if apart:
         more = _by_subject([each for each in clauses if each not in own], subjects)
-        told = f"{name}, and not just {_listed(generals, 'or')}, because "
         told += _by_subject(own, subjects) + f". Also, {more}" * bool(more)
     else:
-        beside = "".join(f", and not {each}" for each in alike)
-        told = f"{name}{beside}, because {_by_subject(clauses, subjects)}"
-        for number, contrast in enumerate(fresh):
-            told += f"{';' if number else '.'} {'n' if number else 'N'}ot {contrast.sentence}"
-    said = [*clauses, *(clause for each in fresh for clause in each.clauses)]
-    said += [clause for each in against for clause in each.though]
+        told += _by_subject(clauses, subjects)
+    for number, contrast in enumerate(fresh):
+        told += f"{';' if number else '.'} {'n' if number else 'N'}ot {contrast.sentence}"
+    said = [*clauses, *(clause for each in fresh for clause in (*each.clauses, *each.though))]
     every = (briefs.claims.get(each.removesuffix(_BOTH)) for each in dict.fromkeys(said))
-    claims = tuple(each for each in every if each is not None)
+    claims = [each for each in every if each is not None]
     mended = briefs.clauses(doubts)
+    claims += [briefs.claims[each] for each in mended if each in briefs.claims]
     told += f". For this, {_listed(mended)}" * bool(mended)
-    return Summary(f"{told}." + briefs.touching(nodes), claims)
+    lost = briefs.lost(claims)
+    told += "".join(f". {each.text[0].upper()}{each.text[1:]}" for each in lost)
+    return Summary(f"{told}." + briefs.touching(nodes), (*claims, *lost))
 
 
 def leading(reason: Reason) -> list[Reason]:
@@ -344,6 +423,9 @@ def _by_subject(clauses: Sequence[str], subjects: Sequence[str]) -> str:
         return f"{'; '.join(told[:-1])}; and {told[-1]}"
     return _listed(told)
 
+
+_SIDED = re.compile(r"(.*) at the (?:start|end) \([^()]*\)")
+"""A clause that tells a number of one side."""
 
 _START, _END, _BOTH = " at the start", " at the end", " and at the end"
 

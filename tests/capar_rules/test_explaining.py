@@ -39,6 +39,7 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "awaited", 1, ""): "no story has hands that meet; the scenes of hands have",
     ("", "uncounted", 4, ""): "no story has a contact that ends within the border it is read at",
     ("", "event", 6, "turns"): "no named segment of a story begins or ends where the hand turns",
+    ("", "parted_from", 3, ""): "no story takes a thing off a support and puts it there again",
     ("", "walks", 1, ""): "no story has feet; tests/test_whole_bodies.py has",
 }
 """Templates of what holds that no explanation tells, and why."""
@@ -194,7 +195,7 @@ def test_every_leaf_with_a_time_is_linked_to_its_frames(name: str) -> None:
 @pytest.mark.parametrize("name", STORIES)
 def test_the_summary_names_the_segment_and_its_reasons(name: str) -> None:
     for known, found in zip(told(name).known, told(name).explanations, strict=True):
-        opening = rf"{known.segment.name}(, and not(?: just)? \w+(, \w+)*( or \w+)?)?, because "
+        opening = rf"{known.segment.name}(, and not(?: just)? \w+(, \w+)*(,? or \w+)?)?, because "
         assert re.match(opening, found.summary)
         assert found.summary.endswith(".")
 

@@ -168,10 +168,11 @@ def _pressing(known: Known) -> float:
     return float(ahead @ goes / lengths) if lengths else 0.0
 
 
-def came_to_lie(known: Known) -> bool:
+def came_to_lie(known: Known, what: str, hand: str, at: str) -> bool:
     """It came down, and where it is then it is when the hand leaves it."""
-    what = known.segment.objects[0]
-    left = max(each.last for each in known.touching(known.segment.ee, what))
+    left = known.frame(at)
+    if not any(near(each.last, left) for each in known.touching(hand, what)):
+        return False
     place = known.stream(what).positions
     way = np.linalg.norm(place[left] - place[known.segment.last])
     return sank(known, what) and bool(way < 0.012)
@@ -183,7 +184,7 @@ FORMS = (
     (rf"the {NAME} went aside, more than up or down", went_aside),
     (rf"the {NAME} ended near where it began", ended_near),
     (rf"the middle of the {NAME} was (\d+) mm high at {TIME}", high),
-    (rf"the {NAME} leant otherwise at the end", leant),
+    (rf"the {NAME} leant at another angle at the end than at the start", leant),
     (rf"the {NAME} leant far over", leant_far),
     (rf"the {NAME} (began|ceased) to lean far over at {TIME}", lean_border),
     (rf"leaning of the {NAME} far over was measured from {TIME} to {TIME}", measured_leaning),
@@ -192,7 +193,11 @@ FORMS = (
     (rf"the {NAME} was above the {NAME} at the segment's (start|end)", was_above),
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),
     (rf"the {NAME} dipped into the {NAME} at the segment's (start|end)", dipped),
-    (rf"the {NAME} went ahead of the {NAME}, away from its middle", went_ahead),
-    (rf"the {NAME} went after the {NAME}, towards its middle", went_after),
-    (r"it came down to where it lay when it was let go", came_to_lie),
+    (rf"the {NAME} went ahead of the {NAME} \([^)]*; 45° or less is ahead\)", went_ahead),
+    (rf"the {NAME} went after the {NAME} \([^)]*; 135° or more is after\)", went_after),
+    (
+        rf"the {NAME} was not moved again before the {NAME} let go of it at {TIME}"
+        r"(?:, touching no other tracked object)?",
+        came_to_lie,
+    ),
 )

@@ -107,8 +107,19 @@ def no_support(known: Known, other: str, what: str, hand: str) -> bool:
     return came_later or moved
 
 
+def ended(known: Known, what: str, other: str, at: str, border: str) -> bool:
+    """A contact of the two ends then, near the border."""
+    by = not border or abs(known.at(border) - known.at(at)) <= 2 * known.reach
+    return by and any(near(each.last, known.at(at)) for each in known.touching(what, other))
+
+
+def ended_at_once(known: Known, what: str, other: str, side: str) -> bool:
+    """A contact of the two ends about that border."""
+    border = known.border(side)
+    return any(abs(each.last - border) <= 2 * known.reach for each in known.touching(what, other))
+
+
 FORMS = (
-    (rf"the {NAME} still touched the {NAME} at {TIME}", touched),
     (rf"no relation of the {NAME} with the {NAME} counted at {TIME}", uncounted),
     (rf"the {NAME} touched the {NAME} at {TIME}", touched),
     (rf"the {NAME} did not touch the {NAME} at {TIME}", not_touched),
@@ -118,12 +129,24 @@ FORMS = (
         ended_within,
     ),
     (rf"contact of the {NAME} with the {NAME} was measured from {TIME} to {TIME}", measured),
-    (rf"the {NAME} began to touch the {NAME} at {TIME}, which counts at {TIME}", counts),
+    (
+        rf"the {NAME} began to touch the {NAME} at {TIME}, and settled there by {TIME}",
+        counts,
+    ),
     (rf"the {NAME} began to touch the {NAME} at {TIME}", begins),
     (
-        rf"the {NAME} had hold of the {NAME}: it moved at some time in their contact, which "
-        rf"began at {TIME}",
-        possessed,
+        rf"the {NAME} moves at some time while the {NAME} touches it, from {TIME} on, and so "
+        "counts as held",
+        lambda known, thing, hand, at: possessed(known, hand, thing, at),
+    ),
+    (
+        rf"the contact of the {NAME} with the {NAME} ended at {TIME}(?:; the border is at {TIME})?",
+        ended,
+    ),
+    (
+        rf"the contact of the {NAME} with the {NAME} at the (start|end) ends at once, and does not "
+        r"count there",
+        ended_at_once,
     ),
     (rf"the {NAME} moved in the contact with the {NAME} that began at {TIME}", moved_in_contact),
     (

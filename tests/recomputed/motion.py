@@ -6,7 +6,7 @@ import numpy as np
 from motions.rolling import CAN
 
 from capar.model.facts import Flies, Lengthwise, Rolls, Swings, Touching
-from recomputed.known import NAME, ROUNDED, TIME, Known, near
+from recomputed.known import NAME, ROUNDED, TIME, Known, name, near
 
 GONE_M, GONE_RAD = 0.009, 0.07
 """What has left its place is further away than this [m], [rad]."""
@@ -161,12 +161,29 @@ def came_back(known: Known, what: str) -> bool:
     return bool(any(np.linalg.norm(place[border] - place[frame]) < 0.12 for frame in stays))
 
 
-def came_elsewhere(known: Known, what: str) -> bool:
-    return not came_back(known, what) and not never_rested(known, what)
+def came_elsewhere(known: Known, what: str, far: str, unit: str, at: str) -> bool:
+    """It ends so far from where it was then, and no place of rest before is nearer."""
+    place, border = known.stream(what).positions, known.segment.last
+    told = float(far) * {"mm": 0.001, "cm": 0.01, "m": 1.0}[unit]
+    away = float(np.linalg.norm(place[border] - place[known.frame(at)]))
+    return not came_back(known, what) and abs(away - told) <= 0.02 + 0.05 * (unit == "m")
 
 
-def never_rested(known: Known, what: str) -> bool:
-    return not any(each.first < known.segment.first for each in known.resting(what))
+def never_rested(known: Known, what: str, at: str) -> bool:
+    """No rest before lasts so long while it touches nothing."""
+    first = known.segment.first
+    touched = [each for each in known.of(Touching) if each.body == name(what)]
+    rests = [
+        each
+        for each in known.resting(what)
+        if each.last <= first and each.last - each.first >= 0.4 * known.rate
+    ]
+    free = [
+        each
+        for each in rests
+        if not any(met.first <= each.last and met.last >= each.first for met in touched)
+    ]
+    return near(first, known.at(at)) and not free
 
 
 def came_to_rest(known: Known, what: str, at: str) -> bool:
@@ -350,7 +367,7 @@ def flew_on(known: Known) -> bool:
 
 
 FORMS = (
-    (rf"the {NAME} went further than what is merely gripped", went_further),
+    (rf"the {NAME} went further than a hand shifts a thing by gripping it", went_further),
     (rf"the {NAME} (began|ceased) to be moved to and fro at {TIME}", swing_border),
     (rf"the {NAME} was gone at once", gone_at_once),
     (rf"the path of the {NAME} became level, or ceased to be, at {TIME}", levelled),
@@ -372,19 +389,21 @@ FORMS = (
     (rf"rest of the {NAME} was measured from {TIME} to {TIME}", measured_rest),
     (rf"the {NAME} turned as it went, without slipping", rolled),
     (rf"the {NAME} was moved to and fro", swung),
-    (rf"the {NAME} was not moved to and fro mainly before it", swung_within),
+    (
+        rf"the motion of the {NAME} to and fro did not lie mainly before the segment",
+        swung_within,
+    ),
     (rf"the {NAME}, long and thin, went along its own length", went_lengthwise),
     (
         rf"lengthwise motion of the {NAME} was measured from {TIME} to {TIME}",
         measured_lengthwise,
     ),
     (
-        rf"the {NAME} was seen to have moved at {TIME}; the motion is taken to begin at "
-        rf"{TIME}",
+        rf"the {NAME} moved, from {TIME} on clearly; with its slow beginning from {TIME} on",
         left_place,
     ),
     (
-        rf"the {NAME} was seen to have stopped at {TIME}; the motion is taken to end at {TIME}",
+        rf"the {NAME} moved, until {TIME} clearly; with its slow end until {TIME}",
         came_to_place,
     ),
     (
@@ -393,8 +412,16 @@ FORMS = (
     ),
     (rf"the {NAME} came to rest at {TIME}", came_to_rest),
     (rf"it ended where the {NAME} had rested before", came_back),
-    (rf"the {NAME} did not come back to where it had rested before", came_elsewhere),
-    (rf"the {NAME} had not rested before", never_rested),
+    (
+        rf"the {NAME} ended (\d+(?:\.\d)?) (mm|cm|m) from where it (?:was|rested) at {TIME} "
+        r"\(of its earlier places of rest the nearest; within 10 cm it is back there\)",
+        came_elsewhere,
+    ),
+    (
+        rf"the {NAME} had no posture to resume \(no rest of 0\.40 s or more, touching nothing, "
+        rf"before {TIME}\)",
+        never_rested,
+    ),
     (rf"the {NAME} began to move at {TIME}", left_rest),
     (rf"the {NAME} turned back at {TIME}", turned_back),
     (rf"the {NAME} reversed its direction at {TIME}", turned_round),

@@ -294,8 +294,11 @@ def not_put_down(known: Known, _: str) -> bool:
 
 
 FORMS = (
-    (r"it started from rest, or from what it touched", started_from_rest),
-    (rf"the {NAME} did not slide on anything from start to end", not_slid),
+    (
+        rf"the {NAME} (?:started from rest|left the [\w ]+)",
+        lambda known, what: name(what) == known.segment.objects[0] and started_from_rest(known),
+    ),
+    (rf"the {NAME} did not slide on any tracked object from start to end", not_slid),
     (rf"the {NAME} did not come down to where it was then let go", not_put_down),
     (
         rf"the {NAME} touched none of the tracked objects when the segment began, nor when it "

@@ -8,13 +8,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from capar.model.body_names import body_names
-from capar.model.facts import ClosingSpeed, Displaced, Posture, Resting, Touching
+from capar.model.facts import (
+    ClosingSpeed,
+    ContactNormal,
+    Displaced,
+    Posture,
+    PressDirection,
+    Resting,
+    Touching,
+)
 from capar_rules.engine.solver import rule_file
 from recomputed.doors import NUMBER, slid, swung
 from recomputed.known import NAME, TIME, Known, covers, name, near
 from recomputed.motion import lasted, stroked
 
 LENGTH = r"(\d+ mm|\d+ cm|\d+\.\d m)"
+POSTURE = r"from how it (?:first rested|was first seen)"
 DEGREES = r"(\d+)°"
 UNITS = {"mm": (0.001, 0.0005), "cm": (0.01, 0.005), "m": (1.0, 0.05)}
 """Of each unit: metres, and half of the last place that is told [m]."""
@@ -27,7 +36,7 @@ SHORT_M = 0.01
 
 VERBS = (
     "met|rose|sank|took|counts|bore|touched|moved|ended|leant|turned|stayed|kept|did|was|had|came|went|"
-    "then|lay|dipped|started|slid|left"
+    "then|lay|dipped|started|slid|left|rested|were|pressed"
 )
 
 
@@ -160,6 +169,14 @@ def ended(known: Known, body: str, rise: str, sense: str, aside: str) -> bool:
     return level and (_is(beside, aside) if aside else beside <= 2 * SMOOTHED_M)
 
 
+def been_beyond(known: Known, body: str, up: str, high: str, _: str, low: str, deep: str) -> bool:
+    """At some frame it is so much higher, or lower, than at the start, and never more."""
+    height = known.track(body, known.segment.first, known.segment.last)[:, 2]
+    rise, fall = float(height.max() - height[0]), float(height[0] - height.min())
+    above = not up or _is(rise, high)
+    return above and all(_is(fall, told) for told in (low, deep) if told)
+
+
 def _asked(name: str, told: str) -> bool:
     """Whether a length or an angle is the threshold of that name, as the rules have it."""
     text = rule_file("thresholds.lp").read_text(encoding="utf-8")
@@ -190,6 +207,12 @@ def too_low(known: Known, body: str, verb: str, far: str, asked: str) -> bool:
     """It went so far up or down, which is less than the rules ask for."""
     height = float(_shifted(known, body)[2]) * (1.0 if verb == "rose" else -1.0)
     return _is(height, far) and 0.0 < height < 0.05 + SMOOTHED_M and _asked("height_mm", asked)
+
+
+def not_steep(known: Known, body: str, verb: str, asked: str) -> bool:
+    """It ended no higher, or no lower, than can be seen."""
+    height = float(_shifted(known, body)[2]) * (1.0 if verb == "rise" else -1.0)
+    return height < 0.005 + SMOOTHED_M and _asked("height_mm", asked)
 
 
 def too_far_aside(known: Known, body: str, aside: str, sense: str, rise: str) -> bool:
@@ -229,8 +252,12 @@ def turned_too_little(known: Known, body: str, told: str, asked: str) -> bool:
     return spun(known, body, told) and _asked("turn_mrad", asked) and float(told) <= float(asked)
 
 
-def leant_too_little(known: Known, body: str, before: str, after: str, asked: str) -> bool:
+def leant_too_little(
+    known: Known, body: str, before: str, after: str, most: str, asked: str
+) -> bool:
     change = abs(float(before) - float(after))
+    if most and not far_over(known, body, before, after, most, "30"):
+        return False
     return (
         leant(known, body, before, after)
         and _asked("turn_mrad", asked)
@@ -339,7 +366,7 @@ def counts_within(known: Known, _: str, told: str) -> bool:
     assert calibration is not None
     about = {known.segment.ee, *known.segment.objects}
     return any(
-        round(1000.0 * pair.touch_m) == int(told.removesuffix(" mm"))
+        0.0 <= int(told.removesuffix(" mm")) - 1000.0 * max(pair.touch_m, pair.release_m) < 1.0
         for pair in calibration.pairs
         if about & {pair.first, pair.second}
     )
@@ -411,43 +438,141 @@ def too_brief(known: Known, _: str, took: str, asked: str) -> bool:
     return lasted(known, took) and _asked("rest_ms", asked) and float(took) < float(asked)
 
 
-def rested_elsewhere(known: Known, body: str, far: str, asked: str) -> bool:
-    away = _from_rest(known, body)
-    return _asked("aside_mm", asked) and _is(away, far) and away > 0.1 - SMOOTHED_M
+def rested_near(known: Known, body: str, far: str, at: str, asked: str) -> bool:
+    """It ends so far from the nearest place of rest before, which it was at then."""
+    away, frame = min(_from_rests(known, body))
+    return _asked("aside_mm", asked) and _is(away, far) and near(frame, known.at(at))
 
 
-def rested_there(known: Known, body: str, far: str, asked: str) -> bool:
-    return _asked("aside_mm", asked) and _is(_from_rest(known, body), far)
+def rested_there(known: Known, body: str, far: str, at: str, asked: str) -> bool:
+    """The same, nearer than is told in centimetres."""
+    away, frame = min(_from_rests(known, body))
+    close = away < _metres(far) + SMOOTHED_M
+    return _asked("aside_mm", asked) and close and near(frame, known.at(at))
 
 
-def _from_rest(known: Known, body: str) -> float:
-    """How far it ends from the nearest place where it came to rest before [m]."""
+def never_rested(known: Known, body: str, asked: str, at: str) -> bool:
+    begun = not list(_from_rests(known, body)) and near(known.segment.first, known.at(at))
+    return begun and _asked("rest_ms", asked)
+
+
+def _from_rests(known: Known, body: str) -> Iterator[tuple[float, int]]:
+    """How far it ends from each place where it was at rest before, or at first [m], and when."""
     rests = [
-        each
+        (each.first, each.last)
         for each in known.of(Resting)
         if each.ee == body and (each.last - each.first) / known.rate >= 0.4
     ]
     touched = [each for each in known.of(Touching) if each.body == body]
     end = known.track(body, known.segment.last, known.segment.last)[0]
-    places = [
-        known.track(body, rest.last, rest.last)[0]
-        for rest in rests
-        if rest.last <= known.segment.first
-        and not any(each.first <= rest.last and each.last >= rest.first for each in touched)
-    ]
-    return min(_length(end - place) for place in places)
+    for first, last in ((0, 0), *rests):
+        if last <= known.segment.first and not any(
+            each.first <= last and each.last >= first for each in touched
+        ):
+            yield _length(end - known.track(body, last, last)[0]), last
 
 
-def goes_at(known: Known, body: str, angle: str, *_: str) -> bool:
+def goes_at(known: Known, _: str, angle: str, hand: str, thing: str) -> bool:
     """The level angle of its way to the line from the end-effector's middle to its own."""
-    hand, thing = known.segment.ee, known.segment.objects[0]
-    line = (
-        known.track(thing, known.segment.first, known.segment.first)[0]
-        - known.track(hand, known.segment.first, known.segment.first)[0]
-    )
-    way = _shifted(known, thing)
-    cosine = float(line[:2] @ way[:2]) / (_length(line[:2]) * _length(way[:2]))
+    first = known.segment.first
+    line = known.track(thing, first, first)[0] - known.track(hand, first, first)[0]
+    return _at_angle(known, thing, line[:2], angle)
+
+
+def pressed_at(known: Known, body: str, angle: str, hand: str) -> bool:
+    """The level angle of its way to the direction in which a contact of the two presses."""
+    ways = [
+        np.array([each.x, each.y], dtype=float)
+        for each in known.of(PressDirection)
+        if (each.body, each.other) == (name(hand), body)
+    ]
+    return any(_at_angle(known, body, way, angle) for way in ways)
+
+
+def _at_angle(known: Known, thing: str, line: np.ndarray, angle: str) -> bool:
+    way = _shifted(known, thing)[:2]
+    cosine = float(line @ way) / (_length(line) * _length(way))
     return abs(math.degrees(math.acos(min(max(cosine, -1.0), 1.0))) - float(angle)) <= 5.0
+
+
+def pushed_at(known: Known, _: str, angle: str, asked: str) -> bool:
+    """Some contact of a body of the segment was measured to push so far off straight up."""
+    about = {known.segment.ee, *known.segment.objects}
+    angles = (
+        math.degrees(math.acos(sign * each.permille / 1000.0))
+        for each in known.of(ContactNormal)
+        if about & {each.body, each.other}
+        for sign in (1.0, -1.0)
+    )
+    return float(asked) == 45.0 and any(abs(found - float(angle)) <= 0.6 for found in angles)
+
+
+def above(known: Known, body: str, rise: str, other: str, aside: str) -> bool:
+    """So high above the top of the other thing, and so far aside of its box."""
+    for frame in (known.segment.first, known.segment.last):
+        points, middle = known.points(other, frame), known.middle(body, frame)
+        beyond = np.maximum(points.min(axis=0) - middle, middle - points.max(axis=0))[:2]
+        away = float(np.hypot(*np.maximum(beyond, 0.0)))
+        if _is(float(middle[2] - points[:, 2].max()), rise) and (
+            _is(away, aside) if aside else away < SMOOTHED_M
+        ):
+            return True
+    return False
+
+
+def moved_on(known: Known, body: str, at: str) -> bool:
+    """It moves then, at the segment's end or later."""
+    later = known.at(at) >= known.segment.last - 1
+    return later and any(covers(each, known.at(at)) for each in known.moving(body))
+
+
+def again(known: Known, body: str, other: str, until_: str, since: str) -> bool:
+    """A contact of the two ends then, and a later one begins then."""
+    met = known.touching(body, other) or known.touching(other, body)
+    return any(near(each.last, known.at(until_)) for each in met) and any(
+        near(each.first, known.at(since)) for each in met
+    )
+
+
+def touched_until(known: Known, body: str, other: str, at: str, until_: str) -> bool:
+    """A contact of the two at the start lasts until then."""
+    met = known.touching(body, other) or known.touching(other, body)
+    lasts = any(near(each.last, known.at(until_)) for each in met)
+    return lasts and starts(known, body, at)
+
+
+def shared(known: Known, body: str, share: str) -> bool:
+    """About that share of its box lies in the box of another thing of the capture."""
+    low, high = known.shape(body).bounds
+    axes = [np.linspace(low[axis], high[axis], 9) for axis in range(3)]
+    grid = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
+    frames = (known.segment.first, known.segment.last)
+    return any(
+        abs(100.0 * _boxed(known, body, grid, other, frame) - float(share)) <= 25.0
+        for other in _bodies(known)
+        if other != body and known.shape_of(other) is not None
+        for frame in frames
+    )
+
+
+def _boxed(known: Known, body: str, points: np.ndarray, other: str, frame: int) -> float:
+    world = known.turn(body, frame).apply(points) + known.stream(body).positions[frame]
+    local = known.turn(other, frame).inv().apply(world - known.stream(other).positions[frame])
+    low, high = known.shape(other).bounds
+    return float(((local >= low) & (local <= high)).all(axis=1).mean())
+
+
+def rests_from(known: Known, body: str, at: str) -> bool:
+    return any(each.ee == body and covers(each, known.at(at)) for each in known.of(Resting))
+
+
+def held_until(known: Known, thing: str, hand: str, at: str) -> bool:
+    """The end-effector's contact with the thing ends then."""
+    return any(near(each.last, known.at(at)) for each in known.touching(hand, thing))
+
+
+def came_down(known: Known, body: str, asked: str) -> bool:
+    return -float(_shifted(known, body)[2]) > 0.05 - SMOOTHED_M and _asked("height_mm", asked)
 
 
 def held_since(known: Known, body: str, other: str, at: str) -> bool:
@@ -464,6 +589,7 @@ def turned_back_so_often(known: Known, _: str, count: str) -> bool:
 
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"(rose|sank) by {LENGTH}, less than the {LENGTH} that count", too_low),
+    (rf"did not (rise|sink) \({LENGTH} or more count\)", not_steep),
     (rf"went further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
     (rf"went further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
     (rf"went {LENGTH} to the side, less than the {LENGTH} that count", too_little_aside),
@@ -471,12 +597,13 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"went only {LENGTH}, less than the {LENGTH} of a slide", too_short_to_slide),
     (rf"turned by {DEGREES} about the vertical, less than {DEGREES}", turned_too_little),
     (
-        rf"leant {DEGREES} from upright at the start and {DEGREES} at the end, a change of less "
-        rf"than {DEGREES}",
+        rf"leant {DEGREES} at the start and {DEGREES} at the end {POSTURE}(?: \({DEGREES} at most "
+        rf"in between\))?, a change of less than {DEGREES}",
         leant_too_little,
     ),
     (rf"met the {NAME} at (\d+) mm/s, less than the 1000 mm/s of a blow", met_gently),
     (rf"met the {NAME} at (\d+) mm/s, fast enough for a blow \(1000 mm/s\)", met_hard),
+    (rf"met the {NAME} at (\d+) mm/s \(a blow has 1000 mm/s or more\)", met_hard),
     (rf"had come to touch the {NAME} (?:before this, )?at {TIME}", met_first),
     (rf"had the {NAME} already, and let go of it (?:after this, )?at {TIME}", let_go),
     (rf"took the {NAME} (?:before this, )?at {TIME}", took),
@@ -488,14 +615,36 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"ended less than {LENGTH} from where it began", ended_there),
     (rf"moved {LENGTH}", moved),
     (
-        rf"ended {LENGTH} from the nearest place where it had rested before \({LENGTH} is near\)",
-        rested_elsewhere,
+        rf"ended {LENGTH} from where it (?:was|rested) at {TIME} \(of its earlier places of rest "
+        rf"the nearest; within {LENGTH} it is back there\)",
+        rested_near,
     ),
     (
-        rf"ended {LENGTH} from where it had rested before, and within {LENGTH} it is back there",
+        rf"ended less than {LENGTH} from where it (?:was|rested) at {TIME} \(of its earlier places "
+        rf"of rest the nearest; within {LENGTH} it is back there\)",
         rested_there,
     ),
+    (rf"no rest of {TIME} or more, touching nothing, before {TIME}", never_rested),
+    (rf"rested from {TIME} on", rests_from),
+    (rf"\({LENGTH} or more down count\)", came_down),
+    (rf"before the {NAME} let go of it at {TIME}", lambda known, body, hand, at: held_until(
+        known, known.segment.objects[0], hand, at)),
+    (rf"\(the {NAME} held it until {TIME}", lambda known, body, hand, at: held_until(
+        known, known.segment.objects[0], hand, at)),
+    (rf"was moved on in the hand from {TIME} on", moved_on),
+    (
+        rf"(?:of|touched) the {NAME} at the start \(until {TIME}\) and again at the end \(from "
+        rf"{TIME}\)",
+        again,
+    ),
+    (rf"the {NAME} at the start \({TIME}\) and until {TIME}", touched_until),
+    (rf"{DEGREES} off straight up \({DEGREES} or less bears\)", pushed_at),
+    (rf"{DEGREES} off straight up; {DEGREES} or less bears", pushed_at),
+    (rf"\({LENGTH} above the top of the {NAME} and (?:{LENGTH} aside of it|over it)\)", above),
+    (r"\((\d+) % of it(?: at \d+\.\d\d s)?\)", shared),
     (rf"ended {LENGTH} from where it began", ended_away),
+    (rf"\((?:(up) to {LENGTH} higher|(down) to {LENGTH} lower)(?: and down to {LENGTH} lower)? in "
+     r"between\)", been_beyond),
     (rf"ended {LENGTH} (higher|lower)(?: and {LENGTH} to the side)?", ended),
     (rf"ended (at the same height)() and {LENGTH} to the side",
      lambda known, body, _, sense, aside: ended(known, body, "", sense, aside)),
@@ -520,20 +669,25 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         turned_in_all,
     ),
     (
-        rf"its way was at {DEGREES} to the line from that to its middle; "
-        r"(?:ahead is 45° or less|after is 135° or more)",
+        rf"at {DEGREES} to the level line from the {NAME} to the middle of the {NAME}(?:; | \()"
+        r"(?:135° or more is after)?(?:, )?(?:45° or less is ahead)?",
         goes_at,
     ),
+    (
+        rf"at {DEGREES} to the direction in which the {NAME} pressed it; 45° or less is ahead",
+        pressed_at,
+    ),
+    (rf"no rest of the {NAME} of {TIME}", lambda known, _, __, told: rest_lasts(known, _, told)),
     (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
     (rf"was held by the {NAME} already \(since {TIME}\)", held_since),
     (
-        rf"leant {DEGREES} from upright at the start and {DEGREES} at the end \({DEGREES} at most; "
+        rf"leant {DEGREES} at the start and {DEGREES} at the end {POSTURE} \({DEGREES} at most; "
         rf"far over is {DEGREES} or more\)",
         far_over,
     ),
     (rf"it lasted {TIME}", lambda known, _, told: lasted(known, told)),
     (
-        rf"leant {DEGREES} from upright at the start and {DEGREES} at the end, a change of "
+        rf"leant {DEGREES} at the start and {DEGREES} at the end {POSTURE}, a change of "
         rf"{DEGREES} \({DEGREES} or more count\)",
         leant_by,
     ),

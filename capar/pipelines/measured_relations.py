@@ -1,0 +1,268 @@
+"""What is measured of two bodies as a panel over time: how far apart, above, inside, which way."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from capar.model.calibration import Found, PairCalibration
+from capar.model.facts import ClosingSpeed, Lies, Touching
+from capar.pipelines.shown_recording import CENTI, MILLI, Recording
+from capar.views.panels import Curve, Limit, Mark, Panel
+from capar_rules.borders.times import constants
+from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG, steepest_deg
+from capar_rules.explain.claims import ANY, Measure, Quantity
+from capar_rules.explain.quantities import LEAST_M, length, percent, upward
+from extractors.calibration import thresholds_of
+from extractors.contact.contacts import points_apart
+from extractors.contact.proximity import separation
+from extractors.contact.touch_distances import touchable
+from extractors.motion.impacts import closing_speed
+from extractors.relations.arrangement import Pair
+
+SAMPLES = 240
+"""At so many frames at most distances of surfaces are measured [1]."""
+
+CLOSE = 5.0
+"""A distance is shown up to so many times what counts as contact: beyond, it only is far [1]."""
+
+
+def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel | None:
+    one, other = told.bodies
+    calibration = known.seen.measurements.calibration
+    pair = calibration.sought(one, other)
+    if pair is None:
+        one, other = other, one
+        pair = calibration.sought(one, other)
+    if pair is None:
+        return None
+    touching = known.bars(Touching, body=one, other=other)
+    every = known.frames
+    some = every[:: max(1, math.ceil(len(every) / SAMPLES))]
+    frames = np.unique([*some, every[-1], *(at for at in (told.first, told.last) if at in every)])
+    apart = MILLI * np.min(list(_apart(known, pair, frames)), axis=0)
+    limits = {MILLI * pair.touch_m: "contact begins within {:.0f} mm"}
+    limits[MILLI * pair.release_m] = "contact ends beyond {:.0f} mm"
+    if pair.touch_m >= pair.release_m:
+        limits = {MILLI * pair.touch_m: "counts as contact within {:.0f} mm"}
+    if pair.found is Found.NEVER:
+        limits = {}
+    highest = CLOSE * max([*limits, 20.0])
+    at_borders = dict(zip(frames.tolist(), apart.tolist(), strict=True))
+    marks = [
+        Mark(known.at(frame), min(at_borders[frame], highest), _gap(at_borders[frame]))
+        for frame in (told.first, told.last)
+        if math.isfinite(at_borders.get(frame, math.nan))
+    ]
+    between = _between(pair, shaped=all(known.body(name).shape for name in (one, other)))
+    rough = [name for name in (one, other) if name in known.seen.explainer.measured.stand_ins]
+    about = f" (shape of the {known.called(rough[0])}: a stand-in)" if rough else ""
+    return Panel(
+        f"{known.called(one)} to {known.called(other)}: distance of {between}{about}",
+        "mm",
+        (Curve(frames / known.rate, apart),),
+        tuple(Limit(value, label.format(upward(value))) for value, label in limits.items()),
+        tuple(marks),
+        bars=touching,
+        bars_label="counts as contact",
+        highest=highest,
+        lost=known.lost(one, other),
+    )
+
+
+def _gap(millimetres: float) -> str:
+    """A distance of two bodies, as a mark has it."""
+    return f"{millimetres:.0f} mm" if millimetres < 100.0 else length(millimetres / MILLI)
+
+
+def _between(pair: PairCalibration, *, shaped: bool) -> str:
+    if not pair.pivots:
+        return "their surfaces" if shaped else "the surface of one and the origin of the other"
+    return "their origins" if pair.found is Found.STATED else "a point of each"
+
+
+def _apart(
+    known: Recording, pair: PairCalibration, frames: Int[np.ndarray, "some"]
+) -> Iterator[Float[np.ndarray, "some"]]:
+    """How far each part of an end-effector, or a thing, is from a thing [m]."""
+    bodies, calibration = known.seen.measurements.bodies, known.seen.measurements.calibration
+    other = bodies.objects[pair.second]
+    hand = pair.first in bodies.sensors
+    parts = bodies.on_end_effector(pair.first) if hand else (bodies.objects[pair.first],)
+    nowhere = np.full(len(frames), np.inf)
+    for part in parts:
+        own = calibration.sought(part.name, other.name)
+        if own is None or own.found is Found.NEVER:
+            yield nowhere
+        elif own.pivots:
+            yield points_apart(own, part, other)[frames]
+        else:
+            yield separation(touchable(part), touchable(other), frames)
+
+
+def _closing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
+    one, other = told.bodies
+    own, thing = known.body(one), known.body(other)
+    speeds = MILLI * np.array([closing_speed(own, thing, int(frame)) for frame in known.frames])
+    met = [
+        fact
+        for fact in known.seen.observation.facts
+        if isinstance(fact, ClosingSpeed)
+        and (fact.body, fact.other) == (one, other)
+        and known.span[0] <= fact.first <= known.span[1]
+    ]
+    near = min(met, key=lambda fact: abs(fact.first - told.last), default=None)
+    blow = constants()["blow_mm_s"]
+    return Panel(
+        f"{known.called(one)} and {known.called(other)}: how fast they come together",
+        "mm/s",
+        (Curve(known.times, speeds),),
+        (Limit(float(blow), f"a blow: {blow} mm/s or more"),),
+        (Mark(known.at(near.first), float(near.speed), f"{near.speed} mm/s"),) if near else (),
+        known.bars(Touching, body=one, other=other),
+        "counts as contact",
+    )
+
+
+def _bearing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
+    """The level angle of the way so far to the line from the end-effector at the start."""
+    hand, name = told.bodies
+    middles, first = np.rint(MILLI * known.body(name).middles), told.first
+    line = (middles[first] - np.rint(MILLI * known.body(hand).middles[first]))[:2]
+    way = (middles - middles[first])[:, :2]
+    far = np.linalg.norm(way, axis=1) >= MILLI * LEAST_M
+    shown = far & (np.arange(len(way)) >= first)
+    shown[told.last] = True
+    directions = [(line, "to the line from the end-effector to it")]
+    contacts = known.seen.explainer.measured
+    met = contacts.contact(hand, name, first, known.merged)
+    press = contacts.presses.get((hand, name), {}).get(met[0]) if met else None
+    if press is not None and np.hypot(*press) >= constants()["steep_permille"]:
+        directions.append((np.array(press, dtype=float), "to where it is pressed"))
+    curves, ends = [], []
+    for direction, label in directions:
+        across = direction[0] * way[:, 1] - direction[1] * way[:, 0]
+        angle = np.degrees(np.abs(np.arctan2(across, way @ direction)))
+        angle[~shown] = np.nan
+        curves.append(known.curve(angle, label))
+        ends.append(float(angle[told.last]))
+    return Panel(
+        f"{known.called(name)}: level angle of its way since {known.at(first):.2f} s to the line "
+        f"from the {known.called(hand)} to its middle",
+        "°",
+        tuple(curves),
+        (
+            Limit(AHEAD_DEG, f"ahead: {AHEAD_DEG:.0f}° or less"),
+            Limit(AFTER_DEG, f"after: {AFTER_DEG:.0f}° or more"),
+        ),
+        tuple(Mark(known.at(told.last), end, f"{end:.0f}°") for end in ends if math.isfinite(end)),
+    )
+
+
+def _pair(known: Recording, told: Quantity) -> Pair:
+    name, other = told.bodies
+    limits = thresholds_of(known.seen.measurements.calibration)
+    return Pair(known.body(name), known.body(other), limits)
+
+
+def _above(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
+    name, other = told.bodies
+    pair = _pair(known, told)
+    rise = pair.body.middles[:, 2] - pair.other.boxes[1][:, 2]
+    frames = [frame for frame in (told.first, told.last) if np.isfinite(rise[frame])]
+    top = "top" if pair.other.shape is not None else "origin"
+    marks = [
+        Mark(known.at(frame), CENTI * float(value[frame]), length(abs(float(value[frame]))))
+        for value in (rise, pair.aside)
+        for frame in frames
+    ]
+    return Panel(
+        f"{known.called(name)}: its middle over the {top} of the {known.called(other)}; above it "
+        "is no further aside than over it",
+        "cm",
+        (known.curve(CENTI * rise), known.curve(CENTI * pair.aside, "aside of it")),
+        (),
+        tuple(marks),
+        known.bars(Lies, body=name, how="above", other=other),
+        "counts as above",
+    )
+
+
+def _inside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
+    name, other = told.bodies
+    pair = _pair(known, told)
+    share, deep = (CENTI * value for value in pair.shares)
+    limits = pair.thresholds
+    merge = known.merged
+    spans = known.seen.explainer.measured.lies.get(("inside", name, other), ())
+    starts = [
+        max(first, border)
+        for border in (told.first, told.last)
+        for first, last in spans
+        if first <= border + merge and last >= border
+    ]
+    at = dict.fromkeys([told.first, told.last, *starts])
+    known_at = [frame for frame in at if frame < len(share)]
+    return Panel(
+        f"{known.called(name)}: share of it inside the {known.called(other)}",
+        "%",
+        (known.curve(share), known.curve(deep, "share of its ends well inside")),
+        (
+            Limit(
+                CENTI * limits.inside_share,
+                f"inside from {percent(limits.inside_share)} on, while no less than "
+                f"{percent(limits.inside_stays_share)}",
+            ),
+        ),
+        tuple(Mark(known.at(one), float(share[one]), f"{share[one]:.0f} %") for one in known_at),
+        known.bars(Lies, body=name, how="inside", other=other),
+        "counts as inside",
+    )
+
+
+def _borne(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel | None:
+    """From how far off straight up each contact of a body pushes it, while it lasts."""
+    name, wanted = told.bodies
+    found = known.seen.explainer.measured
+    times, values, marks = [], [], []
+    for (one, two), contacts in sorted(found.contacts.items()):
+        other = two if one == name else one
+        if name not in (one, two) or wanted not in (ANY, other):
+            continue
+        for first, last in contacts:
+            permille = found.upward(name, other, first)
+            if permille is None or last < known.span[0] or first > known.span[1]:
+                continue
+            angle = math.degrees(math.acos(max(-1.0, min(1.0, permille / MILLI))))
+            ends = known.at(max(first, known.span[0])), known.at(min(last, known.span[1]))
+            times += [*ends, ends[1]]
+            values += [angle, angle, math.nan]
+            label = f"{angle:.0f}°" + f" ({known.called(other)})" * (wanted == ANY)
+            inside = first <= told.last and last >= told.first
+            at = max(ends[0], known.at(told.first)) if inside else ends[0]
+            marks.append(Mark(at, angle, label))
+    if not values:
+        return None
+    most = steepest_deg()
+    of = "what touches it pushes it" if wanted == ANY else f"the {known.called(wanted)} pushes it"
+    return Panel(
+        f"{known.called(name)}: how far off straight up {of}, as their contact began",
+        "°",
+        (Curve(np.array(times), np.array(values)),),
+        (Limit(most, f"bears it from below up to {most:.0f}°"),),
+        tuple(marks),
+    )
+
+
+Series = Callable[[Recording, Quantity, frozenset[str]], Panel | None]
+
+RELATIONS: Mapping[Measure, Series] = {
+    Measure.DISTANCE: _distance,
+    Measure.CLOSING: _closing,
+    Measure.BEARING: _bearing,
+    Measure.ABOVE: _above,
+    Measure.INSIDE: _inside,
+    Measure.BORNE: _borne,
+}
+"""The panel of each quantity of two bodies."""

@@ -1,0 +1,99 @@
+"""A recording as its measured picture shows it: which frames, and what held in them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from capar.model.facts import Observed
+from capar.pipelines.explanation import Explained
+from capar.views.lettering import Span
+from capar.views.panels import Curve, Limit
+from capar_rules.borders.times import in_frames, times
+from capar_rules.explain.quantities import length
+from extractors.bodies.body_geometry import BodyGeometry
+
+MILLI, CENTI = 1000.0, 100.0
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What was measured, and which of its frames are shown."""
+
+    seen: Explained
+    span: tuple[int, int]
+    """First and last frame."""
+
+    @property
+    def frames(self) -> Int[np.ndarray, "shown"]:
+        """The numbers of the shown frames."""
+        return np.arange(self.span[0], self.span[1] + 1)
+
+    @property
+    def times(self) -> Float[np.ndarray, "shown"]:
+        """Their times [s]."""
+        return self.frames / self.rate
+
+    @property
+    def rate(self) -> float:
+        """Frames a second [Hz]."""
+        return self.seen.explainer.windows.rate
+
+    @property
+    def merged(self) -> float:
+        """How many frames apart events are one."""
+        return in_frames(times().merge_ms, self.rate)
+
+    def at(self, frame: int) -> float:
+        """The time of a frame [s]."""
+        return frame / self.rate
+
+    def body(self, name: str) -> BodyGeometry:
+        """The object of a name, or else the sensor."""
+        return self.seen.measurements.bodies.named(name)
+
+    def called(self, name: str) -> str:
+        """A body as sentences call it."""
+        return self.seen.explainer.measured.names.get(name, name.replace("_", " "))
+
+    def curve(self, values: Float[np.ndarray, "frames"], label: str = "") -> Curve:
+        """The shown part of what is known at every frame."""
+        return Curve(self.times, values[self.span[0] : self.span[1] + 1], label)
+
+    def bars(self, kind: type[Observed], **about: str) -> tuple[Span, ...]:
+        """When facts of a kind about certain bodies hold, within what is shown."""
+        first, last = self.span
+        ends = (
+            (fact.ends()[0], fact.ends()[-1])
+            for fact in self.seen.observation.facts
+            if isinstance(fact, kind)
+            and all(getattr(fact, name) == value for name, value in about.items())
+        )
+        return tuple(
+            Span(self.at(max(begin, first)), self.at(min(end, last)), "")
+            for begin, end in ends
+            if begin <= last and end >= first
+        )
+
+    def lost(self, *names: str) -> tuple[Span, ...]:
+        """When a body of those was not tracked, within what is shown."""
+        first, last = self.span
+        gaps = (gap for name in names for gap in self.seen.explainer.measured.lost.get(name, ()))
+        return tuple(
+            Span(self.at(max(begin, first)), self.at(min(end, last)), "")
+            for begin, end in gaps
+            if begin <= last and end >= first
+        )
+
+    def inside(self, frame: int) -> bool:
+        """Whether a frame is shown."""
+        return self.span[0] <= frame <= self.span[1]
+
+    def is_object(self, name: str) -> bool:
+        """Whether it is a thing, whose motion counts, and no end-effector."""
+        return name in self.seen.measurements.bodies.objects
+
+    def floor(self, body: str) -> Limit:
+        """From where on a body counts as moved."""
+        floor_m = self.seen.measurements.calibration.body(body).motion_floor_m
+        return Limit(CENTI * floor_m, f"counts as moved from {length(floor_m)}")

@@ -1,0 +1,182 @@
+"""How a segment's thing lies to others, and goes to the end-effector, as sentences tell it."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from capar_rules.borders.times import constants, in_frames, times
+from capar_rules.explain import quantities
+from capar_rules.explain.clock import Clock
+
+AHEAD_DEG, AFTER_DEG = 45.0, 135.0
+"""Up to which angle a thing goes ahead of what moves it, and from which on after it [degrees]."""
+
+MOVED_ON = 0.5
+"""How near what came down and was moved on is taken to come to being put down [1]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bearing:
+    """At which level angles a thing goes from a segment's start to its end."""
+
+    offset_deg: float
+    """To the line from the end-effector to the thing's middle, as both are at the start."""
+
+    press_deg: float | None = None
+    """To the direction in which the end-effector presses on it; None where it presses not aside."""
+
+    @property
+    def ahead_deg(self) -> float:
+        """The angle that is told where it goes ahead: that of pressing if only that is small."""
+        by_press = self.press_deg is not None and self.offset_deg > AHEAD_DEG
+        return self.press_deg if by_press and self.press_deg is not None else self.offset_deg
+
+    @property
+    def by_press(self) -> bool:
+        """Whether only by the direction of pressing it goes ahead."""
+        near = self.press_deg is not None and self.press_deg <= AHEAD_DEG
+        return near and AHEAD_DEG < self.offset_deg < 90.0
+
+
+def bearing(clock: Clock, segment: str) -> Bearing | None:
+    """At which angles a segment's thing goes; None where it goes nowhere, or that is not known."""
+    span, thing, hand = clock.span(segment), clock.objects.get(segment, ""), hand_of(segment)
+    if span is None:
+        return None
+    places = clock.measured.places
+    from_hand, start, end = (
+        places.get(key) for key in ((hand, span[0]), (thing, span[0]), (thing, span[1]))
+    )
+    if from_hand is None or start is None or end is None:
+        return None
+    course = end[0] - start[0], end[1] - start[1]
+    line = start[0] - from_hand[0], start[1] - from_hand[1]
+    if not any(course) or not any(line):
+        return None
+    met = clock.measured.contact(hand, thing, span[0], in_frames(times().merge_ms, clock.rate_hz))
+    press = clock.measured.presses.get((hand, thing), {}).get(met[0]) if met else None
+    aside = press is not None and math.hypot(*press) >= constants()["steep_permille"]
+    return Bearing(_angle(line, course), _angle(press, course) if aside and press else None)
+
+
+def _angle(one: tuple[int, int], other: tuple[int, int]) -> float:
+    across = one[0] * other[1] - one[1] * other[0]
+    return math.degrees(abs(math.atan2(across, one[0] * other[0] + one[1] * other[1])))
+
+
+def hand_of(segment: str) -> str:
+    """The end-effector of the segment that a term names."""
+    return segment.removeprefix("seg(").split(",")[0]
+
+
+def frame_of(clock: Clock, segment: str, side: str) -> int | None:
+    """The frame of a side of a segment."""
+    span = clock.span(segment)
+    return None if span is None or side not in ("start", "end") else span[side == "end"]
+
+
+def normal_deg(clock: Clock, body: str, other: str, frame: int) -> float | None:
+    """How far from straight up the other pushes a body where they touch at a frame [degrees].
+
+    None where they do not touch then, or the direction was not measured.
+    """
+    known = clock.measured
+    met = known.contact(body, other, frame, in_frames(times().merge_ms, clock.rate_hz))
+    permille = known.upward(body, other, met[0]) if met else None
+    return (
+        None if permille is None else math.degrees(math.acos(max(-1.0, min(1.0, permille / 1e3))))
+    )
+
+
+def steepest_deg() -> float:
+    """Up to which angle from straight up what pushes a body bears it [degrees]."""
+    return math.degrees(math.acos(constants()["steep_permille"] / 1000.0))
+
+
+def met_at(clock: Clock, segment: str, side: str) -> tuple[str, ...]:
+    """What the segment's thing touches at a side of the segment, but the end-effector."""
+    thing = clock.objects.get(segment, "")
+    found = clock.met.get((segment, side, thing), ())
+    return tuple(other for other in dict.fromkeys(found) if other != hand_of(segment))
+
+
+def kept(clock: Clock, segment: str) -> tuple[str, ...]:
+    """What the segment's thing touches at its start and at its end."""
+    at_end = met_at(clock, segment, "end")
+    return tuple(other for other in met_at(clock, segment, "start") if other in at_end)
+
+
+def left(clock: Clock, segment: str) -> tuple[str, ...]:
+    """What the segment's thing touches at its start and no longer at its end."""
+    at_end = met_at(clock, segment, "end")
+    return tuple(other for other in met_at(clock, segment, "start") if other not in at_end)
+
+
+def laid(clock: Clock, segment: str) -> str:
+    """How a thing that came down was left there; empty where its hold is not known."""
+    span, hand = clock.span(segment), hand_of(segment)
+    held = _held(clock, segment)
+    if span is None or held is None:
+        return ""
+    alone = ", touching no other tracked object" * (not met_at(clock, segment, "end"))
+    let_go = f"the {clock.called(hand)} let go of it at {clock.at(held[1])}"
+    return f"was not moved again before {let_go}{alone}"
+
+
+def not_laid(clock: Clock, segment: str) -> str:
+    """Why a thing was not put down; empty where that is not known."""
+    span, thing, hand = clock.span(segment), clock.objects.get(segment, ""), hand_of(segment)
+    places, held = clock.measured.places, _held(clock, segment)
+    if span is None or held is None:
+        return ""
+    start, end = (places.get((thing, frame)) for frame in span)
+    if start is None or end is None:
+        return ""
+    if start[2] - end[2] < constants()["height_mm"]:
+        x, y, z = (after - before for before, after in zip(start, end, strict=True))
+        return quantities.not_down(x, y, z).text
+    moves = clock.measured.moving.get(thing, ())
+    again = [first for first, last in moves if last > span[1] and first < held[1]]
+    if not again:
+        return ""
+    when = clock.at(max(min(again), span[1]))
+    until = f"the {clock.called(hand)} held it until {clock.at(held[1])}"
+    return f"was moved on in the hand from {when} on ({until})"
+
+
+def nearly_laid(clock: Clock, segment: str) -> float:
+    """How near a thing that was not put down came to that: a share of what is asked for."""
+    span, thing = clock.span(segment), clock.objects.get(segment, "")
+    ends = [clock.measured.places.get((thing, frame)) for frame in span or ()]
+    if len(ends) < 2 or ends[0] is None or ends[1] is None:
+        return 0.0
+    share = (ends[0][2] - ends[1][2]) / constants()["height_mm"]
+    return max(share, quantities.FAR_OFF) if share < 1.0 else MOVED_ON
+
+
+def _held(clock: Clock, segment: str) -> tuple[int, int] | None:
+    """The contact of a segment's end-effector with its thing at the segment's end."""
+    span, thing = clock.span(segment), clock.objects.get(segment, "")
+    if span is None:
+        return None
+    merge = in_frames(times().merge_ms, clock.rate_hz)
+    return clock.measured.contact(hand_of(segment), thing, span[1], merge)
+
+
+def lying(clock: Clock, how: str, body: str, other: str, frame: int) -> int | None:
+    """The frame at which a body lies so to another: this, or the first one soon after it."""
+    merge = in_frames(times().merge_ms, clock.rate_hz)
+    spans = clock.measured.lies.get((how, body, other), ())
+    found = [max(first, frame) for first, last in spans if first <= frame + merge and last >= frame]
+    return min(found, default=None)
+
+
+def untracked(clock: Clock, bodies: tuple[str, ...]) -> Iterator[tuple[str, list[tuple[int, int]]]]:
+    """Which of some bodies were not tracked in the explained segment, and from when to when."""
+    own = clock.span(clock.own)
+    for body in bodies:
+        gaps = clock.measured.lost.get(body, ())
+        inside = [(max(first, own[0]), min(last, own[1])) for first, last in gaps] if own else []
+        inside = [(first, last) for first, last in inside if first <= last]
+        if inside:
+            yield body, inside
