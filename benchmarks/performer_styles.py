@@ -183,14 +183,13 @@ def regenerated(way: np.ndarray, who: str, agent: str, scene: int, setting: Sett
 
 
 def performances(performers: Performers, count: int) -> list[Borrowed]:
-    """Further trials, each borrowed by a body in a scene; all of both meet every performer."""
+    """Further trials, each borrowed by a body in a scene: every performer by all bodies in turn."""
     out = []
     for number in range(count):
-        who = number % performers.count
+        turn, who = divmod(number, performers.count)
         way = performers.way(who, performers.rng.normal(size=len(WITHIN)))
-        turn = number // performers.count  # so that no body or scene belongs to a performer
-        agent = AGENTS[(number + turn) % len(AGENTS)]
-        scene = 1 + (number + turn // len(AGENTS)) % SCENES
+        agent = AGENTS[(2 * turn + who) % len(AGENTS)]
+        scene = 1 + (who + turn // len(AGENTS)) % SCENES
         out.append(regenerated(way, performers.names[who], agent, scene, performers.setting))
     return out
 
