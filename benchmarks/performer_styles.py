@@ -9,34 +9,34 @@ performers, the development half, before; none of them is in the test.
 Run as ``PYTHONPATH=. python benchmarks/performer_styles.py [TRIALS [RATIO ...]]``: five virtual
 performers, five others for development. With ``--real NPZ_FOLDER`` the performers' usual ways are
 the reaches of ``smartbody_mocap_reaching``, every second one by name for development, the others
-for the test; with ``--all`` the test is of all of them. The ratio 0 takes them as they are.
+for the test; with ``--all`` the test is of all of them besides. The ratio 0 takes them as they are.
+Virtual performers reach for a box on a table, real ones for a target in free air; ``--setting``
+states another (``table``, ``free``). ``--develop`` leaves out the test: of two draws of the
+development half, each is told by what the other teaches.
 """
 
-import sys
+import argparse
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
+from reach_settings import SIDE, Setting, draft, source
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.scripted_actions import action_capture
-from capar.pipelines.round_trips import body, observed_source
-from capar.regeneration.drafts import Draft
 from capar.regeneration.hand_paths import Care
 from capar.regeneration.motions import perform_plan
-from capar.regeneration.planning import led, reachable
-from capar.regeneration.scene_files import drawn_scene
-from capar.regeneration.sources import Source
+from capar.regeneration.path_mapping import STRAIGHT
+from capar.regeneration.planning import led
 from capar.regeneration.style_distances import (
     StyleMetric,
     WayStyle,
     between_distance,
     nearest_between,
     nearest_performer,
+    style_distance,
     style_metric,
     way_style,
     within_distance,
@@ -45,11 +45,9 @@ from capar.regeneration.styles import Style, borrowed_style
 
 SEED, DEVELOPMENT_SEED = 54, 155
 DEVELOPMENT_RATIO = 3.0
-RATE_HZ = 20.0
 PERFORMERS, TRIALS = 5, 6
 AGENTS, SCENES = ("man", "woman", "child"), 4
-RATIOS = (3.0, 2.0, 1.5, 1.25, 1.0)
-SIDE = "right"
+RATIOS = (0.0, 3.0, 2.0, 1.5, 1.25, 1.0)
 
 WITHIN = np.array([0.012, 0.008, 0.012, 0.008, 0.02, 0.015])
 """How much one performer's trials vary: bumps to the side and upwards, once and twice a way [m],
@@ -58,14 +56,9 @@ and twists of the timing [1]."""
 Ways = Sequence[Float[np.ndarray, "frames 3"]]
 
 
-@cache
-def source() -> Source:
-    return observed_source(action_capture("touch", rate_hz=RATE_HZ))
-
-
-def reach() -> int:
+def reach(setting: Setting) -> int:
     """The frame at which the hand arrives."""
-    return source().holds[0].first
+    return source(setting).holds[0].first
 
 
 def bent(way: np.ndarray, parameters: np.ndarray) -> np.ndarray:
@@ -83,9 +76,9 @@ def bent(way: np.ndarray, parameters: np.ndarray) -> np.ndarray:
     return np.asarray(places + np.outer(side, left) + np.outer(up, [0.0, 0.0, 1.0]))
 
 
-def usual_ways(real: Sequence[Path]) -> Ways:
+def usual_ways(setting: Setting, real: Sequence[Path]) -> Ways:
     """What the performers' ways have in common: the recorded reach, or a real one of each."""
-    own = source().hands[SIDE].path.translation[: reach() + 1]
+    own = source(setting).hands[SIDE].path.translation[: reach(setting) + 1]
     return [real_way(path, own) for path in real] or [own] * PERFORMERS
 
 
@@ -109,8 +102,12 @@ def real_way(path: Path, own: np.ndarray) -> np.ndarray:
 class Performers:
     """Performers, so far apart as is asked for, and their six trials."""
 
-    def __init__(self, ratio: float, real: Sequence[Path], seed: int = SEED) -> None:
-        self.ways, self.real = usual_ways(real), bool(real)
+    def __init__(
+        self, ratio: float, real: Sequence[Path], setting: Setting, seed: int = SEED
+    ) -> None:
+        self.setting, self.asked = setting, ratio
+        self.ways, self.real = usual_ways(setting, real), bool(real)
+        self.names = [path.stem for path in real] or [f"performer_{n}" for n in range(PERFORMERS)]
         self.count = len(self.ways)
         self.rng = np.random.default_rng([seed, round(100 * ratio), self.real])
         self.own = self.rng.normal(size=(self.count, len(WITHIN)))
@@ -135,8 +132,8 @@ class Performers:
 
     def _trials(self) -> dict[str, list[WayStyle]]:
         return {
-            f"performer_{who}": [way_style(self.way(who, noise)) for noise in self.noise[who]]
-            for who in range(self.count)
+            name: [way_style(self.way(who, noise)) for noise in self.noise[who]]
+            for who, name in enumerate(self.names)
         }
 
     @property
@@ -146,30 +143,15 @@ class Performers:
         return between_distance(trials) / within_distance(trials)
 
 
-@cache
-def draft(agent: str, scene: int) -> Draft:
-    """What is decided whatever the style is."""
-    place = drawn_scene(source().scene, np.random.default_rng([SEED, scene]))
-    return reachable(source(), place, body(agent, source()))
-
-
-def borrowed(way: np.ndarray) -> Style:
+def borrowed(way: np.ndarray, setting: Setting) -> Style:
     """The style of a trial in which the hand came that way."""
-    track = source().hands[SIDE]
+    own = source(setting)
+    track = own.hands[SIDE]
     spots = np.array(track.path.translation)
     spots[: len(way)] = way
     path = RigidTransform.from_components(spots, track.path.rotation)
-    hands = {**source().hands, SIDE: replace(track, path=path)}
-    return borrowed_style(source(), replace(source(), hands=hands))
-
-
-def regenerated(way: np.ndarray, agent: str, scene: int) -> WayStyle:
-    """The style of the motion of another body that borrowed a style."""
-    made = copy(draft(agent, scene))
-    made.style = borrowed(way)
-    motion = perform_plan(led(made, Care()))
-    palm = motion.plan.human.sites(motion.postures, [f"{SIDE}_palm"])[f"{SIDE}_palm"][0]
-    return way_style(palm[: reach() + 1])
+    hands = {**own.hands, SIDE: replace(track, path=path)}
+    return borrowed_style(own, replace(own, hands=hands))
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,69 +159,122 @@ class Borrowed:
     """A style that was borrowed, and what came of it."""
 
     who: str
+    agent: str
+    scene: int
     given: WayStyle
+    planned: WayStyle
     made: WayStyle
+    detour_m: float
+    """How far the way was led around something [m]."""
+
+
+def regenerated(way: np.ndarray, who: str, agent: str, scene: int, setting: Setting) -> Borrowed:
+    """The motion of another body that borrowed a style."""
+    own = copy(draft(setting, agent, scene))
+    own.style = borrowed(way, setting)
+    motion = perform_plan(led(own, Care()))
+    plan = motion.plan
+    palm = plan.human.sites(motion.postures, [f"{SIDE}_palm"])[f"{SIDE}_palm"][0]
+    planned = (plan.hands[SIDE] * plan.frames.palms[SIDE]).translation
+    last = reach(setting) + 1
+    came, made = (way_style(spots[:last]) for spots in (planned, palm))
+    around = plan.detours.get((SIDE, 0), STRAIGHT)
+    return Borrowed(who, agent, scene, way_style(way), came, made, around.size)
 
 
 def performances(performers: Performers, count: int) -> list[Borrowed]:
-    """Further trials, each borrowed by a body in a scene; all of both meet every performer."""
+    """Further trials, each borrowed by a body in a scene: every performer by all bodies in turn."""
     out = []
     for number in range(count):
-        who = number % performers.count
+        turn, who = divmod(number, performers.count)
         way = performers.way(who, performers.rng.normal(size=len(WITHIN)))
-        turn = number // performers.count  # so that no body or scene belongs to a performer
-        agent = AGENTS[(number + turn) % len(AGENTS)]
-        made = regenerated(way, agent, 1 + (number + turn // len(AGENTS)) % SCENES)
-        out.append(Borrowed(f"performer_{who}", way_style(way), made))
+        agent = AGENTS[(2 * turn + who) % len(AGENTS)]
+        scene = 1 + (who + turn // len(AGENTS)) % SCENES
+        out.append(regenerated(way, performers.names[who], agent, scene, performers.setting))
     return out
 
 
-def developed(count: int, real: Sequence[Path]) -> list[tuple[WayStyle, WayStyle]]:
-    """What performing changes of the styles of the performers of the development half."""
-    performers = Performers(DEVELOPMENT_RATIO, real, DEVELOPMENT_SEED)
-    return [(one.given, one.made) for one in performances(performers, count)]
+Changed = Sequence[tuple[WayStyle, WayStyle]]
 
 
-def report(
-    ratios: Sequence[float],
-    count: int,
-    real: Sequence[Path],
-    changed: Sequence[tuple[WayStyle, WayStyle]],
-) -> None:
-    print("asked ratio  within  between  ratio  nearest pair  given ways  plain  weighted")
+def changed(done: Sequence[Borrowed]) -> Changed:
+    """What performing made of each style."""
+    return [(one.given, one.made) for one in done]
+
+
+HEADINGS = (
+    "asked ratio  within  between  ratio  nearest pair  given ways, weighted  plain, weighted  "
+    "changed by  of it performing  led around"
+)
+
+
+def report(performers: Performers, done: Sequence[Borrowed], taught: Changed) -> None:
+    """Print who was found, and who was taken for whom."""
+    trials = performers.trials
+    metric: StyleMetric = style_metric(trials, taught)
+    given, made = [one.given for one in done], [one.made for one in done]
+    alone, plain = ([nearest_performer(style, trials) for style in some] for some in (given, made))
+    known, weighted = (
+        [metric.nearest_performer(style, trials) for style in some] for some in (given, made)
+    )
+    right = [
+        sum(name == one.who for name, one in zip(names, done, strict=True))
+        for names in (alone, known, plain, weighted)
+    ]
+    within, between = (d(trials) for d in (within_distance, between_distance))
+    lost = np.mean([style_distance(one.given, one.made) for one in done])
+    solved = np.mean([style_distance(one.planned, one.made) for one in done])
+    around = sum(one.detour_m > 0.0 for one in done)
+    print(
+        f"{performers.asked:11.2f}  {within:6.3f}  {between:7.3f}  {between / within:5.2f}  "
+        f"{nearest_between(trials) / within:12.2f}  {right[0]:10d}  {right[1]:8d}  "
+        f"{right[2]:5d}  {right[3]:8d}  {lost:10.2f}  {solved:16.2f}  {around:10d} of {len(done)}",
+        flush=True,
+    )
+    for one, name, nearest in zip(done, weighted, alone, strict=True):
+        if name != one.who:
+            own = np.mean([style_distance(one.given, trial) for trial in trials[one.who]])
+            print(
+                f"    {one.who} taken for {name}: {one.agent} in scene {one.scene}, changed by "
+                f"{style_distance(one.given, one.made):.2f}, led around by "
+                f"{1e3 * one.detour_m:.0f} mm, its given way {own:.2f} from its own and nearest to "
+                f"{nearest}",
+                flush=True,
+            )
+
+
+def develop(count: int, ratios: Sequence[float], real: Sequence[Path], setting: Setting) -> None:
+    """Two draws of the development half, each told by what the other teaches."""
     for ratio in ratios:
-        performers = Performers(ratio, real)
-        trials = performers.trials
-        metric: StyleMetric = style_metric(trials, changed)
-        done = performances(performers, count)
-        right = (
-            sum(nearest_performer(one.given, trials) == one.who for one in done),
-            sum(nearest_performer(one.made, trials) == one.who for one in done),
-            sum(metric.nearest_performer(one.made, trials) == one.who for one in done),
-        )
-        within, between = (d(trials) for d in (within_distance, between_distance))
-        print(
-            f"{ratio:11.2f}  {within:6.3f}  {between:7.3f}  {between / within:5.2f}  "
-            f"{nearest_between(trials) / within:12.2f}  {right[0]:10d}  {right[1]:5d}  "
-            f"{right[2]:8d} of {count}",
-            flush=True,
-        )
+        seeds = (DEVELOPMENT_SEED, DEVELOPMENT_SEED + 1)
+        draws = [Performers(ratio, real, setting, seed) for seed in seeds]
+        done = [performances(performers, count) for performers in draws]
+        for performers, own, other in zip(draws, done, done[::-1], strict=True):
+            report(performers, own, changed(other))
 
 
-def main(arguments: list[str]) -> None:
-    whole = "--all" in arguments
-    arguments = [word for word in arguments if word != "--all"]
-    learnt: list[Path] = []
-    tested: list[Path] = []
-    if "--real" in arguments:
-        at = arguments.index("--real")
-        files = sorted(Path(arguments[at + 1]).glob("*.npz"))
-        learnt, tested = files[0::2], files if whole else files[1::2]
-        del arguments[at : at + 2]
-    count = int(arguments[0]) if arguments else 60
-    changed = developed(count, learnt)
-    report([float(ratio) for ratio in arguments[1:]] or RATIOS, count, tested, changed)
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("trials", nargs="?", type=int, default=60)
+    parser.add_argument("ratios", nargs="*", type=float, default=RATIOS)
+    parser.add_argument("--real", type=Path)
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("--develop", action="store_true")
+    parser.add_argument("--setting", type=Setting, choices=list(Setting))
+    asked = parser.parse_args()
+    files = sorted(asked.real.glob("*.npz")) if asked.real else []
+    setting = asked.setting or (Setting.FREE if files else Setting.TABLE)
+    print(HEADINGS)
+    if asked.develop:
+        develop(asked.trials, asked.ratios, files[0::2], setting)
+        return
+    learnt = Performers(DEVELOPMENT_RATIO, files[0::2], setting, DEVELOPMENT_SEED)
+    taught = changed(performances(learnt, asked.trials))
+    for tested in [files[1::2], files] if asked.all else [files[1::2]]:
+        for ratio in asked.ratios:
+            performers = Performers(ratio, tested, setting)
+            report(performers, performances(performers, asked.trials), taught)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -21,6 +21,13 @@ BACKS_M = (0.0, 0.05, 0.1, 0.15, 0.2, 0.3)
 OFFS_M = (0.0, 0.003, 0.02, 0.05)
 """Detours that are tried [m]."""
 
+WORTH_M = 0.0005
+"""By how much nearer to clear a larger detour must come where none is clear [m].
+
+A smaller gain is not visible, being half the tolerance of 1 mm for a hand at rest; a detour takes
+the hand up to 0.7 m off its path, and the performer's style with it.
+"""
+
 CHECK_S = 0.02
 """Most time between two frames at which a path is checked, unless frames are farther apart [s]."""
 
@@ -148,6 +155,23 @@ DETOURS = sorted(
 )
 
 
+def smallest_detour(short: Callable[[Detour, float], float]) -> Detour:
+    """The smallest detour that is clear; if none is, the smallest within ``WORTH_M`` of the best.
+
+    Args:
+        short: By how much a path with a detour is too near things [m], 0 where it is clear. It may
+            stop at any value that is not below its second argument [m].
+    """
+    shorts: dict[Detour, float] = {}
+    least = np.inf
+    for detour in DETOURS:
+        shorts[detour] = short(detour, least + WORTH_M)
+        least = min(least, shorts[detour])
+        if least <= 0.0:
+            return detour
+    return next(detour for detour in DETOURS if shorts[detour] < least + WORTH_M)
+
+
 class _Clearance:
     """How far a hand on its way is from things, whatever the arm does."""
 
@@ -174,18 +198,15 @@ class _Clearance:
         held: tuple[bool, bool],
         apart: str,
     ) -> Detour:
-        """The smallest detour that is clear, or else the one that comes nearest to it.
+        """The smallest detour that is clear; if none is, the smallest about as good as the best.
 
         Of a thing that is moved as soon as it is taken the hand is clear until shortly before.
         """
-        best, least = STRAIGHT, np.inf
-        for detour in DETOURS:
-            short = self._short(side, path(detour), first, touched, held, apart, least)
-            if short < least:
-                best, least = detour, short
-            if least <= 0.0:
-                break
-        return best
+        return smallest_detour(
+            lambda detour, enough: self._short(
+                side, path(detour), first, touched, held, apart, enough
+            )
+        )
 
     def _short(
         self,
