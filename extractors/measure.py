@@ -44,6 +44,7 @@ from extractors.contact.arrivals import arrivals
 from extractors.contact.blows import blows
 from extractors.contact.contacts import Contact, contacts
 from extractors.contact.earlier_answers import EarlierAnswers
+from extractors.contact.surfaces import surface
 from extractors.contact.touch_distances import forget_touchable
 from extractors.faults.faults import faults
 from extractors.handling_facts import handling
@@ -59,6 +60,10 @@ from extractors.signals.intervals import Interval
 from extractors.signals.zero_crossings import horizon_frames, pauses, zero_crossings
 from extractors.thresholds import Thresholds
 
+LONG_S = 600.0
+"""A recording of this length [s] or more takes so long to measure that to make the offset surfaces
+of its bodies once more, some seconds, hardly counts."""
+
 ANY = "any"
 """What an empty field of a purpose is in a fact."""
 
@@ -70,9 +75,16 @@ class Track:
     poses: Poses
     """Of the sensor."""
 
-    speed_mps: Float[np.ndarray, "frames"]
     crossings: Int[np.ndarray, "crossings"]
     """Frames at which its acceleration crosses zero."""
+
+    pauses: Int[np.ndarray, "pauses"]
+    """Those of them between which it is faster."""
+
+    @property
+    def speed_mps(self) -> Float[np.ndarray, "frames"]:
+        """How fast it is [m/s]; NaN where lost. Computed again each time."""
+        return speed(self.positions, self.poses.smooth.times)
 
     @property
     def positions(self) -> Float[np.ndarray, "frames 3"]:
@@ -183,7 +195,6 @@ def measured(
     touches = tuple(arrivals(capture, bodies, calibration, near, moves, limits))
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
     _forget(capture, bodies)
-    reach = horizon_frames(capture.times, limits)
     facts = [
         *_scene(capture),
         *(
@@ -194,7 +205,7 @@ def measured(
         *(
             Pause(sensor.name, int(frame))
             for sensor in capture.acting
-            for frame in pauses(tracks[sensor.name].speed_mps, tracks[sensor.name].crossings, reach)
+            for frame in tracks[sensor.name].pauses
         ),
         *_touching(capture, touches),
         *moves,
@@ -225,8 +236,15 @@ def measured(
 
 
 def _forget(capture: Capture, bodies: Bodies) -> None:
-    """Keep nothing for contacts alone, nor filtered poses of what handles nothing."""
+    """Keep nothing for contacts alone, nor filtered poses of what handles nothing.
+
+    After a long recording that goes for offset surfaces, too, though the next one may ask for them.
+    """
     forget_touchable([*bodies.sensors.values(), *bodies.objects.values()])
+    if capture.times[-1] - capture.times[0] >= LONG_S:
+        for body in (*bodies.sensors.values(), *bodies.objects.values()):
+            if body.shape is not None:
+                surface(body.shape).forget_offsets()
     for sensor in capture.sensors:
         if sensor.role is not Role.ACTS:
             bodies.sensors[sensor.name].poses.forget()
@@ -242,7 +260,8 @@ def _track(poses: Poses, highest_mps: float, thresholds: Thresholds) -> Track:
         highest_mps=highest_mps,
         thresholds=thresholds,
     )
-    return Track(poses, pace, crossings)
+    reach = horizon_frames(stream.times, thresholds)
+    return Track(poses, crossings, pauses(pace, crossings, reach))
 
 
 def _scene(capture: Capture) -> Iterator[Fact]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
+from itertools import groupby
 from pathlib import Path
 
 from capar import __version__
@@ -30,7 +31,7 @@ from extractors.forces.force_styles import force_styles
 from extractors.measure import Measurements, measure
 from extractors.relations.guide_locations import guide_location
 from extractors.segments.locations import constraint_location
-from extractors.segments.motion_kinds import moved_path
+from extractors.segments.motion_kinds import followed, moved_path
 from extractors.segments.sampled_tracks import sampled_tracks
 from extractors.segments.styles import style
 from extractors.thresholds import Thresholds
@@ -93,6 +94,7 @@ def observe_measured(
     moved = () if base.crossings_only else movers(facts)
     return_freed_memory()
     measured = dict(_measured(capture, measurements, inference, limits))
+    return_freed_memory()
     frames = len(capture.times) - 1
     duration_s = float(capture.times[-1])
     agent = capture.agent.name
@@ -163,10 +165,17 @@ def _link_by_link(inference: Inference, bodies: Bodies) -> Iterable[Segment]:
         bodies.forget_smooth_poses()
 
 
+def _body_by_body(inference: Inference, bodies: Bodies) -> Iterable[Segment]:
+    """All segments, by the body that goes the way; its filtered poses are forgotten after them."""
+    for _, segments in groupby(sorted(_segments(inference), key=followed), key=followed):
+        yield from segments
+        bodies.forget_smooth_poses()
+
+
 def _measured(
     capture: Capture, measurements: Measurements, inference: Inference, thresholds: Thresholds
 ) -> Iterable[tuple[Key, Measured]]:
-    for segment in _link_by_link(inference, measurements.bodies):
+    for segment in _body_by_body(inference, measurements.bodies):
         motion, path = moved_path(capture, measurements, segment, thresholds)
         yield (segment.ee, segment.index), Measured(motion, path)
 

@@ -211,7 +211,7 @@ def _shown(model: clingo.Model) -> Answer:
     return Answer(tuple((each.name, tuple(map(as_term, each.arguments))) for each in symbols))
 
 
-@lru_cache(maxsize=1 << 16)
+@lru_cache(maxsize=1 << 14)
 def as_term(symbol: clingo.Symbol) -> Term:
     """A symbol of the solver as a plain value; answers name the same segments again and again."""
     if symbol.type is clingo.SymbolType.Number:

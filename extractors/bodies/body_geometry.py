@@ -42,12 +42,17 @@ class BodyGeometry:
 
     @cached_property
     def middles(self) -> Float[np.ndarray, "frames 3"]:
-        """The middle of its box in the world [m], or its origin where it has no shape."""
+        """The middle of its box in the world [m], or its origin where it has no shape.
+
+        Those of a body that rests are one row, repeated without memory of its own.
+        """
         places = self.poses.settled.positions if self.poses.rests else self._smooth[0]
         if self.shape is None:
             return places
         offset = self.shape.bounds.mean(axis=0)
-        return np.asarray(places + rotation_matrices(self.orientations) @ offset)
+        frames = slice(0, 1) if self.poses.rests else slice(None)
+        middles = places[frames] + self.turns_at(frames) @ offset
+        return np.broadcast_to(middles, places.shape)
 
     @property
     def _smooth(self) -> tuple[np.ndarray, np.ndarray]:

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
+from capar.model import geometry
 from capar.model.calibration import BodyCalibration, FixedPose
 from capar.model.capture import Sensor, Stream, TagObject, TagType
 from extractors.signals.filters import lowpass, lowpass_orientations
@@ -36,28 +37,26 @@ class LowPassed(Stream):
         object.__setattr__(self, "_source", source)
         object.__setattr__(self, "_thresholds", thresholds)
 
-    @property
+    @cached_property
     def positions(self) -> Float[np.ndarray, "frames 3"]:
         """Origin of the body in the world [m]; NaN where it was lost."""
-        return self._filtered.positions
+        return _read_only(lowpass(self._source.positions, self.times, self._thresholds))
 
-    @property
+    @cached_property
     def orientations(self) -> Float[np.ndarray, "frames 4"]:
         """Unit quaternions w x y z, body to world, of continuous sign; NaN where it was lost."""
-        return self._filtered.orientations
+        turns = lowpass_orientations(self._source.orientations, self.times, self._thresholds)
+        return _read_only(geometry.continuous(geometry.unit(turns)))
 
     def forget(self) -> None:
         """Keep no poses until they are asked for again."""
-        vars(self).pop("_filtered", None)
+        for filtered in ("positions", "orientations"):
+            vars(self).pop(filtered, None)
 
-    @cached_property
-    def _filtered(self) -> Stream:
-        source = self._source
-        return Stream(
-            source.times,
-            lowpass(source.positions, source.times, self._thresholds),
-            lowpass_orientations(source.orientations, source.times, self._thresholds),
-        )
+
+def _read_only(values: Float[np.ndarray, "frames axes"]) -> Float[np.ndarray, "frames axes"]:
+    values.flags.writeable = False
+    return values
 
 
 @dataclass(frozen=True, eq=False)

@@ -99,6 +99,15 @@ class Surface:
         faces = np.arange(3 * len(parts)).reshape(-1, 3)
         return OffsetSurface(tree(parts.reshape(-1, 3), faces), parts)
 
+    @property
+    def keeps_offsets(self) -> bool:
+        """Whether offset surfaces are kept for whoever asks again."""
+        return bool(self._offset_surfaces)
+
+    def forget_offsets(self) -> None:
+        """Keep no offset surfaces until they are asked for again."""
+        self._offset_surfaces.clear()
+
     def contains(self, points: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, "points"]:
         """Whether points [m, body's frame] lie in the solid; never, if it bounds none."""
         low, high = self.shape.bounds

@@ -25,16 +25,28 @@ def moved_path(
     Where the segment moves none, the motion is none and the places are the end-effector's. A place
     at which the body was lost is left out.
     """
-    positions = measurements.tracks[segment.ee].positions
+    moves, name = followed(segment)
     kind = Motion.NONE
-    if "1" in segment.features.change_loc:
-        moved = capture.tag_object(segment.objects[segment.features.change_loc.index("1")])
+    if moves:
+        moved = capture.tag_object(name)
         poses = measurements.bodies.objects[moved.name].poses
         positions = poses.smooth.positions
         span = segment.first, segment.last
         kind = motion_kind(poses, *span, own_m=moved.motion_floor_m, thresholds=thresholds)
+    else:
+        positions = measurements.tracks[name].positions
     ends = (positions[segment.first], positions[segment.last])
     return kind, tuple(_place(each) for each in ends if not np.isnan(each).any())
+
+
+def followed(segment: Segment) -> tuple[bool, str]:
+    """The body whose way tells where a segment leads, after whether it is an object that is moved.
+
+    It is the first object that the segment moves, or else the end-effector.
+    """
+    if "1" in segment.features.change_loc:
+        return True, segment.objects[segment.features.change_loc.index("1")]
+    return False, segment.ee
 
 
 def _place(position: Float[np.ndarray, "3"]) -> Place:

@@ -326,6 +326,14 @@ def test_low_passed_poses_that_were_forgotten_are_the_same_again() -> None:
         np.testing.assert_array_equal(one, other)
 
 
+def test_the_middle_of_a_fixed_thing_is_kept_once_and_told_for_every_frame() -> None:
+    table = body(np.array([1.0, 2.0, 3.0]))
+    assert table.poses.rests
+    middle = np.array([1.0, 2.0, 3.0]) + BOX.bounds.mean(axis=0)
+    np.testing.assert_allclose(table.middles, np.tile(middle, (len(TIMES), 1)))
+    assert table.middles.strides[0] == 0
+
+
 @pytest.mark.parametrize(("height_m", "level"), [(0.5, True), (-0.5, True), (0.53125, False)])
 def test_what_just_reaches_the_height_of_a_thing_is_beside_it(height_m: float, level: bool) -> None:
     block = shapes.box(0.5, 0.5, 0.5)

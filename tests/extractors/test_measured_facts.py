@@ -34,6 +34,7 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
+from extractors.contact.surfaces import surface
 from extractors.measure import measure
 
 
@@ -307,3 +308,18 @@ def test_of_several_agents_it_is_told_whose_hands_heads_and_other_parts_are_whic
         OfAgent("right_hand", "agent"),
     ]
     assert of_kind(capture, OfAgent) == []
+
+
+def test_a_long_recording_keeps_no_offset_surfaces_and_its_facts_are_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    capture = pick_and_place()
+    shapes = {
+        one.shape.digest: one.shape for one in (*capture.sensors, *capture.objects) if one.shape
+    }
+    before = measure(capture).facts
+    kept = [surface(shape).keeps_offsets for shape in shapes.values()]
+    monkeypatch.setattr("extractors.measure.LONG_S", float(capture.times[-1]))
+    assert measure(capture).facts == before
+    assert any(kept)
+    assert not any(surface(shape).keeps_offsets for shape in shapes.values())
