@@ -101,6 +101,8 @@ FILTERS: Mapping[str, Filter] = {
             "joint": "?f_seen capar:jointAction ?joint ; capar:capture/capar:name @value@ .",
             "place": "?f_seen capar:location ?place ; capar:capture/capar:name @value@ .",
             "contact": "?f_seen capar:fact ?contact ; capar:capture/capar:name @value@ .",
+            "motion": "?f_moves capar:fact ?motion ; capar:capture/capar:name @value@ .",
+            "holding": "?f_holds capar:segment ?holding ; capar:capture/capar:name @value@ .",
             "two": "?f_two capar:segment ?two ; capar:capture/capar:name @value@ .",
         },
     ),
@@ -139,7 +141,7 @@ FILTERS: Mapping[str, Filter] = {
 NARROWING = frozenset({"capture", "address"})
 """Filters that leave so few that the others are best tested on each of these."""
 
-_MARKED = "segment|seen|link|joint|place|two|thing|contact"
+_MARKED = "segment|seen|link|joint|place|two|thing|contact|motion|holding"
 _MARK = re.compile(rf"^ *# filters \?({_MARKED})$", re.MULTILINE)
 
 
