@@ -11,8 +11,8 @@ from kb.lexicon.english import capital
 
 HEADING = "Known with reservations:"
 
-LOSS = "long-gap"
-"""The code of a body that was not tracked for some time."""
+LOSS, SUPPORT = "long-gap", "assumed-support"
+"""The codes of a body that was not tracked for some time, and of what bears things."""
 
 MOST = 5
 """So many notices of one code are listed one by one."""
@@ -30,12 +30,17 @@ def reservations(
 
 
 def reservations_on_told(observation: Observation) -> tuple[Notice, ...]:
-    """The notices that affect a telling: without losses of what neither acts nor is a thing."""
+    """The notices that affect a telling.
+
+    Without losses of what neither acts nor is a thing, and supports where nothing can be put.
+    """
     told = {link.ee for link in observation.links} | {each.name for each in observation.objects}
+    movable = any(each.tag == "mobile" for each in observation.objects)
     return tuple(
         each
         for each in reservations(observation.notices)
-        if each.code != LOSS or told.intersection(each.bodies)
+        if (each.code != LOSS or told.intersection(each.bodies))
+        and (each.code != SUPPORT or movable)
     )
 
 

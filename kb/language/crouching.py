@@ -1,6 +1,7 @@
 """When a body bends down or crouches beside what its hands do, and straightens up again."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -9,7 +10,7 @@ from capar.model.observation import ObservedLink
 from capar.model.sampled_track import SampledTrack
 from kb.language.clause import Clause, in_time
 from kb.language.lexicalisation import BEND, CROUCH, STAND_UP, STEP, STEP_AWAY, STEP_UP
-from kb.language.thresholds import BENT_M, CROUCHED_M, STANDING_M
+from kb.language.thresholds import BENT_M, CROUCHED_M, STANDING_M, STILL_M, UNSEEN_S
 
 PELVIS, HEAD = "pelvis", "head"
 """The kinds of the links that go down: both in crouching, the head alone in bending."""
@@ -30,12 +31,27 @@ def with_crouching(
     manual = [step for step in steps if step.objects and step.changes]
     if not manual:
         return tuple(steps)
-    crouches = list(_changes(_track(PELVIS, links, tracks), manual[0], CROUCH, CROUCHED_M))
-    bends = _changes(_track(HEAD, links, tracks), manual[0], BEND, BENT_M)
+    head = _track(HEAD, links, tracks)
+    crouches = [
+        _until_upright(each, head)
+        for each in _changes(_track(PELVIS, links, tracks), manual[0], CROUCH, CROUCHED_M)
+    ]
+    bends = [_until_upright(each, head) for each in _changes(head, manual[0], BEND, BENT_M)]
     own = [*crouches, *(each for each in bends if not any(map(each.overlaps, crouches)))]
     own = [each for each in own if not any(_goes_with(each, step) for step in manual)]
     rest = [step for step in steps if not _steadies(step, own)]
     return tuple(sorted((*rest, *own), key=in_time))
+
+
+def _until_upright(change: Clause, head: SampledTrack | None) -> Clause:
+    """Straightening up until the head rises no more."""
+    if change.pattern != STAND_UP or head is None:
+        return change
+    heights, brief = head.positions[:, 2], max(round(UNSEEN_S / head.step_s), 1)
+    at = round(change.end_s / head.step_s)
+    while at + brief < len(heights) and heights[at + brief] - heights[at] > 0.5 * STILL_M:
+        at += 1
+    return replace(change, end_s=max(change.end_s, at * head.step_s))
 
 
 def _goes_with(change: Clause, step: Clause) -> bool:

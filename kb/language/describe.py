@@ -102,7 +102,8 @@ def _story(
         turning = Turning(observation)
         steps = stowed(poured(steps, turning), observation.objects, scene)
         there = placed(steps, observation.objects, scene, turning)
-        steps = turned_on_the_way(in_sequence(without_coming(set_down(there, scene), scene)))
+        steps = in_sequence(without_coming(set_down(there, scene), scene))
+        steps = turned_on_the_way(steps, timed=timed)
     if detail == "summary":
         steps = chosen(gathered(in_turns(steps), observation.objects, scene))
     paused = pauses(steps) if observation.profile != TO_THE_LETTER and detail == "steps" else {}

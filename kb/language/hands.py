@@ -82,7 +82,8 @@ def in_sequence(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     for step in sorted(steps, key=in_time):
         at = next((at for at in range(len(out))[::-1] if out[at].ees == step.ees), None)
         last = None if at is None else out[at]
-        if last is not None and at is not None and last.objects[:1] == step.objects[:1]:
+        same = last is not None and bool(last.objects) and last.objects[:1] == step.objects[:1]
+        if last is not None and at is not None and same:
             over_s = last.end_s - step.start_s
             if last.start_s < step.start_s and last.end_s < step.end_s and 0.0 < over_s < REST_S:
                 out[at] = replace(last, end_s=step.start_s)

@@ -78,11 +78,14 @@ def placed(
     return tuple(out)
 
 
-def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
+def turned_on_the_way(steps: Sequence[Clause], *, timed: bool) -> tuple[Clause, ...]:
     """The clauses; turning that outlasts what it began in, with what the hands do next.
+
+    Where times are not told, with what the hands do for most of it.
 
     Args:
         steps: What was done, in order of time.
+        timed: Whether times are told.
     """
     out = list(steps)
     for turning in steps:
@@ -95,7 +98,8 @@ def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
         ]
         if begins and ends:
             start_s = max(turning.start_s, begins[0].start_s)
-            out[out.index(ends[0])] = replace(ends[0], along=(replace(turning, start_s=start_s),))
+            told = ends[0] if timed else max(own, key=turning.overlap_s)
+            out[out.index(told)] = replace(told, along=(replace(turning, start_s=start_s),))
             out.remove(turning)
     return tuple(out)
 

@@ -170,7 +170,8 @@ class Realiser:
 
     def _on_the_way(self, step: Clause) -> str:
         """How the thing was turned until it was put there."""
-        ways = (replace(each, pattern=f"{each.pattern} on the way") for each in step.along)
+        where = " on the way" if self._timed else ""
+        ways = (replace(each, pattern=f"{each.pattern}{where}") for each in step.along)
         return "".join(map(self._meanwhile, ways))
 
     def _end(self, step: Clause) -> str:

@@ -1,9 +1,13 @@
 """Notes under a text are sentences that its reader can understand, and check."""
 
+from dataclasses import replace
+
 import pytest
+from motions import TALL_MAN, drink_from_mug
 
 from capar.model.notices import Notice, notice
-from capar.views.notices import reservation_lines
+from capar.pipelines.observation import observe
+from capar.views.notices import reservation_lines, reservations_on_told
 from capar.views.plain_notices import PLAIN
 
 
@@ -111,3 +115,13 @@ def test_other_kinds_have_their_own_words_as_a_sentence() -> None:
 def test_a_note_calls_a_thing_as_the_text_does() -> None:
     (line,) = reservation_lines([lost("chair", fixed=True)], called={"chair": "wooden_chair"})[2:]
     assert line.startswith("note: The wooden chair was not tracked")
+
+
+def test_what_bears_things_is_noted_only_where_there_are_things() -> None:
+    seen = observe(drink_from_mug(TALL_MAN).capture)
+    assumed = notice("assumed-support", "floor", assumed="a plate")
+    head = notice("long-gap", "nobody", start_s=1.0, end_s=2.0, times=1, fixed=False)
+    seen = replace(seen, notices=(assumed, head))
+    assert reservations_on_told(seen) == (assumed,)
+    fixed = tuple(replace(each, tag="fixed") for each in seen.objects)
+    assert reservations_on_told(replace(seen, objects=fixed)) == ()

@@ -1,5 +1,6 @@
 """A body walks, and works with its hands: feet, elbows and shoulders are not told one by one."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -163,3 +164,15 @@ def test_who_goes_away_in_the_end_is_told_to_but_not_in_a_summary() -> None:
     assert describe(made).endswith("and walked away.")
     assert "away" not in describe(made, detail="summary")
     assert describe(striding(("left_foot", 3.1, 3.7))).endswith("and stepped away.")
+
+
+def test_who_straightens_up_does_so_until_the_head_rises_no_more() -> None:
+    made = seen({"right_hand": WORKED}, 0.6)
+    seconds = np.arange(401) / 100.0
+    heights = np.interp(seconds, (0.5, 1.5, 3.1, 3.4, 3.8), (1.7, 1.2, 1.2, 1.63, 1.7))
+    places = np.column_stack((np.zeros((401, 2)), heights))
+    head = sampled_track("head", 0.01, places)
+    told = describe(replace(made, tracks=(*made.tracks, head)), timed=True)
+    begin, end = re.search(r"straightened up \((.*)–(.*) s\)", told).groups()  # type: ignore[union-attr]
+    assert 3.0 < float(begin) < 3.3
+    assert 3.7 < float(end) <= 3.8

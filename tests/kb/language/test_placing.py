@@ -280,7 +280,7 @@ def test_what_sinks_as_it_rises_is_moved_up_and_down(low_m: float, words: str) -
 @pytest.mark.parametrize(
     ("size_m", "words"),
     [
-        (0.6, "carried it, and put it down, turning it by about a quarter on the way."),
+        (0.6, "carried it, turning it by about a quarter, and put it down."),
         (0.1, "carried it, and put it down."),
     ],
 )
