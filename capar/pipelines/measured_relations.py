@@ -18,7 +18,7 @@ from extractors.calibration import thresholds_of
 from extractors.contact.contacts import points_apart
 from extractors.contact.proximity import separation
 from extractors.contact.touch_distances import touchable
-from extractors.motion.impacts import closing_speed
+from extractors.motion.impacts import APPROACH_S, closing_speed
 from extractors.relations.arrangement import Pair
 
 SAMPLES = 240
@@ -115,7 +115,8 @@ def _closing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     near = min(met, key=lambda fact: abs(fact.first - told.last), default=None)
     blow = constants()["blow_mm_s"]
     return Panel(
-        f"{known.called(one)} and {known.called(other)}: how fast they come together",
+        f"{known.called(one)} and {known.called(other)}: relative speed of their middles, the "
+        f"greatest in the last {APPROACH_S:.2f} s",
         "mm/s",
         (Curve(known.times, speeds),),
         (Limit(float(blow), f"a blow: {blow} mm/s or more"),),

@@ -153,7 +153,17 @@ def contrasts(
     indirect = list(_nearest([each for each in features if not each.direct], most=1))
     direct = list(_nearest([each for each in features if each.direct], most=1))
     supported = list(_supported(base, derived, atoms, clock, tell))
-    return tuple(supported + own + direct + indirect)
+    return tuple(_told_once(supported + own + direct + indirect))
+
+
+def _told_once(found: Sequence[Contrast]) -> Iterator[Contrast]:
+    """The contrasts, those together of which the same is told."""
+    for number, contrast in enumerate(found):
+        if any(contrast.told_as(before) for before in found[:number]):
+            continue
+        alike = [other for other in found[number:] if contrast.told_as(other)]
+        names = tuple(dict.fromkeys(name for other in alike for name in other.names))
+        yield replace(contrast, names=names[:MOST_NAMES])
 
 
 def _nearest(

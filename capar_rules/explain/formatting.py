@@ -248,7 +248,9 @@ class Argument:
         if angle is None:
             return UNBOUND
         most = arrangements.steepest_deg()
-        return f" (pushing it {angle:.0f}° off straight up; {most:.0f}° or less bears)"
+        met = self._met_near(thing, other, frame)
+        at = f" at {self.clock.at(met[0])}" if met else ""
+        return f"{at} ({angle:.0f}° off straight up; {most:.0f}° or less bears)"
 
     def _struck(self) -> str:
         """How fast the segment's object met this one at the end."""

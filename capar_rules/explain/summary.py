@@ -281,17 +281,9 @@ def summary(
         replace(each, though=tuple(clause for clause in each.though if clause not in clauses))
         for each in against
     ]
-    fresh = [each for each in against if each.though or each.clause not in clauses]
-    same = [each for each in against if each not in fresh and each.failing == 1]
-    alike = [name for each in same for name in each.names if not each.by_features]
-    alike = alike[:MOST_NAMES]
-    apart = bool(generals and own) and not same and all(each.weak for each in fresh)
-    near = [each for each in fresh if not each.by_features and not each.weak]
-    fresh = [] if apart else near or [each for each in fresh if each.by_features]
-    fresh = fresh[: max(MOST_TOLD - len(alike), sum(bool(each.though) for each in fresh))]
-    if len(alike) + len(fresh) < MOST_TOLD:
-        more = [name for each in same for name in each.names if each.by_features]
-        alike += more[: MOST_TOLD - len(alike) - len(fresh)]
+    fresh, alike = _told_contrasts(against, clauses)
+    apart = bool(generals and own) and not alike and all(each.weak for each in fresh)
+    fresh = [] if apart else fresh
     beside = [f"just {_listed(generals, 'or')}"] if apart else alike
     other = f", and not {_listed(beside, 'or')}" * bool(beside)
     told = f"{name}{other}, because "
@@ -311,6 +303,26 @@ def summary(
     lost = briefs.lost(claims)
     told += "".join(f". {each.text[0].upper()}{each.text[1:]}" for each in lost)
     return Summary(f"{told}." + briefs.touching(nodes), (*claims, *lost))
+
+
+def _told_contrasts(
+    against: Sequence[Contrast], clauses: Sequence[str]
+) -> tuple[list[Contrast], list[str]]:
+    """The contrasts that are told with reasons of their own, and the names that need none.
+
+    Those names are denied by what the summary says of its own. Names of other features are told
+    only where too few others are.
+    """
+    fresh = [each for each in against if each.though or each.clause not in clauses]
+    same = [each for each in against if each not in fresh and each.failing == 1]
+    alike = [name for each in same for name in each.names if not each.by_features][:MOST_NAMES]
+    near = [each for each in fresh if not each.by_features and not each.weak]
+    fresh = near or [each for each in fresh if each.by_features]
+    fresh = fresh[: max(MOST_TOLD - len(alike), sum(bool(each.though) for each in fresh))]
+    if len(alike) + len(fresh) < MOST_TOLD:
+        others = [name for each in same for name in each.names if each.by_features]
+        alike += others[: MOST_TOLD - len(alike) - len(fresh)]
+    return fresh, alike
 
 
 def leading(reason: Reason) -> list[Reason]:

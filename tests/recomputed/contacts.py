@@ -109,7 +109,7 @@ def no_support(known: Known, other: str, what: str, hand: str) -> bool:
 
 def ended(known: Known, what: str, other: str, at: str, border: str) -> bool:
     """A contact of the two ends then, near the border."""
-    by = not border or abs(known.at(border) - known.at(at)) <= 2 * known.reach
+    by = not border or known.thesis or abs(known.at(border) - known.at(at)) <= 2 * known.reach
     return by and any(near(each.last, known.at(at)) for each in known.touching(what, other))
 
 

@@ -639,6 +639,9 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"the {NAME} at the start \({TIME}\) and until {TIME}", touched_until),
     (rf"{DEGREES} off straight up \({DEGREES} or less bears\)", pushed_at),
+    (rf"met the {NAME} from below at {TIME}", lambda known, body, other, at: any(
+        near(each.first, known.at(at))
+        for each in (*known.touching(other, body), *known.touching(body, other)))),
     (rf"{DEGREES} off straight up; {DEGREES} or less bears", pushed_at),
     (rf"\({LENGTH} above the top of the {NAME} and (?:{LENGTH} aside of it|over it)\)", above),
     (r"\((\d+) % of it(?: at \d+\.\d\d s)?\)", shared),
