@@ -24,6 +24,7 @@ LABELS: Mapping[str, str] = {
     "lies": "{0}: {1} the {2}",
     "bears": "{0}: bears of the weight of the body: {1}",
     "moves_with": "{0}: moves with the {1}",
+    "doubted": "{0}: a flicker, which is not taken as it was measured",
     "lost": "{0}: not tracked",
 }
 """By the predicate of a fact: what a row of its stretches is called."""

@@ -510,8 +510,10 @@ class Argument:
         """How far a body moved, or within what it stayed."""
         moving = self.clock.displacement(body, span)
         moved = self._moved(body, moving if form == "way" else span)
-        if moved is None or form != "way":
-            return "" if moved is None else _brief(form, moved)
+        if moved is None:
+            return UNBOUND if form == "spread" else ""
+        if form != "way":
+            return _brief(form, moved)
         late = span[1] - moving[1] > in_frames(times().merge_ms, self.clock.rate_hz)
         return quantities.way(moved, f" until {self.clock.at(moving[1])}" * late)
 

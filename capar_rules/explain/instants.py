@@ -17,9 +17,11 @@ _FIELDS = {
 }
 
 STRETCHES = {
-    each.predicate: sum(field.name not in ("first", "last", "gap") for field in fields(each))
+    each.predicate: sum(
+        field.name not in ("first", "last", "gap", "taken") for field in fields(each)
+    )
     for each in ALL_FACT_KINDS
-    if {"first", "last"} <= {field.name for field in fields(each)} and each is not FlickerCorrection
+    if {"first", "last"} <= {field.name for field in fields(each)}
 }
 """Facts of what holds from frame to frame: how many of their first arguments say of what."""
 

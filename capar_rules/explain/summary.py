@@ -118,7 +118,7 @@ class Briefs:
         pairs = merged_contacts(list(reason.walk()), self.clock)
         pairs |= merged_contacts(list(top.walk()), self.clock)
         for each in _resting_on([reason], set()):
-            if each.atom.startswith(CLEAR):
+            if each.atom.startswith((CLEAR, DOUBTED)):
                 continue  # what decides against a name is what the thing did
             predicate, arguments = _parsed(each.atom)
             told = self.tell(predicate, arguments, "despite", each)
