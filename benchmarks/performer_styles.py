@@ -208,10 +208,10 @@ HEADINGS = (
 )
 
 
-def report(performers: Performers, done: Sequence[Borrowed], taught: Changed) -> None:
+def report(performers: Performers, done: Sequence[Borrowed], learnt_change: Changed) -> None:
     """Print who was found, and who was taken for whom."""
     trials = performers.trials
-    metric: StyleMetric = style_metric(trials, taught)
+    metric: StyleMetric = style_metric(trials, learnt_change)
     given, made = [one.given for one in done], [one.made for one in done]
     alone, plain = ([nearest_performer(style, trials) for style in some] for some in (given, made))
     known, weighted = (
@@ -269,11 +269,11 @@ def main() -> None:
         develop(asked.trials, asked.ratios, files[0::2], setting)
         return
     learnt = Performers(DEVELOPMENT_RATIO, files[0::2], setting, DEVELOPMENT_SEED)
-    taught = changed(performances(learnt, asked.trials))
+    learnt_change = changed(performances(learnt, asked.trials))
     for tested in [files[1::2], files] if asked.all else [files[1::2]]:
         for ratio in asked.ratios:
             performers = Performers(ratio, tested, setting)
-            report(performers, performances(performers, asked.trials), taught)
+            report(performers, performances(performers, asked.trials), learnt_change)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from capar.cli._abilities import declare_abilities
 from capar.cli._options import Place, Wait, require_actionary
 from capar.cli._output import print_fields, print_json, print_names
 
@@ -50,19 +51,7 @@ def can(
     json: Json = False,
 ) -> None:
     """Declare what an agent that is known is able to do, beside what was observed."""
-    from capar.model.errors import UnknownNameError
-    from kb import Actionary
-
-    require_actionary(actionary, observed=True)
-    with Actionary.open(actionary, wait_s=wait) as opened:
-        if name not in opened.agents():
-            raise UnknownNameError("agent", name, opened.agents())
-        for action in actions:
-            opened.add_ability(action, agent=name)
-    if json:
-        print_json({"agent": name, "declared": actions})
-    else:
-        typer.echo(f"declared of {name}: {', '.join(actions)}")
+    declare_abilities(actions, agent=name, actionary=actionary, wait_s=wait, json=json)
 
 
 @app.command("list")

@@ -4,8 +4,9 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._options import Place, Wait, require_actionary
-from capar.cli._output import print_fields, print_json, print_names
+from capar.cli._abilities import declare_abilities
+from capar.cli._options import Place, Wait
+from capar.cli._output import print_fields, print_names
 
 app = typer.Typer(no_args_is_help=True)
 
@@ -36,19 +37,7 @@ def can(
     json: Json = False,
 ) -> None:
     """Declare what a kind of object can be used for, beside what was observed."""
-    from capar.model.errors import UnknownNameError
-    from kb import Actionary
-
-    require_actionary(actionary, observed=True)
-    with Actionary.open(actionary, wait_s=wait) as opened:
-        if kind not in opened.object_kinds():
-            raise UnknownNameError("kind of object", kind, opened.object_kinds())
-        for action in actions:
-            opened.add_ability(action, kind=kind)
-    if json:
-        print_json({"kind": kind, "declared": actions})
-    else:
-        typer.echo(f"declared of every {kind}: {', '.join(actions)}")
+    declare_abilities(actions, kind=kind, actionary=actionary, wait_s=wait, json=json)
 
 
 @app.command()

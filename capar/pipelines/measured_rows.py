@@ -38,7 +38,7 @@ FEWEST = 4
 
 def claimed_rows(known: Recording, claims: Sequence[Claim]) -> Iterator[Row]:
     """A row for what held when, of each claim, in their order."""
-    wanted = dict.fromkeys(stretches for each in claims for stretches in each.stretches)
+    wanted = dict.fromkeys(stretches for claim in claims for stretches in claim.stretches)
     done: set[str] = set()
     for stretches in wanted:
         for row in _rows(known, stretches):
@@ -49,9 +49,9 @@ def claimed_rows(known: Recording, claims: Sequence[Claim]) -> Iterator[Row]:
 
 def mover_rows(known: Recording, movers: Sequence[MoverStretches]) -> Iterator[Row]:
     """A row for each way in which something moves a thing in the segment."""
-    for each in movers:
-        bars = tuple(Span(known.at(first), known.at(last), "") for first, last in each.spans)
-        yield Row(f"{each.thing}: {each.words}, for {each.percent} % of its motion", bars)
+    for mover in movers:
+        bars = tuple(Span(known.at(first), known.at(last), "") for first, last in mover.spans)
+        yield Row(f"{mover.thing}: {mover.words}, for {mover.percent} % of its motion", bars)
 
 
 def _rows(known: Recording, wanted: Stretches) -> Iterator[Row]:

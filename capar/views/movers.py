@@ -80,7 +80,7 @@ def mover_stretches(
         touching = _touching(frames.values())
         for frame, movers in sorted(frames.items()):
             moving = _movers(movers) - touching
-            for words in {_words(*each, moving=moving) for each in movers}:
+            for words in {_words(*mover, moving=moving) for mover in movers}:
                 ways[words].append(frame)
         for words, held in sorted(ways.items(), key=lambda way: (-len(way[1]), way[0])):
             share = round(100.0 * len(held) / len(frames))

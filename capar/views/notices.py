@@ -34,8 +34,8 @@ def reservations_on_told(observation: Observation) -> tuple[Notice, ...]:
 
     Without losses of what neither acts nor is a thing, and supports where nothing can be put.
     """
-    told = {link.ee for link in observation.links} | {each.name for each in observation.objects}
-    movable = any(each.tag == "mobile" for each in observation.objects)
+    told = {link.ee for link in observation.links} | {thing.name for thing in observation.objects}
+    movable = any(thing.tag == "mobile" for thing in observation.objects)
     return tuple(
         each
         for each in reservations(observation.notices)

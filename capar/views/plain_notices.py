@@ -49,16 +49,16 @@ def _the(body: str) -> str:
 
 
 def _bodies(group: Sequence[Notice]) -> list[str]:
-    return list(dict.fromkeys(body for each in group for body in each.bodies))
+    return list(dict.fromkeys(body for notice in group for body in notice.bodies))
 
 
 def _named(bodies: Sequence[str]) -> str:
     """Bodies as a list; of many the first, and how many others there are."""
     names = list(dict.fromkeys(map(_the, bodies)))
-    for each in list(names):
-        pair = [f"the {side} {each.removeprefix('the right ')}" for side in ("right", "left")]
+    for name in list(names):
+        pair = [f"the {side} {name.removeprefix('the right ')}" for side in ("right", "left")]
         if set(pair) <= set(names):
-            names[names.index(pair[0])] = f"both {each.removeprefix('the right ')}s"
+            names[names.index(pair[0])] = f"both {name.removeprefix('the right ')}s"
             names.remove(pair[1])
     left = len(names) - NAMED
     if left <= 1:

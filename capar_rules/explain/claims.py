@@ -256,8 +256,8 @@ def _since(clock: Clock, frame: int) -> list[int]:
 
 def joined_claims(text: str, claims: Sequence[Claim]) -> Claim:
     """The claim of a clause that says as much as several."""
-    quantities = dict.fromkeys(one for each in claims for one in each.quantities)
-    stretches = dict.fromkeys(one for each in claims for one in each.stretches)
+    quantities = dict.fromkeys(quantity for claim in claims for quantity in claim.quantities)
+    stretches = dict.fromkeys(held for claim in claims for held in claim.stretches)
     frames = tuple(frame for each in claims for frame in each.frames)
     return Claim(text, tuple(quantities), frames, tuple(stretches))
 

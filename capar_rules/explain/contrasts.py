@@ -178,8 +178,8 @@ def _nearest(
         if not waiting:
             return
         first = waiting[0]
-        alike = [each for each in waiting if each.contrast.told_as(first.contrast)]
-        names = tuple(dict.fromkeys(each.contrast.names[0] for each in alike))[:MOST_NAMES]
+        alike = [refused for refused in waiting if refused.contrast.told_as(first.contrast)]
+        names = tuple(dict.fromkeys(refused.contrast.names[0] for refused in alike))[:MOST_NAMES]
         told |= {*names}
         yield replace(first.contrast, names=names)
         waiting = [each for each in waiting if not each.contrast.told_as(first.contrast)]

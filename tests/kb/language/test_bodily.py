@@ -173,6 +173,7 @@ def test_who_straightens_up_does_so_until_the_head_rises_no_more() -> None:
     places = np.column_stack((np.zeros((401, 2)), heights))
     head = sampled_track("head", 0.01, places)
     told = describe(replace(made, tracks=(*made.tracks, head)), timed=True)
-    begin, end = re.search(r"straightened up \((.*)–(.*) s\)", told).groups()  # type: ignore[union-attr]
-    assert 3.0 < float(begin) < 3.3
-    assert 3.7 < float(end) <= 3.8
+    found = re.search(r"straightened up \((.*)–(.*) s\)", told)
+    assert found is not None
+    assert 3.0 < float(found[1]) < 3.3
+    assert 3.7 < float(found[2]) <= 3.8
