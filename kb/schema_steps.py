@@ -23,7 +23,23 @@ def from_1(store: Store) -> tuple[str, ...]:
     return (_ADDRESSES,)
 
 
-STEPS: Mapping[int, Callable[[Store], tuple[str, ...]]] = {1: from_1, 2: from_2}
+_OF_ACTIONS = f"""DELETE {{ GRAPH ?graph {{ ?node {CAPAR.action} ?action }} }}
+INSERT {{ GRAPH ?graph {{ ?node {CAPAR.ofAction} ?action }} }}
+WHERE {{
+  VALUES ?kind {{
+    {CAPAR.Step} {CAPAR.ComplexStep} {CAPAR.Call} {CAPAR.ConstraintLocation} {CAPAR.AgentStyle}
+  }}
+  GRAPH ?graph {{ ?node a ?kind ; {CAPAR.action} ?action }}
+}}"""
+
+
+def from_3(store: Store) -> tuple[str, ...]:
+    """The updates to version 4: steps, calls, locations and styles are of their action."""
+    del store
+    return (_OF_ACTIONS,)
+
+
+STEPS: Mapping[int, Callable[[Store], tuple[str, ...]]] = {1: from_1, 2: from_2, 3: from_3}
 """The updates that bring a store of each older version to the next one."""
 
 

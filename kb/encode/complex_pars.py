@@ -44,7 +44,7 @@ def complex_par(out: Statements, observation: "Observation", name: str) -> Named
             properties: PropertyValues = {
                 CAPAR.ee: link.ee,
                 CAPAR.index: index,
-                CAPAR.action: action(out, step.action),
+                CAPAR.ofAction: action(out, step.action),
                 CAPAR.name: step.action,
                 CAPAR.objectNumbers: " ".join(str(numbers[each]) for each in step.objects),
             }
@@ -120,7 +120,7 @@ def _add_step(
         CAPAR.realises: names.part(node, "step", link.ee, index),
         CAPAR.ee: link.ee,
         CAPAR.index: index,
-        CAPAR.action: action(out, step.action),
+        CAPAR.ofAction: action(out, step.action),
         CAPAR.name: step.action,
         CAPAR.objects: " ".join(step.objects),
         CAPAR.share: float(step.share),

@@ -61,7 +61,7 @@ def _location(
         CAPAR.index: index,
         **made,
         CAPAR.ee: value.ee,
-        CAPAR.action: action(out, value.action),
+        CAPAR.ofAction: action(out, value.action),
         CAPAR.actionName: value.action,
         CAPAR.purpose: value.purpose,
         CAPAR.side: value.side,
@@ -122,7 +122,7 @@ def _style(out: Statements, index: int, value: Style, agent: NamedNode) -> Named
     properties: PropertyValues = {
         CAPAR.index: index,
         CAPAR.agent: agent,
-        CAPAR.action: action(out, value.action),
+        CAPAR.ofAction: action(out, value.action),
         CAPAR.actionName: value.action,
         CAPAR.purpose: value.purpose,
         CAPAR.ee: value.ee,

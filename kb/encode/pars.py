@@ -150,7 +150,7 @@ def _preparation(
 def _call(out: Statements, add: Add, node: NamedNode, value: Call, index: int) -> NamedNode:
     properties: PropertyValues = {
         CAPAR.index: index,
-        CAPAR.action: action(out, value.action),
+        CAPAR.ofAction: action(out, value.action),
         CAPAR.name: value.action,
         CAPAR.parameters: " ".join(value.objects),
         CAPAR.purpose: value.purpose,

@@ -8,7 +8,9 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from pyoxigraph import Literal
+from pyoxigraph import Literal, NamedNode
+
+from kb.store import names
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +22,8 @@ class Filter:
 
     meaning: str
     patterns: Mapping[str, str]
-    """By the variable that it restricts: what must hold, with the value at ``@value@``."""
+    """By the variable that it restricts: what must hold, with the value at ``@value@``, or the
+    action of that name at ``@action@``."""
 
 
 _NAME = "(capar:name|rdfs:label)"
@@ -29,8 +32,9 @@ FILTERS: Mapping[str, Filter] = {
         "text",
         "the name of an action, which stands for every kind of it",
         {
-            each: f"?{each} capar:action/capar:kindOf/capar:name @value@ ."
-            for each in ("segment", "joint", "place")
+            "segment": "?segment capar:action/capar:kindOf @action@ .",
+            "joint": "?joint capar:action/capar:kindOf @action@ .",
+            "place": "?place capar:ofAction/capar:kindOf @action@ .",
         },
     ),
     "address": Filter(
@@ -66,7 +70,7 @@ FILTERS: Mapping[str, Filter] = {
     "other": Filter(
         "text",
         "the name of the other segment's action, which stands for every kind of it",
-        {"two": "?two capar:action/capar:kindOf/capar:name @value@ ."},
+        {"two": "?two capar:action/capar:kindOf @action@ ."},
     ),
     "other_side": Filter(
         "text",
@@ -102,6 +106,7 @@ FILTERS: Mapping[str, Filter] = {
             "place": "?f_seen capar:location ?place ; capar:capture/capar:name @value@ .",
             "contact": "?f_seen capar:fact ?contact ; capar:capture/capar:name @value@ .",
             "motion": "?f_moves capar:fact ?motion ; capar:capture/capar:name @value@ .",
+            "gaze": "?f_looks capar:fact ?gaze ; capar:capture/capar:name @value@ .",
             "holding": "?f_holds capar:segment ?holding ; capar:capture/capar:name @value@ .",
             "two": "?f_two capar:segment ?two ; capar:capture/capar:name @value@ .",
         },
@@ -141,7 +146,7 @@ FILTERS: Mapping[str, Filter] = {
 NARROWING = frozenset({"capture", "address"})
 """Filters that leave so few that the others are best tested on each of these."""
 
-_MARKED = "segment|seen|link|joint|place|two|thing|contact|motion|holding"
+_MARKED = "segment|seen|link|joint|place|two|thing|contact|motion|holding|gaze"
 _MARK = re.compile(rf"^ *# filters \?({_MARKED})$", re.MULTILINE)
 
 
@@ -151,8 +156,23 @@ def filters_of(query: str) -> tuple[str, ...]:
     return tuple(
         name
         for name, each in FILTERS.items()
-        if marked & each.patterns.keys() and f"VALUES ?{name} {{ UNDEF }}" not in query
+        if marked & each.patterns.keys() and not _sets(query, name)
     )
+
+
+def _sets(query: str, name: str) -> bool:
+    """Whether a query has a variable of its own for what a filter restricts."""
+    return any(unset(each) in query for each in (name, f"{name}_node"))
+
+
+def unset(variable: str) -> str:
+    """The line of a query whose variable may be given values."""
+    return f"VALUES ?{variable} {{ UNDEF }}"
+
+
+def node(value: Literal) -> NamedNode:
+    """The action of a name: sought as such, not among all things that bear the name."""
+    return names.shared("action", value.value)
 
 
 def filtered(query: str, given: Mapping[str, Sequence[Literal]]) -> str:
@@ -176,16 +196,22 @@ def _set(of: str, by: Filter, name: str, values: Sequence[Literal], *, narrow: b
     Where another filter leaves few, each of them is tested, instead of finding all that fit: a
     variable that is compared is bound last, a value that is written out is sought first.
     """
-    pattern = by.patterns[of]
+    pattern = by.patterns[of].replace("@action@", "@value@")
+    terms = values if pattern == by.patterns[of] else tuple(map(node, values))
     several = len(values) > 1 or "|" in pattern
     if several and narrow:
-        tests = (f"EXISTS {{ {pattern.replace('@value@', str(value))} }}" for value in values)
+        tests = (f"EXISTS {{ {pattern.replace('@value@', str(value))} }}" for value in terms)
         return f"FILTER({' || '.join(tests)})"
     if narrow and by.kind == "text" and name not in NARROWING:
         variable = f"?f_one_{name}"
-        return f"{pattern.replace('@value@', variable)} FILTER({variable} = {values[0]})"
+        return f"{pattern.replace('@value@', variable)} FILTER({variable} = {terms[0]})"
     if not several:
-        return pattern.replace("@value@", str(values[0]))
+        return pattern.replace("@value@", str(terms[0]))
     variable = f"?f_one_{name}"
-    one_of = f"VALUES {variable} {{ {' '.join(map(str, values))} }}"
+    one_of = f"VALUES {variable} {{ {' '.join(map(str, terms))} }}"
+    did, general, rest = pattern.partition("/capar:kindOf @value@")
+    if general:  # some actions are soon found, and then what is of one of them
+        done = f"?f_done_{name}"
+        few = f"{{ SELECT DISTINCT {done} {{ {one_of} {done} capar:kindOf {variable} }} }}"
+        return f"{few} {did} {done}{rest}"
     return f"{{ SELECT DISTINCT ?{of} {{ {one_of} {pattern.replace('@value@', variable)} }} }}"

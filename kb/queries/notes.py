@@ -76,7 +76,7 @@ def notes_of_sparql(store: "Store", query: str, answer: "Answer") -> Iterator[st
         yield from _counted(store, named)
     if "capar:action" in words and not words & _OF_SEGMENTS:
         yield (
-            "capar:action is of steps, styles, locations and joint actions as well: "
+            "capar:action is of joint actions, abilities and feature rows as well: "
             "?observation capar:segment ?s leaves segments alone"
         )
     for column in answer.variables:

@@ -1,16 +1,16 @@
 """Named questions: each is a file of SPARQL whose first comments say what it asks and of what."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
-from pyoxigraph import Literal
+from pyoxigraph import Literal, NamedNode
 
 from capar.model.errors import CaparError, UnknownNameError
-from kb.queries.filters import FILTERS, filtered, filters_of
+from kb.queries.filters import FILTERS, filtered, filters_of, node, unset
 from kb.store import literals, sparql
 from ontology.vocabularies import RELATIONS
 
@@ -160,9 +160,17 @@ class QuestionError(CaparError):
 
 
 def _set(query: str, parameter: Parameter, values: tuple[Literal, ...]) -> str:
-    line = f"VALUES ?{parameter.name} {{ UNDEF }}"
-    stated = f"VALUES ?{parameter.name} {{ {' '.join(map(str, values))} }}"
-    return query.replace(line, stated if values else "")
+    if parameter.kind == "text":
+        query = _stated(query, f"{parameter.name}_node", tuple(map(node, values)))
+    return _stated(query, parameter.name, values)
+
+
+def _stated(query: str, variable: str, terms: Sequence[Literal | NamedNode]) -> str:
+    line = unset(variable)
+    if len(terms) == 1 and variable.endswith("_node") and line in query:
+        return query.replace(line, "").replace(f"?{variable}", str(terms[0]))
+    stated = f"VALUES ?{variable} {{ {' '.join(map(str, terms))} }}"
+    return query.replace(line, stated if terms else "")
 
 
 @cache

@@ -1,7 +1,8 @@
 """The version of the form in which statements are stored, checked whenever a store is opened.
 
 Version 1 stated no version. Version 2 states it, and gives each segment its address. Version 3 has
-facts of a class each that refer to bodies, where version 2 had texts.
+facts of a class each that refer to bodies, where version 2 had texts. Version 4 says of what
+was done alone that it has an action; representations, steps, calls, locations and styles are of one.
 """
 
 from collections.abc import Iterable
@@ -14,7 +15,7 @@ from kb.store.statements import TYPE
 from kb.store.stores import Store
 from ontology import CAPAR
 
-SCHEMA = 3
+SCHEMA = 4
 """The version that this program reads and writes."""
 
 FIRST = 1
