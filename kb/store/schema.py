@@ -1,8 +1,8 @@
 """The version of the form in which statements are stored, checked whenever a store is opened.
 
 Version 1 stated no version. Version 2 states it, and gives each segment its address. Version 3 has
-facts of a class each that refer to bodies, where version 2 had texts. Version 4 says of what
-was done alone that it has an action; representations, steps, calls, locations and styles are of one.
+facts of a class each that refer to bodies, where version 2 had texts. Version 4 says of what was
+done alone that it has an action; representations, steps, calls, locations and styles are of one.
 """
 
 from collections.abc import Iterable
