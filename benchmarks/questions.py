@@ -1,8 +1,8 @@
 """How long named questions take in a large Actionary, and how one is made.
 
-``python benchmarks/questions.py --copies 25 FROM TO`` writes every observation of the Actionary FROM
-25 times into the folder TO, under other names; ``python benchmarks/questions.py FOLDER`` asks FOLDER
-every question, about one capture and over all, and prints medians.
+``python benchmarks/questions.py FROM TO --copies 25`` writes every observation of the Actionary
+FROM 25 times into the folder TO, under other names; ``python benchmarks/questions.py FOLDER`` asks
+FOLDER every question, about one capture and over all, and prints medians.
 """
 
 import argparse

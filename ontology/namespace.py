@@ -249,6 +249,8 @@ class CAPAR(FactKinds):
     samples: NamedNode
     time: NamedNode
     gap: NamedNode
+    heldFor: NamedNode
+    movedFor: NamedNode
     upward: NamedNode
     pressX: NamedNode
     pressY: NamedNode

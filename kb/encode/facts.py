@@ -40,6 +40,8 @@ class Scene:
     bodies: Bodies
     agents: Mapping[str, NamedNode]
     rate_hz: float
+    more: Mapping[Any, PropertyValues] = field(default_factory=dict)
+    """What else is known of some facts, by fact."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,7 @@ def _fact(out: Statements, fact: Observed, scene: Scene, intervals: FactInterval
     if isinstance(fact, MovedBy):
         properties |= _mover(fact, scene)
     properties |= _times(fact, scene, intervals)
+    properties |= scene.more.get(fact, {})
     return out.add(
         names.part(out.about, "fact", fact.predicate, *values.values()), (known.kind,), properties
     )

@@ -8,6 +8,7 @@ from pyoxigraph import Literal, NamedNode
 from capar.model.json_form import document
 from kb.encode import complex_pars, facts, joint, measures, pars, rules, scene, segments
 from kb.encode.bodies import Bodies
+from kb.encode.held_contacts import held_contacts
 from kb.store import literals, names
 from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
@@ -43,7 +44,8 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
     rate_hz = facts.rate_of(
         observation.facts, frames=observation.frames, duration_s=observation.duration_s
     )
-    world = facts.Scene(bodies, agents, rate_hz)
+    contacts = held_contacts(observation, rate_hz)
+    world = facts.Scene(bodies, agents, rate_hz, contacts)
     called = name or observation.complex_par.name or observation.capture
     complex_pars.complex_par(out, observation, called)
     base = rules.rule_base(out, observation)

@@ -105,9 +105,7 @@ FILTERS: Mapping[str, Filter] = {
             "joint": "?f_seen capar:jointAction ?joint ; capar:capture/capar:name @value@ .",
             "place": "?f_seen capar:location ?place ; capar:capture/capar:name @value@ .",
             "contact": "?f_seen capar:fact ?contact ; capar:capture/capar:name @value@ .",
-            "motion": "?f_moves capar:fact ?motion ; capar:capture/capar:name @value@ .",
             "gaze": "?f_looks capar:fact ?gaze ; capar:capture/capar:name @value@ .",
-            "holding": "?f_holds capar:segment ?holding ; capar:capture/capar:name @value@ .",
             "two": "?f_two capar:segment ?two ; capar:capture/capar:name @value@ .",
         },
     ),
@@ -146,7 +144,7 @@ FILTERS: Mapping[str, Filter] = {
 NARROWING = frozenset({"capture", "address"})
 """Filters that leave so few that the others are best tested on each of these."""
 
-_MARKED = "segment|seen|link|joint|place|two|thing|contact|motion|holding|gaze"
+_MARKED = "segment|seen|link|joint|place|two|thing|contact|gaze"
 _MARK = re.compile(rf"^ *# filters \?({_MARKED})$", re.MULTILINE)
 
 

@@ -3,6 +3,7 @@
 Version 1 stated no version. Version 2 states it, and gives each segment its address. Version 3 has
 facts of a class each that refer to bodies, where version 2 had texts. Version 4 says of what was
 done alone that it has an action; representations, steps, calls, locations and styles are of one.
+Contacts of end-effectors tell for how long the thing is held and moves.
 """
 
 from collections.abc import Iterable
