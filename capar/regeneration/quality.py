@@ -83,7 +83,7 @@ class Quality:
 
 def quality(motion: Motion) -> Quality:
     """Verify a motion at every frame."""
-    hands = _hands(motion)
+    hands = hands_of(motion)
     errors = _errors(motion, hands)
     contacts, thumb = _contact_gates(motion)
     gates = (
@@ -96,7 +96,7 @@ def quality(motion: Motion) -> Quality:
     return Quality(gates, (thumb,))
 
 
-def _hands(motion: Motion) -> dict[str, RigidTransform]:
+def hands_of(motion: Motion) -> dict[str, RigidTransform]:
     """``T_world_hand`` of the body as it moved."""
     plan = motion.plan
     names = [f"{side}_palm" for side in plan.hands]
@@ -256,7 +256,7 @@ def _still_gate(motion: Motion) -> Gate:
     plan, worst = motion.plan, (0.0, -1, "")
     for name, path in plan.things.items():
         steps = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
-        for hold in plan.source.holds:
+        for hold in (*plan.source.holds, *plan.source.others):
             if hold.thing == name:
                 steps[hold.first : hold.last] = 0.0
         for launch in plan.source.launches:

@@ -44,6 +44,20 @@ class Goal:
     reason: str
 
 
+@dataclass(frozen=True, eq=False)
+class Ways:
+    """The ways of all things."""
+
+    goals: dict[str, list[Goal]]
+    """By name, in order of time."""
+
+    paths: dict[str, RigidTransform]
+    """``T_world_thing`` by name at every frame."""
+
+    told: tuple[str, ...]
+    """What is to be told of them."""
+
+
 def thing_goals(
     source: Source, scene: Scene, old: BodyFrames, new: BodyFrames
 ) -> dict[str, list[Goal]]:
@@ -81,8 +95,8 @@ def _stopped(source: Source, name: str, after: int, last: int) -> int:
 
 def thing_paths(
     source: Source, scene: Scene, goals: dict[str, list[Goal]], human: Human, style: Style
-) -> tuple[dict[str, RigidTransform], list[str]]:
-    """``T_world_thing`` at every frame, and what is to be told of their ways.
+) -> Ways:
+    """Where things are at every frame, from goal to goal.
 
     Other things stand where they were at first while a way is sought.
     """
@@ -105,7 +119,7 @@ def thing_paths(
                         told.append(_lifted(name, source.times[start.frame], detour))
             poses[goal.frame :] = [goal.pose] * (count - goal.frame)
         out[name] = RigidTransform.concatenate(poses)
-    return out, told
+    return Ways(goals, out, tuple(told))
 
 
 def _lifted(name: str, at_s: float, detour: Detour) -> str:
@@ -142,14 +156,14 @@ def _put_down(
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
     by = turn.apply(after.translation - before.translation)
     spun = _turned(source.paths[name], *span, turn) * pose.rotation
-    came, support = (_support_at(source.scene, name, each) for each in (before, after))
+    came, support = (support_at(source.scene, name, each) for each in (before, after))
     spot, reason = pose.translation + by, "as far from where it came from as it was [m]"
     onto = scene.goals.get(name, support if support != came else "")
     if support and onto:
         spot = _on(source, scene, name, (support, onto), after)
         reason = f"at the same place on {onto!r}, in its own measures"
     goal = RigidTransform.from_components(spot, spun)
-    if support and not _support_at(scene, name, goal):
+    if support and not support_at(scene, name, goal):
         x, y, z = spot
         raise PlanError(
             f"{name!r} would be put down at ({x:.2f}, {y:.2f}, {z:.2f}) m, where {support!r} does "
@@ -270,7 +284,8 @@ def _on(
     return np.asarray(spot)
 
 
-def _support_at(scene: Scene, name: str, pose: RigidTransform) -> str:
+def support_at(scene: Scene, name: str, pose: RigidTransform) -> str:
+    """What a thing would stand on at some pose; empty where nothing is beneath it."""
     x, y, z = (float(each) for each in pose.translation)
     return moved(scene, name, (x, y, z), scene.thing(name).heading).support(name)
 
