@@ -12,18 +12,24 @@ from capar.regeneration.hand_overs import Cast, Place, joint_ways, places
 from capar.regeneration.joint_quality import joint_gates
 from capar.regeneration.joint_sources import JointSource
 from capar.regeneration.motions import Motion
-from capar.regeneration.planning import FEW_TURNS, NEARER_M, TALLER_M, beside
+from capar.regeneration.planning import FEW_TURNS, TALLER_M, beside
 from capar.regeneration.quality import Gate, Quality
 from capar.regeneration.regenerating import best_motion
 from capar.regeneration.scenes import Scene
 from capar.regeneration.style_kinds import Kind
 from capar.regeneration.styles import own_style
 
+NEARER_M = (0.1, 0.2, 0.3, 0.5, 0.8, 1.2)
+"""How much nearer somebody is placed where something is out of reach [m]."""
+
 FAR_RATIO = 50.0
 """What is missed by more with the recorded grip is not reached with a turned one, in units of what
 is allowed [1]."""
 
-MOST_PLACES = 4
+MANY_TURNS = 24
+"""Turns of a grip that are tried at the usual place [1]."""
+
+MOST_PLACES = 3
 """At so many places turned grips are tried [1]."""
 
 
@@ -116,7 +122,7 @@ def _reachable(source: JointSource, cast: Cast, kind: Kind) -> tuple[Place, dict
         except PlanError as error:
             why = why or str(error)
     for place, most in [(p, FEW_TURNS) for p in near[:MOST_PLACES]] + [
-        (p, MOST_TURNS) for p in near[:1]
+        (p, MANY_TURNS) for p in near[:1]
     ]:
         try:
             return place, _drafts(source, cast, kind, place, most)
@@ -175,13 +181,12 @@ def _remedy(source: JointSource, cast: Cast, kind: Kind, passing: frozenset[int]
 def _remedies(source: JointSource, cast: Cast) -> Iterator[tuple[str, Cast]]:
     """What may help, in words, and the cast with it."""
     middle = np.mean([scene.place for scene in cast.scenes.values()], axis=0)
-    for name in cast.scenes:
-        for by_m in NEARER_M:
+    for by_m in NEARER_M:
+        for name in cast.scenes:
             scenes = {**cast.scenes, name: beside(cast.scenes[name], by_m, 0.0)}
             yield f"{name} standing {by_m:.2f} m further ahead", Cast(cast.humans, scenes)
-    for by_m in NEARER_M:
         scenes = {name: _towards(scene, middle, by_m) for name, scene in cast.scenes.items()}
-        yield f"everybody standing {by_m:.2f} m nearer to the others", Cast(cast.humans, scenes)
+        yield f"everybody standing {by_m:.2f} m nearer", Cast(cast.humans, scenes)
     for name, human in cast.humans.items():
         recorded = source.sources[name].human
         recorded_m, own_m = recorded.measures["stature"], human.measures["stature"]

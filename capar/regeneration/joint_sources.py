@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from capar.model.capture import Capture, TagType
+from capar.model.facts import Touching
 from capar.model.observation import Observation
+from capar.regeneration.bearing import rides_of
 from capar.regeneration.errors import PlanError
 from capar.regeneration.sources import Hold, Source, check_source, unchecked_source
 
@@ -56,9 +58,15 @@ def joint_source(capture: Capture, observation: Observation) -> JointSource:
         for agent in capture.agents
     }
     sources = {}
+    touching = [fact for fact in observation.facts if isinstance(fact, Touching)]
     for name, source in alone.items():
+        holds = tuple(hold for other in alone.values() for hold in other.holds)
         others = [hold for other, s in alone.items() if other != name for hold in s.holds]
-        sources[name] = replace(source, others=tuple(sorted(others, key=lambda hold: hold.first)))
+        sources[name] = replace(
+            source,
+            others=tuple(sorted(others, key=lambda hold: hold.first)),
+            rides=rides_of(source.paths, holds, touching),
+        )
         check_source(sources[name])
     return JointSource(capture, observation, sources, _hand_overs(sources))
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from capar.model.capture import TagType
 from capar.model.errors import FileError
-from capar.regeneration.scenes import Scene, mobile, moved, raised, resized
+from capar.regeneration.scenes import Scene, mobile, moved, raised, resized, stack
 
 
 @dataclass(frozen=True)
@@ -126,9 +126,13 @@ def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> S
     for _ in range(ATTEMPTS):
         found = scene
         for name in mobile(scene):
-            x, y, z = scene.thing(name).place
             dx, dy = rng.uniform(-draw.aside_m, draw.aside_m, 2)
-            found = moved(found, name, (x + dx, y + dy, z), scene.thing(name).heading)
+            if scene.support(name) in mobile(scene):
+                continue  # it goes along with what bears it
+            for shifted in (name, *stack(scene, name)):
+                x, y, z = scene.thing(shifted).place
+                heading = scene.thing(shifted).heading
+                found = moved(found, shifted, (x + dx, y + dy, z), heading)
         if _sound(scene, found):
             return found
     return scene
@@ -144,6 +148,8 @@ def _sound(before: Scene, after: Scene) -> bool:
         if after.support(first) != before.support(first):
             return False
         for second in names[number + 1 :]:
+            if second in stack(after, first) or first in stack(after, second):
+                continue
             one, two = boxes[first], boxes[second]
             gaps = np.maximum(one.min(axis=0) - two.max(axis=0), two.min(axis=0) - one.max(axis=0))
             if gaps.max() < APART_M:

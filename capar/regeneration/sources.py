@@ -16,6 +16,7 @@ from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagTy
 from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
+from capar.regeneration.bearing import Ride, rides_of
 from capar.regeneration.contact_points import surface_samples
 from capar.regeneration.errors import PlanError
 from capar.regeneration.hand_frames import HandAxes, HandFrame, hand_frame, stated_hand_frame
@@ -98,6 +99,9 @@ class Source:
     others: tuple[Hold, ...] = ()
     """When other performers hold things."""
 
+    rides: tuple[Ride, ...] = ()
+    """What held things bear."""
+
     pace: float = 1.0
     """How many times as long everything takes as it did [1]."""
 
@@ -105,6 +109,11 @@ class Source:
     def times(self) -> Float[np.ndarray, "frames"]:
         """[s]."""
         return np.asarray(self.capture.times * self.pace)
+
+    @property
+    def carried(self) -> tuple[Hold | Ride, ...]:
+        """When things may move, since somebody holds them or something bears them."""
+        return (*self.holds, *self.others, *self.rides)
 
     @property
     def met(self) -> frozenset[str]:
@@ -213,6 +222,7 @@ def unchecked_source(
     return Source(
         capture, observation, human, scene,
         hands, paths, eyes, holds, meetings, poises, tuple(told), launches,
+        rides=rides_of(paths, holds, touching),
     )  # fmt: skip
 
 
@@ -402,9 +412,9 @@ def _check_movers(source: Source, touching: list[Touching]) -> None:
     """Whatever moves does so in a hand, or on its own after a hand set it going."""
     for name, path in source.paths.items():
         held = np.zeros(len(source.times), dtype=bool)
-        for hold in (*source.holds, *source.others):
-            if hold.thing == name:
-                held[hold.first : hold.last + 1] = True
+        for carried in source.carried:
+            if carried.thing == name:
+                held[carried.first : carried.last + 1] = True
         for launch in source.launches:
             if launch.thing == name:
                 held[max(launch.frame - LAUNCH_FRAMES, 0) :] = True

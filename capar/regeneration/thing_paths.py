@@ -1,6 +1,6 @@
 """Where things are throughout: at rest, on the way between goals, and at the head."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.human import Human
 from capar.body.things import Thing
 from capar.model.facts import Displaced
+from capar.regeneration.bearing import Ride, Steadiness, steadiness, with_riders
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
 from capar.regeneration.carrying import Carrying
 from capar.regeneration.collisions import Surroundings
@@ -113,13 +114,48 @@ def thing_paths(
                     poses[start.frame : goal.frame + 1] = [start.pose] * len(part)
                 else:
                     ends = start.pose, goal.pose
-                    piece, detour = carrying.way(name, part, ends, still, turn)
+                    along = _borne(source, scene, name, start.frame, goal.frame)
+                    others = {n: pose for n, pose in still.items() if n not in along}
+                    piece, detour = carrying.way(name, part, ends, others, turn, along)
                     poses[start.frame : goal.frame + 1] = list(piece)
                     if detour != STRAIGHT:
                         told.append(_lifted(name, source.times[start.frame], detour))
             poses[goal.frame :] = [goal.pose] * (count - goal.frame)
         out[name] = RigidTransform.concatenate(poses)
-    return Ways(goals, out, tuple(told))
+    told += [
+        f"{ride.thing!r} goes along on {ride.bearer!r} from {source.times[ride.first]:.2f} to "
+        f"{source.times[ride.last]:.2f} s"
+        for ride in source.rides
+    ]
+    return Ways(goals, with_riders(out, source.rides), tuple(told))
+
+
+def _borne(
+    source: Source, scene: Scene, name: str, first: int, last: int
+) -> dict[str, RigidTransform]:
+    """``T_bearer_thing`` of what a thing bears, also on what it bears, between two frames."""
+    out: dict[str, RigidTransform] = {}
+    for ride in source.rides:
+        if ride.first < last and first < ride.last and (ride.bearer == name or ride.bearer in out):
+            below, own = scene.thing(name).pose, scene.thing(ride.thing).pose
+            out[ride.thing] = below.inv() * own
+    return out
+
+
+def borne_steadily(
+    source: Source, scene: Scene, paths: Mapping[str, RigidTransform], ride: Ride
+) -> Steadiness:
+    """Whether a thing would stay on what bears it along these ways.
+
+    Args:
+        source: The recorded performance.
+        scene: Where it is performed.
+        paths: ``T_world_thing`` by name at every frame.
+        ride: Which thing, on what and when.
+    """
+    bearer = paths[ride.bearer][ride.first : ride.last + 1]
+    seat = bearer[0].inv() * paths[ride.thing][ride.first]
+    return steadiness(scene.thing(ride.thing), seat, bearer, source.rate_hz)
 
 
 def _lifted(name: str, at_s: float, detour: Detour) -> str:
