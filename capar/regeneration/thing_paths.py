@@ -115,7 +115,7 @@ def thing_paths(
                 else:
                     ends = start.pose, goal.pose
                     along = _borne(source, scene, name, start.frame, goal.frame)
-                    others = {n: pose for n, pose in still.items() if n not in along}
+                    others = {n: pose for n, pose in still.items() if n not in {name, *along}}
                     piece, detour = carrying.way(name, part, ends, others, turn, along)
                     poses[start.frame : goal.frame + 1] = list(piece)
                     if detour != STRAIGHT:

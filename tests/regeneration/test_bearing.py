@@ -5,11 +5,19 @@ from functools import cache
 
 import numpy as np
 import pytest
+import trimesh
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.body.anthropometry import ready_made
+from capar.body.human import Human
+from capar.body.performing import perform
+from capar.body.recording import record
 from capar.body.scripted_actions import action_capture
-from capar.body.things import Thing, box, cup
-from capar.model.capture import Capture, Stream, TagObject
+from capar.body.scripts import SIDES, STAND, Hand, Move, Phase
+from capar.body.sensing import PERFECT
+from capar.body.things import Thing, box, cup, table
+from capar.body.things import scene as things_scene
+from capar.model.capture import Capture, Shape, Stream, TagObject
 from capar.pipelines.round_trips import body, observed_source, round_trip
 from capar.regeneration import PlanError, Source
 from capar.regeneration.bearing import FRICTION, Ride, rides_of, steadiness, with_riders
@@ -50,6 +58,72 @@ def test_another_body_carries_the_tray_and_the_mug_stays_on_it(agent: str) -> No
     assert things["mug"].translation[-1][0] < things["mug"].translation[0][0] - 0.1
     assert trip.quality.gate("borne: not to slide").value < np.degrees(np.arctan(FRICTION))
     assert trip.quality.gate("borne: not to fall").value > 20.0
+
+
+def _open_box(x_m: float, y_m: float, z_m: float, wall_m: float = 0.008) -> Shape:
+    """Open above, standing on its frame's origin."""
+    half = 0.5 * wall_m
+    parts = (
+        ((x_m, y_m, wall_m), (0.0, 0.0, half)),
+        ((wall_m, y_m, z_m), (0.5 * x_m - half, 0.0, 0.5 * z_m)),
+        ((wall_m, y_m, z_m), (half - 0.5 * x_m, 0.0, 0.5 * z_m)),
+        ((x_m, wall_m, z_m), (0.0, 0.5 * y_m - half, 0.5 * z_m)),
+        ((x_m, wall_m, z_m), (0.0, half - 0.5 * y_m, 0.5 * z_m)),
+    )
+    made = []
+    for extents, middle in parts:
+        made.append(trimesh.creation.box(extents=extents))
+        made[-1].apply_translation(middle)
+    mesh = trimesh.util.concatenate(made)
+    return Shape(np.array(mesh.vertices), np.array(mesh.faces), description="open box")
+
+
+def _full_box() -> Capture:
+    """A man lifts an open box with a mug and a block in it, draws it nearer and lays it down."""
+    human = Human.of(ready_made("man"))
+    tall = human.measures["stature"]
+    top, x = 0.52 * tall, 0.26 * tall
+    where = things_scene(
+        table(top, near_m=0.13 * tall),
+        Thing("open_box", _open_box(0.18, 0.22, 0.15), (x, 0.02 * tall, top)),
+        Thing("mug", cup(0.035, 0.09), (x, 0.07, top + 0.0085), round=True),
+        Thing("block", box(0.05, 0.05, 0.05), (x, -0.02, top + 0.0085)),
+    )
+    moves = {"lift": (0.0, 0.0, 0.15), "carry": (-0.1, 0.0, 0.0), "lower": (0.0, 0.0, -0.15)}
+    both = {side: Hand("holds", "open_box") for side in SIDES}
+    reach = {side: Hand("reaches", "open_box") for side in SIDES}
+    script = (
+        STAND,
+        Phase("reach", 1.1, reach, look="open_box"),
+        Phase("grasp", 0.3, both, look="open_box"),
+        *(
+            Phase(
+                name, 1.0, both, dict.fromkeys(("open_box", "mug", "block"), Move(by)), "open_box"
+            )
+            for name, by in moves.items()
+        ),
+        Phase("release", 0.3, both, look="open_box"),
+        Phase("return", 1.0, look="ahead"),
+        STAND,
+    )
+    made = perform(human, where, script, rate_hz=RATE_HZ)
+    return record(made, name="full_box", seed=3, tracker=PERFECT)
+
+
+def test_what_is_in_an_open_box_goes_along_and_cuts_no_wall() -> None:
+    source = observed_source(_full_box())
+    assert {(ride.thing, ride.bearer) for ride in source.rides} == {
+        ("mug", "open_box"),
+        ("block", "open_box"),
+    }
+    trip = round_trip(source, "child", body("child", source), 0, source.scene)
+    assert trip.passed, (trip.refused, trip.names, trip.quality and trip.quality.failed)
+    assert trip.motion is not None
+    things = trip.motion.plan.things
+    gone = things["block"].translation[-1] - things["block"].translation[0]
+    np.testing.assert_allclose(
+        gone, things["open_box"].translation[-1] - things["open_box"].translation[0], atol=1e-9
+    )
 
 
 def test_a_mug_that_slides_on_the_tray_moves_without_a_mover() -> None:
