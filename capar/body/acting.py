@@ -131,7 +131,7 @@ class Actor:
     def _ends(self, script: Script, name: str) -> list[tuple[RigidTransform, bool]]:
         """Where a thing stands and goes, and whether that is the mouth."""
         moves = [phase.moves[name] for phase in script if name in phase.moves]
-        goals = [(self._goal(name, each, self.things[name]), each.to_mouth) for each in moves]
+        goals = [(self.goal(name, each, self.things[name]), each.to_mouth) for each in moves]
         return [(self.things[name], False), *goals]
 
     def _effort(
@@ -190,12 +190,12 @@ class Actor:
         start = self.thing_starts[name]
         if move.to_mouth and name in self.tilts:
             tilt = self.tilts[name] + way * (move.tilt - self.tilts[name])
-            return self._goal(name, replace(move, tilt=tilt), start)
+            return self.goal(name, replace(move, tilt=tilt), start)
         arc = [0.0, 0.0, move.lift * 4.0 * way * (1.0 - way)]
-        pose = between(start, self._goal(name, move, start), way)
+        pose = between(start, self.goal(name, move, start), way)
         return RigidTransform.from_translation(arc) * pose
 
-    def _goal(self, name: str, move: Move, start: RigidTransform) -> RigidTransform:
+    def goal(self, name: str, move: Move, start: RigidTransform) -> RigidTransform:
         """Where a thing goes; to the mouth as it is when standing, where the head is then kept."""
         if move.home:
             return self.scene.thing(name).pose
@@ -249,7 +249,7 @@ class Actor:
         if move is not None:
             start = self.thing_starts[phase.look]
             goal = goal - self.things[phase.look].translation
-            goal = goal + self._goal(phase.look, move, start).translation
+            goal = goal + self.goal(phase.look, move, start).translation
         if (phase.look or self.look, phase.name) != self.look_at:
             self.look, self.look_at = phase.look or self.look, (phase.look or self.look, phase.name)
             self.since, self.look_from = 0.0, self.point

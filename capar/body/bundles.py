@@ -46,14 +46,15 @@ def _obj(shape: Shape) -> list[str]:
 
 
 def _toml(capture: Capture) -> list[str]:
-    measures = ", ".join(f"{k} = {v}" for k, v in sorted(capture.agent.measures.items()))
     out = [
         "# A virtual performer's trial; truth.toml beside it says what is so.",
         f'name = "{capture.name}"', 'unit = "m"', 'up = "z"', "",
         "[files]", 'motion = "motion.csv"', "",
-        "[agent]", f'name = "{capture.agent.name}"', f'kind = "{capture.agent.kind}"',
-        f"measures = {{ {measures} }}",
     ]  # fmt: skip
+    for agent in capture.agents:
+        measures = ", ".join(f"{k} = {v}" for k, v in sorted(agent.measures.items()))
+        out += [""] * (agent is not capture.agent) + ["[[agent]]" if capture.others else "[agent]"]
+        out += [f'name = "{agent.name}"', f'kind = "{agent.kind}"', f"measures = {{ {measures} }}"]
     for sensor in capture.sensors:
         out += [
             "",
@@ -61,6 +62,7 @@ def _toml(capture: Capture) -> list[str]:
             f'name = "{sensor.name}"',
             f'end_effector = "{sensor.end_effector}"',
         ]
+        out += [f'agent = "{sensor.agent}"'] * bool(sensor.agent)
         out += [f'side = "{sensor.side}"'] * (sensor.side != "none")
         out += [f'link = "{sensor.link}"', f'role = "{sensor.role}"', f'body = "{sensor.name}"']
         if sensor.role is Role.ATTENDS:
@@ -68,6 +70,7 @@ def _toml(capture: Capture) -> list[str]:
         out += _mesh_line(sensor)
     for thing in capture.objects:
         out += ["", "[[object]]", f'name = "{thing.name}"', f'tag = "{thing.tag}"']
+        out += [f'agent = "{thing.agent}"'] * bool(thing.agent)
         out += [f'kind = "{thing.kind}"'] * bool(thing.kind) + _where(thing) + _mesh_line(thing)
         out += [f"mass_kg = {thing.mass_kg}"] if thing.mass_kg is not None else []
     return out

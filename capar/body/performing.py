@@ -91,12 +91,12 @@ def perform(
             frames.append(actor.frame(phase, share, ahead, 1.0 / rate_hz))
         phases.append((phase.name, start, start + count / rate_hz))
         start += count / rate_hz
-    made = _gathered(human, scene, script, frames, phases, rate_hz)
-    _check(made)
+    made = gathered(human, scene, script, frames, phases, rate_hz)
+    check_holds(made)
     return made
 
 
-def _gathered(
+def gathered(
     human: Human,
     scene: Scene,
     script: Script,
@@ -104,6 +104,16 @@ def _gathered(
     phases: list[tuple[str, float, float]],
     rate_hz: float,
 ) -> Performance:
+    """The performance that consists of these frames.
+
+    Args:
+        human: Who performs.
+        scene: Where.
+        script: What is done.
+        frames: One after the other.
+        phases: Name, start and end of each [s].
+        rate_hz: Frames a second.
+    """
     things = {
         name: RigidTransform.concatenate([each.things[name] for each in frames])
         for name in scene.things
@@ -122,8 +132,12 @@ def _gathered(
     )
 
 
-def _check(made: Performance) -> None:
-    """Hands are where the script has them whenever they hold something."""
+def check_holds(made: Performance) -> None:
+    """Hands are where the script has them whenever they hold something.
+
+    Raises:
+        PerformanceError: A hand misses what it is to hold; the message says by how much.
+    """
     for phase, (name, start, end) in zip(made.script, made.phases, strict=True):
         now = (made.times >= start) & (made.times < end)
         for side, hand in phase.hands.items():

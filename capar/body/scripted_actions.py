@@ -9,6 +9,7 @@ from capar.body.human import Human
 from capar.body.performing import Performance, perform
 from capar.body.recording import record
 from capar.body.scripts import (
+    SIDES,
     STAND,
     Hand,
     Move,
@@ -26,7 +27,7 @@ from capar.body.scripts import (
 )
 from capar.body.sensing import PERFECT, Tracker
 from capar.body.things import Scene, Thing, box, cup, scene, table
-from capar.model.capture import Capture
+from capar.model.capture import Capture, TagType
 from capar.model.errors import UnknownNameError
 
 ASKEW = 0.8
@@ -44,6 +45,25 @@ CARRY: Script = (
     Phase("return", 1.0, look="ahead"),
     Phase("stand", 0.6, look="ahead"),
 )
+BOTH = {side: Hand("holds", "tray") for side in SIDES}
+
+
+def _tray(ahead_m: float, up_m: float) -> dict[str, Move]:
+    """Where a tray goes, and the mug on it."""
+    return {name: Move((ahead_m, 0.0, up_m)) for name in ("tray", "mug")}
+
+
+CARRY_TRAY: Script = (
+    STAND,
+    Phase("reach", 1.1, {side: Hand("reaches", "tray") for side in SIDES}, look="tray"),
+    Phase("grasp", 0.3, BOTH, look="tray"),
+    Phase("lift", 1.0, BOTH, _tray(0.0, 0.15), look="tray"),
+    Phase("carry", 1.1, BOTH, _tray(-0.12, 0.0), look="tray"),
+    Phase("lower", 1.0, BOTH, _tray(0.0, -0.15), look="tray"),
+    Phase("release", 0.3, BOTH, look="tray"),
+    Phase("return", 1.0, look="ahead"),
+    Phase("stand", 0.6, look="ahead"),
+)
 ACTIONS: dict[str, Script] = {
     "drink": drink("mug"),
     "sip": sip("mug"),
@@ -54,6 +74,7 @@ ACTIONS: dict[str, Script] = {
     "pick_up": lift_with_both_hands("crate", height=0.2),
     "turn": turn("mug", float(np.radians(40.0))),
     "push": push("crate", (0.15 * np.cos(ASKEW), 0.15 * np.sin(ASKEW), 0.0)),
+    "carry_tray": CARRY_TRAY,
     "pour": pour("mug", lift=0.18, over=(0.0, 0.25, 0.0), angle=float(np.radians(80.0))),
 }
 """Each has the things of its own scene. Those of thesis 5.2 are ``sip`` (DrinkFromMug), ``touch``
@@ -68,9 +89,12 @@ def action_scene(human: Human, action: str) -> Scene:
     crate = Thing("crate", box(0.15, 0.20, 0.15), (0.24 * tall, 0.02 * tall, top))
     askew = Thing("crate", box(0.15, 0.20, 0.22), (0.29 * tall, -0.08 * tall, top), ASKEW)
     bowl = Thing("bowl", cup(0.07, 0.06), (0.22 * tall, -0.10 * tall + 0.34, top), round=True)
+    stand = Thing("stand", box(0.40, 0.14, 0.10), (0.34 * tall, 0.0, top), tag=TagType.FIXED)
+    tray = Thing("tray", box(0.24, 0.30, 0.03), (0.34 * tall, 0.0, top + 0.10))
+    borne = Thing("mug", cup(0.035, 0.09), (0.34 * tall, 0.0, top + 0.13), round=True)
     needed = {
         "touch": (crate,), "touch_from_rest": (crate,), "pick_up": (crate,),
-        "push": (askew,), "pour": (mug, bowl),
+        "push": (askew,), "pour": (mug, bowl), "carry_tray": (stand, tray, borne),
     }  # fmt: skip
     return scene(table(top, near_m=0.13 * tall), *needed.get(action, (mug,)))
 

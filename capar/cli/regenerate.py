@@ -30,8 +30,13 @@ def regenerate(
         ),
     ] = None,
     agent: Annotated[
-        str, typer.Option(help="Who performs: man, woman, child, or same for the one recorded.")
-    ] = "same",
+        list[str] | None,
+        typer.Option(
+            help="Who performs: man, woman, child, or same for the one recorded, as is usual. Of "
+            "several performers once for all, once for each in their order, or NAME=child.",
+            show_default=False,
+        ),
+    ] = None,
     scene: Annotated[
         Path | None,
         typer.Option(
@@ -86,8 +91,10 @@ def regenerate(
     """
     from capar.cli._gates import quality_answer, tell_quality
     from capar.cli._output import check_new_folder, print_json
+    from capar.cli._several_performers import check_no_others, one_body, perform_jointly
     from capar.model.errors import CaparError
     from capar.pipelines.round_trips import body, by_hand, observed_source
+    from capar.pipelines.trials import trial_of
     from capar.regeneration.captures import capture_of, write_motion
     from capar.regeneration.completing import read_completion
     from capar.regeneration.forces.force_kinds import force_kind
@@ -99,20 +106,29 @@ def regenerate(
     if output:
         check_new_folder(output)
     kind, kept = style_kind(style), force_kind(force)
+    agents = agent or ["same"]
     if say is not None:
         from capar.cli._spoken_requests import Where, perform_request
 
         if style_of:
             raise CaparError("--style-of is of one capture; leave it out, or --say")
         perform_request(
-            say, agent, Where(capture, recordings, actionary, rules), scene=scene, output=output,
-            how={"kind": kind, "duration_s": duration, "hand": hand}, json=json,
+            say, one_body(agents), Where(capture, recordings, actionary, rules), scene=scene,
+            output=output, how={"kind": kind, "duration_s": duration, "hand": hand}, json=json,
         )  # fmt: skip
         return
     if capture is None:
         raise CaparError("name a CAPTURE, or what to do: --say 'touch the mug' --scene CAPTURE")
-    recorded = observed_source(capture, read_completion(assume) if assume else None)
-    human = body(agent, recorded)
+    trial = trial_of(capture)
+    if trial.others:
+        check_no_others(
+            {"--style-of": style_of, "--duration": duration, "--hand": hand, "--assume": assume,
+             "--force": "" if force == "similar" else force}
+        )  # fmt: skip
+        perform_jointly(trial, agents, scene=scene, output=output, style=style, json=json)
+        return
+    who = one_body(agents)
+    recorded = observed_source(trial, read_completion(assume) if assume else None)
     place = read_scene(scene, recorded.scene) if scene else recorded.scene
     source = by_hand(recorded, hand) if hand else recorded
     chosen = own_style(source, kind)
@@ -122,9 +138,9 @@ def regenerate(
     chosen = replace(chosen, force=kept)
     if duration:
         source = paced(source, duration)
-    motion, quality = perform(source, human, place, chosen)
+    motion, quality = perform(source, body(who, recorded), place, chosen)
     if output:
-        name = agent if agent != "same" else source.capture.agent.name
+        name = who if who != "same" else source.capture.agent.name
         made = capture_of(motion, name=source.capture.name, agent=name)
         write_motion(motion, made, output)
     if json:

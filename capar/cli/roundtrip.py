@@ -21,7 +21,11 @@ def roundtrip(
         typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
     ],
     agents: Annotated[
-        str, typer.Option(help="Who performs, parted by commas: man, woman, child, same.")
+        str,
+        typer.Option(
+            help="Who performs, parted by commas: man, woman, child, same. Of several performers "
+            "man+child and so on, in their order; one alone is all of them."
+        ),
     ] = "man,woman,child",
     scenes: Annotated[
         int, typer.Option(min=0, help="How many scenes to draw; 0 performs in the recorded one.")
@@ -32,10 +36,18 @@ def roundtrip(
 ) -> None:
     """Observe CAPTURE, perform it on other bodies, observe that, and compare."""
     from capar.cli._output import print_json
+    from capar.cli._several_performers import check_no_others, tell_joint_trips
     from capar.pipelines.round_trips import body, observed_source, round_trips
+    from capar.pipelines.trials import trial_of
     from capar.regeneration.completing import read_completion
 
-    source = observed_source(capture, read_completion(assume) if assume else None)
+    trial = trial_of(capture)
+    if trial.others:
+        check_no_others({"--assume": assume})
+        casts = [cast.strip() for cast in agents.split(",")]
+        tell_joint_trips(trial, casts, scenes=scenes, seed=seed, json=json)
+        return
+    source = observed_source(trial, read_completion(assume) if assume else None)
     names = tuple(each.strip() for each in agents.split(","))
     for name in names:
         body(name, source)  # a misspelt one is refused before anything is computed

@@ -172,20 +172,21 @@ def round_trip(source: Source, agent: str, human: Human, number: int, scene: Sce
     return Trip(
         agent, number, "", quality,
         not differ,
-        _contacts(first) == _contacts(again),
+        contact_pairs(first) == contact_pairs(again),
         one.relations == two.relations,
-        _names(again) if differ else "",
+        step_names(again) if differ else "",
         motion,
     )  # fmt: skip
 
 
-def _contacts(observation: Observation) -> list[tuple[str, str]]:
+def contact_pairs(observation: Observation) -> list[tuple[str, str]]:
     """Who touched what, in order of time for each pair of bodies."""
     facts = (each for each in observation.facts if isinstance(each, Touching))
     return sorted((each.body, each.other) for each in facts)
 
 
-def _names(observation: Observation) -> str:
+def step_names(observation: Observation) -> str:
+    """The names of all segments, link by link."""
     return "; ".join(
         f"{link.ee}: {' '.join(each.name for each in link.segments)}" for link in observation.links
     )

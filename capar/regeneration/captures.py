@@ -61,10 +61,11 @@ def renamed(capture: Capture, names: Mapping[str, str]) -> Capture:
 
 def write_motion(motion: Motion, capture: Capture, folder: Path) -> None:
     """Write a motion's capture as a bundle, with what was planned as the truth beside it."""
-    write_bundle(capture, _truth(motion), folder)
+    write_bundle(capture, truth_of_motion(motion), folder)
 
 
-def _truth(motion: Motion) -> Truth:
+def truth_of_motion(motion: Motion) -> Truth:
+    """What was planned, as the truth of a motion."""
     times = motion.plan.source.times
     contacts = sorted(
         (first, second, float(times[a]), float(times[b]))

@@ -1,6 +1,7 @@
 """The way of a held thing between two goals, lifted over what stands in it."""
 
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
 import numpy as np
 from jaxtyping import Float
@@ -56,6 +57,7 @@ class Carrying:
         ends: tuple[RigidTransform, RigidTransform],
         others: Mapping[str, RigidTransform],
         turn: float,
+        along: Mapping[str, RigidTransform] = MappingProxyType({}),
     ) -> tuple[RigidTransform, Detour]:
         """``T_world_thing`` from one goal to the next, and the detour that it makes.
 
@@ -65,6 +67,7 @@ class Carrying:
             ends: Where it starts and where it has to go.
             others: Where the other things are meanwhile.
             turn: How far the scene's way is turned about z [rad].
+            along: ``T_thing_borne`` of what it bears, which goes the same way.
 
         Raises:
             PlanError: However far it is lifted, it goes through something.
@@ -73,6 +76,8 @@ class Carrying:
         for detour in (Detour(lift) for lift in LIFTS_M):
             path = self._mapped(name, part, ends, turn, detour, others)
             short = self._short(name, path, others)
+            for borne, seat in along.items():
+                short = max(short, self._short(borne, path * seat, others))
             if short < least:
                 best, least = detour, short
             if least <= 0.0:
@@ -80,6 +85,8 @@ class Carrying:
         path = self._mapped(name, part, ends, turn, best, others)
         if least > 0.0:
             self._check_free(name, path, others)
+            for borne, seat in along.items():
+                self._check_free(borne, path * seat, others)
         return path, best
 
     def _mapped(

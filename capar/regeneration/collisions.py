@@ -169,6 +169,26 @@ class Surroundings:
         return np.asarray((tree.data[near] - middle) @ (thing.T @ turn))
 
 
+def inner_gap(hollow: Shape, thing: Shape, seat: RigidTransform) -> float | None:
+    """How far a thing is from the surface of a hollow one, negative where they cut [m].
+
+    Args:
+        hollow: What it may be in.
+        thing: Of which the convex hull counts.
+        seat: ``T_hollow_thing``.
+
+    Returns:
+        None where the first shape is not hollow.
+    """
+    surface = _surface_points(hollow)
+    if surface is None:
+        return None
+    hull = trimesh.convex.convex_hull(np.array(thing.vertices))
+    points = seat.inv().apply(surface.data)
+    ahead = points @ hull.face_normals.T
+    return float((ahead - (hull.face_normals * hull.triangles[:, 0]).sum(axis=1)).max(axis=1).min())
+
+
 def _rotation(quaternion: Float[np.ndarray, "4"]) -> Rotation:
     return Rotation.from_quat(np.array(quaternion), scalar_first=True)
 

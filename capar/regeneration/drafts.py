@@ -19,7 +19,7 @@ from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, Targets, vectors
 from capar.regeneration.sources import Hold, Source
 from capar.regeneration.styles import Style
-from capar.regeneration.thing_paths import thing_goals, thing_paths
+from capar.regeneration.thing_paths import Ways, thing_goals, thing_paths
 
 REACH_M, REACH_RAD = 0.0009, float(np.radians(0.9))
 """A hand that misses a goal by more cannot reach it: a little less than the gates allow."""
@@ -73,12 +73,15 @@ class Draft:
         human: Human,
         style: Style,
         watched: frozenset[int] = frozenset(),
+        ways: Ways | None = None,
     ) -> None:
         self.source, self.scene = source, scene
         self.old = body_frames(source.human, source.scene)
         self.new = body_frames(human, scene)
-        self.goals = thing_goals(source, scene, self.old, self.new)
-        self.things, self.told = thing_paths(source, scene, self.goals, human, style)
+        if ways is None:
+            goals = thing_goals(source, scene, self.old, self.new)
+            ways = thing_paths(source, scene, goals, human, style)
+        self.goals, self.things, self.told = ways.goals, ways.paths, list(ways.told)
         self.things = first_guess(source, scene, self.things)
         self.head = head_path(source, self.old, self.new)
         self.firmness = attending.around(source, source.meetings, SETTLE_S)
@@ -87,6 +90,8 @@ class Draft:
         self.clear = ClearTask(self.gripping.around, source.met)
         self.grips: tuple[Grip, ...] = ()
         self.pressed: list[str] = []
+        self.worst = Miss()
+        self.only: frozenset[int] = frozenset()
         self.watched, self.style = watched, style
 
     def reachable_grips(self, most: int = MOST_TURNS) -> tuple[list[Grip], str | None]:
@@ -105,6 +110,7 @@ class Draft:
                 found = self._eased_grips(chosen, group, miss, grips)
                 miss, grips = min((miss, grips), found, key=lambda tried: tried[0].ratio)
             chosen += grips
+            self.worst = max(self.worst, miss, key=lambda found: found.ratio)
             if miss.ratio > 1.0 and not (miss.cuts and miss.ratio * CUT_M <= PRESSED_M):
                 return chosen, miss.sentence
             if miss.ratio > 1.0:
@@ -254,6 +260,8 @@ class Draft:
     def key_frames(self, group: list[Hold]) -> list[int]:
         """The frames at which reach is tried in some holds."""
         first, last = min(h.first for h in group), max(h.last for h in group)
+        if self.only:
+            return sorted(frame for frame in self.only if first <= frame <= last)
         keys = {int(frame) for frame in np.linspace(first, last, KEYS)}
         keys |= {frame for frame in self.watched if first <= frame <= last}
         for goals in self.goals.values():

@@ -138,7 +138,7 @@ def reachable(
     except PlanError as error:
         why = str(error)
     for ahead_m, aside_m in () if scene.stays else STEPS_M:
-        nearby = _beside(scene, ahead_m, aside_m)
+        nearby = beside(scene, ahead_m, aside_m)
         if _possible(source, nearby, human):
             found = _draft(source, nearby, human, style, watched)
             way = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
@@ -185,8 +185,8 @@ def _draft(
     return draft
 
 
-def _beside(scene: Scene, ahead_m: float, aside_m: float) -> Scene:
-    """The scene with the performer standing elsewhere."""
+def beside(scene: Scene, ahead_m: float, aside_m: float) -> Scene:
+    """The scene with the performer standing so far ahead and to the left of there [m]."""
     ahead = np.array([np.cos(scene.heading), np.sin(scene.heading)])
     left = np.array([-ahead[1], ahead[0]])
     x, y = np.asarray(scene.place) + ahead_m * ahead + aside_m * left
@@ -207,7 +207,7 @@ def _remedies(source: Source, scene: Scene, human: Human) -> Iterator[tuple[str,
     fixed = [name for name, thing in scene.things.items() if thing.tag is TagType.FIXED]
     levels = [(name, by_m) for name in fixed for by_m in HIGHER_M]
     for by_m in NEARER_M if scene.stays else ():
-        yield f"standing {by_m:.2f} m further ahead", _beside(scene, by_m, 0.0), human
+        yield f"standing {by_m:.2f} m further ahead", beside(scene, by_m, 0.0), human
     for name, by_m in levels:
         yield _higher(name, by_m), raised(scene, name, by_m), human
     for by_m in DRAWN_M:

@@ -9,7 +9,8 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import ROOT_SIZE
-from capar.regeneration.collisions import Pair, Surroundings
+from capar.regeneration.bearing import FRICTION, Ride
+from capar.regeneration.collisions import Pair, Surroundings, inner_gap
 from capar.regeneration.forces.force_kinds import ForceKind
 from capar.regeneration.holding import SETTLED_M, Hold
 from capar.regeneration.motions import Motion
@@ -17,6 +18,7 @@ from capar.regeneration.path_mapping import way
 from capar.regeneration.planning import Plan
 from capar.regeneration.solving import vectors
 from capar.regeneration.style_kinds import Kind
+from capar.regeneration.thing_paths import borne_steadily
 
 LEAVING_S = 0.3
 """So long before and after a hold a hand may be near what it holds and what stands beside [s]."""
@@ -83,7 +85,7 @@ class Quality:
 
 def quality(motion: Motion) -> Quality:
     """Verify a motion at every frame."""
-    hands = _hands(motion)
+    hands = hands_of(motion)
     errors = _errors(motion, hands)
     contacts, thumb = _contact_gates(motion)
     gates = (
@@ -92,11 +94,12 @@ def quality(motion: Motion) -> Quality:
         *_body_gates(motion),
         _still_gate(motion),
         _profile_gate(motion, hands),
+        *_borne_gates(motion.plan),
     )
     return Quality(gates, (thumb,))
 
 
-def _hands(motion: Motion) -> dict[str, RigidTransform]:
+def hands_of(motion: Motion) -> dict[str, RigidTransform]:
     """``T_world_hand`` of the body as it moved."""
     plan = motion.plan
     names = [f"{side}_palm" for side in plan.hands]
@@ -170,6 +173,9 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
     around = Surroundings(plan.human, plan.scene)
     far = (Pair(np.inf, "", ""), -1)
     deepest, nearest, thumb = far, far, far
+    inner = _inner_gaps(plan)
+    for ride, gap_m in inner.values():
+        deepest = min(deepest, (Pair(gap_m, ride.thing, ride.bearer), ride.first))
     things = {name: vectors(path) for name, path in plan.things.items()}
     for frame in range(len(motion.postures)):
         around.place(motion.postures[frame], {n: rows[frame] for n, rows in things.items()})
@@ -182,7 +188,8 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
             if side in plan.hands and _is_hand(pair.part) and _is_free(motion, pair, frame):
                 nearest = min(nearest, (pair, frame))
         for pair in around.things_near():
-            deepest = min(deepest, (pair, frame))
+            if frozenset((pair.part, pair.thing)) not in inner:
+                deepest = min(deepest, (pair, frame))
     gates = [
         _distance_gate("penetration", -1.0, *deepest),
         _distance_gate("free hand clear", 10.0, *nearest),
@@ -190,6 +197,18 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
     pair, frame = thumb
     bodies = f"{pair.part}, {pair.thing}"
     return gates, Measure("thumb and what it holds", 1e3 * pair.distance_m, "mm", frame, bodies)
+
+
+def _inner_gaps(plan: Plan) -> dict[frozenset[str], tuple[Ride, float]]:
+    """What is borne in a hollow thing, and how far it is from its surface all the way [m]."""
+    out = {}
+    for ride in plan.source.rides:
+        bearer, thing = plan.scene.thing(ride.bearer), plan.scene.thing(ride.thing)
+        seat = plan.things[ride.bearer][ride.first].inv() * plan.things[ride.thing][ride.first]
+        gap_m = inner_gap(bearer.shape, thing.shape, seat)
+        if gap_m is not None:
+            out[frozenset((ride.thing, ride.bearer))] = ride, gap_m
+    return out
 
 
 def _distance_gate(name: str, limit_mm: float, pair: Pair, frame: int) -> Gate:
@@ -256,14 +275,34 @@ def _still_gate(motion: Motion) -> Gate:
     plan, worst = motion.plan, (0.0, -1, "")
     for name, path in plan.things.items():
         steps = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
-        for hold in plan.source.holds:
-            if hold.thing == name:
-                steps[hold.first : hold.last] = 0.0
+        for span in plan.source.carried:
+            if span.thing == name:
+                steps[span.first : span.last] = 0.0
         for launch in plan.source.launches:
             if launch.thing == name:
                 steps[launch.frame :] = 0.0
         worst = max(worst, (float(steps.max()), int(steps.argmax()), name))
     return Gate("things not held", 1e3 * worst[0], 0.5, "mm a frame", False, *worst[1:])
+
+
+def _borne_gates(plan: Plan) -> Iterator[Gate]:
+    """What is borne neither slides nor falls; none where nothing is."""
+    found = [
+        (borne_steadily(plan.source, plan.scene, plan.things, r), r) for r in plan.source.rides
+    ]
+    if not found:
+        return
+    tilted, one = max(found, key=lambda pair: pair[0].tilt_rad)
+    narrow, other = min(found, key=lambda pair: pair[0].inside_m)
+    slides = float(np.degrees(np.arctan(FRICTION)))
+    yield Gate(
+        "borne: not to slide", float(np.degrees(tilted.tilt_rad)), slides, "deg", False,
+        one.first + tilted.tilt_frame, f"{one.thing} on {one.bearer}",
+    )  # fmt: skip
+    yield Gate(
+        "borne: not to fall", 1e3 * narrow.inside_m, 0.0, "mm", True,
+        other.first + narrow.inside_frame, f"{other.thing} on {other.bearer}",
+    )  # fmt: skip
 
 
 def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:

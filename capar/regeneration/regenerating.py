@@ -1,5 +1,7 @@
 """The whole way from a capture to a verified motion of another body."""
 
+from collections.abc import Callable
+
 from capar.body.human import Human
 from capar.regeneration.drafts import Draft
 from capar.regeneration.errors import PlanError
@@ -46,8 +48,19 @@ def regenerate(
     Raises:
         PlanError: It is out of reach or impossible; the message says what would help.
     """
-    scene = scene or source.scene
-    draft = reachable(source, scene, human, style)
+    where = scene or source.scene
+    draft = reachable(source, where, human, style)
+    return best_motion(draft, lambda watched: reachable(source, where, human, style, watched))
+
+
+def best_motion(draft: Draft, again: Callable[[frozenset[int]], Draft]) -> tuple[Motion, Quality]:
+    """The motion of a draft that fails fewest gates.
+
+    Args:
+        draft: With grips that reach.
+        again: Seeks grips that reach at some frames besides the usual ones; raises PlanError where
+            there are none.
+    """
     best = _careful(draft)
     if not best[1].passed and draft.grips:
         best = min(best, _careful(draft, guide_of(draft)), key=_failures)
@@ -58,7 +71,7 @@ def regenerate(
             break
         watched |= {gate.frame for gate in held}
         try:
-            found = _careful(reachable(source, scene, human, style, watched))
+            found = _careful(again(watched))
         except PlanError:
             break
         best = min(best, found, key=_failures)

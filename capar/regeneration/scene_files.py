@@ -1,6 +1,7 @@
 """Scenes that are not as they were recorded: from a file, or drawn at random by a seed."""
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ import numpy as np
 
 from capar.model.capture import TagType
 from capar.model.errors import FileError
-from capar.regeneration.scenes import Scene, mobile, moved, raised, resized
+from capar.regeneration.scenes import Scene, mobile, moved, raised, resized, stack
 
 
 @dataclass(frozen=True)
@@ -52,15 +53,53 @@ def read_scene(path: Path, scene: Scene) -> Scene:
         FileError: The file cannot be read, or says something else.
         UnknownNameError: It names an object that is not there.
     """
+    table = _table(path)
+    return _standing(path, _with_objects(path, table, scene), table.get("stance", {}), "[stance]")
+
+
+def read_scenes(path: Path, scenes: Mapping[str, Scene]) -> dict[str, Scene]:
+    """Likewise of several performers: ``[stance]`` is the first one's, ``[stance.NAME]`` of NAME.
+
+    Args:
+        path: Of the file.
+        scenes: As recorded, by the agent's name, the first one first.
+
+    Raises:
+        FileError: The file cannot be read, or says something else.
+        UnknownNameError: It names an object that is not there.
+    """
+    table = _table(path)
+    stance = dict(table.get("stance", {}))
+    own = {name: stance.pop(name) for name in scenes if name in stance}
+    first = next(iter(scenes))
+    _check_keys(path, "[stance]", stance, STANCE_KEYS | set(scenes))
+    own[first] = {**stance, **own.get(first, {})}
+    return {
+        name: _standing(
+            path, _with_objects(path, table, scene), own.get(name, {}), f"[stance.{name}]"
+        )
+        for name, scene in scenes.items()
+    }
+
+
+def _table(path: Path) -> dict[str, Any]:
     try:
         table = tomllib.loads(path.read_text("utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise FileError(path, f"is no TOML: {error}.", "See `capar regenerate --help`.") from None
     _check_keys(path, "the file", table, {"stance", "object"})
+    return table
+
+
+def _with_objects(path: Path, table: dict[str, Any], scene: Scene) -> Scene:
     for name, row in table.get("object", {}).items():
         scene = _changed(path, scene, name, row)
-    stance = table.get("stance", {})
-    _check_keys(path, "[stance]", stance, STANCE_KEYS)
+    return scene
+
+
+def _standing(path: Path, scene: Scene, stance: dict[str, Any], where: str) -> Scene:
+    """The scene with the performer where a table says."""
+    _check_keys(path, where, stance, STANCE_KEYS)
     x, y = _numbers(path, "stance.place", stance.get("place", scene.place), 2)
     heading = _number(path, "heading_deg", stance.get("heading_deg", np.degrees(scene.heading)))
     floor = _number(path, "floor_m", stance.get("floor_m", scene.floor_m))
@@ -87,9 +126,13 @@ def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> S
     for _ in range(ATTEMPTS):
         found = scene
         for name in mobile(scene):
-            x, y, z = scene.thing(name).place
             dx, dy = rng.uniform(-draw.aside_m, draw.aside_m, 2)
-            found = moved(found, name, (x + dx, y + dy, z), scene.thing(name).heading)
+            if scene.support(name) in mobile(scene):
+                continue  # it goes along with what bears it
+            for shifted in (name, *stack(scene, name)):
+                x, y, z = scene.thing(shifted).place
+                heading = scene.thing(shifted).heading
+                found = moved(found, shifted, (x + dx, y + dy, z), heading)
         if _sound(scene, found):
             return found
     return scene
@@ -105,6 +148,8 @@ def _sound(before: Scene, after: Scene) -> bool:
         if after.support(first) != before.support(first):
             return False
         for second in names[number + 1 :]:
+            if second in stack(after, first) or first in stack(after, second):
+                continue
             one, two = boxes[first], boxes[second]
             gaps = np.maximum(one.min(axis=0) - two.max(axis=0), two.min(axis=0) - one.max(axis=0))
             if gaps.max() < APART_M:

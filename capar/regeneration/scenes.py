@@ -66,23 +66,43 @@ def moved(scene: Scene, name: str, place: tuple[float, float, float], heading: f
 
 
 def resized(scene: Scene, name: str, factor: float) -> Scene:
-    """The scene with a thing of another size, its lowest point as high as before."""
-    thing = scene.thing(name)
+    """The scene with a thing of another size, its lowest point as high as before.
+
+    What stands on it stands on its new top.
+    """
+    thing, riders = scene.thing(name), stack(scene, name)
     shape = scaled(thing.shape, factor)
     x, y, z = thing.place
     z += float(thing.shape.bounds[0, 2] - shape.bounds[0, 2])
     changed = replace(thing, shape=shape, place=(x, y, z))
-    return replace(scene, things={**scene.things, name: changed})
+    higher = float(shape.size[2] - thing.shape.size[2])
+    scene = replace(scene, things={**scene.things, name: changed})
+    for rider in riders:
+        scene = _lifted(scene, rider, higher)
+    return scene
 
 
 def raised(scene: Scene, name: str, by_m: float) -> Scene:
     """The scene with a thing, and all that stands on it, higher by so much [m]."""
-    riders = [each for each in scene.things if scene.support(each) == name]
-    for each in (name, *riders):
-        thing = scene.thing(each)
-        x, y, z = thing.place
-        scene = moved(scene, each, (x, y, z + by_m), thing.heading)
+    for raised_one in (name, *stack(scene, name)):
+        scene = _lifted(scene, raised_one, by_m)
     return scene
+
+
+def stack(scene: Scene, name: str) -> list[str]:
+    """What stands on a thing, and what stands on that, from below."""
+    out: list[str] = []
+    below = [name]
+    while below:
+        below = [above for above in scene.things if scene.support(above) in below]
+        out += below
+    return out
+
+
+def _lifted(scene: Scene, name: str, by_m: float) -> Scene:
+    thing = scene.thing(name)
+    x, y, z = thing.place
+    return moved(scene, name, (x, y, z + by_m), thing.heading)
 
 
 def scaled(shape: Shape, factor: float) -> Shape:

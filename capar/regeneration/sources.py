@@ -16,6 +16,7 @@ from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagTy
 from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
+from capar.regeneration.bearing import Ride, rides_of
 from capar.regeneration.contact_points import surface_samples
 from capar.regeneration.errors import PlanError
 from capar.regeneration.hand_frames import HandAxes, HandFrame, hand_frame, stated_hand_frame
@@ -95,6 +96,12 @@ class Source:
     launches: tuple[Launch, ...] = ()
     """Things that a hand set going, after which they moved on alone."""
 
+    others: tuple[Hold, ...] = ()
+    """When other performers hold things."""
+
+    rides: tuple[Ride, ...] = ()
+    """What held things bear."""
+
     pace: float = 1.0
     """How many times as long everything takes as it did [1]."""
 
@@ -102,6 +109,11 @@ class Source:
     def times(self) -> Float[np.ndarray, "frames"]:
         """[s]."""
         return np.asarray(self.capture.times * self.pace)
+
+    @property
+    def carried(self) -> tuple[Hold | Ride, ...]:
+        """When things may move, since somebody holds them or something bears them."""
+        return (*self.holds, *self.others, *self.rides)
 
     @property
     def met(self) -> frozenset[str]:
@@ -124,7 +136,7 @@ def source_of(
     notes: tuple[str, ...] = (),
     cutoff_hz: float | None = CUTOFF_HZ,
 ) -> Source:
-    """What a capture and its observation say of the performance.
+    """What a capture and its observation say of the performance of one.
 
     Args:
         capture: What was recorded.
@@ -135,6 +147,39 @@ def source_of(
             unless stated.
         notes: What is to be told of it.
         cutoff_hz: Of the filter that takes noise from paths [Hz]; None leaves them as recorded.
+
+    Raises:
+        PlanError: It is not known where the performer stands, a hand or thing has no shape, the
+            performer walks, or something moves that no hand holds or set going.
+    """
+    made = unchecked_source(
+        capture, observation, stance=stance, floor_m=floor_m, axes=axes, notes=notes,
+        cutoff_hz=cutoff_hz,
+    )  # fmt: skip
+    check_source(made)
+    return made
+
+
+def unchecked_source(
+    capture: Capture,
+    observation: Observation,
+    *,
+    stance: tuple[tuple[float, float], float] | None = None,
+    floor_m: float = 0.0,
+    axes: Mapping[str, HandAxes] | None = None,
+    notes: tuple[str, ...] = (),
+    cutoff_hz: float | None = CUTOFF_HZ,
+) -> Source:
+    """Likewise, whoever moves the things and wherever the performer goes.
+
+    Args:
+        capture: As for ``source_of``, likewise all others.
+        observation: What was done in it.
+        stance: Where the performer stands and faces.
+        floor_m: Height of the floor [m].
+        axes: Which way hands point and face, by side.
+        notes: What is to be told of it.
+        cutoff_hz: Of the filter that takes noise from paths [Hz].
 
     Raises:
         PlanError: It is not known where the performer stands, or a hand or thing has no shape.
@@ -174,13 +219,22 @@ def source_of(
     sensors = {side: hand.sensor for side, hand in hands.items()}
     poises = poises_of(observation, sensors, things, holds)
     scene = Scene(things, place, heading, floor_m, entered=entered)
-    made = Source(
+    return Source(
         capture, observation, human, scene,
         hands, paths, eyes, holds, meetings, poises, tuple(told), launches,
+        rides=rides_of(paths, holds, touching),
     )  # fmt: skip
-    _check_stands(made)
-    _check_movers(made, touching)
-    return made
+
+
+def check_source(source: Source) -> None:
+    """Whoever performs stands, and whatever moves has a mover.
+
+    Raises:
+        PlanError: The performer walks, or something moves that no hand holds or set going.
+    """
+    _check_stands(source)
+    touching = [fact for fact in source.observation.facts if isinstance(fact, Touching)]
+    _check_movers(source, touching)
 
 
 def scene_of(capture: Capture, human: Human) -> Scene:
@@ -358,9 +412,9 @@ def _check_movers(source: Source, touching: list[Touching]) -> None:
     """Whatever moves does so in a hand, or on its own after a hand set it going."""
     for name, path in source.paths.items():
         held = np.zeros(len(source.times), dtype=bool)
-        for hold in source.holds:
-            if hold.thing == name:
-                held[hold.first : hold.last + 1] = True
+        for carried in source.carried:
+            if carried.thing == name:
+                held[carried.first : carried.last + 1] = True
         for launch in source.launches:
             if launch.thing == name:
                 held[max(launch.frame - LAUNCH_FRAMES, 0) :] = True

@@ -1,6 +1,6 @@
 """Where things are throughout: at rest, on the way between goals, and at the head."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.human import Human
 from capar.body.things import Thing
 from capar.model.facts import Displaced
+from capar.regeneration.bearing import Ride, Steadiness, steadiness, with_riders
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
 from capar.regeneration.carrying import Carrying
 from capar.regeneration.collisions import Surroundings
@@ -42,6 +43,20 @@ class Goal:
     frame: int
     pose: RigidTransform
     reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Ways:
+    """The ways of all things."""
+
+    goals: dict[str, list[Goal]]
+    """By name, in order of time."""
+
+    paths: dict[str, RigidTransform]
+    """``T_world_thing`` by name at every frame."""
+
+    told: tuple[str, ...]
+    """What is to be told of them."""
 
 
 def thing_goals(
@@ -81,8 +96,8 @@ def _stopped(source: Source, name: str, after: int, last: int) -> int:
 
 def thing_paths(
     source: Source, scene: Scene, goals: dict[str, list[Goal]], human: Human, style: Style
-) -> tuple[dict[str, RigidTransform], list[str]]:
-    """``T_world_thing`` at every frame, and what is to be told of their ways.
+) -> Ways:
+    """Where things are at every frame, from goal to goal.
 
     Other things stand where they were at first while a way is sought.
     """
@@ -99,13 +114,48 @@ def thing_paths(
                     poses[start.frame : goal.frame + 1] = [start.pose] * len(part)
                 else:
                     ends = start.pose, goal.pose
-                    piece, detour = carrying.way(name, part, ends, still, turn)
+                    along = _borne(source, scene, name, start.frame, goal.frame)
+                    others = {n: pose for n, pose in still.items() if n not in {name, *along}}
+                    piece, detour = carrying.way(name, part, ends, others, turn, along)
                     poses[start.frame : goal.frame + 1] = list(piece)
                     if detour != STRAIGHT:
                         told.append(_lifted(name, source.times[start.frame], detour))
             poses[goal.frame :] = [goal.pose] * (count - goal.frame)
         out[name] = RigidTransform.concatenate(poses)
-    return out, told
+    told += [
+        f"{ride.thing!r} goes along on {ride.bearer!r} from {source.times[ride.first]:.2f} to "
+        f"{source.times[ride.last]:.2f} s"
+        for ride in source.rides
+    ]
+    return Ways(goals, with_riders(out, source.rides), tuple(told))
+
+
+def _borne(
+    source: Source, scene: Scene, name: str, first: int, last: int
+) -> dict[str, RigidTransform]:
+    """``T_bearer_thing`` of what a thing bears, also on what it bears, between two frames."""
+    out: dict[str, RigidTransform] = {}
+    for ride in source.rides:
+        if ride.first < last and first < ride.last and (ride.bearer == name or ride.bearer in out):
+            below, own = scene.thing(name).pose, scene.thing(ride.thing).pose
+            out[ride.thing] = below.inv() * own
+    return out
+
+
+def borne_steadily(
+    source: Source, scene: Scene, paths: Mapping[str, RigidTransform], ride: Ride
+) -> Steadiness:
+    """Whether a thing would stay on what bears it along these ways.
+
+    Args:
+        source: The recorded performance.
+        scene: Where it is performed.
+        paths: ``T_world_thing`` by name at every frame.
+        ride: Which thing, on what and when.
+    """
+    bearer = paths[ride.bearer][ride.first : ride.last + 1]
+    seat = bearer[0].inv() * paths[ride.thing][ride.first]
+    return steadiness(scene.thing(ride.thing), seat, bearer, source.rate_hz)
 
 
 def _lifted(name: str, at_s: float, detour: Detour) -> str:
@@ -142,14 +192,14 @@ def _put_down(
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
     by = turn.apply(after.translation - before.translation)
     spun = _turned(source.paths[name], *span, turn) * pose.rotation
-    came, support = (_support_at(source.scene, name, each) for each in (before, after))
+    came, support = (support_at(source.scene, name, each) for each in (before, after))
     spot, reason = pose.translation + by, "as far from where it came from as it was [m]"
     onto = scene.goals.get(name, support if support != came else "")
     if support and onto:
         spot = _on(source, scene, name, (support, onto), after)
         reason = f"at the same place on {onto!r}, in its own measures"
     goal = RigidTransform.from_components(spot, spun)
-    if support and not _support_at(scene, name, goal):
+    if support and not support_at(scene, name, goal):
         x, y, z = spot
         raise PlanError(
             f"{name!r} would be put down at ({x:.2f}, {y:.2f}, {z:.2f}) m, where {support!r} does "
@@ -270,7 +320,8 @@ def _on(
     return np.asarray(spot)
 
 
-def _support_at(scene: Scene, name: str, pose: RigidTransform) -> str:
+def support_at(scene: Scene, name: str, pose: RigidTransform) -> str:
+    """What a thing would stand on at some pose; empty where nothing is beneath it."""
     x, y, z = (float(each) for each in pose.translation)
     return moved(scene, name, (x, y, z), scene.thing(name).heading).support(name)
 
