@@ -17,7 +17,7 @@ def quality_answer(motion: "Motion", quality: "Quality") -> dict[str, Any]:
             "value": round(gate.value, 4),
             "limit": gate.limit,
             "unit": gate.unit,
-            "passed": gate.passed,
+            "passed": bool(gate.passed),
             "frame": gate.frame,
             "bodies": gate.bodies,
         }

@@ -16,8 +16,10 @@ def regenerate(
     capture: Annotated[
         str | None,
         typer.Argument(
-            help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take. With --say "
-            "it may be left out: the Actionary's recordings are then looked through.",
+            metavar="[CAPTURE|ACTION]",
+            help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take. Or an action "
+            "that the Actionary holds, as a whole or as a step of a recording. With --say it may "
+            "be left out: the Actionary's recordings are then looked through.",
             show_default=False,
         ),
     ] = None,
@@ -30,14 +32,28 @@ def regenerate(
         ),
     ] = None,
     agent: Annotated[
-        str, typer.Option(help="Who performs: man, woman, child, or same for the one recorded.")
+        str,
+        typer.Option(
+            help="Who performs: man, woman, child, or same for the one recorded; for an ACTION "
+            "or with --object also an agent of the Actionary whose kind is one of these."
+        ),
     ] = "same",
+    things: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--object",
+            metavar="PART=THING",
+            help="The thing of the scene that takes the part of a recorded one; may be repeated. "
+            "The other parts are taken by kind, or asked for where several things fit.",
+            show_default=False,
+        ),
+    ] = None,
     scene: Annotated[
         Path | None,
         typer.Option(
             help="A TOML file that changes the scene: [stance] place, heading_deg, floor_m; "
-            "[object.NAME] size, position, turn_deg, raise_m. With --say: the CAPTURE whose scene "
-            "it is done in.",
+            "[object.NAME] size, position, turn_deg, raise_m. Or the CAPTURE whose scene it is "
+            "done in, as always with --say.",
             show_default=False,
         ),
     ] = None,
@@ -71,7 +87,8 @@ def regenerate(
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="With --say: the folder that holds the Actionary's captures; else this one.",
+            help="With --say or an ACTION: the folder that holds the Actionary's captures; else "
+            "this one.",
             show_default=False,
         ),
     ] = None,
@@ -83,9 +100,12 @@ def regenerate(
     """Perform the action of CAPTURE on another body, verify every frame, and write a capture.
 
     With --say, what the words ask for is looked up among the recordings and performed in the scene.
+    An ACTION is performed as its recording has it, with the things that --object states.
     """
     from capar.cli._gates import quality_answer, tell_quality
+    from capar.cli._instantiation import Manner, is_action, is_capture, perform_instance
     from capar.cli._output import check_new_folder, print_json
+    from capar.cli._spoken_requests import Where, perform_request
     from capar.model.errors import CaparError
     from capar.pipelines.round_trips import body, by_hand, observed_source
     from capar.regeneration.captures import capture_of, write_motion
@@ -100,10 +120,9 @@ def regenerate(
         check_new_folder(output)
     kind, kept = style_kind(style), force_kind(force)
     if say is not None:
-        from capar.cli._spoken_requests import Where, perform_request
-
-        if style_of:
-            raise CaparError("--style-of is of one capture; leave it out, or --say")
+        if style_of or things:
+            option = "--style-of" if style_of else "--object"
+            raise CaparError(f"{option} is of one recorded action; leave it out, or --say")
         perform_request(
             say, agent, Where(capture, recordings, actionary, rules), scene=scene, output=output,
             how={"kind": kind, "duration_s": duration, "hand": hand}, json=json,
@@ -111,6 +130,13 @@ def regenerate(
         return
     if capture is None:
         raise CaparError("name a CAPTURE, or what to do: --say 'touch the mug' --scene CAPTURE")
+    if things or is_action(capture) or (scene and is_capture(scene)):
+        perform_instance(
+            capture, agent, Where(None, recordings, actionary, rules),
+            Manner(kind, kept, style_of, duration, hand), stated=things or [], scene=scene,
+            output=output, assume=assume, json=json,
+        )  # fmt: skip
+        return
     recorded = observed_source(capture, read_completion(assume) if assume else None)
     human = body(agent, recorded)
     place = read_scene(scene, recorded.scene) if scene else recorded.scene

@@ -1,6 +1,6 @@
 """Another scene's things in the parts of the recorded ones."""
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -71,6 +71,19 @@ def cast(
     where = replace(scene, things={**things, **extras}, goals=ends)
     recorded = replace(source.scene, things={**source.scene.things, **extras})
     return replace(source, scene=recorded, paths={**source.paths, **still}), where
+
+
+def with_only(source: Source, names: Container[str]) -> Source:
+    """A recorded performance without the things that take no part in it.
+
+    Args:
+        source: What was recorded.
+        names: Of the things that take part.
+    """
+    scene = source.scene
+    things = {name: thing for name, thing in scene.things.items() if name in names}
+    paths = {name: path for name, path in source.paths.items() if name in names}
+    return replace(source, scene=replace(scene, things=things), paths=paths)
 
 
 def check_movable(source: Source, scene: Scene, parts: Cast) -> None:
