@@ -10,12 +10,12 @@ import typer
 
 if TYPE_CHECKING:
     from capar.cli._spoken_requests import Where
-    from capar.pipelines.instantiation import Instance
+    from capar.pipelines.instantiation import Asked, Instance
+    from capar.pipelines.preparations import Performed, Prepared
+    from capar.pipelines.preparing import World
     from capar.pipelines.recordings import Recording
     from capar.regeneration.bindings import Role
     from capar.regeneration.forces.force_kinds import ForceKind
-    from capar.regeneration.motions import Motion
-    from capar.regeneration.quality import Quality
     from capar.regeneration.scenes import Scene
     from capar.regeneration.sources import Source
     from capar.regeneration.style_kinds import Kind
@@ -63,33 +63,40 @@ def perform_instance(
     Raises:
         CaparError: Something does not exist, or the action cannot be done.
     """
-    from capar.cli._gates import quality_answer, tell_quality
     from capar.cli._output import print_json
     from capar.pipelines.instantiation import Knowledge, instantiate
+    from capar.pipelines.preparations import prepare
+    from capar.pipelines.ways import opened as open_recording
+    from capar.pipelines.ways import ways_of
 
     parts = dict(_part(text) for text in stated)
     with _words(where, needed=is_action(what)) as words:
         known = Knowledge(words.kinds_above, words.abilities)
-        recording, source, notes = _recorded(what, where, words, list(parts), assume)
+        recordings = _recordings(what, where, words)
+        recording, source, notes = _recorded(what, recordings, list(parts), assume)
         if manner.hand:
             from capar.pipelines.round_trips import by_hand
 
             source = by_hand(source, manner.hand)
-        asked = _asked(what, agent, words, source, scene, parts)
+        asked, world = _asked(what, agent, words, source, scene, parts)
         instance = instantiate(asked, recording, source, known, _asker())
-    motion, quality = _performed(instance, manner)
+        prepared = prepare(
+            instance, world, known.kinds, lambda: ways_of(recordings, open_recording)
+        )
+    main = _performed(instance, prepared.world.scene, manner)
+    stages = [(done.stage.way.recording.name, done) for done in prepared.done]
+    made = [*stages, (recording.name, main)]
     if output:
-        _write(instance, motion, agent, output)
+        _write(made, agent, output)
     told = (*notes, *instance.notes)
     if json:
-        answer = quality_answer(motion, quality)
         bound = [asdict(binding) for binding in instance.bindings]
         head = {"action": what, "recording": recording.name, "objects": bound}
-        print_json({**head, **answer, "notes": [*told, *answer["notes"]]})
+        print_json({**head, **_answer(prepared, main, told)})
         return
     for note in told:
         typer.echo(note)
-    tell_quality(motion, quality)
+    _tell(prepared, main)
     if output:
         typer.echo(f"wrote {output}", err=True)
 
@@ -120,12 +127,22 @@ def _words(where: "Where", *, needed: bool) -> "Iterator[Actionary]":
             yield words
 
 
+def _recordings(what: str, where: "Where", words: "Actionary") -> "tuple[Recording, ...]":
+    """What can be performed: the Actionary's recordings whose captures are there."""
+    from capar.pipelines.recordings import stored_recordings
+
+    known, lost = stored_recordings(words, where.recordings or Path())
+    for name in lost if is_action(what) or where.recordings else ():
+        typer.echo(f"capar: the capture of {name!r} is not in the folder of recordings", err=True)
+    return known
+
+
 def _recorded(
-    what: str, where: "Where", words: "Actionary", parts: Sequence[str], assume: Path | None
+    what: str, known: "Sequence[Recording]", parts: Sequence[str], assume: Path | None
 ) -> "tuple[Recording, Source, tuple[str, ...]]":
     """The recording that is performed, and what is to be told of its choice."""
     from capar.pipelines.known_actions import find_action
-    from capar.pipelines.recordings import observed_recording, stored_recordings
+    from capar.pipelines.recordings import observed_recording
     from capar.pipelines.round_trips import observed_source
     from capar.regeneration.completing import read_completion
 
@@ -133,9 +150,6 @@ def _recorded(
     if not is_action(what):
         source = observed_source(what, completion)
         return observed_recording(source.observation, Path(what)), source, ()
-    known, lost = stored_recordings(words, where.recordings or Path())
-    for name in lost:
-        typer.echo(f"capar: the capture of {name!r} is not in the folder of recordings", err=True)
     found = find_action(what, known, parts)
     notes = [f"{what}: performed as in recording {found.recording.name!r}"]
     if found.others:
@@ -153,22 +167,22 @@ def _asked(
     source: "Source",
     scene: Path | None,
     parts: dict[str, str],
-) -> Any:
+) -> "tuple[Asked, World]":
+    """What is asked for, and the world in which it is, as measured."""
     from capar.pipelines.instantiation import Asked
+    from capar.pipelines.preparations import captured_world, measured_world
     from capar.pipelines.round_trips import SAME, body
-    from capar.pipelines.trials import trial_of
-    from capar.regeneration.casting import captured_scene
     from capar.regeneration.scene_files import read_scene
 
     who = source.capture.agent.name if agent == SAME else agent
     kinds = words.agent_profile(who)["kind"] if who in words.agents() else ()
     shape = next(iter(kinds), agent) if agent != SAME else agent
-    place: Scene = source.scene
     own = scene is None or not is_capture(scene)
-    if scene is not None:
-        place = read_scene(scene, place) if own else captured_scene(trial_of(scene))
+    world = measured_world(source) if own or scene is None else captured_world(scene)
+    if scene is not None and own:
+        world = replace(world, scene=read_scene(scene, source.scene))
     named = tuple(dict.fromkeys((who, *kinds)))
-    return Asked(what, named, body(shape, source), parts, place, own)
+    return Asked(what, named, body(shape, source), parts, world.scene, own), world
 
 
 def _asker() -> Any:
@@ -187,12 +201,18 @@ def _asker() -> Any:
     return ask if can_ask() else None
 
 
-def _performed(instance: "Instance", manner: Manner) -> "tuple[Motion, Quality]":
+def _performed(instance: "Instance", scene: "Scene", manner: Manner) -> "Performed":
+    """The action itself; that contacts are as its PARs assert is a gate."""
+    from capar.pipelines.preparations import Performed
     from capar.pipelines.round_trips import by_hand, observed_source
+    from capar.pipelines.ways import asserted
+    from capar.regeneration.contact_tables import contact_gate
+    from capar.regeneration.quality import Quality
     from capar.regeneration.regenerating import regenerate
     from capar.regeneration.styles import borrowed_style, own_style, paced
 
-    source, style = instance.source, own_style(instance.source, manner.kind)
+    source, where, names = instance.placed(scene)
+    style = own_style(source, manner.kind)
     if manner.style_of:
         other = observed_source(manner.style_of)
         other = by_hand(other, manner.hand) if manner.hand else other
@@ -200,13 +220,68 @@ def _performed(instance: "Instance", manner: Manner) -> "tuple[Motion, Quality]"
     style = replace(style, force=manner.force)
     if manner.duration_s:
         source = paced(source, manner.duration_s)
-    return regenerate(source, instance.asked.human, instance.scene, style)
+    motion, quality = regenerate(source, instance.asked.human, where, style)
+    gate = contact_gate(motion, asserted(source))
+    return Performed(motion, Quality((*quality.gates, gate), quality.told), names)
 
 
-def _write(instance: "Instance", motion: "Motion", agent: str, output: Path) -> None:
+def _write(made: "Sequence[tuple[str, Performed]]", agent: str, output: Path) -> None:
+    """One bundle, or one in a folder each, numbered, where something was prepared."""
     from capar.regeneration.captures import capture_of, renamed, write_motion
 
-    source = instance.source
-    name = agent if agent != "same" else source.capture.agent.name
-    made = capture_of(motion, name=source.capture.name, agent=name)
-    write_motion(motion, renamed(made, instance.names), output)
+    for number, (name, done) in enumerate(made, start=1):
+        source = done.motion.plan.source
+        who = agent if agent != "same" else source.capture.agent.name
+        bundle = renamed(capture_of(done.motion, name=name, agent=who), done.names)
+        folder = output if len(made) == 1 else output / f"{number}_{name}"
+        write_motion(done.motion, bundle, folder)
+
+
+def _answer(prepared: "Prepared", main: "Performed", told: Sequence[str]) -> dict[str, Any]:
+    from capar.cli._gates import quality_answer
+
+    answer = quality_answer(main.motion, main.quality)
+    stages = [
+        {
+            "recording": done.stage.way.recording.name,
+            "steps": [asdict(step) for step in done.stage.steps],
+            **quality_answer(done.motion, done.quality),
+        }
+        for done in prepared.done
+    ]
+    plan = {
+        "needed": prepared.wanted,
+        "lacking": prepared.lacking,
+        "impossible": prepared.tried,
+        "stages": stages,
+    }
+    passed = answer["passed"] and all(done.quality.passed for done in prepared.done)
+    return {**answer, "passed": passed, "plan": plan, "notes": [*told, *answer["notes"]]}
+
+
+def _tell(prepared: "Prepared", main: "Performed") -> None:
+    from capar.cli._gates import tell_quality
+    from capar.pipelines.preparing import told
+
+    if not prepared.done:
+        typer.echo("plan: nothing has to be prepared")
+    for condition in prepared.lacking:
+        typer.echo(f"plan: {told(condition)} does not hold yet")
+    for why in prepared.tried:
+        typer.echo(f"plan: not possible is {why}")
+    steps = [(done, step) for done in prepared.done for step in done.stage.steps]
+    for number, (done, step) in enumerate(steps, start=1):
+        where = ""
+        if step.place:
+            x, y, _ = step.place
+            where = f" to ({x:.2f}, {y:.2f}) m on {step.support!r}"
+        name = done.stage.way.recording.name
+        typer.echo(
+            f"{number:3}. {step.hand} hand: {step.action} {step.thing}{where} (as in {name})"
+        )
+    for done in prepared.done:
+        typer.echo(f"prepared as in {done.stage.way.recording.name}:")
+        tell_quality(done.motion, done.quality)
+    if prepared.done:
+        typer.echo("the action itself:")
+    tell_quality(main.motion, main.quality)

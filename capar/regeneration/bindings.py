@@ -71,7 +71,7 @@ def roles_of(source: Source) -> tuple[Role, ...]:
     acted += [poise.other for poise in source.poises]
     taking = [name for name in dict.fromkeys(acted) if name in source.scene.things]
     for name in tuple(taking):
-        taking += [each for each in _supports(source, name) if each not in taking]
+        taking += [one for one in dict.fromkeys(ends_on(source, name)) if one and one not in taking]
     return tuple(_role(source, name, taking) for name in taking)
 
 
@@ -81,12 +81,16 @@ def _role(source: Source, name: str, taking: Sequence[str]) -> Role:
     return Role(name, kind_of(thing), thing.tag, bears, moves(source.paths[name]))
 
 
-def _supports(source: Source, name: str) -> tuple[str, ...]:
-    """What a thing stands on at first and in the end, where it stands on something."""
+def ends_on(source: Source, name: str) -> tuple[str, str]:
+    """What a recorded thing stands on at first and in the end; empty where it is nothing.
+
+    Args:
+        source: What was recorded.
+        name: Of the thing.
+    """
     x, y, z = (float(value) for value in source.paths[name].translation[-1])
     after = moved(source.scene, name, (x, y, z), source.scene.thing(name).heading)
-    found = (source.scene.support(name), after.support(name))
-    return tuple(dict.fromkeys(support for support in found if support))
+    return source.scene.support(name), after.support(name)
 
 
 def bind(

@@ -68,9 +68,22 @@ def cast(
         name: RigidTransform.concatenate([thing.pose] * count) for name, thing in extras.items()
     }
     ends = {name: named[goal] for name, goal in (goals or {}).items()}
-    where = replace(scene, things={**things, **extras}, goals=ends)
+    spots = {
+        name: _shifted(scene.spots[parts[name]], scene.thing(parts[name]), things[name])
+        for name in things
+        if parts[name] in scene.spots
+    }
+    where = replace(scene, things={**things, **extras}, goals=ends, spots=spots)
     recorded = replace(source.scene, things={**source.scene.things, **extras})
     return replace(source, scene=recorded, paths={**source.paths, **still}), where
+
+
+def _shifted(
+    spot: tuple[float, float, float], actor: Thing, fitted: Thing
+) -> tuple[float, float, float]:
+    """Where the fitted thing's origin is when the thing's own is at a spot."""
+    x, y, z = np.asarray(spot) + np.asarray(fitted.place) - np.asarray(actor.place)
+    return float(x), float(y), float(z)
 
 
 def with_only(source: Source, names: Container[str]) -> Source:
