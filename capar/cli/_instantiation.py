@@ -280,7 +280,9 @@ def _tell(prepared: "Prepared", main: "Performed") -> None:
             f"{number:3}. {step.hand} hand: {step.action} {step.thing}{where} (as in {name})"
         )
     for done in prepared.done:
-        typer.echo(f"prepared as in {done.stage.way.recording.name}:")
+        part, thing = done.stage.way.part, done.stage.steps[0].thing
+        as_part = f", {thing!r} in the part of {part!r}" if part != thing else ""
+        typer.echo(f"prepared as in {done.stage.way.recording.name}{as_part}:")
         tell_quality(done.motion, done.quality)
     if prepared.done:
         typer.echo("the action itself:")
