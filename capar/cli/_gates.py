@@ -30,7 +30,7 @@ def gate_rows(gates: "Sequence[Gate]") -> list[dict[str, Any]]:
             "value": round(gate.value, 4),
             "limit": gate.limit,
             "unit": gate.unit,
-            "passed": gate.passed,
+            "passed": bool(gate.passed),
             "frame": gate.frame,
             "bodies": gate.bodies,
         }

@@ -184,7 +184,7 @@ def confirm_new(actionary: str | None, *, new: bool) -> None:
     beside = {each.parent.name for each in folder.parent.glob(f"*/{DATA_FOLDER}")}
     near = get_close_matches(folder.name, sorted(beside), n=1, cutoff=0.75)
     meant = f"Did you mean {folder.with_name(near[0])}? " if near else ""
-    if _asks():
+    if can_ask():
         if typer.confirm(f"{place} is no Actionary. {meant}Make a new one?", err=True):
             return
     elif folder.parent.is_dir() and not near:
@@ -196,7 +196,7 @@ def confirm_new(actionary: str | None, *, new: bool) -> None:
     )  # fmt: skip
 
 
-def _asks() -> bool:
+def can_ask() -> bool:
     """Whether somebody is there who can answer."""
     return sys.stdin.isatty() and sys.stderr.isatty()
 

@@ -16,8 +16,10 @@ def regenerate(
     capture: Annotated[
         str | None,
         typer.Argument(
-            help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take. With --say "
-            "it may be left out: the Actionary's recordings are then looked through.",
+            metavar="[CAPTURE|ACTION]",
+            help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take. Or an action "
+            "that the Actionary holds, as a whole or as a step of a recording. With --say it may "
+            "be left out: the Actionary's recordings are then looked through.",
             show_default=False,
         ),
     ] = None,
@@ -32,8 +34,19 @@ def regenerate(
     agent: Annotated[
         list[str] | None,
         typer.Option(
-            help="Who performs: man, woman, child, or same for the one recorded, as is usual. Of "
-            "several performers once for all, once for each in their order, or NAME=child.",
+            help="Who performs: man, woman, child, or same for the one recorded, as is usual; for "
+            "an ACTION or with --object also an agent of the Actionary whose kind is one of these. "
+            "Of several performers once for all, once for each in their order, or NAME=child.",
+            show_default=False,
+        ),
+    ] = None,
+    things: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--object",
+            metavar="PART=THING",
+            help="The thing of the scene that takes the part of a recorded one; may be repeated. "
+            "The other parts are taken by kind, or asked for where several things fit.",
             show_default=False,
         ),
     ] = None,
@@ -41,8 +54,8 @@ def regenerate(
         Path | None,
         typer.Option(
             help="A TOML file that changes the scene: [stance] place, heading_deg, floor_m; "
-            "[object.NAME] size, position, turn_deg, raise_m. With --say: the CAPTURE whose scene "
-            "it is done in.",
+            "[object.NAME] size, position, turn_deg, raise_m. Or the CAPTURE whose scene it is "
+            "done in, as always with --say.",
             show_default=False,
         ),
     ] = None,
@@ -76,7 +89,8 @@ def regenerate(
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="With --say: the folder that holds the Actionary's captures; else this one.",
+            help="With --say or an ACTION: the folder that holds the Actionary's captures; else "
+            "this one.",
             show_default=False,
         ),
     ] = None,
@@ -88,10 +102,13 @@ def regenerate(
     """Perform the action of CAPTURE on another body, verify every frame, and write a capture.
 
     With --say, what the words ask for is looked up among the recordings and performed in the scene.
+    An ACTION is performed as its recording has it, with the things that --object states.
     """
     from capar.cli._gates import quality_answer, tell_quality
+    from capar.cli._instantiation import Manner, is_action, is_capture, perform_instance
     from capar.cli._output import check_new_folder, print_json
     from capar.cli._several_performers import check_no_others, one_body, perform_jointly
+    from capar.cli._spoken_requests import Where, perform_request
     from capar.model.errors import CaparError
     from capar.pipelines.round_trips import body, by_hand, observed_source
     from capar.pipelines.trials import trial_of
@@ -108,10 +125,9 @@ def regenerate(
     kind, kept = style_kind(style), force_kind(force)
     agents = agent or ["same"]
     if say is not None:
-        from capar.cli._spoken_requests import Where, perform_request
-
-        if style_of:
-            raise CaparError("--style-of is of one capture; leave it out, or --say")
+        if style_of or things:
+            option = "--style-of" if style_of else "--object"
+            raise CaparError(f"{option} is of one recorded action; leave it out, or --say")
         perform_request(
             say, one_body(agents), Where(capture, recordings, actionary, rules), scene=scene,
             output=output, how={"kind": kind, "duration_s": duration, "hand": hand}, json=json,
@@ -119,6 +135,13 @@ def regenerate(
         return
     if capture is None:
         raise CaparError("name a CAPTURE, or what to do: --say 'touch the mug' --scene CAPTURE")
+    if things or is_action(capture) or (scene and is_capture(scene)):
+        perform_instance(
+            capture, one_body(agents), Where(None, recordings, actionary, rules),
+            Manner(kind, kept, style_of, duration, hand), stated=things or [], scene=scene,
+            output=output, assume=assume, json=json,
+        )  # fmt: skip
+        return
     trial = trial_of(capture)
     if trial.others:
         check_no_others(

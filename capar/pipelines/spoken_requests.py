@@ -1,7 +1,7 @@
 """From words to performances: which recording is performed, with which things, in which order."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from capar.model.capture import TagType
 from capar.model.par import Step
 from capar.pipelines.recordings import Recording
 from capar.pipelines.round_trips import by_hand, observed_source
+from capar.regeneration.captures import scene_after
 from capar.regeneration.casting import Cast, cast, check_movable, own_names
 from capar.regeneration.errors import PlanError
 from capar.regeneration.motions import Motion
@@ -211,16 +212,7 @@ def perform(
 
 def after(performance: Performance, scene: Scene) -> Scene:
     """The scene as a performance leaves it."""
-    plan = performance.motion.plan
-    things = dict(scene.things)
-    for name, thing in plan.scene.things.items():
-        own = performance.names[name]
-        spot = plan.things[name].translation[-1]
-        ahead = plan.things[name].rotation[-1].apply([1.0, 0.0, 0.0])
-        heading = float(np.arctan2(ahead[1], ahead[0]))
-        x, y, z = (float(each) for each in spot)
-        things[own] = replace(thing, name=own, place=(x, y, z), heading=heading)
-    return replace(scene, things=things, place=plan.scene.place, heading=plan.scene.heading)
+    return scene_after(performance.motion, performance.names, scene)
 
 
 def _cast(choice: Choice, source: Source, scene: Scene) -> tuple[Cast, dict[str, str]]:

@@ -13,6 +13,7 @@ from capar.body.recording import Truth, record
 from capar.body.sensing import PERFECT, Tracker
 from capar.model.capture import Agent, Capture
 from capar.regeneration.motions import Motion
+from capar.regeneration.scenes import Scene
 
 
 def capture_of(
@@ -57,6 +58,25 @@ def renamed(capture: Capture, names: Mapping[str, str]) -> Capture:
     """The capture with other names of its objects."""
     objects = tuple(replace(each, name=names.get(each.name, each.name)) for each in capture.objects)
     return replace(capture, objects=objects)
+
+
+def scene_after(motion: Motion, names: Mapping[str, str], scene: Scene) -> Scene:
+    """The scene as a motion leaves it.
+
+    Args:
+        motion: What was done.
+        names: The scene's names of the things by those that the motion has.
+        scene: As it was before.
+    """
+    plan = motion.plan
+    left = dict(scene.things)
+    for name, thing in plan.scene.things.items():
+        own = names[name]
+        ahead = plan.things[name].rotation[-1].apply([1.0, 0.0, 0.0])
+        heading = float(np.arctan2(ahead[1], ahead[0]))
+        x, y, z = (float(value) for value in plan.things[name].translation[-1])
+        left[own] = replace(thing, name=own, place=(x, y, z), heading=heading)
+    return replace(scene, things=left, place=plan.scene.place, heading=plan.scene.heading)
 
 
 def write_motion(motion: Motion, capture: Capture, folder: Path) -> None:

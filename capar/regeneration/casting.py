@@ -1,6 +1,6 @@
 """Another scene's things in the parts of the recorded ones."""
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -68,9 +68,35 @@ def cast(
         name: RigidTransform.concatenate([thing.pose] * count) for name, thing in extras.items()
     }
     ends = {name: named[goal] for name, goal in (goals or {}).items()}
-    where = replace(scene, things={**things, **extras}, goals=ends)
+    spots = {
+        name: _shifted(scene.spots[parts[name]], scene.thing(parts[name]), things[name])
+        for name in things
+        if parts[name] in scene.spots
+    }
+    where = replace(scene, things={**things, **extras}, goals=ends, spots=spots)
     recorded = replace(source.scene, things={**source.scene.things, **extras})
     return replace(source, scene=recorded, paths={**source.paths, **still}), where
+
+
+def _shifted(
+    spot: tuple[float, float, float], actor: Thing, fitted: Thing
+) -> tuple[float, float, float]:
+    """Where the fitted thing's origin is when the thing's own is at a spot."""
+    x, y, z = np.asarray(spot) + np.asarray(fitted.place) - np.asarray(actor.place)
+    return float(x), float(y), float(z)
+
+
+def with_only(source: Source, names: Container[str]) -> Source:
+    """A recorded performance without the things that take no part in it.
+
+    Args:
+        source: What was recorded.
+        names: Of the things that take part.
+    """
+    scene = source.scene
+    things = {name: thing for name, thing in scene.things.items() if name in names}
+    paths = {name: path for name, path in source.paths.items() if name in names}
+    return replace(source, scene=replace(scene, things=things), paths=paths)
 
 
 def check_movable(source: Source, scene: Scene, parts: Cast) -> None:

@@ -139,7 +139,7 @@ def reachable(
         why = str(error)
     for ahead_m, aside_m in () if scene.stays else STEPS_M:
         nearby = beside(scene, ahead_m, aside_m)
-        if _possible(source, nearby, human):
+        if is_possible(source, nearby, human):
             found = _draft(source, nearby, human, style, watched)
             way = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
             found.told.append(f"stands {way} of the given place, since there {why}")
@@ -197,7 +197,7 @@ def _remedy(source: Source, scene: Scene, human: Human) -> str:
     """What would make it possible."""
     for words, changed, body in _remedies(source, scene, human):
         most = FEW_TURNS if body is human else MOST_TURNS
-        if _possible(source, changed, body, most):
+        if is_possible(source, changed, body, most):
             return f"{words} would do"
     return "no other height, size, nearer place or recorded body that was tried would do"
 
@@ -241,7 +241,15 @@ def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
     return scene
 
 
-def _possible(source: Source, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
+def is_possible(source: Source, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
+    """Whether a body comes to every goal from just there, with few turns of its grips tried.
+
+    Args:
+        source: The recorded performance.
+        scene: Where it is performed.
+        human: Who performs.
+        most: Turns of a grip that are tried.
+    """
     try:
         check_stance(scene, human)
         draft = Draft(source, scene, human, own_style(source))

@@ -36,6 +36,9 @@ class Scene(Things):
     goals: Mapping[str, str] = field(default_factory=dict)
     """What a thing is put on in the end, where that is not what the recording says."""
 
+    spots: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    """Where the frame of a thing is in the end, where that is stated [m]."""
+
     entered: frozenset[str] = frozenset()
     """Things that stop neither hands nor forearms, since their sizes are only assumed."""
 

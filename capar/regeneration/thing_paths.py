@@ -88,6 +88,20 @@ def thing_goals(
     return out
 
 
+def put_down_poses(source: Source, scene: Scene) -> dict[str, RigidTransform]:
+    """Where everything that is moved is put in the end; that does not depend on the body.
+
+    Raises:
+        PlanError: Something would be put down where nothing supports it.
+    """
+    out: dict[str, RigidTransform] = {}
+    for name in source.paths:
+        for span in _handled(source, name):
+            pose = out.get(name, scene.thing(name).pose)
+            out[name] = _put_down(source, scene, name, span, pose).pose
+    return out
+
+
 def _stopped(source: Source, name: str, after: int, last: int) -> int:
     """The frame at which a thing was seen to stop, after one and not later than another one."""
     own = (fact for fact in source.observation.facts if isinstance(fact, Displaced))
@@ -198,6 +212,8 @@ def _put_down(
     if support and onto:
         spot = _on(source, scene, name, (support, onto), after)
         reason = f"at the same place on {onto!r}, in its own measures"
+    if name in scene.spots:
+        spot, reason = np.asarray(scene.spots[name]), "where it is stated to be put"
     goal = RigidTransform.from_components(spot, spun)
     if support and not support_at(scene, name, goal):
         x, y, z = spot
