@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 if TYPE_CHECKING:
+    from capar.regeneration.manner import EffortReport
     from capar.regeneration.motions import Motion
     from capar.regeneration.quality import Quality
 
@@ -28,6 +29,20 @@ def quality_answer(motion: "Motion", quality: "Quality") -> dict[str, Any]:
         "gates": gates,
         "told": quality.told,
         "notes": motion.plan.notes,
+    }
+
+
+def effort_answer(report: "EffortReport | None") -> dict[str, Any]:
+    """The effort of a motion, for machines; nothing where none was asked for."""
+    if report is None:
+        return {}
+    return {
+        "effort": {
+            "asked": report.asked.values,
+            "performed": report.performed.values,
+            "measured": report.measured.values,
+            "why": report.why,
+        }
     }
 
 

@@ -60,6 +60,16 @@ def regenerate(
         str | None,
         typer.Option(help="Which hand does it: right or left.", show_default=False),
     ] = None,
+    effort: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME=VALUE,...",
+            help="In which manner, from -1 to 1 each, 0 being as recorded: time (sustained to "
+            "sudden), weight (light to strong), space (indirect to direct), flow (free to bound); "
+            "or by pole, as in sudden=0.6,light=0.3.",
+            show_default=False,
+        ),
+    ] = None,
     force: Annotated[
         str,
         typer.Option(
@@ -84,21 +94,22 @@ def regenerate(
 
     With --say, what the words ask for is looked up among the recordings and performed in the scene.
     """
-    from capar.cli._gates import quality_answer, tell_quality
+    from capar.cli._gates import effort_answer, quality_answer, tell_quality
     from capar.cli._output import check_new_folder, print_json
     from capar.model.errors import CaparError
     from capar.pipelines.round_trips import body, by_hand, observed_source
     from capar.regeneration.captures import capture_of, write_motion
     from capar.regeneration.completing import read_completion
     from capar.regeneration.forces.force_kinds import force_kind
-    from capar.regeneration.regenerating import regenerate as perform
+    from capar.regeneration.manner import read_effort, regenerate_in_manner
     from capar.regeneration.scene_files import read_scene
     from capar.regeneration.style_kinds import style_kind
-    from capar.regeneration.styles import borrowed_style, own_style, paced
+    from capar.regeneration.styles import borrowed_style, own_style
 
     if output:
         check_new_folder(output)
     kind, kept = style_kind(style), force_kind(force)
+    manner = read_effort(effort) if effort is not None else None
     if say is not None:
         from capar.cli._spoken_requests import Where, perform_request
 
@@ -106,7 +117,7 @@ def regenerate(
             raise CaparError("--style-of is of one capture; leave it out, or --say")
         perform_request(
             say, agent, Where(capture, recordings, actionary, rules), scene=scene, output=output,
-            how={"kind": kind, "duration_s": duration, "hand": hand}, json=json,
+            how={"kind": kind, "duration_s": duration, "hand": hand, "effort": manner}, json=json,
         )  # fmt: skip
         return
     if capture is None:
@@ -120,16 +131,18 @@ def regenerate(
         other = observed_source(style_of)
         chosen = borrowed_style(source, by_hand(other, hand) if hand else other, kind)
     chosen = replace(chosen, force=kept)
-    if duration:
-        source = paced(source, duration)
-    motion, quality = perform(source, human, place, chosen)
+    motion, quality, report = regenerate_in_manner(
+        source, human, place, chosen, effort=manner, duration_s=duration
+    )
     if output:
         name = agent if agent != "same" else source.capture.agent.name
         made = capture_of(motion, name=source.capture.name, agent=name)
         write_motion(motion, made, output)
     if json:
-        print_json(quality_answer(motion, quality))
+        print_json({**quality_answer(motion, quality), **effort_answer(report)})
         return
     tell_quality(motion, quality)
+    if report:
+        typer.echo(report)
     if output:
         typer.echo(f"wrote {output}", err=True)

@@ -83,7 +83,7 @@ class Quality:
 
 def quality(motion: Motion) -> Quality:
     """Verify a motion at every frame."""
-    hands = _hands(motion)
+    hands = performed_hands(motion)
     errors = _errors(motion, hands)
     contacts, thumb = _contact_gates(motion)
     gates = (
@@ -96,7 +96,7 @@ def quality(motion: Motion) -> Quality:
     return Quality(gates, (thumb,))
 
 
-def _hands(motion: Motion) -> dict[str, RigidTransform]:
+def performed_hands(motion: Motion) -> dict[str, RigidTransform]:
     """``T_world_hand`` of the body as it moved."""
     plan = motion.plan
     names = [f"{side}_palm" for side in plan.hands]
