@@ -13,7 +13,8 @@ def perform(
     action: Annotated[
         str,
         typer.Argument(
-            help="drink, sip, touch, touch_from_rest, slide, carry, pick_up, turn, push or pour."
+            help="drink, sip, touch, touch_from_rest, slide, carry, pick_up, turn, push, pour, "
+            "door, drawer or wipe."
         ),
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="A new folder for the capture.")],

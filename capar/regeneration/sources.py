@@ -173,7 +173,8 @@ def source_of(
     ]
     sensors = {side: hand.sensor for side, hand in hands.items()}
     poises = poises_of(observation, sensors, things, holds)
-    scene = Scene(things, place, heading, floor_m, entered=entered)
+    fastened = {guide.object: guide.base for guide in observation.guides if guide.object in things}
+    scene = Scene(things, place, heading, floor_m, entered=entered, fastened=fastened)
     made = Source(
         capture, observation, human, scene,
         hands, paths, eyes, holds, meetings, poises, tuple(told), launches,

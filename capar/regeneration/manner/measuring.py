@@ -25,6 +25,9 @@ from capar.regeneration.styles import Style
 WORTH_M = 0.1
 """Shorter ways tell no effort [m]."""
 
+FREE = 0.05
+"""Bound flow that is less cannot be told from free flow where no way ends free [1]."""
+
 MOST = 1.5
 """How far beyond the poles an effort is measured [1]."""
 
@@ -83,7 +86,7 @@ def measured_effort(motion: Motion, style: Style) -> MeasuredEffort:
     if inner:
         time, weight, bound = _timing(inner)
     beyond = [_beyond(pair.new) - _beyond(pair.old) for pair in last]
-    flow = bound
+    flow = bound if last or (bound or 0.0) > FREE else None
     if beyond and max(beyond) > 0.1 * OVERSHOOT:
         flow = -float(np.mean(beyond)) / OVERSHOOT
     straight = [pair for pair in inner if not pair.other_detour and _chord_m(pair.old) >= WORTH_M]
