@@ -1,14 +1,19 @@
 """Efforts reshape timing and ways between events, within limits, and are measured again."""
 
+import json
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
+from exit_codes import exit_code
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform
 
+from capar.body.bundles import write_bundle
+from capar.body.recording import Truth
 from capar.body.scripted_actions import action_capture
 from capar.model.errors import CaparError, UnknownNameError
 from capar.pipelines.observation import observe
@@ -251,3 +256,17 @@ def test_speeds_along_a_reshaped_way_are_those_of_the_timing() -> None:
         for style in (straight, bent)
     ]
     np.testing.assert_allclose(shares[0], shares[1], atol=0.02)
+
+
+def test_the_command_says_what_was_performed_and_refuses_what_is_no_effort(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    folder = tmp_path / "touch"
+    write_bundle(_source("touch").capture, Truth((), (), (), ()), folder)
+    asked = ("regenerate", str(folder), "--effort")
+    assert exit_code(monkeypatch, *asked, "sudden=2") == 2
+    assert "from -1 (sustained) to 1 (sudden)" in capsys.readouterr().err
+    assert exit_code(monkeypatch, *asked, "light=0.4", "--json") == 0
+    told = json.loads(capsys.readouterr().out)["effort"]
+    assert told["asked"]["weight"] == told["performed"]["weight"] == -0.4
+    assert told["measured"]["weight"] == pytest.approx(-0.4, abs=0.1)
