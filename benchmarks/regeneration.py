@@ -120,6 +120,9 @@ def told(trip: Trip) -> Row:
         "same_contacts": trip.same_contacts,
         "same_relations": trip.same_relations,
         "names": trip.names,
+        "constraint_way_mm": next(
+            (round(g.value, 3) for g in gates if g.name == "constraint way"), None
+        ),
         "failed": [
             f"{g.name} {g.value:.2f} {g.unit} {g.bodies} at frame {g.frame}"
             for g in gates

@@ -11,7 +11,16 @@ from capar.body.balance import BalanceLimit, BalanceTask, standing_support
 from capar.body.gaze import look_tasks, share_costs
 from capar.body.grips import PITCHES, ROLLS, YAWS, back_grip, side_grip, top_grip
 from capar.body.human import Human
-from capar.body.scripts import SIDES, Hand, Move, Phase, Script, between, minimum_jerk
+from capar.body.scripts import (
+    SIDES,
+    Hand,
+    Move,
+    Phase,
+    Script,
+    between,
+    minimum_jerk,
+    turned_about,
+)
 from capar.body.things import Scene, Thing
 
 PALM_COST = (20.0, 4.0)
@@ -191,6 +200,9 @@ class Actor:
         if move.to_mouth and name in self.tilts:
             tilt = self.tilts[name] + way * (move.tilt - self.tilts[name])
             return self.goal(name, replace(move, tilt=tilt), start)
+        if any(move.about):
+            part = Rotation.from_rotvec(way * np.array(move.turn))
+            return turned_about(start, move.about, part)
         arc = [0.0, 0.0, move.lift * 4.0 * way * (1.0 - way)]
         pose = between(start, self.goal(name, move, start), way)
         return RigidTransform.from_translation(arc) * pose
@@ -199,6 +211,8 @@ class Actor:
         """Where a thing goes; to the mouth as it is when standing, where the head is then kept."""
         if move.home:
             return self.scene.thing(name).pose
+        if any(move.about):
+            return turned_about(start, move.about, Rotation.from_rotvec(move.turn))
         if not move.to_mouth:
             turned = Rotation.from_rotvec(move.turn) * start.rotation
             return RigidTransform.from_components(start.translation + np.array(move.by), turned)

@@ -8,6 +8,7 @@ from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import Performance, perform
 from capar.body.recording import record
+from capar.body.scenes_on_guides import GUIDED, HINGE_M
 from capar.body.scripts import (
     SIDES,
     STAND,
@@ -18,12 +19,15 @@ from capar.body.scripts import (
     drink,
     lift_with_both_hands,
     pour,
+    pull_open,
     push,
+    push_open,
     sip,
     slide,
     touch,
     touch_from_rest,
     turn,
+    wipe,
 )
 from capar.body.sensing import PERFECT, Tracker
 from capar.body.things import Scene, Thing, box, cup, scene, table
@@ -76,23 +80,30 @@ ACTIONS: dict[str, Script] = {
     "push": push("crate", (0.15 * np.cos(ASKEW), 0.15 * np.sin(ASKEW), 0.0)),
     "carry_tray": CARRY_TRAY,
     "pour": pour("mug", lift=0.18, over=(0.0, 0.25, 0.0), angle=float(np.radians(80.0))),
+    "door": push_open("door", float(np.radians(32.0)), hinge=(0.0, HINGE_M, 0.0)),
+    "drawer": pull_open("drawer", 0.15),
+    "wipe": wipe("sponge", 0.14),
 }
 """Each has the things of its own scene. Those of thesis 5.2 are ``sip`` (DrinkFromMug), ``touch``
 (TouchCycle), ``touch_from_rest``, ``slide`` (SlideObject) and ``pick_up`` (PickUpWithBothHands)."""
 
 
 def action_scene(human: Human, action: str) -> Scene:
-    """A table at hip height with what the action needs."""
+    """A table at hip height with what the action needs, or what stands on a hinge or a rail."""
     tall = human.measures["stature"]
     top = 0.52 * tall
     mug = Thing("mug", cup(0.035, 0.09), (0.22 * tall, -0.10 * tall, top), round=True)
     crate = Thing("crate", box(0.15, 0.20, 0.15), (0.24 * tall, 0.02 * tall, top))
     askew = Thing("crate", box(0.15, 0.20, 0.22), (0.29 * tall, -0.08 * tall, top), ASKEW)
     bowl = Thing("bowl", cup(0.07, 0.06), (0.22 * tall, -0.10 * tall + 0.34, top), round=True)
+    if action in GUIDED:
+        return GUIDED[action](tall)
     stand = Thing("stand", box(0.40, 0.14, 0.10), (0.34 * tall, 0.0, top), tag=TagType.FIXED)
     tray = Thing("tray", box(0.24, 0.30, 0.03), (0.34 * tall, 0.0, top + 0.10))
     borne = Thing("mug", cup(0.035, 0.09), (0.34 * tall, 0.0, top + 0.13), round=True)
+    sponge = Thing("sponge", box(0.12, 0.08, 0.05), (0.24 * tall, -0.09 * tall, top))
     needed = {
+        "wipe": (sponge,),
         "touch": (crate,), "touch_from_rest": (crate,), "pick_up": (crate,),
         "push": (askew,), "pour": (mug, bowl), "carry_tray": (stand, tray, borne),
     }  # fmt: skip

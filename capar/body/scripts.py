@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform
+from scipy.spatial.transform import RigidTransform, Rotation
 
 SIDES = ("right", "left")
 
@@ -33,6 +33,9 @@ class Move:
 
     turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """How it turns meanwhile about its frame's origin, in the world's axes [rad]."""
+
+    about: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """A point of the thing's frame about which it turns instead, as on a hinge [m]."""
 
     lift: float = 0.0
     """Height of the arc above the straight way [m]."""
@@ -118,6 +121,66 @@ def push(thing: str, by: tuple[float, float, float], *, side: str = "right") -> 
         Phase("touch", 0.4, held, look=thing),
         Phase("push", 0.9, held, {thing: Move(by)}, look=thing),
         Phase("hold", 0.3, held, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def push_open(
+    thing: str, angle: float, *, hinge: tuple[float, float, float], side: str = "right"
+) -> Script:
+    """Lay a palm on a door and push it away about its hinge.
+
+    Args:
+        thing: The door.
+        angle: How far, seen from above against the clock [rad].
+        hinge: A point of its upright hinge in its frame [m].
+        side: Which hand.
+    """
+    held = {side: Hand("holds", thing, "back")}
+    move = Move(turn=(0.0, 0.0, angle), about=hinge)
+    return (
+        STAND,
+        Phase("reach", 1.1, {side: Hand("reaches", thing, "back")}, look=thing),
+        Phase("touch", 0.4, held, look=thing),
+        Phase("open", 1.2, held, {thing: move}, look=thing),
+        Phase("hold", 0.4, held, look=thing),
+        Phase("return", 1.1, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def pull_open(thing: str, by_m: float, *, side: str = "right") -> Script:
+    """Lay a hand on top of a drawer and pull it out, towards oneself [m]."""
+    held = {side: Hand("holds", thing, "top")}
+    return (
+        STAND,
+        Phase("reach", 1.0, {side: Hand("reaches", thing, "top")}, look=thing),
+        Phase("touch", 0.4, held, look=thing),
+        Phase("open", 1.0, held, {thing: Move((-by_m, 0.0, 0.0))}, look=thing),
+        Phase("hold", 0.4, held, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def wipe(thing: str, by_m: float, *, strokes: int = 6, side: str = "right") -> Script:
+    """Lay a hand on a thing and move it to and fro over what it lies on.
+
+    Args:
+        thing: What is wiped with.
+        by_m: How far each stroke leads to a side [m].
+        strokes: How many, there and back counted apart.
+        side: Which hand.
+    """
+    held = {side: Hand("holds", thing, "top")}
+    ways = [by_m if number % 2 == 0 else -by_m for number in range(strokes)]
+    return (
+        STAND,
+        Phase("reach", 1.0, {side: Hand("reaches", thing, "top")}, look=thing),
+        Phase("touch", 0.4, held, look=thing),
+        *(Phase("stroke", 0.5, held, {thing: Move((0.0, way, 0.0))}, look=thing) for way in ways),
+        Phase("hold", 0.4, held, look=thing),
         Phase("return", 1.0, look="ahead"),
         Phase("stand", 0.6, look="ahead"),
     )
@@ -250,3 +313,11 @@ def between(first: RigidTransform, last: RigidTransform, way: float) -> RigidTra
     return RigidTransform.from_components(
         spot, type(first.rotation).from_rotvec(way * turn) * first.rotation
     )
+
+
+def turned_about(
+    pose: RigidTransform, point: tuple[float, float, float], turn: Rotation
+) -> RigidTransform:
+    """A pose turned about a point of its own frame [m], in the world's axes."""
+    there = RigidTransform.from_translation(pose.apply(point))
+    return there * RigidTransform.from_rotation(turn) * there.inv() * pose

@@ -8,6 +8,7 @@ import typer
 if TYPE_CHECKING:
     import numpy as np
 
+    from capar.regeneration.manner import EffortReport
     from capar.regeneration.motions import Motion
     from capar.regeneration.quality import Gate, Quality
 
@@ -36,6 +37,20 @@ def gate_rows(gates: "Sequence[Gate]") -> list[dict[str, Any]]:
         }
         for gate in gates
     ]
+
+
+def effort_answer(report: "EffortReport | None") -> dict[str, Any]:
+    """The effort of a motion, for machines; nothing where none was asked for."""
+    if report is None:
+        return {}
+    return {
+        "effort": {
+            "asked": report.asked.values,
+            "performed": report.performed.values,
+            "measured": report.measured.values,
+            "why": report.why,
+        }
+    }
 
 
 def tell_quality(motion: "Motion", quality: "Quality") -> None:

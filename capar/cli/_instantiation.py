@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from capar.pipelines.recordings import Recording
     from capar.regeneration.bindings import Role
     from capar.regeneration.forces.force_kinds import ForceKind
+    from capar.regeneration.manner import Effort
     from capar.regeneration.scenes import Scene
     from capar.regeneration.sources import Source
     from capar.regeneration.style_kinds import Kind
@@ -30,6 +31,7 @@ class Manner(NamedTuple):
     style_of: str | None
     duration_s: float | None
     hand: str | None
+    effort: "Effort | None"
 
 
 def is_capture(place: str | Path) -> bool:
@@ -207,9 +209,9 @@ def _performed(instance: "Instance", scene: "Scene", manner: Manner) -> "Perform
     from capar.pipelines.round_trips import by_hand, observed_source
     from capar.pipelines.ways import asserted
     from capar.regeneration.contact_tables import contact_gate
+    from capar.regeneration.manner import regenerate_in_manner
     from capar.regeneration.quality import Quality
-    from capar.regeneration.regenerating import regenerate
-    from capar.regeneration.styles import borrowed_style, own_style, paced
+    from capar.regeneration.styles import borrowed_style, own_style
 
     source, where, names = instance.placed(scene)
     style = own_style(source, manner.kind)
@@ -218,11 +220,12 @@ def _performed(instance: "Instance", scene: "Scene", manner: Manner) -> "Perform
         other = by_hand(other, manner.hand) if manner.hand else other
         style = borrowed_style(source, other, manner.kind)
     style = replace(style, force=manner.force)
-    if manner.duration_s:
-        source = paced(source, manner.duration_s)
-    motion, quality = regenerate(source, instance.asked.human, where, style)
+    motion, quality, report = regenerate_in_manner(
+        source, instance.asked.human, where, style,
+        effort=manner.effort, duration_s=manner.duration_s,
+    )  # fmt: skip
     gate = contact_gate(motion, asserted(source))
-    return Performed(motion, Quality((*quality.gates, gate), quality.told), names)
+    return Performed(motion, Quality((*quality.gates, gate), quality.told), names, effort=report)
 
 
 def _write(made: "Sequence[tuple[str, Performed]]", agent: str, output: Path) -> None:
@@ -238,9 +241,9 @@ def _write(made: "Sequence[tuple[str, Performed]]", agent: str, output: Path) ->
 
 
 def _answer(prepared: "Prepared", main: "Performed", told: Sequence[str]) -> dict[str, Any]:
-    from capar.cli._gates import quality_answer
+    from capar.cli._gates import effort_answer, quality_answer
 
-    answer = quality_answer(main.motion, main.quality)
+    answer = {**quality_answer(main.motion, main.quality), **effort_answer(main.effort)}
     stages = [
         {
             "recording": done.stage.way.recording.name,
@@ -287,3 +290,5 @@ def _tell(prepared: "Prepared", main: "Performed") -> None:
     if prepared.done:
         typer.echo("the action itself:")
     tell_quality(main.motion, main.quality)
+    if main.effort:
+        typer.echo(main.effort)

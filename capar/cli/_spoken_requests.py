@@ -109,13 +109,14 @@ def _write(made: "list[Performance]", agent: str, output: Path) -> None:
 
 
 def _answer(each: "Performance") -> dict[str, Any]:
-    from capar.cli._gates import quality_answer
+    from capar.cli._gates import effort_answer, quality_answer
 
     answer = quality_answer(each.motion, each.quality)
     return {
         "recording": each.choice.recording.name,
         "asked": [" ".join((r.said, *r.objects)) for r in each.choice.requests],
         **answer,
+        **effort_answer(each.effort),
         "notes": [*each.notes, *answer["notes"]],
     }
 
@@ -126,3 +127,5 @@ def _tell(each: "Performance") -> None:
     for note in each.notes:
         typer.echo(note)
     tell_quality(each.motion, each.quality)
+    if each.effort:
+        typer.echo(each.effort)

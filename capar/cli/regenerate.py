@@ -2,11 +2,15 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from capar.cli._options import Assume, NewBundle, Place, Rules
+
+if TYPE_CHECKING:
+    from capar.cli._instantiation import Manner
+    from capar.pipelines.trials import Trial
 
 app = typer.Typer()
 
@@ -78,6 +82,16 @@ def regenerate(
         str | None,
         typer.Option(help="Which hand does it: right or left.", show_default=False),
     ] = None,
+    effort: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME=VALUE,...",
+            help="In which manner, from -1 to 1 each, 0 being as recorded: time (sustained to "
+            "sudden), weight (light to strong), space (indirect to direct), flow (free to bound); "
+            "or by pole, as in sudden=0.6,light=0.3.",
+            show_default=False,
+        ),
+    ] = None,
     force: Annotated[
         str,
         typer.Option(
@@ -104,71 +118,93 @@ def regenerate(
     With --say, what the words ask for is looked up among the recordings and performed in the scene.
     An ACTION is performed as its recording has it, with the things that --object states.
     """
-    from capar.cli._gates import quality_answer, tell_quality
     from capar.cli._instantiation import Manner, is_action, is_capture, perform_instance
-    from capar.cli._output import check_new_folder, print_json
+    from capar.cli._output import check_new_folder
     from capar.cli._several_performers import check_no_others, one_body, perform_jointly
     from capar.cli._spoken_requests import Where, perform_request
     from capar.model.errors import CaparError
-    from capar.pipelines.round_trips import body, by_hand, observed_source
     from capar.pipelines.trials import trial_of
-    from capar.regeneration.captures import capture_of, write_motion
-    from capar.regeneration.completing import read_completion
     from capar.regeneration.forces.force_kinds import force_kind
-    from capar.regeneration.regenerating import regenerate as perform
-    from capar.regeneration.scene_files import read_scene
+    from capar.regeneration.manner import read_effort
     from capar.regeneration.style_kinds import style_kind
-    from capar.regeneration.styles import borrowed_style, own_style, paced
 
     if output:
         check_new_folder(output)
     kind, kept = style_kind(style), force_kind(force)
     agents = agent or ["same"]
+    manner = read_effort(effort) if effort is not None else None
     if say is not None:
         if style_of or things:
             option = "--style-of" if style_of else "--object"
             raise CaparError(f"{option} is of one recorded action; leave it out, or --say")
         perform_request(
             say, one_body(agents), Where(capture, recordings, actionary, rules), scene=scene,
-            output=output, how={"kind": kind, "duration_s": duration, "hand": hand}, json=json,
+            output=output, json=json,
+            how={"kind": kind, "duration_s": duration, "hand": hand, "effort": manner},
         )  # fmt: skip
         return
     if capture is None:
         raise CaparError("name a CAPTURE, or what to do: --say 'touch the mug' --scene CAPTURE")
+    how = Manner(kind, kept, style_of, duration, hand, manner)
     if things or is_action(capture) or (scene and is_capture(scene)):
         perform_instance(
             capture, one_body(agents), Where(None, recordings, actionary, rules),
-            Manner(kind, kept, style_of, duration, hand), stated=things or [], scene=scene,
-            output=output, assume=assume, json=json,
+            how, stated=things or [], scene=scene, output=output, assume=assume, json=json,
         )  # fmt: skip
         return
     trial = trial_of(capture)
     if trial.others:
         check_no_others(
             {"--style-of": style_of, "--duration": duration, "--hand": hand, "--assume": assume,
-             "--force": "" if force == "similar" else force}
+             "--effort": effort, "--force": "" if force == "similar" else force}
         )  # fmt: skip
         perform_jointly(trial, agents, scene=scene, output=output, style=style, json=json)
         return
-    who = one_body(agents)
+    _perform_alone(
+        trial, one_body(agents), how, scene=scene, output=output, assume=assume, json=json
+    )
+
+
+def _perform_alone(
+    trial: "Trial",
+    who: str,
+    how: "Manner",
+    *,
+    scene: Path | None,
+    output: Path | None,
+    assume: Path | None,
+    json: bool,
+) -> None:
+    """Perform what one performer was recorded to do."""
+    from capar.cli._gates import effort_answer, quality_answer, tell_quality
+    from capar.cli._output import print_json
+    from capar.pipelines.round_trips import body, by_hand, observed_source
+    from capar.regeneration.captures import capture_of, write_motion
+    from capar.regeneration.completing import read_completion
+    from capar.regeneration.manner import regenerate_in_manner
+    from capar.regeneration.scene_files import read_scene
+    from capar.regeneration.styles import borrowed_style, own_style
+
     recorded = observed_source(trial, read_completion(assume) if assume else None)
     place = read_scene(scene, recorded.scene) if scene else recorded.scene
-    source = by_hand(recorded, hand) if hand else recorded
-    chosen = own_style(source, kind)
-    if style_of:
-        other = observed_source(style_of)
-        chosen = borrowed_style(source, by_hand(other, hand) if hand else other, kind)
-    chosen = replace(chosen, force=kept)
-    if duration:
-        source = paced(source, duration)
-    motion, quality = perform(source, body(who, recorded), place, chosen)
+    source = by_hand(recorded, how.hand) if how.hand else recorded
+    chosen = own_style(source, how.kind)
+    if how.style_of:
+        other = observed_source(how.style_of)
+        chosen = borrowed_style(source, by_hand(other, how.hand) if how.hand else other, how.kind)
+    chosen = replace(chosen, force=how.force)
+    motion, quality, report = regenerate_in_manner(
+        source, body(who, recorded), place, chosen, effort=how.effort, duration_s=how.duration_s
+    )
     if output:
         name = who if who != "same" else source.capture.agent.name
         made = capture_of(motion, name=source.capture.name, agent=name)
         write_motion(motion, made, output)
     if json:
-        print_json(quality_answer(motion, quality))
+        print_json({**quality_answer(motion, quality), **effort_answer(report)})
         return
     tell_quality(motion, quality)
+    if report:
+        typer.echo(report)
     if output:
         typer.echo(f"wrote {output}", err=True)

@@ -1,7 +1,7 @@
 """Performing what prepares an action, each stage checked by geometry before the next."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from capar.body.human import Human
@@ -25,6 +25,7 @@ from capar.regeneration.contact_tables import (
     contact_gate,
 )
 from capar.regeneration.errors import PlanError
+from capar.regeneration.manner import EffortReport
 from capar.regeneration.motions import Motion
 from capar.regeneration.planning import is_possible
 from capar.regeneration.quality import Quality
@@ -44,6 +45,9 @@ class Performed:
     quality: Quality
     names: dict[str, str]
     """The scene's names of the things by those that the motion has."""
+
+    effort: EffortReport | None = field(default=None, kw_only=True)
+    """With which manner it was performed, where one was asked for."""
 
 
 @dataclass(frozen=True, eq=False)

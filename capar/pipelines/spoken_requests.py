@@ -10,17 +10,17 @@ from capar.model.capture import TagType
 from capar.model.par import Step
 from capar.pipelines.recordings import Recording
 from capar.pipelines.round_trips import by_hand, observed_source
+from capar.regeneration import manner
 from capar.regeneration.captures import scene_after
 from capar.regeneration.casting import Cast, cast, check_movable, own_names
 from capar.regeneration.errors import PlanError
 from capar.regeneration.motions import Motion
 from capar.regeneration.quality import Quality
-from capar.regeneration.regenerating import regenerate
 from capar.regeneration.requests import Request, RequestError
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source
 from capar.regeneration.style_kinds import Kind
-from capar.regeneration.styles import own_style, paced
+from capar.regeneration.styles import own_style
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +47,8 @@ class Performance:
     """The scene's names of the things by those that the motion has."""
 
     notes: tuple[str, ...]
+    effort: manner.EffortReport | None = None
+    """None where no manner was asked for."""
 
 
 def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tuple[Choice, ...]:
@@ -178,6 +180,7 @@ def perform(
     kind: Kind = Kind.PATH,
     duration_s: float | None = None,
     hand: str | None = None,
+    effort: manner.Effort | None = None,
 ) -> Performance:
     """Perform a recording in a scene.
 
@@ -188,6 +191,7 @@ def perform(
         kind: What of the recorded way is kept.
         duration_s: How long it takes [s]; as long as it did, unless stated.
         hand: Which hand does it; the recorded one, unless stated or asked for.
+        effort: In which manner; as the adverbs of the requests say, unless stated.
 
     Raises:
         PlanError: It is impossible, or out of reach; the message says what would help.
@@ -202,12 +206,14 @@ def perform(
     source, where = cast(source, scene, parts, goals)
     for request, step in zip(choice.requests, choice.steps, strict=True):
         _check_side(request, step, source)
-    if duration_s:
-        source = paced(source, duration_s)
-    motion, quality = regenerate(source, human, where, own_style(source, kind))
-    return Performance(
-        choice, motion, quality, own_names(recorded, scene, parts), _notes(choice, parts)
+    words = dict.fromkeys(word for each in choice.requests for word in each.unheeded)
+    asked = effort or manner.effort_of_words(words)
+    motion, quality, report = manner.regenerate_in_manner(
+        source, human, where, own_style(source, kind), effort=asked, duration_s=duration_s
     )
+    names = own_names(recorded, scene, parts)
+    notes = (*_notes(choice, parts), *manner.told_of_words(words, stated=effort is not None))
+    return Performance(choice, motion, quality, names, notes, report)
 
 
 def after(performance: Performance, scene: Scene) -> Scene:
@@ -271,7 +277,7 @@ def _check_side(request: Request, step: Step, source: Source) -> None:
         )
 
 
-def _notes(choice: Choice, parts: Cast) -> tuple[str, ...]:
+def _notes(choice: Choice, parts: Cast) -> list[str]:
     asked = ", then ".join(" ".join((each.said, *each.objects)) for each in choice.requests)
     told = [f"{asked}: performed as in recording {choice.recording.name!r}"]
     if choice.others:
@@ -280,6 +286,4 @@ def _notes(choice: Choice, parts: Cast) -> tuple[str, ...]:
             "taken, then the one whose things bear the names, then the first by name"
         )
     told += [f"{name!r} has the part of {part!r}" for part, name in parts.items() if part != name]
-    unheeded = dict.fromkeys(word for each in choice.requests for word in each.unheeded)
-    told += [f"{word!r} has no effect" for word in unheeded]
-    return tuple(told)
+    return told

@@ -62,6 +62,10 @@ class Surroundings:
             for name in scene.things
             if not scene.stops(part, name)
         }
+        self.joined: dict[str, set[str]] = {}
+        for rider, base in scene.fastened.items():
+            self.joined.setdefault(rider, set()).add(base)
+            self.joined.setdefault(base, set()).add(rider)
         self.hollow = {n: _surface_points(t.shape) for n, t in scene.things.items()}
 
     def pose(
@@ -123,11 +127,13 @@ class Surroundings:
         return distance_m < 0.0 and self.hollow[name] is not None
 
     def things_near(self) -> list[Pair]:
-        """Distances between things near each other."""
+        """Distances between things near each other, but for what is on a hinge or a rail of one."""
         names = sorted(self.geoms)
         out = []
         for number, first in enumerate(names):
             for second in names[number + 1 :]:
+                if second in self.joined.get(first, ()):
+                    continue
                 found = self._distance(self.geoms[first], self.geoms[second])
                 if found < NEAR_M:
                     out.append(Pair(found, first, second))

@@ -12,7 +12,7 @@ from capar.body.human import Human
 from capar.body.model import body_spec
 from capar.regeneration.joint_sources import HandOver, JointSource
 from capar.regeneration.motions import Motion
-from capar.regeneration.quality import Gate, hands_of
+from capar.regeneration.quality import Gate, performed_hands
 
 FAR_M = 0.1
 """Larger distances between two bodies are not measured [m]."""
@@ -90,7 +90,7 @@ def _coupled(source: JointSource, motions: Mapping[str, Motion]) -> Iterator[Gat
 def _missed(motion: Motion, passed: HandOver, name: str) -> tuple[float, int, str]:
     """How far a performer's hands are from their grips while a thing is handed over [m]."""
     plan, part = motion.plan, slice(passed.first, passed.last + 1)
-    hands, worst = hands_of(motion), (0.0, passed.first, name)
+    hands, worst = performed_hands(motion), (0.0, passed.first, name)
     for grip in plan.grips:
         hold = grip.hold
         if hold.thing == passed.thing and hold.first <= passed.first <= passed.last <= hold.last:

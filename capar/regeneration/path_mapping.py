@@ -116,7 +116,7 @@ def mapped(
         aside = _in_frames(old, start.translation, goal.translation, along, new, aside)
     spots = start.translation + np.outer(along, new) + aside
     spots = spots + detour.offset(shares, heading, away)
-    spots = _retimed(spots, shares)
+    spots = retimed(spots, shares)
     return RigidTransform.from_components(
         spots, _turns(path.rotation, start.rotation, goal.rotation, shares, about)
     )
@@ -160,10 +160,15 @@ def _turn(old: Float[np.ndarray, "3"], new: Float[np.ndarray, "3"], usual: float
     return float(np.arctan2(new[1], new[0]) - np.arctan2(old[1], old[0]))
 
 
-def _retimed(
+def retimed(
     spots: Float[np.ndarray, "frames 3"], shares: Float[np.ndarray, "frames"]
 ) -> Float[np.ndarray, "frames 3"]:
-    """The same path with a given share of its length covered at each frame."""
+    """The same path with a given share of its length covered at each frame.
+
+    Args:
+        spots: Of the path [m].
+        shares: Of its length [1], from 0 to 1.
+    """
     covered = arc_shares(spots)
     return np.stack([np.interp(shares, covered, column) for column in spots.T], axis=1)
 

@@ -11,6 +11,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.human import ROOT_SIZE
 from capar.regeneration.bearing import FRICTION, Ride
 from capar.regeneration.collisions import Pair, Surroundings, inner_gap
+from capar.regeneration.constrained_ways import scene_constraints
 from capar.regeneration.forces.force_kinds import ForceKind
 from capar.regeneration.holding import SETTLED_M, Hold
 from capar.regeneration.motions import Motion
@@ -85,11 +86,12 @@ class Quality:
 
 def quality(motion: Motion) -> Quality:
     """Verify a motion at every frame."""
-    hands = hands_of(motion)
+    hands = performed_hands(motion)
     errors = _errors(motion, hands)
     contacts, thumb = _contact_gates(motion)
     gates = (
         *_constraint_gates(motion, errors),
+        *_way_gates(motion, hands),
         *contacts,
         *_body_gates(motion),
         _still_gate(motion),
@@ -99,7 +101,7 @@ def quality(motion: Motion) -> Quality:
     return Quality(gates, (thumb,))
 
 
-def hands_of(motion: Motion) -> dict[str, RigidTransform]:
+def performed_hands(motion: Motion) -> dict[str, RigidTransform]:
     """``T_world_hand`` of the body as it moved."""
     plan = motion.plan
     names = [f"{side}_palm" for side in plan.hands]
@@ -149,6 +151,28 @@ def _constraint_gates(motion: Motion, errors: list[_Error]) -> Iterator[Gate]:
     yield Gate("event position", 1e3 * at[0], 1.0, "mm", False, at[1], at[2])
     yield Gate("event rotation", float(np.degrees(turned[0])), 1.0, "deg", False, *turned[1:])
     yield Gate("on the way", 1e3 * way_m[0], 2.0, "mm", False, way_m[1], way_m[2])
+
+
+def _way_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
+    """How far things, and hands on them, are off the hinge, rail or plane that they keep to."""
+    plan = motion.plan
+    found = scene_constraints(plan.source, plan.scene)
+    worst = (0.0, -1, "")
+    for name, constraint in found.items():
+        start, path = plan.scene.thing(name).pose, plan.things[name]
+        middle = plan.scene.thing(name).shape.bounds.mean(axis=0)
+        tracks = [(f"{name}, {constraint.kind}", 0, middle, path.apply(middle))]
+        for grip in plan.grips:
+            if grip.hold.thing == name:
+                part = slice(grip.hold.first, grip.hold.last + 1)
+                spots = hands[grip.hold.side][part].translation
+                named = f"{grip.hold.side} hand, {constraint.kind}"
+                tracks.append((named, grip.hold.first, grip.pose.translation, spots))
+        for bodies, first, at, spots in tracks:
+            off = constraint.strays(start, at, spots)
+            worst = max(worst, (float(off.max()), first + int(off.argmax()), bodies))
+    if found:
+        yield Gate("constraint way", 1e3 * worst[0], 2.0, "mm", False, *worst[1:])
 
 
 def _head_error(motion: Motion) -> tuple[float, int, str]:

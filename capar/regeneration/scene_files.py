@@ -10,6 +10,7 @@ import numpy as np
 
 from capar.model.capture import TagType
 from capar.model.errors import FileError
+from capar.regeneration.fastening import bases, moved_with, resized_with
 from capar.regeneration.scenes import Scene, mobile, moved, raised, resized, stack
 
 
@@ -115,10 +116,18 @@ def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> S
         scene: As it was recorded.
         rng: What draws.
         draw: The ranges from which it draws.
+
+    What bears a door or a drawer is drawn with it, in size and place, and as much higher or lower.
     """
     for name in mobile(scene):
         scene = resized(scene, name, float(rng.uniform(*draw.sizes)))
-    fixed = [name for name, thing in scene.things.items() if thing.tag is TagType.FIXED]
+    for name in bases(scene):
+        scene = _drawn_base(scene, name, rng, draw)
+    fixed = [
+        name
+        for name, thing in scene.things.items()
+        if thing.tag is TagType.FIXED and name not in scene.fastened.values()
+    ]
     if fixed:
         thing = scene.thing(fixed[0])
         top = thing.place[2] + float(thing.shape.bounds[1, 2])
@@ -136,6 +145,14 @@ def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> S
         if _sound(scene, found):
             return found
     return scene
+
+
+def _drawn_base(scene: Scene, name: str, rng: np.random.Generator, draw: Draw) -> Scene:
+    scene = resized_with(scene, name, float(rng.uniform(*draw.sizes)))
+    thing = scene.thing(name)
+    dx, dy, dz = (float(value) for value in rng.uniform(-draw.aside_m, draw.aside_m, 3))
+    x, y, z = thing.place
+    return moved_with(scene, name, (x + dx, y + dy, z + dz), thing.heading)
 
 
 def _sound(before: Scene, after: Scene) -> bool:
@@ -159,6 +176,12 @@ def _sound(before: Scene, after: Scene) -> bool:
 
 def _changed(path: Path, scene: Scene, name: str, row: Any) -> Scene:
     scene.thing(name)
+    if name in scene.fastened:
+        base = scene.fastened[name]
+        raise FileError(
+            path, f"{name!r} hangs on {base!r} and keeps its place on that.",
+            f"Change [object.{base}]; {name!r} goes along.",
+        )  # fmt: skip
     if not isinstance(row, dict):
         raise FileError(path, f"object.{name} is no table.", f"Write [object.{name}].")
     _check_keys(path, f"[object.{name}]", row, KEYS)
@@ -166,13 +189,13 @@ def _changed(path: Path, scene: Scene, name: str, row: Any) -> Scene:
         factor = _number(path, "size", row["size"])
         if factor <= 0.0:
             raise FileError(path, f"size = {factor} of {name!r}.", "A size is a factor above zero.")
-        scene = resized(scene, name, factor)
+        scene = resized_with(scene, name, factor)
     if "raise_m" in row:
         scene = raised(scene, name, _number(path, "raise_m", row["raise_m"]))
     thing = scene.thing(name)
     x, y, z = _numbers(path, f"{name}.position", row.get("position", thing.place), 3)
     turn = np.radians(_number(path, "turn_deg", row.get("turn_deg", 0.0)))
-    return moved(scene, name, (x, y, z), thing.heading + float(turn))
+    return moved_with(scene, name, (x, y, z), thing.heading + float(turn))
 
 
 def _check_keys(path: Path, where: str, row: dict[str, Any], known: set[str]) -> None:

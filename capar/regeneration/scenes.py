@@ -42,6 +42,9 @@ class Scene(Things):
     entered: frozenset[str] = frozenset()
     """Things that stop neither hands nor forearms, since their sizes are only assumed."""
 
+    fastened: Mapping[str, str] = field(default_factory=dict)
+    """By the name of what is on a hinge or a rail, the fixed thing that bears that."""
+
     def stops(self, part: str, name: str) -> bool:
         """Whether a thing stops a part of the body: no ground stops the feet that stand on it."""
         if part.endswith(FEET):
@@ -86,8 +89,9 @@ def resized(scene: Scene, name: str, factor: float) -> Scene:
 
 
 def raised(scene: Scene, name: str, by_m: float) -> Scene:
-    """The scene with a thing, and all that stands on it, higher by so much [m]."""
-    for raised_one in (name, *stack(scene, name)):
+    """The scene with a thing, and all that stands or is fastened on it, higher by so much [m]."""
+    fastened = [each for each in scene.things if scene.fastened.get(each) == name]
+    for raised_one in dict.fromkeys((name, *stack(scene, name), *fastened)):
         scene = _lifted(scene, raised_one, by_m)
     return scene
 
@@ -119,8 +123,12 @@ def scaled(shape: Shape, factor: float) -> Shape:
 
 
 def mobile(scene: Scene) -> list[str]:
-    """Names of what can be moved, sorted."""
-    return sorted(each.name for each in scene.things.values() if each.tag is TagType.MOBILE)
+    """Names of what can be moved and is not fastened to something, sorted."""
+    return sorted(
+        each.name
+        for each in scene.things.values()
+        if each.tag is TagType.MOBILE and each.name not in scene.fastened
+    )
 
 
 def _corners(thing: Thing) -> Float[np.ndarray, "2 3"]:

@@ -218,7 +218,8 @@ def unchecked_source(
     ]
     sensors = {side: hand.sensor for side, hand in hands.items()}
     poises = poises_of(observation, sensors, things, holds)
-    scene = Scene(things, place, heading, floor_m, entered=entered)
+    fastened = {guide.object: guide.base for guide in observation.guides if guide.object in things}
+    scene = Scene(things, place, heading, floor_m, entered=entered, fastened=fastened)
     return Source(
         capture, observation, human, scene,
         hands, paths, eyes, holds, meetings, poises, tuple(told), launches,

@@ -1,6 +1,6 @@
 """Where things are throughout: at rest, on the way between goals, and at the head."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +14,15 @@ from capar.regeneration.bearing import Ride, Steadiness, steadiness, with_riders
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
 from capar.regeneration.carrying import Carrying
 from capar.regeneration.collisions import Surroundings
+from capar.regeneration.constrained_ways import (
+    HINGE,
+    PLANE,
+    RAIL,
+    flattened,
+    guided_poses,
+    scene_constraints,
+    told_of_constraints,
+)
 from capar.regeneration.contact_points import contact_points
 from capar.regeneration.errors import PlanError
 from capar.regeneration.path_mapping import STRAIGHT, Detour
@@ -68,7 +77,12 @@ def thing_goals(
         PlanError: A thing would be put down where nothing supports it.
     """
     out: dict[str, list[Goal]] = {}
+    constraints = scene_constraints(source, scene)
     for name in source.paths:
+        kind = constraints[name].kind if name in constraints else ""
+        if kind in {HINGE, RAIL}:
+            out[name] = list(_guided_goals(source, scene, name, kind))
+            continue
         for first, last in _handled(source, name):
             goals = out.setdefault(name, [])
             pose = goals[-1].pose if goals else scene.thing(name).pose
@@ -80,6 +94,9 @@ def thing_goals(
                     frames = dict.fromkeys((meeting.first, min(meeting.last, last)))
                     goals += [Goal(name, frame, at, reason) for frame in frames]
             down = _put_down(source, scene, name, (first, last), pose)
+            if kind == PLANE:
+                flat = flattened(RigidTransform.concatenate([pose, down.pose]))[1]
+                down = replace(down, pose=flat)
             goals += _poised(source, scene, name, (first, last), (pose, down.pose))
             goals.sort(key=lambda goal: goal.frame)
             goals.append(replace(down, frame=_stopped(source, name, goals[-1].frame, last)))
@@ -102,6 +119,19 @@ def put_down_poses(source: Source, scene: Scene) -> dict[str, RigidTransform]:
     return out
 
 
+def _guided_goals(source: Source, scene: Scene, name: str, kind: str) -> Iterator[Goal]:
+    """Where a thing on a hinge or a rail is when a hand takes it, stops it, and lets it go."""
+    spans = _handled(source, name)
+    poses = guided_poses(source, scene, name, source.paths[name], spans)
+    for first, last in spans:
+        yield Goal(name, first, poses[first], "stays where it is")
+        stopped = _stopped(source, name, first, last)
+        how = "by as much on its hinge" if kind == HINGE else "as far on its rail, in its measures,"
+        yield Goal(name, stopped, poses[stopped], f"moved {how} as it was")
+        if stopped < last:
+            yield Goal(name, last, poses[last], "stays there")
+
+
 def _stopped(source: Source, name: str, after: int, last: int) -> int:
     """The frame at which a thing was seen to stop, after one and not later than another one."""
     own = (fact for fact in source.observation.facts if isinstance(fact, Displaced))
@@ -118,8 +148,14 @@ def thing_paths(
     count, turn = len(source.times), scene.heading - source.scene.heading
     carrying = Carrying(human, scene, style.kind)
     still = {name: thing.pose for name, thing in scene.things.items()}
-    out, told = {}, []
+    out, constraints = {}, scene_constraints(source, scene)
+    told = told_of_constraints(constraints)
     for name, recorded in source.paths.items():
+        kind = constraints[name].kind if name in constraints else ""
+        if kind in {HINGE, RAIL}:
+            spans = _handled(source, name)
+            out[name] = guided_poses(source, scene, name, style.things[name], spans)
+            continue
         poses = [scene.thing(name).pose] * count
         for start, goal in zip(goals.get(name, []), goals.get(name, [])[1:], strict=False):
             part = style.things[name][start.frame : goal.frame + 1]
@@ -128,9 +164,11 @@ def thing_paths(
                     poses[start.frame : goal.frame + 1] = [start.pose] * len(part)
                 else:
                     ends = start.pose, goal.pose
+                    part = flattened(part) if kind == PLANE else part
                     along = _borne(source, scene, name, start.frame, goal.frame)
                     others = {n: pose for n, pose in still.items() if n not in {name, *along}}
                     piece, detour = carrying.way(name, part, ends, others, turn, along)
+                    piece = flattened(piece) if kind == PLANE and detour == STRAIGHT else piece
                     poses[start.frame : goal.frame + 1] = list(piece)
                     if detour != STRAIGHT:
                         told.append(_lifted(name, source.times[start.frame], detour))

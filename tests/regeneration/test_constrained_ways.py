@@ -1,0 +1,155 @@
+"""What is on a hinge, a rail or a level top keeps to it for any body and in any scene."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.scripted_actions import action_capture
+from capar.model.errors import FileError
+from capar.pipelines.round_trips import body, numbered_scene, observed_source, round_trip
+from capar.regeneration import Source
+from capar.regeneration.body_frames import body_frames
+from capar.regeneration.constrained_ways import (
+    HINGE,
+    PLANE,
+    RAIL,
+    Constraint,
+    constraints_of,
+    flattened,
+    planes_of,
+    scene_constraints,
+)
+from capar.regeneration.scene_files import read_scene
+from capar.regeneration.scenes import Scene, mobile, raised
+from capar.regeneration.styles import own_style
+from capar.regeneration.thing_paths import thing_goals, thing_paths
+
+LENGTHS = st.floats(-1.0, 1.0)
+
+
+@cache
+def _source(action: str) -> Source:
+    return observed_source(action_capture(action, "man", rate_hz=30.0))
+
+
+def _planned(source: Source, scene: Scene, name: str) -> RigidTransform:
+    old, new = body_frames(source.human, source.scene), body_frames(source.human, scene)
+    goals = thing_goals(source, scene, old, new)
+    paths, _ = thing_paths(source, scene, goals, source.human, own_style(source))
+    return paths[name]
+
+
+def _constraint(kind: str) -> Constraint:
+    return Constraint(kind, "door", "frame", np.array([0.0, 0.4, 0.0]), np.array([0.0, 0.0, 1.0]))
+
+
+@given(LENGTHS, LENGTHS, LENGTHS, LENGTHS)
+def test_what_turns_about_the_hinge_never_strays_from_it(
+    x: float, y: float, z: float, angle: float
+) -> None:
+    start = RigidTransform.from_components([1.0, 2.0, 0.5], Rotation.from_euler("z", 0.7))
+    at = np.array([x, y, z])
+    about = RigidTransform.from_translation([0.0, 0.4, 0.0])
+    turn = RigidTransform.from_rotation(Rotation.from_euler("z", angle))
+    seen = (start * about * turn * about.inv()).apply(at)[None]
+    assert _constraint(HINGE).strays(start, at, seen)[0] < 1e-9
+
+
+@given(LENGTHS, LENGTHS)
+def test_strays_are_the_distance_from_circle_line_and_plane(along: float, off: float) -> None:
+    start, at = RigidTransform.identity(), np.array([0.0, 1.9, 0.3])
+    spots = {
+        HINGE: [0.0, 1.9 + off, 0.3],
+        RAIL: [0.0, 1.9 + off, 0.3 + along],
+        PLANE: [along, 1.9, 0.3 + off],
+    }
+    for kind, spot in spots.items():
+        found = _constraint(kind).strays(start, at, np.array([spot]))
+        assert found[0] == pytest.approx(abs(off), abs=1e-9)
+
+
+def test_hinges_rails_and_planes_are_measured_from_recordings() -> None:
+    door, drawer = constraints_of(_source("door")), constraints_of(_source("drawer"))
+    assert door["door"].kind == HINGE
+    assert door["door"].other == "frame"
+    np.testing.assert_allclose(door["door"].point[:2], [0.0, 0.42], atol=1e-3)
+    np.testing.assert_allclose(np.abs(door["door"].axis), [0.0, 0.0, 1.0], atol=1e-3)
+    assert drawer["drawer"].kind == RAIL
+    np.testing.assert_allclose(np.abs(drawer["drawer"].axis), [1.0, 0.0, 0.0], atol=1e-3)
+    assert planes_of(_source("slide"))["mug"].other == "table"
+    assert not planes_of(_source("carry"))
+    assert not planes_of(_source("door"))
+
+
+@pytest.mark.parametrize(
+    ("action", "thing", "base"), [("door", "door", "frame"), ("drawer", "drawer", "chest")]
+)
+def test_in_another_place_and_size_it_moves_on_its_own_line(
+    action: str, thing: str, base: str, tmp_path: Path
+) -> None:
+    source = _source(action)
+    file = tmp_path / "scene.toml"
+    x, y, z = source.scene.thing(base).place
+    file.write_text(
+        f"[object.{base}]\nsize = 0.8\nposition = [{x + 0.05}, {y - 0.03}, {z + 0.1}]\n"
+        "turn_deg = 9\n"
+    )
+    scene = read_scene(file, source.scene)
+    path, old = _planned(source, scene, thing), source.paths[thing]
+    middle = scene.thing(thing).shape.bounds.mean(axis=0)
+    line = scene_constraints(source, scene)[thing]
+    off = line.strays(scene.thing(thing).pose, middle, path.apply(middle))
+    assert off.max() < 1e-6
+    turned = (path[-1].rotation * path[0].rotation.inv()).magnitude()
+    assert turned == pytest.approx((old[-1].rotation * old[0].rotation.inv()).magnitude(), abs=1e-3)
+    gone, before = (
+        float(np.linalg.norm(way.translation[-1] - way.translation[0])) for way in (path, old)
+    )
+    assert gone == pytest.approx(0.8 * before, abs=1e-3)
+
+
+def test_what_hangs_on_something_goes_along_with_it_and_not_alone(tmp_path: Path) -> None:
+    scene = _source("door").scene
+    assert scene.fastened == {"door": "frame"}
+    assert "door" not in mobile(scene)
+    higher = raised(scene, "frame", 0.2)
+    assert higher.thing("door").place[2] == pytest.approx(scene.thing("door").place[2] + 0.2)
+    for number in (1, 2):
+        drawn = numbered_scene(_source("door"), number, 7)
+        factor = drawn.thing("frame").size[0] / scene.thing("frame").size[0]
+        local, before = (
+            each.thing("frame").pose.inv().apply(each.thing("door").place)
+            for each in (drawn, scene)
+        )
+        np.testing.assert_allclose(local, factor * before, atol=1e-9)
+    file = tmp_path / "scene.toml"
+    file.write_text("[object.door]\nraise_m = 0.1\n")
+    with pytest.raises(FileError, match=r"(?s)hangs on 'frame'.*\[object.frame\]"):
+        read_scene(file, scene)
+
+
+@given(st.lists(st.floats(-0.003, 0.003), min_size=3, max_size=8))
+def test_a_noisy_way_on_a_plane_is_flattened_and_turns_only_about_the_vertical(
+    noise: list[float],
+) -> None:
+    spots = np.stack([np.linspace(0.0, 0.2, len(noise)), 0.0 * np.array(noise), noise], axis=1)
+    turns = Rotation.from_euler("zx", np.stack([noise, noise], axis=1))
+    made = flattened(RigidTransform.from_components(spots, turns))
+    np.testing.assert_allclose(made.translation[:, 2], made.translation[0, 2], atol=2.1e-4)
+    np.testing.assert_allclose(made.translation[:, :2], spots[:, :2])
+
+
+def test_a_door_is_opened_by_another_body_as_it_was_on_its_hinge() -> None:
+    source = _source("door")
+    trip = round_trip(source, "woman", body("woman", source), 0, source.scene)
+    assert trip.passed, (trip.refused, trip.names, trip.quality and trip.quality.failed)
+    assert trip.quality is not None
+    way = trip.quality.gate("constraint way")
+    assert way.limit == 2.0
+    assert 0.0 < way.value < 2.0
+    assert any("hinge on 'frame'" in note for note in trip.motion.plan.notes)  # type: ignore[union-attr]

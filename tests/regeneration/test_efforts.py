@@ -1,0 +1,272 @@
+"""Efforts reshape timing and ways between events, within limits, and are measured again."""
+
+import json
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from exit_codes import exit_code
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform
+
+from capar.body.bundles import write_bundle
+from capar.body.recording import Truth
+from capar.body.scripted_actions import action_capture
+from capar.model.errors import CaparError, UnknownNameError
+from capar.pipelines.observation import observe
+from capar.pipelines.round_trips import observed_source
+from capar.regeneration import PlanError, Source, capture_of
+from capar.regeneration.manner import (
+    Effort,
+    effort_of_words,
+    read_effort,
+    regenerate_with_effort,
+    told_of_words,
+)
+from capar.regeneration.manner.adverbs import adverbs
+from capar.regeneration.manner.limits import check_effort
+from capar.regeneration.manner.profiles import overshot, paused, shaped, timed
+from capar.regeneration.manner.reshaping import with_effort
+from capar.regeneration.path_mapping import arc_shares
+from capar.regeneration.style_kinds import Kind
+from capar.regeneration.styles import own_style, paced
+
+EFFORTS = st.floats(-1.0, 1.0)
+
+
+@cache
+def _source(action: str) -> Source:
+    return observed_source(action_capture(action, "man", rate_hz=30.0))
+
+
+@st.composite
+def shares_of_ways(draw: st.DrawFn) -> Float[np.ndarray, "frames"]:
+    speeds = draw(st.lists(st.floats(0.01, 1.0), min_size=6, max_size=40))
+    covered = np.concatenate([[0.0], np.cumsum(speeds)])
+    return np.asarray(covered / covered[-1])
+
+
+@st.composite
+def ways(draw: st.DrawFn) -> Float[np.ndarray, "frames 3"]:
+    """From left to right with any bends aside, not back."""
+    count = draw(st.integers(6, 30))
+    bends = st.lists(st.floats(-0.2, 0.2), min_size=count, max_size=count)
+    along = np.linspace(0.0, 0.5, count)
+    return np.stack([along, draw(bends), draw(bends)], axis=1)
+
+
+def _peak_over_mean(shares: Float[np.ndarray, "frames"]) -> float:
+    speeds = np.diff(shares)
+    return float(speeds.max() / speeds.mean())
+
+
+def _length(spots: Float[np.ndarray, "frames 3"]) -> float:
+    return float(np.linalg.norm(np.diff(spots, axis=0), axis=1).sum())
+
+
+@given(shares_of_ways(), EFFORTS, EFFORTS)
+def test_more_sudden_is_a_higher_peak_over_the_mean_speed(
+    shares: Float[np.ndarray, "frames"], one: float, two: float
+) -> None:
+    low, high = sorted([one, two])
+    peaks = [_peak_over_mean(timed(shares, time, 0.0)) for time in (low, high)]
+    assert peaks[0] <= peaks[1] + 1e-9
+
+
+@given(shares_of_ways(), EFFORTS, EFFORTS, EFFORTS)
+def test_stronger_covers_less_of_the_way_at_every_time_since_it_accelerates_longer(
+    shares: Float[np.ndarray, "frames"], one: float, two: float, time: float
+) -> None:
+    low, high = sorted([one, two])
+    assert (timed(shares, time, high) <= timed(shares, time, low) + 1e-9).all()
+
+
+@given(shares_of_ways(), EFFORTS, EFFORTS)
+def test_more_bound_rests_longer_at_the_ends(
+    shares: Float[np.ndarray, "frames"], one: float, two: float
+) -> None:
+    low, high = sorted([one, two])
+    rests = [
+        np.mean((made <= 0.0) | (made >= 1.0))
+        for made in (paused(shares, flow, (True, True)) for flow in (low, high))
+    ]
+    assert rests[0] <= rests[1]
+    assert np.array_equal(paused(shares, high, (False, False)), shares)
+
+
+@given(EFFORTS, EFFORTS)
+def test_freer_goes_further_beyond_a_free_end_and_comes_back(one: float, two: float) -> None:
+    low, high = sorted([one, two])
+    free, bound = (overshot(101, flow) for flow in (low, high))
+    assert free[1].max() >= bound[1].max() - 1e-3
+    for gone, beyond in (free, bound):
+        np.testing.assert_allclose(
+            [gone[0], gone[-1], beyond[0], beyond[-1]], [0, 1, 0, 0], atol=1e-9
+        )
+
+
+@given(ways(), EFFORTS, EFFORTS)
+def test_more_indirect_is_a_longer_way(
+    spots: Float[np.ndarray, "frames 3"], one: float, two: float
+) -> None:
+    low, high = sorted([one, two])
+    free = np.ones(len(spots))
+    indirect, direct = (_length(shaped(spots, space, 0.0, free)) for space in (low, high))
+    assert indirect >= direct - 1e-9
+
+
+@given(ways(), EFFORTS, EFFORTS)
+def test_ends_stay_where_they_are(
+    spots: Float[np.ndarray, "frames 3"], space: float, weight: float
+) -> None:
+    made = shaped(spots, space, weight, np.ones(len(spots)))
+    np.testing.assert_allclose(made[[0, -1]], spots[[0, -1]], atol=1e-9)
+
+
+def test_no_effort_leaves_the_style_as_it_is() -> None:
+    source = _source("carry")
+    style = own_style(source)
+    made = with_effort(style, source, Effort())
+    for old, new in ((style.hands, made.hands), (style.things, made.things)):
+        for name, path in old.items():
+            np.testing.assert_allclose(new[name].translation, path.translation, atol=1e-6)
+            off = (new[name].rotation * path.rotation.inv()).magnitude()
+            assert off.max() < 1e-4
+
+
+@settings(max_examples=10)
+@given(EFFORTS, EFFORTS, EFFORTS, EFFORTS)
+def test_events_keep_their_frames_and_places(
+    time: float, weight: float, space: float, flow: float
+) -> None:
+    source = _source("touch")
+    made = with_effort(own_style(source), source, Effort(time, weight, space, flow))
+    hold = source.holds[0]
+    recorded = source.hands[hold.side].path
+    for frame in (0, hold.first, hold.last, len(source.times) - 1):
+        off: RigidTransform = recorded[frame].inv() * made.hands[hold.side][frame]
+        assert np.linalg.norm(off.translation) < 1e-6
+        assert off.rotation.magnitude() < 1e-6
+
+
+def test_what_slides_on_a_table_stays_on_it_in_any_manner() -> None:
+    source = _source("slide")
+    made = with_effort(own_style(source), source, Effort(weight=-1.0, space=-1.0))
+    np.testing.assert_allclose(
+        made.things["mug"].translation[:, 2], source.paths["mug"].translation[:, 2], atol=1e-4
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "parameter", "value"),
+    [("sudden=0.5", "time", 0.5), ("time=-0.5", "time", -0.5), ("indirect=0.5", "space", -0.5)],
+)
+def test_an_effort_is_performed_with_every_gate_and_measured_again(
+    text: str, parameter: str, value: float
+) -> None:
+    source = _source("touch")
+    motion, found, report = regenerate_with_effort(source, source.human, effort=read_effort(text))
+    assert found.passed, found.failed
+    assert report.performed.values[parameter] == value
+    assert report.measured.values[parameter] == pytest.approx(value, abs=0.1)
+    again = observe(capture_of(motion, name="manner", agent="man"))
+    assert again.complex_par.signature == source.observation.complex_par.signature
+
+
+def test_a_sudden_performance_is_shorter_unless_a_duration_is_stated() -> None:
+    source = _source("touch")
+    usual_s, lasts_s = float(source.times[-1]), []
+    for duration_s in (None, 5.0):
+        motion, _, _ = regenerate_with_effort(
+            source, source.human, effort=Effort(time=0.5), duration_s=duration_s
+        )
+        lasts_s.append(float(motion.plan.source.times[-1]))
+    assert lasts_s[0] < usual_s
+    assert lasts_s[1] == pytest.approx(5.0)
+
+
+def test_what_limits_do_not_allow_is_scaled_down_and_told_with_by_how_much() -> None:
+    source = _source("touch")
+    with pytest.raises(PlanError) as refused:
+        paced(source, 0.5)
+    least_s = float(str(refused.value).split("at least ")[1].split()[0])
+    brief = paced(source, 1.2 * least_s)
+    _, found, report = regenerate_with_effort(brief, brief.human, effort=Effort(time=1.0))
+    assert found.passed
+    assert 0.0 < report.performed.time < 1.0
+    assert "too short to be observed" in report.why
+    assert f"{report.performed.time:.2f} of it, since with more" in str(report)
+
+
+def test_a_time_that_is_too_short_without_an_effort_is_refused() -> None:
+    source = _source("touch")
+    with pytest.raises(PlanError, match="too short to be observed"):
+        regenerate_with_effort(source, source.human, effort=Effort(time=1.0), duration_s=0.5)
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("sudden=1.5", "from -1 .sustained. to 1 .sudden."),
+        ("sudden", "needs a number"),
+        ("sudden=0.5,time=0.2", "states time twice"),
+        (",", "states nothing"),
+    ],
+)
+def test_what_is_no_effort_is_refused_with_what_would_be_one(text: str, problem: str) -> None:
+    with pytest.raises(CaparError, match=problem):
+        read_effort(text)
+
+
+def test_an_unknown_effort_is_told_which_there_are() -> None:
+    with pytest.raises(UnknownNameError, match=r"bound, direct, flow.*weight"):
+        read_effort("fast=1")
+
+
+def test_styles_without_a_shape_or_speeds_of_their_own_have_no_effort() -> None:
+    source = _source("touch")
+    with pytest.raises(PlanError, match="path or frame would do"):
+        check_effort(source, own_style(source, Kind.EVEN), Effort(time=0.5))
+    with pytest.raises(PlanError, match="path or frame would do"):
+        check_effort(source, own_style(source, Kind.VEL), Effort(space=0.5))
+    check_effort(source, own_style(source, Kind.VEL), Effort(time=0.5))
+
+
+def test_adverbs_ask_for_efforts_together_and_no_further_than_to_a_pole() -> None:
+    assert effort_of_words(["slowly"]) == Effort(time=-0.5)
+    assert effort_of_words(["slowly", "leisurely"]).time == -1.0  # type: ignore[union-attr]
+    assert effort_of_words(["blue"]) is None
+    assert all(any(effort.values.values()) for effort in adverbs().values())
+    told = told_of_words(["slowly", "again"], stated=False)
+    assert told[0].startswith("'slowly' asks for the effort time -0.50")
+    assert told[1] == "'again' has no effect"
+    assert "an effort is stated" in told_of_words(["slowly"], stated=True)[0]
+
+
+def test_speeds_along_a_reshaped_way_are_those_of_the_timing() -> None:
+    source = _source("touch")
+    straight = with_effort(own_style(source), source, Effort(time=0.5))
+    bent = with_effort(own_style(source), source, Effort(time=0.5, space=-1.0))
+    hold = source.holds[0]
+    shares = [
+        arc_shares(style.hands[hold.side].translation[: hold.first + 1])
+        for style in (straight, bent)
+    ]
+    np.testing.assert_allclose(shares[0], shares[1], atol=0.02)
+
+
+def test_the_command_says_what_was_performed_and_refuses_what_is_no_effort(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    folder = tmp_path / "touch"
+    write_bundle(_source("touch").capture, Truth((), (), (), ()), folder)
+    asked = ("regenerate", str(folder), "--effort")
+    assert exit_code(monkeypatch, *asked, "sudden=2") == 2
+    assert "from -1 (sustained) to 1 (sudden)" in capsys.readouterr().err
+    assert exit_code(monkeypatch, *asked, "light=0.4", "--json") == 0
+    told = json.loads(capsys.readouterr().out)["effort"]
+    assert told["asked"]["weight"] == told["performed"]["weight"] == -0.4
+    assert told["measured"]["weight"] == pytest.approx(-0.4, abs=0.1)
