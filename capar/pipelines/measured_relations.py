@@ -115,8 +115,8 @@ def _closing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     near = min(met, key=lambda fact: abs(fact.first - told.last), default=None)
     blow = constants()["blow_mm_s"]
     return Panel(
-        f"{known.called(one)} and {known.called(other)}: relative speed of their middles, the "
-        f"greatest in the last {APPROACH_S:.2f} s",
+        f"{known.called(one)} and {known.called(other)}: relative speed of their middles in any "
+        f"direction, the greatest in the last {APPROACH_S:.2f} s",
         "mm/s",
         (Curve(known.times, speeds),),
         (Limit(float(blow), f"a blow: {blow} mm/s or more"),),

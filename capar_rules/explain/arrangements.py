@@ -118,8 +118,13 @@ def laid(clock: Clock, segment: str) -> str:
     held = _held(clock, segment)
     if span is None or held is None:
         return ""
-    alone = ", touching no other tracked object" * (not met_at(clock, segment, "end"))
-    let_go = f"the {clock.called(hand)} let go of it at {clock.at(held[1])}"
+    alone = ""
+    if not met_at(clock, segment, "end"):
+        alone = (
+            f", where {clock.it(clock.objects.get(segment, ''))} touched no other tracked object"
+        )
+    it = clock.it(clock.objects.get(segment, ""), object_=True)
+    let_go = f"the {clock.called(hand)} let go of {it} at {clock.at(held[1])}"
     return f"was not moved again before {let_go}{alone}"
 
 
@@ -139,9 +144,13 @@ def not_laid(clock: Clock, segment: str) -> str:
     again = [first for first, last in moves if last > span[1] and first < held[1]]
     if not again:
         return ""
-    when = clock.at(max(min(again), span[1]))
-    until = f"the {clock.called(hand)} held it until {clock.at(held[1])}"
-    return f"was moved on in the hand from {when} on ({until})"
+    it = clock.it(thing, object_=True)
+    let_go = f"the {clock.called(hand)} let go of {it} at {clock.at(held[1])}"
+    if min(again) > span[1]:
+        return f"was moved again from {clock.at(min(again))} on, before {let_go}"
+    late = held[1] - span[1] > in_frames(times().merge_ms, clock.rate_hz)
+    still = f"at the end ({clock.at(span[1])}), before" if late else "when"
+    return f"was still moving {still} {let_go}"
 
 
 def nearly_laid(clock: Clock, segment: str) -> float:

@@ -8,10 +8,11 @@ from itertools import product
 from capar_rules.explain import arrangements
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import NAMES, NEAR
-from capar_rules.explain.formatting import UNBOUND, Argument
+from capar_rules.explain.formatting import Argument
 from capar_rules.explain.instants import STRETCHES
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
+from capar_rules.explain.told_argument import UNBOUND
 
 
 class Measure(StrEnum):
@@ -106,7 +107,8 @@ _HELD = (Measure.DISTANCE, (END, THING))
 
 PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
     **dict.fromkeys((*NAMES.values(), *NEAR, *NEAR.values()), (_APART,)),
-    **dict.fromkeys(("contact_at", "touched_before", "near_before", "takes", "lets_go"), (_APART,)),
+    **dict.fromkeys(("contact_at", "touched_before", "near_before"), (_APART,)),
+    **dict.fromkeys(("takes", "lets_go"), (_APART, _HELD)),
     **dict.fromkeys(("no_contact", "uncounted"), ((Measure.DISTANCE, (2, 3)),)),
     "pours": ((Measure.LEAN, (THING,)), (Measure.ABOVE, (THING, 1))),
     "newly_met": ((Measure.DISTANCE, (THING, 1)),),
@@ -114,7 +116,6 @@ PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
     "strikes_with": ((Measure.CLOSING, (THING, 1)),),
     "met_gently": ((Measure.CLOSING, (END, 1)),),
     "met_hard": ((Measure.CLOSING, (END, 1)),),
-    "rests": ((Measure.SPEED, (0,)),),
     "rests_afterwards": ((Measure.SPEED, (0,)),),
     "event": ((Measure.SPEED, (0,)),),
     "member": ((Measure.SPEED, (0,)),),
@@ -143,7 +144,7 @@ ANY = "*"
 
 ROWS: Mapping[str, tuple[tuple[str, Bodies], ...]] = {
     "touches_no_object": (("touching", (END, ANY)),),
-    "rests": (("touching", (0, ANY)),),
+    "rests": (("resting", (0,)), ("touching", (0, ANY))),
     "rests_afterwards": (("resting", (0,)),),
     "accompanied": (("touching", (END, ANY)),),
     "comes_to_lie": (("touching", (THING, ANY)), ("moving", (THING,))),
@@ -163,6 +164,9 @@ ROWS: Mapping[str, tuple[tuple[str, Bodies], ...]] = {
 }
 """By the predicate of an atom: which facts, of which bodies, are shown as bars."""
 
+COUNTED = ("turns_back_fast", "strokes")
+"""Predicates of atoms that count at which halts of the hand a thing turned back."""
+
 OVERLAPPING = ("rolls", "lengthwise")
 """Courses of a body that are shown as bars."""
 
@@ -177,6 +181,9 @@ class Quantity:
     last: int
     form: str = ""
     """The format in which its number is told; empty where none is."""
+
+    halts: tuple[int, ...] = ()
+    """Frames of what is counted, where that is no part of the quantity itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +232,8 @@ def claim(
     own = clock.span(clock.own) or (0, 0)
     for measure, places in _measures(predicate, arguments):
         for bodies in _bodies(places, arguments, clock):
-            found.append(Quantity(measure, bodies, *own))
+            halts = tuple(clock.strokes.get(clock.own, ())) if predicate in COUNTED else ()
+            found.append(Quantity(measure, bodies, *own, halts=halts))
     for text_of, form in sentences.formats(predicate, arguments, mood=mood):
         argument = Argument(text_of, arguments, clock)
         span = argument.measured_between(form)
@@ -239,6 +247,8 @@ def claim(
             frames.append(clock.frames[arguments[0]][int(text_of)])
     if predicate == "support":
         frames += _since(clock, own[0])
+    if predicate in ("takes", "lets_go"):
+        frames += [int(arguments[3]), *_until(clock, own[0])[: predicate == "takes"]]
     stretches = [
         Stretches(kind, bodies)
         for kind, places in _rows(predicate, arguments)
@@ -252,6 +262,13 @@ def _since(clock: Clock, frame: int) -> list[int]:
     thing, hand = clock.objects.get(clock.own, ""), arrangements.hand_of(clock.own)
     met = clock.measured.contact(hand, thing, frame, 1)
     return [met[0]] if met else []
+
+
+def _until(clock: Clock, frame: int) -> list[int]:
+    """Until when the end-effector touches its object, of the contact at a frame."""
+    thing, hand = clock.objects.get(clock.own, ""), arrangements.hand_of(clock.own)
+    met = clock.measured.contact(hand, thing, frame, 1)
+    return [met[1]] if met else []
 
 
 def joined_claims(text: str, claims: Sequence[Claim]) -> Claim:
