@@ -126,6 +126,7 @@ PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
     "from_rest": ((Measure.DISTANCE, (THING, LEFT)),),
     "free": ((Measure.DISTANCE, (THING, MET)),),
     "on": ((Measure.BORNE, (2, 3)),),
+    "against": ((Measure.BORNE, (2, 3)), (Measure.DISTANCE, (2, 3))),
     "under_palm": ((Measure.BORNE, (END, THING)),),
     **dict.fromkeys(("opens", "closes", "swept"), ((Measure.OPENING, (1,)),)),
 }
@@ -241,6 +242,8 @@ def claim(
             measured = own if measure is Measure.SPEED else span
             if measured is not None:
                 found.append(Quantity(measure, (argument.body,), *measured, form))
+        if form == "turns_back" and span is not None:
+            frames += span
         if form in ("when", "frame"):
             frames.append(int(text_of))
         if form == "tick":

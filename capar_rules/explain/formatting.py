@@ -79,6 +79,7 @@ class Argument(ContactsTold, RestsTold, MotionsTold):
             "palm": self._palm,
             "poised": self._poised,
             "struck": self._struck,
+            "unslid": self._unslid,
             "throughout": self._throughout,
             "comes": self._comes,
             "no_longer": self._no_longer,
@@ -132,6 +133,8 @@ class Argument(ContactsTold, RestsTold, MotionsTold):
         if form in ("away", "back"):
             nearest = self._nearest_posture()
             return (nearest[1], span[1]) if nearest and span else None
+        if form == "turns_back":
+            return self._swing(self.body, span) if span else None
         return self.clock.displacement(self.body, span) if span and form == "way" else span
 
     def nearness(self, form: str) -> float:

@@ -44,7 +44,7 @@ def summary(
     known = [briefs.claims[each] for each in clauses if each in briefs.claims]
     if any(_goes(claim) for claim in known):  # the same angle keeps it from going the other way
         against = [each for each in against if not _goes(briefs.claims.get(each.clause))]
-    fresh, alike = _told_contrasts(against, clauses)
+    fresh, alike = _told_contrasts(against, clauses, MOST_TOLD + (not own))
     apart = bool(generals and own) and not alike and all(each.weak for each in fresh)
     fresh = [] if apart else fresh
     beside = [f"just {listed(generals, 'or')}"] if apart else _names(alike)
@@ -77,12 +77,12 @@ def _goes(claim: Claim | None) -> bool:
 
 
 def _told_contrasts(
-    against: Sequence[Contrast], clauses: Sequence[str]
+    against: Sequence[Contrast], clauses: Sequence[str], most: int
 ) -> tuple[list[Contrast], list[Contrast]]:
     """The contrasts that are told with reasons of their own, and those that need none.
 
     Names of the latter are denied by what the summary says of its own. Names of other features are
-    told only where too few others are.
+    told only where too few others are; so many are told at most.
     """
     fresh = [each for each in against if each.clause not in clauses]
     same = [each for each in against if each not in fresh and (each.failing == 1 or each.though)]
@@ -91,7 +91,7 @@ def _told_contrasts(
     fresh = near or [each for each in fresh if each.by_features]
     count = min(MOST_NAMES, sum(len(each.names) for each in alike))
     least = max(not alike, sum(bool(each.though) for each in fresh), bool(near))
-    fresh = fresh[: max(MOST_TOLD - count, least)]
+    fresh = fresh[: max(most - count, least)]
     if count + len(fresh) < MOST_TOLD:
         others = [each for each in same if each not in alike]
         alike += others[: MOST_TOLD - count - len(fresh)]

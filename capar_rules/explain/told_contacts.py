@@ -168,6 +168,11 @@ class ContactsTold(ToldArgument):
         most = arrangements.steepest_deg()
         return f" (which pushed it {angle:.0f}° off straight up; {most:.0f}° or less bears)"
 
+    def _unslid(self) -> str:
+        """That the segment's object stayed on nothing, where it touches nothing at both borders."""
+        kept = arrangements.kept(self.clock, self.text)
+        return UNBOUND if kept else "did not stay on one and the same tracked object"
+
     def _levels(self) -> str:
         """Whether a path becomes level at the tick that this names, or ceases to be."""
         frame = self.clock.frames[self.beside[0]][int(self.text)]

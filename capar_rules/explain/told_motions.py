@@ -128,9 +128,26 @@ class MotionsTold(ToldArgument):
         return self.clock.measured.upright(body)
 
     def _turns_back(self, body: str, span: tuple[int, int]) -> str:
-        """How often it turned back within the span."""
+        """From when to when it was moved to and fro, and how often it turned back in that."""
         turns = self.clock.measured.turns
-        return "" if turns is None else f" ({self.clock.it(body)} {turns(body, *span)})"
+        if turns is None:
+            return ""
+        swing = self._swing(body, span)
+        when = f" from {self.clock.at(swing[0])} to {self.clock.at(swing[1])}"
+        return f"{when * (swing != span)} ({self.clock.it(body)} {turns(body, *swing)})"
+
+    def _swing(self, body: str, span: tuple[int, int]) -> tuple[int, int]:
+        """The motion to and fro of which a segment is a part, or else the segment itself."""
+        slack = in_frames(times().merge_ms, self.clock.rate_hz)
+        found = [
+            (min(last, span[1]) - max(first, span[0]), first, last)
+            for first, last in self.clock.measured.swings.get(body, ())
+            if first < span[1] and last > span[0]
+        ]
+        if not found:
+            return span
+        _, first, last = max(found)
+        return (first, last) if first < span[0] - slack or last > span[1] + slack else span
 
     def _turned_in_all(self, body: str, span: tuple[int, int]) -> str:
         """By what angle it turned, and how far a wrist takes what turns so far."""

@@ -140,8 +140,8 @@ FORMS = (
         lambda known, thing, hand, at: possessed(known, hand, thing, at),
     ),
     (
-        rf"the contact of the {NAME} with the {NAME} ended at {TIME}(?:; the border is at {TIME}, until "
-        "when one lay on the other)?",
+        rf"the contact of the {NAME} with the {NAME} ended at {TIME}(?:; the border is "
+        rf"at {TIME}, until when one lay on the other)?",
         ended,
     ),
     (

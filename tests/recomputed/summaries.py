@@ -396,9 +396,13 @@ def far_over(known: Known, body: str, before: str, after: str, most: str, least:
     )
 
 
-def turned_to_and_fro(known: Known, body: str, often: str, far: str) -> bool:
+def turned_to_and_fro(
+    known: Known, body: str, since: str, until_: str, often: str, far: str
+) -> bool:
     """So many extrema of a coordinate lie so far from the ones before and after."""
-    places = known.stream(body).positions[known.segment.first : known.segment.last].T
+    first = known.frame(since) if since else known.segment.first
+    last = known.frame(until_) if until_ else known.segment.last
+    places = known.stream(body).positions[first:last].T
     return max(extrema(place, _metres(far)) for place in places) == _count(often)
 
 
@@ -668,7 +672,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"the {NAME} at the start \({TIME}\) and until {TIME}", touched_until),
     (rf"{DEGREES} off straight up \({DEGREES} or less bears\)", pushed_at),
-    (rf"met the {NAME} from below at {TIME}", lambda known, body, other, at: any(
+    (rf"met the {NAME} from (?:below|the side) at {TIME}", lambda known, body, other, at: any(
         near(each.first, known.at(at))
         for each in (*known.touching(other, body), *known.touching(body, other)))),
     (rf"{DEGREES} off straight up; {DEGREES} or less bears", pushed_at),
@@ -686,7 +690,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"turned on its hinge from {NUMBER} rad to {NUMBER} rad open", swung),
     (r"turned back (\d+) times, in strokes of a finger's width and more", turned_back_so_often),
     (
-        rf"(?:it|they) turned back (never|once|twice|\d+ times) after ways of {LENGTH} or more",
+        rf"moved to and fro(?: from {TIME} to {TIME})? \((?:it|they) turned back "
+        rf"(never|once|twice|\d+ times) after ways of {LENGTH} or more\)",
         turned_to_and_fro,
     ),
     (
