@@ -12,6 +12,7 @@ from capar.model.facts import (
     ContactNormal,
     Displaced,
     Fact,
+    FlickerCorrection,
     Lies,
     Link,
     Moving,
@@ -123,6 +124,9 @@ class Measured:
     presses: Mapping[Pair, Mapping[int, Pressing]] = field(default_factory=dict)
     """The same: which way the first presses aside on the second [1/1000]."""
 
+    flickers: Mapping[Pair, Sequence[Frames]] = field(default_factory=dict)
+    """First and last frames in which two bodies are taken to touch that were measured apart."""
+
     lies: Mapping[tuple[str, str, str], Sequence[Frames]] = field(default_factory=dict)
     """First and last frames of how a body lies to another, by that and the two bodies."""
 
@@ -220,6 +224,7 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
     presses: dict[Pair, dict[int, Pressing]] = defaultdict(dict)
     closing: dict[Pair, dict[int, int]] = defaultdict(dict)
     lies: dict[tuple[str, str, str], list[Frames]] = defaultdict(list)
+    flickers: dict[Pair, list[Frames]] = defaultdict(list)
     shapeless: set[str] = set()
     for fact in facts:
         match fact:
@@ -231,6 +236,8 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
                 closing[fact.body, fact.other][fact.first] = fact.speed
             case PressDirection():
                 presses[fact.body, fact.other][fact.first] = fact.x, fact.y
+            case FlickerCorrection(taken="touching"):
+                flickers[fact.body, fact.other].append((fact.first, fact.last))
             case Lies():
                 lies[fact.how, fact.body, fact.other].append((fact.first, fact.last))
             case Shapeless():
@@ -238,7 +245,7 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
             case _:
                 pass
     found = replace(known, contacts=contacts, normals=normals, presses=presses, lies=lies)
-    return replace(found, closing=closing, shapeless=frozenset(shapeless))
+    return replace(found, closing=closing, flickers=flickers, shapeless=frozenset(shapeless))
 
 
 @dataclass(frozen=True)

@@ -183,8 +183,18 @@ class ContactsTold(ToldArgument):
 
     def _throughout(self) -> str:
         """Throughout the segment; as far as the two bodies beside this were tracked."""
-        lost = any(self._gaps_within(body) for body in self.beside[1:3])
-        return "throughout" + ", as far as tracked" * lost
+        one, other = self.beside[1:3]
+        lost = any(self._gaps_within(body) for body in (one, other))
+        span = self.clock.span(self.text) or (0, 0)
+        known = self.clock.measured.flickers
+        apart = {*known.get((one, other), ()), *known.get((other, one), ())}
+        spans = [
+            f"{self.clock.at(first)} to {self.clock.at(last)}"
+            for first, last in sorted(apart)
+            if first <= span[1] and last >= span[0]
+        ]
+        gaps = f" but for {' and '.join(spans)}" if spans else ""
+        return f"throughout{gaps}" + ", as far as tracked" * lost
 
     def _comes(self) -> str:
         """That the second argument comes to touch the third, or to be within their reach."""

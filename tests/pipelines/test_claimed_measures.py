@@ -109,7 +109,7 @@ def reads_as_told(mark: Mark, unit: str) -> bool:
     """Whether a mark's label is its value to rounding; its sign is told in words."""
     found = NUMBER.search(mark.label)
     if found is None:
-        return not mark.label
+        return mark.label in ("", "halt")
     number, told_unit = re.fullmatch(r"([\d.]+) ?(\D+)", found[0]).groups()
     value = abs(mark.value) * SCALES.get((unit, told_unit), 1.0)
     if mark.label.startswith("less than"):

@@ -12,6 +12,7 @@ from capar.model.facts import (
     ClosingSpeed,
     ContactNormal,
     Displaced,
+    FlickerCorrection,
     Posture,
     PressDirection,
     Resting,
@@ -357,6 +358,14 @@ def ends(known: Known, _: str, at: str) -> bool:
 def earlier(known: Known, _: str, at: str) -> bool:
     """It is before the segment's end."""
     return known.at(at) < known.segment.last
+
+
+def parted(known: Known, body: str, first: str, last: str) -> bool:
+    """A stretch that is taken for contact, though it was measured as none, lies there."""
+    return any(
+        near(each.first, known.at(first)) and near(each.last, known.at(last))
+        for each in known.of(FlickerCorrection)
+    )
 
 
 def precedes(known: Known, _: str, at: str) -> bool:
@@ -734,6 +743,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"stayed within {LENGTH} of its median place", kept_within),
     (rf"too little to count as motion \(more than {LENGTH} from where it rests\)", counts_from),
     (rf"no longer when last tracked \({TIME}\)", earlier),
+    (rf"throughout but for {TIME} to {TIME}", parted),
     (rf"at the start \({TIME}\)", starts),
     (rf"at the end \({TIME}\)", ends),
     (rf"until just before \({TIME}\)", precedes),
