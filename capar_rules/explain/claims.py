@@ -149,6 +149,7 @@ ROWS: Mapping[str, tuple[tuple[str, Bodies], ...]] = {
     "rests_afterwards": (("resting", (0,)),),
     "accompanied": (("touching", (END, ANY)),),
     "comes_to_lie": (("touching", (THING, ANY)), ("moving", (THING,))),
+    "moved_before": (("moving", (1,)), ("touching", (END, 1))),
     "from_rest": (("touching", (THING, ANY)), ("moving", (THING,))),
     "on": (("touching", (2, ANY)),),
     "sliding": (("touching", (THING, ANY)),),

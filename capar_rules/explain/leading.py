@@ -18,7 +18,7 @@ BORDERS = ("segment(", "border(", "member(")
 APART = ("no_contact", "uncounted")
 """Predicates of no contact that counts at a border; where that border lies is no reason."""
 
-BESIDE_BORDERS = ("met_gently(", "met_hard(", "newly_met(", "lets_go(", "takes(")
+BESIDE_BORDERS = ("met_gently(", "met_hard(", "newly_met(", "moved_before(", "lets_go(", "takes(")
 """Prefixes of atoms that say themselves when a contact began or ended."""
 
 DOUBTED = "doubted("

@@ -298,7 +298,7 @@ FORMS = (
         rf"the {NAME} (?:started from rest|left the [\w ]+)",
         lambda known, what: name(what) == known.segment.objects[0] and started_from_rest(known),
     ),
-    (rf"the {NAME} did not slide on any tracked object from start to end", not_slid),
+    (rf"the {NAME} was not slid on any tracked object", not_slid),
     (rf"the {NAME} did not come down to where it was then let go", not_put_down),
     (
         rf"the {NAME} touched none of the tracked objects when the segment began, nor when it "
@@ -313,7 +313,10 @@ FORMS = (
         borne,
     ),
     (rf"the {NAME} (?:met|struck) the {NAME} at (\d+) mm/s", met_at),
-    (rf"the {NAME} and the {NAME} approached each other at (\d+) mm/s, as measured", met_at),
+    (
+        rf"the relative speed of the {NAME} and the {NAME} was (\d+) mm/s, as their contact began",
+        met_at,
+    ),
     (
         rf"the {NAME} pressed on the {NAME} along \((-?\d+), (-?\d+), level\) thousandths,"
         rf" at {TIME}",

@@ -19,6 +19,7 @@ from capar.model.facts import (
     Touching,
 )
 from capar_rules.engine.solver import rule_file
+from recomputed.contacts import let_go, moved_before, took
 from recomputed.doors import NUMBER, slid, swung
 from recomputed.known import NAME, TIME, Known, covers, name, near
 from recomputed.motion import lasted, stroked
@@ -288,21 +289,6 @@ def met_hard(known: Known, body: str, other: str, speed: str) -> bool:
 def _met(known: Known, body: str, other: str, speed: str) -> bool:
     found = [each for each in known.of(ClosingSpeed) if each.speed == int(speed)]
     return (body, name(other)) in [(each.body, each.other) for each in found]
-
-
-def let_go(known: Known, body: str, thing: str, hand: str, at: str) -> bool:
-    """The one's contact with the thing ends then, and begins before that of the other one."""
-    own = [each for each in known.touching(body, thing) if near(each.last, known.at(at))]
-    theirs = known.touching(hand, thing)
-    began = any(one.first < other.first <= one.last for one in own for other in theirs)
-    return known.at(at) >= known.segment.last - 1 and began
-
-
-def took(known: Known, body: str, thing: str, at: str, hand: str, left: str) -> bool:
-    """The one's contact begins then, and outlasts that of the other one, which ends at left."""
-    own = [each for each in known.touching(body, thing) if near(each.first, known.at(at))]
-    ended = any(near(each.last, known.at(left)) for each in known.touching(hand, thing))
-    return ended and any(each.last > known.at(left) for each in own)
 
 
 def until(known: Known, body: str, at: str) -> bool:
@@ -636,6 +622,10 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (
         rf"reached the {NAME} at a relative speed of (\d+) mm/s \(a blow has 1000 mm/s or more\)",
         met_hard,
+    ),
+    (
+        rf"had moved before this, while the {NAME} touched it, from {TIME} on",
+        moved_before,
     ),
     (rf"had come to touch the {NAME} (?:before this, )?at {TIME}", met_first),
     (
