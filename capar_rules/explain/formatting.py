@@ -4,6 +4,7 @@ from capar_rules.borders.times import constants
 from capar_rules.explain import arrangements, quantities
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG
 from capar_rules.explain.told_argument import UNBOUND as UNBOUND
+from capar_rules.explain.told_arrangements import ArrangementsTold
 from capar_rules.explain.told_contacts import ContactsTold
 from capar_rules.explain.told_motions import BEARINGS, OF_ACTS, SHIFTS, SHORTFALLS, MotionsTold
 from capar_rules.explain.told_rests import RestsTold
@@ -28,7 +29,7 @@ OF_BODIES = (
 """Formats of a body, that tell of the segment beside it, or else of the one that is explained."""
 
 
-class Argument(ContactsTold, RestsTold, MotionsTold):
+class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
     """An argument, formatted as a name, a time or a distance."""
 
     def __format__(self, form: str) -> str:

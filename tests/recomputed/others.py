@@ -312,7 +312,7 @@ FORMS = (
         rf"in the contact that began at {TIME}",
         borne,
     ),
-    (rf"the {NAME} (?:met|struck) the {NAME} at (\d+) mm/s", met_at),
+    (rf"the {NAME} reached the {NAME} at a relative speed of (\d+) mm/s", met_at),
     (
         rf"the relative speed of the {NAME} and the {NAME} was (\d+) mm/s, as their contact began",
         met_at,
@@ -330,7 +330,7 @@ FORMS = (
     (rf"the {NAME} was met at its side, neither before, nor behind, nor above", met_aside),
     (rf"the {NAME} went at (\d+) mm/s when the {NAME} let it go", went_at),
     (rf"the {NAME} stayed with the {NAME}", clings),
-    (rf"the {NAME} was met as fast as by a blow", met_fast),
+    (rf"the {NAME} was reached as fast as by a blow", met_fast),
     (rf"the {NAME} had the {NAME} by then", another_had),
     (rf"the {NAME} had taken the {NAME} by then", another_took),
     (r"it was another agent who had it", stranger_had),
