@@ -12,7 +12,8 @@ from capar.pipelines.shown_recording import CENTI, MILLI, Recording
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG, steepest_deg
-from capar_rules.explain.claims import ANY, Measure, Quantity
+from capar_rules.explain.claimed_measures import ANY, Measure
+from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import LEAST_M, length, percent, upward
 from extractors.calibration import thresholds_of
 from extractors.contact.contacts import points_apart

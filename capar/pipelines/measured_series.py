@@ -19,7 +19,8 @@ from capar.pipelines.shown_recording import CENTI, MILLI, Recording
 from capar.views.lettering import Span
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
-from capar_rules.explain.claims import Measure, Quantity
+from capar_rules.explain.claimed_measures import Measure
+from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import LEAST_M, degrees, length, spread, upward
 from capar_rules.explain.quantities import change as change_of
 from extractors.calibration import thresholds_of

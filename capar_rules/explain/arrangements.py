@@ -114,7 +114,7 @@ def left(clock: Clock, segment: str) -> tuple[str, ...]:
 
 def laid(clock: Clock, segment: str) -> str:
     """How a thing that came down was left there; empty where its hold is not known."""
-    span, hand = clock.span(segment), hand_of(segment)
+    span = clock.span(segment)
     held = _held(clock, segment)
     if span is None or held is None:
         return ""
@@ -123,14 +123,13 @@ def laid(clock: Clock, segment: str) -> str:
         alone = (
             f", where {clock.it(clock.objects.get(segment, ''))} touched no other tracked object"
         )
-    it = clock.it(clock.objects.get(segment, ""), object_=True)
-    let_go = f"the {clock.called(hand)} let go of {it} at {clock.at(held[1])}"
+    let_go = _let_go(clock, segment, held[1])
     return f"was not moved again before {let_go}{alone}"
 
 
 def not_laid(clock: Clock, segment: str) -> str:
     """Why a thing was not put down; empty where that is not known."""
-    span, thing, hand = clock.span(segment), clock.objects.get(segment, ""), hand_of(segment)
+    span, thing = clock.span(segment), clock.objects.get(segment, "")
     places, held = clock.measured.places, _held(clock, segment)
     if span is None or held is None:
         return ""
@@ -144,13 +143,22 @@ def not_laid(clock: Clock, segment: str) -> str:
     again = [first for first, last in moves if last > span[1] and first < held[1]]
     if not again:
         return ""
-    it = clock.it(thing, object_=True)
-    let_go = f"the {clock.called(hand)} let go of {it} at {clock.at(held[1])}"
+    let_go = _let_go(clock, segment, held[1])
     if min(again) > span[1]:
         return f"was moved again from {clock.at(min(again))} on, before {let_go}"
     late = held[1] - span[1] > in_frames(times().merge_ms, clock.rate_hz)
     still = f"at the end ({clock.at(span[1])}), before" if late else "when"
     return f"was still moving {still} {let_go}"
+
+
+def _let_go(clock: Clock, segment: str, frame: int) -> str:
+    """When an end-effector let go of its thing, or, if not tracked then, was last seen at it."""
+    hand, thing = hand_of(segment), clock.objects.get(segment, "")
+    called, at, it = clock.called(hand), clock.at(frame), clock.it(thing, object_=True)
+    gaps = clock.measured.lost.get(hand, ())
+    if any(first <= frame + 1 <= last for first, last in gaps):
+        return f"the {called} was last tracked at {it}, at {at}"
+    return f"the {called} let go of {it} at {at}"
 
 
 def nearly_laid(clock: Clock, segment: str) -> float:

@@ -5,7 +5,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from capar_rules.explain.arrangements import untracked
-from capar_rules.explain.claims import ANY, Claim, Stretches, claim, joined_claims, resting_on
+from capar_rules.explain.claimed_measures import ANY
+from capar_rules.explain.claims import Claim, Stretches, claim, joined_claims, resting_on
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.leading import DOUBTED, nodes_below, parsed, rank

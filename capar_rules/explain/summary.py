@@ -4,7 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from capar_rules.explain.briefs import BOTH, Briefs, listed
-from capar_rules.explain.claims import Claim, Measure
+from capar_rules.explain.claimed_measures import Measure
+from capar_rules.explain.claims import Claim
 from capar_rules.explain.contrasts import MOST_NAMES, MOST_TOLD, Contrast
 from capar_rules.explain.leading import DOUBTED, OWN, leading, parsed, rank
 from capar_rules.explain.reason import Reason

@@ -20,7 +20,7 @@ from capar.pipelines.measured_rows import claimed_rows
 from capar.pipelines.shown_recording import Recording
 from capar.views.movers import mover_lines
 from capar.views.panels import Mark, Panel
-from capar_rules.explain.claims import ARRANGED, FORMS, PREDICATES, Measure
+from capar_rules.explain.claimed_measures import ARRANGED, FORMS, PREDICATES, Measure
 from capar_rules.explain.explanation import Explanation
 from capar_rules.explain.formatting import OF_BODIES
 

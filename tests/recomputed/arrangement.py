@@ -204,7 +204,8 @@ FORMS = (
     (rf"the {NAME} went ahead of the {NAME} \([^)]*; 45° or less is ahead\)", went_ahead),
     (rf"the {NAME} went after the {NAME} \([^)]*; 135° or more is after\)", went_after),
     (
-        rf"the {NAME} was not moved again before the {NAME} let go of it at {TIME}"
+        rf"the {NAME} was not moved again before the {NAME} (?:let go of it|was last tracked at "
+        rf"it,) at {TIME}"
         r"(?:, where it touched no other tracked object)?",
         came_to_lie,
     ),

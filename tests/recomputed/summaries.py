@@ -659,7 +659,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"rested from {TIME} on", rests_from),
     (rf"\({LENGTH} or more down count\)", came_down),
     (
-        rf"(?:before|when) the {NAME} let go of (?:it|them) at {TIME}",
+        rf"(?:before|when) the {NAME} (?:let go of|was last tracked at) (?:it|them),? at {TIME}",
         lambda known, _, hand, at: held_until(known, known.segment.objects[0], hand, at),
     ),
     (rf"was moved again from {TIME} on", moved_on),
