@@ -171,6 +171,8 @@ def signed(metres: float) -> str:
 def _aside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
     level = known.body(name).middles[:, :2]
+    limits = [_limit("aside_mm", "aside: {} or more")] * bool(forms - {"direction"})
+    limits += [_limit("slide_mm", "a direction counts from {} on")] * ("direction" in forms)
     away = np.linalg.norm(level - level[told.first], axis=1)
     end = float(away[told.last])
     rounded = np.diff(np.rint(MILLI * level[[told.first, told.last]]), axis=0)[0] / MILLI
@@ -178,7 +180,7 @@ def _aside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         f"{known.called(name)}: way to the side from where it was at {known.at(told.first):.2f} s",
         "cm",
         (known.curve(CENTI * away),),
-        (_limit("aside_mm", "aside: {} or more"),),
+        tuple(limits),
         (Mark(known.at(told.last), CENTI * end, length(math.hypot(*rounded))),),
     )
 

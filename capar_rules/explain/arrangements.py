@@ -59,6 +59,16 @@ def bearing(clock: Clock, segment: str) -> Bearing | None:
     return Bearing(_angle(line, course), _angle(press, course) if aside and press else None)
 
 
+def little_way(clock: Clock, segment: str) -> float | None:
+    """How far aside a segment's thing ended, if that is too near to tell a direction [m]."""
+    span, thing = clock.span(segment), clock.objects.get(segment, "")
+    ends = [clock.measured.places.get((thing, frame)) for frame in span or ()]
+    if len(ends) < 2 or ends[0] is None or ends[1] is None:
+        return None
+    aside = math.hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1])
+    return aside / 1000.0 if aside < constants()["slide_mm"] else None
+
+
 def _angle(one: tuple[int, int], other: tuple[int, int]) -> float:
     across = one[0] * other[1] - one[1] * other[0]
     return math.degrees(abs(math.atan2(across, one[0] * other[0] + one[1] * other[1])))

@@ -88,7 +88,10 @@ def claim(
     found: list[Quantity] = []
     frames: list[int] = []
     own = clock.span(clock.own) or (0, 0)
-    for measure, places in _measures(predicate, arguments):
+    if predicate == "goes_ahead" and arrangements.little_way(clock, clock.own) is not None:
+        thing = clock.objects.get(clock.own, "")
+        found.append(Quantity(Measure.ASIDE, (thing,), *own, form="direction"))
+    for measure, places in () if found else _measures(predicate, arguments):
         for bodies in _bodies(places, arguments, clock):
             halts = tuple(clock.strokes.get(clock.own, ())) if predicate in COUNTED else ()
             found.append(Quantity(measure, bodies, *own, halts=halts))

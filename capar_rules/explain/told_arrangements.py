@@ -1,5 +1,6 @@
 """How arguments tell arrangements: what bears or holds what, and which way a thing goes."""
 
+from capar_rules.borders.times import constants
 from capar_rules.explain import arrangements, quantities
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG
 from capar_rules.explain.told_argument import UNBOUND, ToldArgument
@@ -10,6 +11,11 @@ class ArrangementsTold(ToldArgument):
 
     def _bearing(self, form: str) -> str:
         """At which level angle to the line from the end-effector to its middle the thing went."""
+        little = arrangements.little_way(self.clock, self.text)
+        if little is not None:
+            least = quantities.length(constants()["slide_mm"] / 1000.0)
+            told = f" only {quantities.length(little)} to the side"
+            return f"{told}, less than the {least} from which on a direction counts"
         found = arrangements.bearing(self.clock, self.text)
         if found is None:
             return UNBOUND

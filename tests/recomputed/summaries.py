@@ -240,6 +240,12 @@ def too_little_aside(known: Known, body: str, aside: str, asked: str) -> bool:
     return _is(beside, aside) and beside < 0.1 + SMOOTHED_M and _asked("aside_mm", asked)
 
 
+def too_short_for_a_direction(known: Known, body: str, aside: str, asked: str) -> bool:
+    way = _shifted(known, body)
+    beside = math.hypot(way[0], way[1])
+    return _is(beside, aside) and beside < 0.05 + SMOOTHED_M and _asked("slide_mm", asked)
+
+
 def too_far(known: Known, body: str, far: str, asked: str) -> bool:
     return (
         ended_away(known, body, far)
@@ -606,6 +612,10 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"did not (rise|sink) \({LENGTH} or more count\)", not_steep),
     (rf"went further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
     (rf"went further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
+    (
+        rf"went only {LENGTH} to the side, less than the {LENGTH} from which on a direction counts",
+        too_short_for_a_direction,
+    ),
     (rf"went {LENGTH} to the side, less than the {LENGTH} that count", too_little_aside),
     (rf"ended {LENGTH} from where it began, not within {LENGTH}", too_far),
     (rf"went only {LENGTH}, less than the {LENGTH} of a slide", too_short_to_slide),
