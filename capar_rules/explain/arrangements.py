@@ -130,9 +130,7 @@ def laid(clock: Clock, segment: str) -> str:
         return ""
     alone = ""
     if not met_at(clock, segment, "end"):
-        alone = (
-            f", where {clock.it(clock.objects.get(segment, ''))} touched no other tracked object"
-        )
+        alone = f", where {clock.it(clock.objects.get(segment, ''))} counted as touching nothing else that is tracked"
     let_go = _let_go(clock, segment, held[1])
     return f"was not moved again before {let_go}{alone}"
 

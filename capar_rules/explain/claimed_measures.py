@@ -114,7 +114,7 @@ PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
     **dict.fromkeys(("turns_back_fast", "strokes", "stirring"), ((Measure.TO_AND_FRO, (THING,)),)),
     "goes_ahead": ((Measure.BEARING, (END, THING)),),
     "comes_to_lie": ((Measure.HEIGHT, (THING,)), _HELD),
-    "from_rest": ((Measure.DISTANCE, (THING, LEFT)),),
+    "from_rest": ((Measure.DISTANCE, (THING, LEFT)), _HELD),
     "free": ((Measure.DISTANCE, (THING, MET)),),
     "on": ((Measure.BORNE, (2, 3)),),
     "against": ((Measure.BORNE, (2, 3)), (Measure.DISTANCE, (2, 3))),

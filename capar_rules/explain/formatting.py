@@ -80,6 +80,7 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
             "palm": self._palm,
             "poised": self._poised,
             "struck": self._struck,
+            "moved_in_hand": self._moved_in_hand,
             "unslid": self._unslid,
             "throughout": self._throughout,
             "comes": self._comes,

@@ -234,10 +234,9 @@ def _little(aside_mm: float, z_mm: float, wanted_mm: float) -> Shortfall:
     height, least = _apart(abs(z_mm), known["height_mm"])
     aside, far = _apart(aside_mm, known["aside_mm"])
     rise = f"{height} {'higher' if z_mm > 0.0 else 'lower'}"
-    beside = f"{aside} to the side"
-    parts = [rise] * (abs(z_mm) >= LEVEL_MM) + [beside] * (aside_mm >= LEVEL_MM)
     text = (
-        f"ended only {' and '.join(parts)} ({least} up or down, or {far} to the side, would count)"
+        f"ended only {rise} and {aside} to the side ({least} up or down, or {far} to the side, "
+        "would count)"
     )
     share = max(abs(z_mm) / known["height_mm"], aside_mm / known["aside_mm"])
     return Shortfall(text, share if wanted_mm >= 0.0 else FAR_OFF)

@@ -1,5 +1,6 @@
 """The summary of an explanation: the name's conditions, and what decided against neighbours."""
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -56,10 +57,11 @@ def summary(
         told += _by_subject(own, subjects) + f". Also, {_by_subject(more, subjects)}" * bool(more)
     else:
         told += _by_subject(clauses, subjects)
+    fresh = [_shortened(each, clauses, briefs) for each in fresh]
     for number, contrast in enumerate(fresh):
         told += f"{';' if number else '.'} {'n' if number else 'N'}ot {contrast.sentence}"
     said = [*clauses, *(clause for each in fresh for clause in each.clauses)]
-    said += [clause for each in (*alike, *fresh) for clause in each.though]
+    said += [clause for each in fresh for clause in each.though]
     every = (briefs.claims.get(each.removesuffix(BOTH)) for each in dict.fromkeys(said))
     claims = [each for each in every if each is not None]
     mended = briefs.clauses(doubts)
@@ -77,6 +79,15 @@ def _goes(claim: Claim | None) -> bool:
     )
 
 
+def _shortened(contrast: Contrast, clauses: Sequence[str], briefs: Briefs) -> Contrast:
+    """A contrast without the numbers in brackets of clauses that the summary tells before."""
+    short = {each: re.sub(r" \([^()]*\)", "", each) for each in contrast.clauses if each in clauses}
+    for each, text in short.items():
+        if each in briefs.claims:
+            briefs.claims.setdefault(text, replace(briefs.claims[each], text=text))
+    return replace(contrast, clauses=tuple(short.get(each, each) for each in contrast.clauses))
+
+
 def _told_contrasts(
     against: Sequence[Contrast], clauses: Sequence[str], most: int
 ) -> tuple[list[Contrast], list[Contrast]]:
@@ -85,9 +96,9 @@ def _told_contrasts(
     Names of the latter are denied by what the summary says of its own. Names of other features are
     told only where too few others are; so many are told at most.
     """
-    fresh = [each for each in against if each.clause not in clauses]
-    same = [each for each in against if each not in fresh and (each.failing == 1 or each.though)]
-    alike = [each for each in same if not each.by_features or each.though]
+    fresh = [each for each in against if each.though or each.clause not in clauses]
+    same = [each for each in against if each not in fresh and each.failing == 1]
+    alike = [each for each in same if not each.by_features]
     near = [each for each in fresh if not each.by_features and not each.weak]
     fresh = near or [each for each in fresh if each.by_features]
     count = min(MOST_NAMES, sum(len(each.names) for each in alike))
@@ -96,14 +107,12 @@ def _told_contrasts(
     if count + len(fresh) < MOST_TOLD:
         others = [each for each in same if each not in alike]
         alike += others[: MOST_TOLD - count - len(fresh)]
-    return fresh, sorted(alike, key=lambda each: bool(each.though))
+    return fresh, alike
 
 
 def _names(alike: Sequence[Contrast]) -> list[str]:
     """The names of contrasts that need no reason, and what was so though they are denied."""
-    plain = [name for each in alike if not each.though for name in each.names]
-    seen = [each.called for each in alike if each.though]
-    return [*plain[: max(MOST_NAMES - len(seen), 0)], *seen]
+    return [name for each in alike for name in each.names][:MOST_NAMES]
 
 
 def _subjects(nodes: Iterable[Reason], briefs: Briefs) -> list[str]:

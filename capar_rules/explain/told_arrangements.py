@@ -23,13 +23,15 @@ class ArrangementsTold(ToldArgument):
         line = f"to the level line from the {hand} to the middle of the {thing}"
         ahead, after = f"{AHEAD_DEG:.0f}° or less is ahead", f"{AFTER_DEG:.0f}° or more is after"
         if form.startswith("not_"):
-            whither = f"neither after the {hand} nor ahead of it, but"
+            whither = (
+                f", from start to end as a whole, neither after the {hand} nor ahead of it, but"
+            )
             if found.offset_deg >= AFTER_DEG:
-                whither = f"after the {hand}, and not ahead of it,"
+                whither = f", from start to end as a whole, after the {hand}, and not ahead of it,"
             if found.offset_deg <= AHEAD_DEG:
-                whither = f"ahead of the {hand}, and not after it,"
+                whither = f", from start to end as a whole, ahead of the {hand}, and not after it,"
             angle = f"{found.offset_deg:.0f}°"
-            return f" {whither} at {angle} {line} ({after}, {ahead})"
+            return f"{whither} at {angle} {line} ({after}, {ahead})"
         if form == "ahead" and found.by_press:
             line = f"to the direction in which the {hand} pressed it"
             return f" (at {found.press_deg:.0f}° {line}; {ahead})"
@@ -140,6 +142,18 @@ class ArrangementsTold(ToldArgument):
         begins = any(first == frame for first, _ in spans)
         ends = any(last == frame for _, last in spans)
         return "became level" if begins and not ends else "ceased to be level" * ends
+
+    def _moved_in_hand(self) -> str:
+        """That what a segment moves had moved before in the same hold, so that it began nowhere."""
+        span, hand = self.clock.span(self.text), self._hand
+        thing = self.clock.objects.get(self.text, "")
+        held = self._met_near(hand, thing, span[0]) if span else None
+        moves = self.clock.measured.moving.get(thing, ())
+        if span and held and any(first < span[0] and last > held[0] for first, last in moves):
+            since = self.clock.at(held[0])
+            contact = f"the same contact with the {self.clock.called(hand)} (since {since})"
+            return f" and had moved before in {contact}"
+        return ", so that it was lifted off none"
 
     def _unslid(self) -> str:
         """That the segment's object stayed on nothing, where it touches nothing at both borders."""

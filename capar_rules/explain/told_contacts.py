@@ -78,7 +78,7 @@ class ContactsTold(ToldArgument):
         """Where the border of the end of a contact stands, if not where that ends."""
         ended = type(self)(self.beside[5], self.beside, self.clock)._ended_at()
         told = self.clock.at(self.clock.frames[self.beside[0]][int(self.text)])
-        until = f"; the border is at {told}, until when one lay on the other"
+        until = f"; the border is at {told}, from when on they came apart"
         return "" if told == ended else until
 
     def _throughout(self) -> str:
@@ -154,7 +154,9 @@ class ContactsTold(ToldArgument):
         segment, other, thing, last = self.beside
         hand = self.clock.called(arrangements.hand_of(segment))
         touched, did = self._touched(other, thing)
-        return f"{touched} from before the {hand} {did} until {self._when_of(int(last))}"
+        came = "to be so near" if did == "was" else "to touch it"
+        until = self._when_of(int(last))
+        return f"{touched} already when the {hand} came {came}, and until {until}"
 
     def _takes(self) -> str:
         """Since when another one touches the object of a segment, that is let go of there."""

@@ -16,8 +16,8 @@ def touching(nodes: Iterable[Reason], clock: Clock) -> str:
     bodies: list[str] = []
     for each in nodes:
         predicate, arguments = parsed(each.atom)
-        if predicate in ("contact_at", "no_contact"):
-            one, other = arguments[1:3] if predicate == "contact_at" else arguments[2:4]
+        if predicate in ("contact_at", "no_contact", "takes", "lets_go"):
+            one, other = arguments[2:4] if predicate == "no_contact" else arguments[1:3]
             reach = measured.reaches.get((one, other))
             bodies += [one, other]
             if reach:

@@ -201,12 +201,19 @@ FORMS = (
     (rf"the {NAME} was above the {NAME} at the segment's (start|end)", was_above),
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),
     (rf"the {NAME} dipped into the {NAME} at the segment's (start|end)", dipped),
-    (rf"the {NAME} went ahead of the {NAME} \([^)]*; 45° or less is ahead\)", went_ahead),
-    (rf"the {NAME} went after the {NAME} \([^)]*; 135° or more is after\)", went_after),
+    (
+        rf"the {NAME} went, from start to end as a whole, ahead of the {NAME} \([^)]*; 45° or less is ahead\)",
+        went_ahead,
+    ),
+    (
+        rf"the {NAME} went, from start to end as a whole, after the {NAME} "
+        r"\([^)]*; 135° or more is after\)",
+        went_after,
+    ),
     (
         rf"the {NAME} was not moved again before the {NAME} (?:let go of it|was last tracked at "
         rf"it,) at {TIME}"
-        r"(?:, where it touched no other tracked object)?",
+        r"(?:, where it counted as touching nothing else that is tracked)?",
         came_to_lie,
     ),
 )

@@ -152,7 +152,7 @@ FORMS = (
     ),
     (
         rf"the contact of the {NAME} with the {NAME} ended at {TIME}(?:; the border is "
-        rf"at {TIME}, until when one lay on the other)?",
+        rf"at {TIME}, from when on they came apart)?",
         ended,
     ),
     (
@@ -179,8 +179,8 @@ FORMS = (
         newly_met,
     ),
     (
-        rf"the {NAME} (?:touched|was within \d+ mm of) the {NAME} from before the {NAME} "
-        rf"(?:was|did) until (?:after this, )?at {TIME}",
+        rf"the {NAME} (?:touched|was within \d+ mm of) the {NAME} already when the "
+        rf"{NAME} came to (?:be so near|touch it), and until (?:after this, )?at {TIME}",
         let_go,
     ),
     (

@@ -637,10 +637,14 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         rf"had moved before this, while the {NAME} touched it, from {TIME} on",
         moved_before,
     ),
+    (
+        rf"had moved before in the same contact with the {NAME} \(since {TIME}\)",
+        moved_before,
+    ),
     (rf"had come to touch the {NAME} (?:before this, )?at {TIME}", met_first),
     (
-        rf"(?:touched|was within \d+ mm of) the {NAME} from before the {NAME} (?:was|did) until "
-        rf"(?:after this, )?at {TIME}",
+        rf"(?:touched|was within \d+ mm of) the {NAME} already when the {NAME} came to "
+        rf"(?:be so near|touch it), and until (?:after this, )?at {TIME}",
         let_go,
     ),
     (
