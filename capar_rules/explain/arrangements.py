@@ -130,7 +130,8 @@ def laid(clock: Clock, segment: str) -> str:
         return ""
     alone = ""
     if not met_at(clock, segment, "end"):
-        alone = f", where {clock.it(clock.objects.get(segment, ''))} counted as touching nothing else that is tracked"
+        it = clock.it(clock.objects.get(segment, ""))
+        alone = f", where {it} counted as touching nothing else that is tracked"
     let_go = _let_go(clock, segment, held[1])
     return f"was not moved again before {let_go}{alone}"
 

@@ -202,7 +202,8 @@ FORMS = (
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),
     (rf"the {NAME} dipped into the {NAME} at the segment's (start|end)", dipped),
     (
-        rf"the {NAME} went, from start to end as a whole, ahead of the {NAME} \([^)]*; 45° or less is ahead\)",
+        rf"the {NAME} went, from start to end as a whole, ahead of the {NAME} "
+        r"\([^)]*; 45° or less is ahead\)",
         went_ahead,
     ),
     (
