@@ -85,11 +85,16 @@ def measured_panels(seen: Explained, told: Explanation) -> tuple[Panel, ...]:
     """A panel for each quantity that the summary speaks of, in its order."""
     span = shown_span(seen, told)
     forms: dict[Quantity, set[str]] = defaultdict(set)
+    halts: dict[Quantity, set[int]] = defaultdict(set)
     for claim in told.claims:
         for quantity in claim.quantities:
-            forms[replace(quantity, form="")].add(quantity.form)
+            shown = replace(quantity, form="", halts=())
+            forms[shown].add(quantity.form)
+            halts[shown].update(quantity.halts)
     found = (
-        SERIES[quantity.measure](Recording(seen, span), quantity, frozenset(said))
+        SERIES[quantity.measure](
+            Recording(seen, span), replace(quantity, halts=tuple(halts[quantity])), frozenset(said)
+        )
         for quantity, said in forms.items()
     )
     return tuple(panel for panel in found if panel is not None)

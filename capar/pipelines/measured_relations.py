@@ -12,7 +12,8 @@ from capar.pipelines.shown_recording import CENTI, MILLI, Recording
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG, steepest_deg
-from capar_rules.explain.claims import ANY, Measure, Quantity
+from capar_rules.explain.claimed_measures import ANY, Measure
+from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import LEAST_M, length, percent, upward
 from extractors.calibration import thresholds_of
 from extractors.contact.contacts import points_apart
@@ -115,8 +116,8 @@ def _closing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     near = min(met, key=lambda fact: abs(fact.first - told.last), default=None)
     blow = constants()["blow_mm_s"]
     return Panel(
-        f"{known.called(one)} and {known.called(other)}: relative speed of their middles, the "
-        f"greatest in the last {APPROACH_S:.2f} s",
+        f"{known.called(one)} and {known.called(other)}: relative speed of their middles in any "
+        f"direction, the greatest in the last {APPROACH_S:.2f} s",
         "mm/s",
         (Curve(known.times, speeds),),
         (Limit(float(blow), f"a blow: {blow} mm/s or more"),),

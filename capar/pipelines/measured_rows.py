@@ -8,7 +8,8 @@ from capar.pipelines.shown_recording import Recording
 from capar.views.lettering import Span
 from capar.views.movers import MoverStretches
 from capar.views.panels import Row
-from capar_rules.explain.claims import ANY, Claim, Stretches
+from capar_rules.explain.claimed_measures import ANY
+from capar_rules.explain.claims import Claim, Stretches
 from capar_rules.explain.instants import STRETCHES
 
 LABELS: Mapping[str, str] = {

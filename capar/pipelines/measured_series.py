@@ -19,7 +19,8 @@ from capar.pipelines.shown_recording import CENTI, MILLI, Recording
 from capar.views.lettering import Span
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
-from capar_rules.explain.claims import Measure, Quantity
+from capar_rules.explain.claimed_measures import Measure
+from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import LEAST_M, degrees, length, spread, upward
 from capar_rules.explain.quantities import change as change_of
 from extractors.calibration import thresholds_of
@@ -88,14 +89,16 @@ def _spread(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     inside = middles[told.first : told.last + 1]
     away = np.linalg.norm(middles - np.nanmedian(inside, axis=0), axis=1)
     far = told.first + int(np.nanargmax(away[told.first : told.last + 1]))
+    thing = known.is_object(name)
     return Panel(
         f"{known.called(name)}: distance from its median place",
         "cm",
         (known.curve(CENTI * away),),
-        (known.floor(name),) if known.is_object(name) else (),
+        (known.floor(name),) if thing else (),
         (Mark(known.at(far), CENTI * away[far], f"at most {spread(away[far])}"),),
-        known.bars(Moving, object=name),
-        "counts as moving",
+        known.bars(Moving, object=name) if thing else known.bars(Resting, ee=name),
+        "counts as moving" if thing else "counts as at rest",
+        lost=known.lost(name),
     )
 
 
@@ -134,26 +137,42 @@ def _height(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     up = height - height[told.first]
     end = float(up[told.last])
     rounded = np.diff(np.rint(MILLI * height[[told.first, told.last]]))[0] / MILLI
-    marks = [Mark(known.at(told.last), CENTI * end, length(abs(rounded)))]
+    marks = [Mark(known.at(told.last), CENTI * end, signed(rounded))]
     inside, least = up[told.first : told.last + 1], constants()["height_mm"] / MILLI
     if "course" in forms and np.nanmax(inside) - max(end, 0.0) >= least:
         top = told.first + int(np.nanargmax(inside))
         marks.append(Mark(known.at(top), CENTI * float(up[top]), f"{spread(up[top])} at most"))
     if "course" in forms and min(end, 0.0) - np.nanmin(inside) >= least:
         low = told.first + int(np.nanargmin(inside))
-        marks.append(Mark(known.at(low), CENTI * float(up[low]), f"{spread(-up[low])} at most"))
+        marks.append(
+            Mark(known.at(low), CENTI * float(up[low]), f"{MINUS}{spread(-up[low])} at most")
+        )
+    limits = (
+        _limit("height_mm", "up: {} or more"),
+        _limit("height_mm", "down: {} or more", sign=-1.0),
+    )
     return Panel(
         f"{known.called(name)}: height above where it was at {known.at(told.first):.2f} s",
         "cm",
         (known.curve(CENTI * up),),
-        (_limit("height_mm", "up: {} or more"), _limit("height_mm", "down: {} or more", sign=-1.0)),
+        tuple(limit for limit in limits if limit.value * end >= 0.0),
         tuple(marks),
     )
+
+
+MINUS = "\u2212"
+
+
+def signed(metres: float) -> str:
+    """A height, with a minus where it is below."""
+    return f"{MINUS * bool(metres < 0.0)}{length(abs(metres))}"
 
 
 def _aside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
     level = known.body(name).middles[:, :2]
+    limits = [_limit("aside_mm", "aside: {} or more")] * bool(forms - {"direction"})
+    limits += [_limit("slide_mm", "a direction counts from {} on")] * ("direction" in forms)
     away = np.linalg.norm(level - level[told.first], axis=1)
     end = float(away[told.last])
     rounded = np.diff(np.rint(MILLI * level[[told.first, told.last]]), axis=0)[0] / MILLI
@@ -161,7 +180,7 @@ def _aside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         f"{known.called(name)}: way to the side from where it was at {known.at(told.first):.2f} s",
         "cm",
         (known.curve(CENTI * away),),
-        (_limit("aside_mm", "aside: {} or more"),),
+        tuple(limits),
         (Mark(known.at(told.last), CENTI * end, length(math.hypot(*rounded))),),
     )
 
@@ -240,11 +259,11 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         f"{known.called(name)}: speed{since}",
         "mm/s",
         (known.curve(MILLI * paces(poses.smooth, rate, limits)[0]),),
-        (Limit(slow, f"may be at rest below {slow:.0f} mm/s"),),
+        (Limit(slow, f"a rest begins below {slow:.0f} mm/s"),),
         bars=_free_rests(known, name) if since else known.bars(Resting, ee=name),
         bars_label=f"at rest for {least:.2f} s or more, touching nothing"
         if since
-        else f"counts as at rest; a rest lasts {least:.2f} s or more",
+        else f"counts as at rest: slow, then at that place; a rest lasts {least:.2f} s or more",
         highest=FAST * slow,
         lost=known.lost(name),
         span_s=(known.at(known.span[0]), known.at(known.span[1])) if since else None,
@@ -272,11 +291,15 @@ def _to_and_fro(known: Recording, told: Quantity, forms: frozenset[str]) -> Pane
     places = CENTI * (places - np.nanmean(places[told.first : told.last + 1]))
     sense = ("along the x axis", "along the y axis", "up and down")[axis]
     least = length(limits.swing_m)
+    halts = "; halt: turns back where the hand halts" * bool(told.halts)
     return Panel(
-        f"{known.called(name)}: place {sense}; red: turns back after {least} or more",
+        f"{known.called(name)}: place {sense}; red: turns back after {least} or more{halts}",
         "cm",
         (known.curve(places),),
-        marks=tuple(Mark(known.at(int(at)), float(places[at])) for at in turns),
+        marks=(
+            *(Mark(known.at(int(at)), float(places[at])) for at in turns),
+            *(Mark(known.at(at), float(places[at]), "halt") for at in sorted(told.halts)),
+        ),
         bars=known.bars(Swings, body=name),
         bars_label="counts as to and fro",
     )

@@ -97,10 +97,10 @@ def _figure(picture: MeasuredPicture) -> "Figure":
         figure.text(EDGE_IN / WIDTH_IN, y, line, fontsize=9.5, color=INK, va="top")
     top = head
     span_s, chosen = picture.span_s, picture.chosen
-    _strip(_axes(figure, top, STRIP_IN, span_s), picture.segments, chosen, span_s)
-    top += STRIP_IN
-    last = None
+    last, stripped = None, False
     for panel in sorted(picture.panels, key=lambda panel: panel.span_s is None):
+        if panel.span_s is None and not stripped:
+            top, stripped = _with_strip(figure, top, picture), True
         own = panel.span_s or span_s
         last = _axes(figure, top + CAPTION_IN, PANEL_IN, own)
         _panel(last, panel, chosen, own)
@@ -109,6 +109,8 @@ def _figure(picture: MeasuredPicture) -> "Figure":
             last.tick_params(axis="x", labelbottom=False)
         else:
             top += TICKS_IN
+    if not stripped:
+        top = _with_strip(figure, top, picture)
     if picture.rows:
         top += GAP_IN
         tall = ROW_IN * len(picture.rows)
@@ -118,6 +120,13 @@ def _figure(picture: MeasuredPicture) -> "Figure":
         last.tick_params(axis="x", labelbottom=True)
         last.set_xlabel("time [s]", fontsize=9, color=QUIET, labelpad=2)
     return figure
+
+
+def _with_strip(figure: "Figure", top_in: float, picture: MeasuredPicture) -> float:
+    """Draw the strip of segments above the panels of its own times; where it ends [inches]."""
+    axes = _axes(figure, top_in, STRIP_IN, picture.span_s)
+    _strip(axes, picture.segments, picture.chosen, picture.span_s)
+    return top_in + STRIP_IN
 
 
 def _axes(figure: "Figure", top_in: float, tall_in: float, span_s: tuple[float, float]) -> "Axes":

@@ -59,6 +59,16 @@ def bearing(clock: Clock, segment: str) -> Bearing | None:
     return Bearing(_angle(line, course), _angle(press, course) if aside and press else None)
 
 
+def little_way(clock: Clock, segment: str) -> float | None:
+    """How far aside a segment's thing ended, if that is too near to tell a direction [m]."""
+    span, thing = clock.span(segment), clock.objects.get(segment, "")
+    ends = [clock.measured.places.get((thing, frame)) for frame in span or ()]
+    if len(ends) < 2 or ends[0] is None or ends[1] is None:
+        return None
+    aside = math.hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1])
+    return aside / 1000.0 if aside < constants()["slide_mm"] else None
+
+
 def _angle(one: tuple[int, int], other: tuple[int, int]) -> float:
     across = one[0] * other[1] - one[1] * other[0]
     return math.degrees(abs(math.atan2(across, one[0] * other[0] + one[1] * other[1])))
@@ -114,18 +124,21 @@ def left(clock: Clock, segment: str) -> tuple[str, ...]:
 
 def laid(clock: Clock, segment: str) -> str:
     """How a thing that came down was left there; empty where its hold is not known."""
-    span, hand = clock.span(segment), hand_of(segment)
+    span = clock.span(segment)
     held = _held(clock, segment)
     if span is None or held is None:
         return ""
-    alone = ", touching no other tracked object" * (not met_at(clock, segment, "end"))
-    let_go = f"the {clock.called(hand)} let go of it at {clock.at(held[1])}"
+    alone = ""
+    if not met_at(clock, segment, "end"):
+        it = clock.it(clock.objects.get(segment, ""))
+        alone = f", where {it} counted as touching nothing else that is tracked"
+    let_go = _let_go(clock, segment, held[1])
     return f"was not moved again before {let_go}{alone}"
 
 
 def not_laid(clock: Clock, segment: str) -> str:
     """Why a thing was not put down; empty where that is not known."""
-    span, thing, hand = clock.span(segment), clock.objects.get(segment, ""), hand_of(segment)
+    span, thing = clock.span(segment), clock.objects.get(segment, "")
     places, held = clock.measured.places, _held(clock, segment)
     if span is None or held is None:
         return ""
@@ -139,9 +152,22 @@ def not_laid(clock: Clock, segment: str) -> str:
     again = [first for first, last in moves if last > span[1] and first < held[1]]
     if not again:
         return ""
-    when = clock.at(max(min(again), span[1]))
-    until = f"the {clock.called(hand)} held it until {clock.at(held[1])}"
-    return f"was moved on in the hand from {when} on ({until})"
+    let_go = _let_go(clock, segment, held[1])
+    if min(again) > span[1]:
+        return f"was moved again from {clock.at(min(again))} on, before {let_go}"
+    late = held[1] - span[1] > in_frames(times().merge_ms, clock.rate_hz)
+    still = f"at the end ({clock.at(span[1])}), before" if late else "when"
+    return f"was still moving {still} {let_go}"
+
+
+def _let_go(clock: Clock, segment: str, frame: int) -> str:
+    """When an end-effector let go of its thing, or, if not tracked then, was last seen at it."""
+    hand, thing = hand_of(segment), clock.objects.get(segment, "")
+    called, at, it = clock.called(hand), clock.at(frame), clock.it(thing, object_=True)
+    gaps = clock.measured.lost.get(hand, ())
+    if any(first <= frame + 1 <= last for first, last in gaps):
+        return f"the {called} was last tracked at {it}, at {at}"
+    return f"the {called} let go of {it} at {at}"
 
 
 def nearly_laid(clock: Clock, segment: str) -> float:

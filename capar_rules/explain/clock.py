@@ -12,9 +12,11 @@ from capar.model.facts import (
     ContactNormal,
     Displaced,
     Fact,
+    FlickerCorrection,
     Lies,
     Link,
     Moving,
+    Phase,
     Place,
     Posture,
     PressDirection,
@@ -94,6 +96,9 @@ class Measured:
     turns: TurnsBack | None = None
     """How often bodies turned back; None where that is not known."""
 
+    level: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
+    """First and last frames of the level parts of objects' motions, by object."""
+
     swings: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
     """First and last frames of the measured motions to and fro, by object."""
 
@@ -118,6 +123,9 @@ class Measured:
 
     presses: Mapping[Pair, Mapping[int, Pressing]] = field(default_factory=dict)
     """The same: which way the first presses aside on the second [1/1000]."""
+
+    flickers: Mapping[Pair, Sequence[Frames]] = field(default_factory=dict)
+    """First and last frames in which two bodies are taken to touch that were measured apart."""
 
     lies: Mapping[tuple[str, str, str], Sequence[Frames]] = field(default_factory=dict)
     """First and last frames of how a body lies to another, by that and the two bodies."""
@@ -170,6 +178,7 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
     displaced: dict[str, list[tuple[int, int]]] = defaultdict(list)
     rests: dict[str, list[tuple[int, int]]] = defaultdict(list)
     swings: dict[str, list[tuple[int, int]]] = defaultdict(list)
+    level: dict[str, list[tuple[int, int]]] = defaultdict(list)
     held: dict[str, list[tuple[str, int, int]]] = defaultdict(list)
     places, postures, travelled, touched = {}, {}, {}, False
     every = list(facts)
@@ -186,6 +195,8 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
                 places[fact.body, fact.frame] = fact.x, fact.y, fact.z
             case Posture():
                 postures[fact.body, fact.frame] = fact.lean, fact.spin
+            case Phase(kind="level"):
+                level[fact.object].append((fact.first, fact.last))
             case Swings():
                 swings[fact.body].append((fact.first, fact.last))
             case Travelled():
@@ -197,7 +208,9 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
                 touched = True
             case _:
                 pass
-    found = replace(known, moving=moving, rests=rests, places=places, postures=postures)
+    found = replace(
+        known, moving=moving, level=level, rests=rests, places=places, postures=postures
+    )
     found = _of_pairs(every, found)
     return replace(
         found, displaced=displaced, swings=swings, travelled=travelled, held=held, tracked=touched
@@ -211,6 +224,7 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
     presses: dict[Pair, dict[int, Pressing]] = defaultdict(dict)
     closing: dict[Pair, dict[int, int]] = defaultdict(dict)
     lies: dict[tuple[str, str, str], list[Frames]] = defaultdict(list)
+    flickers: dict[Pair, list[Frames]] = defaultdict(list)
     shapeless: set[str] = set()
     for fact in facts:
         match fact:
@@ -222,6 +236,8 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
                 closing[fact.body, fact.other][fact.first] = fact.speed
             case PressDirection():
                 presses[fact.body, fact.other][fact.first] = fact.x, fact.y
+            case FlickerCorrection(taken="touching"):
+                flickers[fact.body, fact.other].append((fact.first, fact.last))
             case Lies():
                 lies[fact.how, fact.body, fact.other].append((fact.first, fact.last))
             case Shapeless():
@@ -229,7 +245,7 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
             case _:
                 pass
     found = replace(known, contacts=contacts, normals=normals, presses=presses, lies=lies)
-    return replace(found, closing=closing, shapeless=frozenset(shapeless))
+    return replace(found, closing=closing, flickers=flickers, shapeless=frozenset(shapeless))
 
 
 @dataclass(frozen=True)
@@ -253,8 +269,8 @@ class Clock:
     met: Mapping[tuple[str, str, str], Sequence[str]] = field(default_factory=dict)
     """What a body touches at a side of a segment, by segment, side and body."""
 
-    strokes: Mapping[str, int] = field(default_factory=dict)
-    """How often what a segment moves turned back, by the segment's term; absent if never."""
+    strokes: Mapping[str, Sequence[int]] = field(default_factory=dict)
+    """At which halts of the hand what a segment moves turned back, by the segment's term."""
 
     own: str = ""
     """The term of the segment that is explained."""
@@ -268,6 +284,12 @@ class Clock:
     def called(self, name: str) -> str:
         """A body as sentences call it."""
         return self.measured.names.get(name, name.replace("_", " "))
+
+    def it(self, name: str, *, object_: bool = False) -> str:
+        """The pronoun of a body, as a subject or as an object."""
+        if self.called(name) in self.several:
+            return "them" if object_ else "they"
+        return "it"
 
     def at(self, frame: int) -> str:
         """A frame as a time."""

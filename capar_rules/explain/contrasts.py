@@ -10,7 +10,6 @@ from capar_rules.engine.syntax import Literal, split_arguments
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.condition_matching import Atoms, Match, valued
 from capar_rules.explain.derivations import Derivations
-from capar_rules.explain.formatting import UNBOUND
 from capar_rules.explain.neighbours import (
     FEATURE,
     Neighbour,
@@ -21,6 +20,7 @@ from capar_rules.explain.neighbours import (
 )
 from capar_rules.explain.rule_base import RuleBase
 from capar_rules.explain.rule_forms import VARIABLE, Form
+from capar_rules.explain.told_argument import UNBOUND
 
 MOST_FAILING = 2
 """A name whose rules all lack more conditions than that is not near."""
@@ -79,13 +79,16 @@ class Contrast:
     though: tuple[str, ...] = ()
     """What would have been seen of the names, and was so."""
 
+    below: bool = False
+    """Whether the first name specialises the segment's own."""
+
     numbered: bool = False
     """Whether what is told has a number."""
 
     @property
     def weak(self) -> bool:
         """Whether it is too far off to be told where a more general name can be told instead."""
-        far = self.failing > 1 and not self.numbered
+        far = self.failing > 1 and not self.numbered and not self.below
         return (self.by_features or far) and not self.though
 
     def told_as(self, other: "Contrast") -> bool:
@@ -236,6 +239,7 @@ def _of_neighbour(
             by_features=featured,
             failing=len(clauses),
             though=though,
+            below=other.below,
             numbered=bool(re.search(r"\d", "".join(clauses[place]))),
         )
         related = other.steps, *other.distance(form)

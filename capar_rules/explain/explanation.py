@@ -14,17 +14,19 @@ from capar.model.par import UNKNOWN
 from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.syntax import Place, Statement, parse_text
+from capar_rules.explain.briefs import Briefs
 from capar_rules.explain.claims import Claim
 from capar_rules.explain.clock import Clock, Measured, measured_by
 from capar_rules.explain.contrasts import Contrast, Wording, contrasts
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.instants import corrected, frames_of
+from capar_rules.explain.leading import bit
 from capar_rules.explain.near_misses import more_specific, near_misses, preceding
 from capar_rules.explain.neighbours import conditions_of_neighbours, generals_of
 from capar_rules.explain.reason import Reason as Reason
 from capar_rules.explain.rule_base import RuleBase as RuleBase
 from capar_rules.explain.rule_base import rule_base as rule_base
-from capar_rules.explain.summary import Briefs, bit, summary
+from capar_rules.explain.summary import summary
 from capar_rules.explain.windows import Windows
 
 ALWAYS = (("segment", 3), ("also", 2))
@@ -216,7 +218,9 @@ class Explainer:
         for term, side, body, other, _ in derived.holding("meets"):
             met[term, side, body].append(other)
         windows = self.windows
-        strokes = {term: int(count) for term, count in derived.holding("strokes")}
+        strokes: dict[str, list[int]] = defaultdict(list)
+        for term, frame in derived.holding("stroke_ends"):
+            strokes[term].append(int(frame))
         measured = self.measured
         return Clock(
             windows.rate, windows.frames, ends, measured, objects, listed, met, strokes, own

@@ -155,7 +155,7 @@ def percent(share: float) -> str:
 
 def often(count: int) -> str:
     """A number of times."""
-    return {1: "once", 2: "twice"}.get(count, f"{count} times")
+    return {0: "never", 1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,6 +190,8 @@ def not_down(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
 
 def _not_steep(aside_mm: float, height_mm: float, verb: str, sense: str) -> Shortfall:
     least = constants()["height_mm"]
+    if _is_little(aside_mm, height_mm):
+        return _little(aside_mm, height_mm if sense == "up" else -height_mm, height_mm)
     if height_mm < LEVEL_MM:
         plain = "rise" if sense == "up" else "sink"
         return Shortfall(f"did not {plain} ({length(least / 1000.0)} or more count)", FAR_OFF)
@@ -206,6 +208,8 @@ def not_aside(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     aside_mm, least = math.hypot(x_mm, y_mm), constants()["aside_mm"]
     if aside_mm < LEVEL_MM:
         return NOTHING
+    if _is_little(aside_mm, z_mm):
+        return _little(aside_mm, z_mm, aside_mm)
     if aside_mm < least:
         far, wanted = _apart(aside_mm, least)
         text = f"went {far} to the side, less than the {wanted} that count"
@@ -213,6 +217,29 @@ def not_aside(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     height, aside = _apart(abs(z_mm), aside_mm)
     text = f"went further {'up' if z_mm > 0 else 'down'} ({height}) than to the side ({aside})"
     return Shortfall(text, aside_mm / max(abs(z_mm), aside_mm))
+
+
+def _is_little(aside_mm: float, height_mm: float) -> bool:
+    """Whether a displacement can be seen, and is too small to count as up, down or aside."""
+    small = abs(height_mm) < constants()["height_mm"] and aside_mm < constants()["aside_mm"]
+    return small and max(abs(height_mm), aside_mm) >= LEVEL_MM
+
+
+def _little(aside_mm: float, z_mm: float, wanted_mm: float) -> Shortfall:
+    """Such a displacement, in one clause whichever way it would have had to go.
+
+    Whoever wanted it to go that way, or to the side, came so near; the other way, not at all.
+    """
+    known = constants()
+    height, least = _apart(abs(z_mm), known["height_mm"])
+    aside, far = _apart(aside_mm, known["aside_mm"])
+    rise = f"{height} {'higher' if z_mm > 0.0 else 'lower'}"
+    text = (
+        f"ended only {rise} and {aside} to the side ({least} up or down, or {far} to the side, "
+        "would count)"
+    )
+    share = max(abs(z_mm) / known["height_mm"], aside_mm / known["aside_mm"])
+    return Shortfall(text, share if wanted_mm >= 0.0 else FAR_OFF)
 
 
 def not_near(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 from capar_rules.explain.quantities import upward
 
-NEAR_MM = 10
+NEAR_MM = 5
 """Bodies that count as touching while they are further apart are told to be near [mm]."""
 
 

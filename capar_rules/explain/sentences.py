@@ -8,7 +8,8 @@ from string import Formatter
 
 from capar_rules.engine.syntax import Literal, Statement
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.formatting import SHORTFALLS, Argument
+from capar_rules.explain.formatting import Argument
+from capar_rules.explain.told_motions import SHORTFALLS
 
 _MOODS = "had not|had|not|mended|brief not|brief|lacks|despite"
 _NO_SUBJECT = "".join(f"(?<!\\b{word} )" for word in ("of", "with", "to", "on", "by", "from"))

@@ -195,7 +195,9 @@ def test_every_leaf_with_a_time_is_linked_to_its_frames(name: str) -> None:
 @pytest.mark.parametrize("name", STORIES)
 def test_the_summary_names_the_segment_and_its_reasons(name: str) -> None:
     for known, found in zip(told(name).known, told(name).explanations, strict=True):
-        opening = rf"{known.segment.name}(, and not(?: just)? \w+(, \w+)*(,? or \w+)?)?, because "
+        though = r"(, though [^.;]*)?"
+        names = rf"(, and not(?: just)? \w+(, \w+)*(,? or \w+)?{though})?"
+        opening = rf"{known.segment.name}{names}, because "
         assert re.match(opening, found.summary)
         assert found.summary.endswith(".")
 

@@ -29,20 +29,33 @@ def travels(x: int, y: int, z: int) -> bool:
     return aside >= constants()["aside_mm"] ** 2 and z * z < aside
 
 
-@given(MM, MM, MM)
+def is_little(x: int, y: int, z: int) -> bool:
+    """Whether a way can be seen, and is too short to count, whichever way it goes."""
+    known, aside = constants(), math.hypot(x, y)
+    short = abs(z) < known["height_mm"] and aside < known["aside_mm"]
+    return short and max(abs(z), aside) >= quantities.LEVEL_MM
+
+
+@given(MM | st.integers(-60, 60), MM | st.integers(-60, 60), MM | st.integers(-60, 60))
 def test_why_it_is_no_rise_is_told_of_what_went_up_alone(x: int, y: int, z: int) -> None:
     if rises(x, y, z):
         return
     short = quantities.not_up(x, y, z)
-    assert short.text.startswith("did not rise") == (z < quantities.LEVEL_MM)
+    little = is_little(x, y, z)
+    assert short.text.startswith("ended only") == little
+    if not little:
+        assert short.text.startswith("did not rise") == (z < quantities.LEVEL_MM)
     assert 0.0 <= short.nearness <= 1.0
-    assert quantities.not_down(x, y, -z) == replaced(short)
+    if z:
+        assert quantities.not_down(x, y, -z) == replaced(short)
 
 
 def replaced(short: quantities.Shortfall) -> quantities.Shortfall:
     """The same of a way down."""
     text = short.text.replace("rose", "sank").replace("rise", "sink")
     text = text.replace("than up", "than down")
+    swapped = {"higher": "lower", "lower": "higher"}
+    text = re.sub("higher|lower", lambda found: swapped[found[0]], text)
     return quantities.Shortfall(text, short.nearness)
 
 
@@ -51,7 +64,8 @@ def test_why_it_is_no_carrying_is_told_of_what_went_aside(x: int, y: int, z: int
     if travels(x, y, z):
         return
     short = quantities.not_aside(x, y, z)
-    assert bool(short.text) == (math.hypot(x, y) >= quantities.LEVEL_MM)
+    seen = math.hypot(x, y) >= quantities.LEVEL_MM
+    assert bool(short.text) == (seen or is_little(x, y, z))
     assert 0.0 <= short.nearness <= 1.0
 
 
@@ -62,6 +76,11 @@ def test_two_lengths_that_decide_are_never_told_as_the_same(x: int, y: int, z: i
     for text in filter(None, wanted):
         if text.startswith("did not"):
             continue
+        if text.startswith("ended only"):
+            height, aside, least, far = told_mm(text)
+            assert height != least
+            assert aside != far
+            continue
         one, other = told_mm(text)
         assert one != other or abs(math.hypot(x, y) - abs(z)) < 1.0
 
@@ -70,8 +89,12 @@ def test_two_lengths_that_decide_are_never_told_as_the_same(x: int, y: int, z: i
     ("way", "told"),
     [
         ((330, 0, 300), "went further to the side (33 cm) than up (30 cm)"),
-        ((0, 0, 48), "rose by 48 mm, less than the 50 mm that count"),
-        ((30, 0, 30), "rose by 3 cm, less than the 5 cm that count"),
+        ((100, 0, 48), "rose by 48 mm, less than the 50 mm that count"),
+        (
+            (30, 0, 30),
+            "ended only 3 cm higher and 3 cm to the side (5 cm up or down, or 10 cm to the side, "
+            "would count)",
+        ),
         ((0, 0, -300), "did not rise (5 cm or more count)"),
     ],
 )

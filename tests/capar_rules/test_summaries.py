@@ -18,7 +18,9 @@ pytestmark = pytest.mark.long
 CONTRAST = re.compile(r"\b[Nn]ot ((?!just )\w+(?:, \w+)*(?: or \w+)?), because ")
 """The names of a contrast."""
 
-BESIDE = re.compile(r"^\w+, and not (?!just )([\w, ]+?)(?:,? or just [\w ,]+)?, because ")
+BESIDE = re.compile(
+    r"^\w+, and not (?!just )([\w, ]+?)(?:,? or just [\w ,]+)?, (?:because|though) "
+)
 """The names that are denied for the same reasons as the name is given."""
 
 

@@ -98,8 +98,12 @@ def lay_on(known: Known, what: str, other: str, side: str) -> bool:
     return touches and bool(abs(lowest - known.points(other, frame)[:, 2].max()) < 0.02)
 
 
-def bore(known: Known, other: str, what: str, side: str) -> bool:
-    return lay_on(known, what, other, side)
+def borne(known: Known, what: str, other: str, side: str, at: str | None) -> bool:
+    """It lies on the other then, and a contact of the two begins when they are told to meet."""
+    met = (*known.touching(what, other), *known.touching(other, what))
+    return lay_on(known, what, other, side) and (
+        not at or any(near(each.first, known.at(at)) for each in met)
+    )
 
 
 def was_above(known: Known, what: str, other: str, side: str) -> bool:
@@ -183,21 +187,34 @@ FORMS = (
     (rf"the {NAME} came down", sank),
     (rf"the {NAME} went aside, more than up or down", went_aside),
     (rf"the {NAME} ended near where it began", ended_near),
-    (rf"the middle of the {NAME} was (\d+) mm high at {TIME}", high),
+    (rf"the middle of the {NAME} was (\d+) mm above the zero of heights at {TIME}", high),
     (rf"the {NAME} leant at another angle at the end than at the start", leant),
     (rf"the {NAME} leant far over", leant_far),
     (rf"the {NAME} (began|ceased) to lean far over at {TIME}", lean_border),
     (rf"leaning of the {NAME} far over was measured from {TIME} to {TIME}", measured_leaning),
     (rf"the {NAME} turned about the vertical", spun),
-    (rf"the {NAME} bore the {NAME} from below at the segment's (start|end)", bore),
+    (
+        rf"the {NAME} touched the {NAME} at the segment's (start|end), which met it from below"
+        rf"(?: at {TIME} \(\d+° off straight up; 45° or less bears\))?",
+        borne,
+    ),
     (rf"the {NAME} was above the {NAME} at the segment's (start|end)", was_above),
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),
     (rf"the {NAME} dipped into the {NAME} at the segment's (start|end)", dipped),
-    (rf"the {NAME} went ahead of the {NAME} \([^)]*; 45° or less is ahead\)", went_ahead),
-    (rf"the {NAME} went after the {NAME} \([^)]*; 135° or more is after\)", went_after),
     (
-        rf"the {NAME} was not moved again before the {NAME} let go of it at {TIME}"
-        r"(?:, touching no other tracked object)?",
+        rf"the {NAME} went, from start to end as a whole, ahead of the {NAME} "
+        r"\([^)]*; 45° or less is ahead\)",
+        went_ahead,
+    ),
+    (
+        rf"the {NAME} went, from start to end as a whole, after the {NAME} "
+        r"\([^)]*; 135° or more is after\)",
+        went_after,
+    ),
+    (
+        rf"the {NAME} was not moved again before the {NAME} (?:let go of it|was last tracked at "
+        rf"it,) at {TIME}"
+        r"(?:, where it counted as touching nothing else that is tracked)?",
         came_to_lie,
     ),
 )

@@ -68,23 +68,34 @@ def counts(known: Known, one: str, other: str, at: str, border: str) -> bool:
     return lasts and any(abs(known.at(border) - each) <= known.reach for each in ends)
 
 
+def moved_before(known: Known, thing: str, hand: str, at: str) -> bool:
+    """A contact of the two begins then, and the thing moves in it before the segment does begin."""
+    first = known.at(at)
+    began = any(near(each.first, first) for each in known.touching(hand, thing))
+    return began and any(
+        each.first < known.segment.first and each.last > first for each in known.moving(thing)
+    )
+
+
 def newly_met(known: Known, one: str, other: str, at: str, hand: str) -> bool:
     """A contact of the two begins then, while the end-effector touches the thing."""
     return begins(known, one, other, at) and touched(known, hand, one, at)
 
 
-def let_go(known: Known, other: str, thing: str, at: str) -> bool:
-    """The other one's contact with the thing ends then, not before the segment does."""
-    return known.at(at) >= known.segment.last - 1 and any(
-        near(each.last, known.at(at)) for each in known.touching(other, thing)
+def let_go(known: Known, other: str, thing: str, hand: str, at: str) -> bool:
+    """The one's contact with the thing ends then, and begins before that of the other one."""
+    own = [each for each in known.touching(other, thing) if near(each.last, known.at(at))]
+    began = any(
+        one.first < two.first <= one.last for one in own for two in known.touching(hand, thing)
     )
+    return known.at(at) >= known.segment.last - 1 and began
 
 
-def took(known: Known, other: str, thing: str, at: str) -> bool:
-    """The other one's contact with the thing begins then, not after the segment's start."""
-    return known.at(at) <= known.segment.first + 1 and any(
-        near(each.first, known.at(at)) for each in known.touching(other, thing)
-    )
+def took(known: Known, other: str, thing: str, at: str, hand: str, left: str) -> bool:
+    """The one's contact begins then, and outlasts that of the other one, which ends at left."""
+    own = [each for each in known.touching(other, thing) if near(each.first, known.at(at))]
+    ended = any(near(each.last, known.at(left)) for each in known.touching(hand, thing))
+    return ended and any(each.last > known.at(left) for each in own)
 
 
 def rested_on(known: Known, what: str, other: str, hand: str) -> bool:
@@ -140,7 +151,8 @@ FORMS = (
         lambda known, thing, hand, at: possessed(known, hand, thing, at),
     ),
     (
-        rf"the contact of the {NAME} with the {NAME} ended at {TIME}(?:; the border is at {TIME})?",
+        rf"the contact of the {NAME} with the {NAME} ended at {TIME}(?:; the border is "
+        rf"at {TIME}, from when on they came apart)?",
         ended,
     ),
     (
@@ -158,10 +170,22 @@ FORMS = (
         no_support,
     ),
     (
+        rf"the {NAME} had moved before this, while the {NAME} touched it, from {TIME} on",
+        moved_before,
+    ),
+    (
         rf"the {NAME} had come to touch the {NAME} (?:before this, )?at {TIME}, while held by "
         rf"the {NAME}",
         newly_met,
     ),
-    (rf"the {NAME} had the {NAME} already, and let go of it (?:after this, )?at {TIME}", let_go),
-    (rf"the {NAME} took the {NAME} (?:before this, )?at {TIME}", took),
+    (
+        rf"the {NAME} (?:touched|was within \d+ mm of) the {NAME} already when the "
+        rf"{NAME} came to (?:be so near|touch it), and until (?:after this, )?at {TIME}",
+        let_go,
+    ),
+    (
+        rf"the {NAME} (?:touched|was within \d+ mm of) the {NAME} from {TIME} on, and still "
+        rf"(?:was|did) when the {NAME} no longer (?:was|did) \(after {TIME}\)",
+        took,
+    ),
 )

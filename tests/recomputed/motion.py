@@ -92,8 +92,8 @@ def gone_at_once(known: Known, what: str) -> bool:
     return float(_apart(known, what, [soon], end)[0]) > 1.0 > float(before[0])
 
 
-def levelled(known: Known, what: str, at: str) -> bool:
-    """Its path is steeper than 45 degrees on one side of that time, and less steep on the other."""
+def levelled(known: Known, what: str, how: str, at: str) -> bool:
+    """Its path is steeper than 45 degrees before that time and less after it, or reversed."""
     frame, aside = known.frame(at), round(SIDE_S * known.rate)
     place, last = known.stream(what).positions, len(known.capture.times) - 1
     ways = [
@@ -101,7 +101,8 @@ def levelled(known: Known, what: str, at: str) -> bool:
         for begin, end in ((frame - aside, frame), (frame, frame + aside))
     ]
     steep = [abs(float(way[2])) - float(np.linalg.norm(way[:2])) for way in ways]
-    return min(steep) < 0.0 < max(steep)
+    before, after = steep if how == "became level" else reversed(steep)
+    return after < 0.0 < before
 
 
 def measured(known: Known, what: str, first: str, last: str) -> bool:
@@ -367,10 +368,14 @@ def flew_on(known: Known) -> bool:
 
 
 FORMS = (
-    (rf"the {NAME} went further than a hand shifts a thing by gripping it", went_further),
+    (
+        rf"the {NAME} ended 5 cm or more from where it began, or its path was 10 cm or more: a "
+        "grip alone shifts a thing less",
+        went_further,
+    ),
     (rf"the {NAME} (began|ceased) to be moved to and fro at {TIME}", swing_border),
     (rf"the {NAME} was gone at once", gone_at_once),
-    (rf"the path of the {NAME} became level, or ceased to be, at {TIME}", levelled),
+    (rf"the path of the {NAME} (became level|ceased to be level) at {TIME}", levelled),
     (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),
     (
         rf"the {NAME} moved along (\d+\.\d\d) m of path between {TIME} and {TIME}, and ended "

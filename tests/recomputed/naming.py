@@ -346,13 +346,14 @@ def nearest(known: Known, what: str) -> bool:
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"the segment lies between {TIME} and {TIME}", borders),
     (
-        rf"of (the [\w ,]+), contacts at the start: {LIST}; at the end: {LIST}; moved: {LIST}; "
-        rf"hit: {LIST}",
+        rf"of (the [\w ,]+), contacts among these at the start: {LIST}; at the end: {LIST}; moved: "
+        rf"{LIST}; struck by the [\w ]+ itself: {LIST}",
         features_in_words,
     ),
     (
-        rf"of (the [\w ,]+), leaving aside what else is in the {NAME}, contacts at the start: "
-        rf"{LIST}; at the end: {LIST}; moved: {LIST}; hit: {LIST}",
+        rf"of (the [\w ,]+), leaving aside what else is in the {NAME}, contacts among these at "
+        rf"the start: {LIST}; at the end: {LIST}; moved: {LIST}; struck by the [\w ]+ itself: "
+        rf"{LIST}",
         _core_of,
     ),
     (rf"more than one thing was in the {NAME}", accompanied),

@@ -298,7 +298,7 @@ FORMS = (
         rf"the {NAME} (?:started from rest|left the [\w ]+)",
         lambda known, what: name(what) == known.segment.objects[0] and started_from_rest(known),
     ),
-    (rf"the {NAME} did not slide on any tracked object from start to end", not_slid),
+    (rf"the {NAME} was not slid on any tracked object", not_slid),
     (rf"the {NAME} did not come down to where it was then let go", not_put_down),
     (
         rf"the {NAME} touched none of the tracked objects when the segment began, nor when it "
@@ -312,8 +312,11 @@ FORMS = (
         rf"in the contact that began at {TIME}",
         borne,
     ),
-    (rf"the {NAME} (?:met|struck) the {NAME} at (\d+) mm/s", met_at),
-    (rf"the {NAME} and the {NAME} approached each other at (\d+) mm/s, as measured", met_at),
+    (rf"the {NAME} reached the {NAME} at a relative speed of (\d+) mm/s", met_at),
+    (
+        rf"the relative speed of the {NAME} and the {NAME} was (\d+) mm/s, as their contact began",
+        met_at,
+    ),
     (
         rf"the {NAME} pressed on the {NAME} along \((-?\d+), (-?\d+), level\) thousandths,"
         rf" at {TIME}",
@@ -327,7 +330,7 @@ FORMS = (
     (rf"the {NAME} was met at its side, neither before, nor behind, nor above", met_aside),
     (rf"the {NAME} went at (\d+) mm/s when the {NAME} let it go", went_at),
     (rf"the {NAME} stayed with the {NAME}", clings),
-    (rf"the {NAME} was met as fast as by a blow", met_fast),
+    (rf"the {NAME} was reached as fast as by a blow", met_fast),
     (rf"the {NAME} had the {NAME} by then", another_had),
     (rf"the {NAME} had taken the {NAME} by then", another_took),
     (r"it was another agent who had it", stranger_had),

@@ -12,12 +12,14 @@ from capar.model.facts import (
     ClosingSpeed,
     ContactNormal,
     Displaced,
+    FlickerCorrection,
     Posture,
     PressDirection,
     Resting,
     Touching,
 )
 from capar_rules.engine.solver import rule_file
+from recomputed.contacts import let_go, moved_before, took
 from recomputed.doors import NUMBER, slid, swung
 from recomputed.known import NAME, TIME, Known, covers, name, near
 from recomputed.motion import lasted, stroked
@@ -35,7 +37,7 @@ SHORT_M = 0.01
 """A body that ends nearer than this to where it began is told to end there [m]."""
 
 VERBS = (
-    "met|rose|sank|took|counts|bore|touched|moved|ended|leant|turned|stayed|kept|did|was|had|came|went|"
+    "met|reached|rose|sank|took|counts|bore|touched|moved|ended|leant|turned|stayed|kept|did|was|had|came|went|"
     "then|lay|dipped|started|slid|left|rested|were|pressed"
 )
 
@@ -196,17 +198,20 @@ def counts_from(known: Known, body: str, far: str) -> bool:
     return _is(floor, far, slack_m=0.0)
 
 
-def not_shaken(known: Known, _: str, often: str, at: str) -> bool:
-    """It turns back no more than so often, over the whole segment."""
-    count = _count(often)
-    slow = 10.0 * count < 25.0 * float(at)
-    return slow and lasted(known, at) and turned_back_so_often(known, "", str(count))
-
-
 def too_low(known: Known, body: str, verb: str, far: str, asked: str) -> bool:
     """It went so far up or down, which is less than the rules ask for."""
     height = float(_shifted(known, body)[2]) * (1.0 if verb == "rose" else -1.0)
     return _is(height, far) and 0.0 < height < 0.05 + SMOOTHED_M and _asked("height_mm", asked)
+
+
+def too_little(
+    known: Known, body: str, rise: str, sense: str, aside: str, least: str, far: str
+) -> bool:
+    """It ended so little higher, and so little aside, that neither counts."""
+    way = _shifted(known, body)
+    short = abs(way[2]) < 0.05 + SMOOTHED_M and math.hypot(way[0], way[1]) < 0.1 + SMOOTHED_M
+    asked = _asked("height_mm", least) and _asked("aside_mm", far)
+    return short and asked and ended(known, body, rise, sense, aside)
 
 
 def not_steep(known: Known, body: str, verb: str, asked: str) -> bool:
@@ -233,6 +238,12 @@ def too_little_aside(known: Known, body: str, aside: str, asked: str) -> bool:
     way = _shifted(known, body)
     beside = math.hypot(way[0], way[1])
     return _is(beside, aside) and beside < 0.1 + SMOOTHED_M and _asked("aside_mm", asked)
+
+
+def too_short_for_a_direction(known: Known, body: str, aside: str, asked: str) -> bool:
+    way = _shifted(known, body)
+    beside = math.hypot(way[0], way[1])
+    return _is(beside, aside) and beside < 0.05 + SMOOTHED_M and _asked("slide_mm", asked)
 
 
 def too_far(known: Known, body: str, far: str, asked: str) -> bool:
@@ -286,20 +297,6 @@ def _met(known: Known, body: str, other: str, speed: str) -> bool:
     return (body, name(other)) in [(each.body, each.other) for each in found]
 
 
-def let_go(known: Known, body: str, thing: str, at: str) -> bool:
-    """The other one's contact with the thing ends then, not before the segment does."""
-    return known.at(at) >= known.segment.last - 1 and any(
-        near(each.last, known.at(at)) for each in known.touching(body, thing)
-    )
-
-
-def took(known: Known, body: str, thing: str, at: str) -> bool:
-    """The other one's contact with the thing begins then, not after the segment's start."""
-    return known.at(at) <= known.segment.first + 1 and any(
-        near(each.first, known.at(at)) for each in known.touching(body, thing)
-    )
-
-
 def until(known: Known, body: str, at: str) -> bool:
     """Its motion ends then, before the segment does."""
     last = _motion(known, body)[1]
@@ -350,6 +347,19 @@ def ends(known: Known, _: str, at: str) -> bool:
     return near(known.segment.last, known.at(at))
 
 
+def earlier(known: Known, _: str, at: str) -> bool:
+    """It is before the segment's end."""
+    return known.at(at) < known.segment.last
+
+
+def parted(known: Known, body: str, first: str, last: str) -> bool:
+    """A stretch that is taken for contact, though it was measured as none, lies there."""
+    return any(
+        near(each.first, known.at(first)) and near(each.last, known.at(last))
+        for each in known.of(FlickerCorrection)
+    )
+
+
 def precedes(known: Known, _: str, at: str) -> bool:
     """It is before the segment, by no more than a border that events share."""
     return 0 < known.segment.first - known.at(at) <= 2 * known.reach
@@ -387,21 +397,18 @@ def far_over(known: Known, body: str, before: str, after: str, most: str, least:
     )
 
 
-def turned_to_and_fro(known: Known, body: str, often: str, far: str, *whole: str) -> bool:
+def turned_to_and_fro(
+    known: Known, body: str, since: str, until_: str, often: str, far: str
+) -> bool:
     """So many extrema of a coordinate lie so far from the ones before and after."""
-    spans = [(known.segment.first, known.segment.last, often)]
-    if whole and whole[0]:
-        spans.append((known.frame(whole[1]), known.frame(whole[2]), f"{whole[0]} times"))
-    counted = (
-        max(extrema(place, _metres(far)) for place in known.stream(body).positions[first:last].T)
-        == _count(told)
-        for first, last, told in spans
-    )
-    return all(counted)
+    first = known.frame(since) if since else known.segment.first
+    last = known.frame(until_) if until_ else known.segment.last
+    places = known.stream(body).positions[first:last].T
+    return max(extrema(place, _metres(far)) for place in places) == _count(often)
 
 
 def _count(often: str) -> int:
-    return {"once": 1, "twice": 2}.get(often) or int(often.removesuffix(" times"))
+    return {"never": 0, "once": 1, "twice": 2}.get(often) or int(often.removesuffix(" times"))
 
 
 def extrema(values: np.ndarray, least: float) -> int:
@@ -420,7 +427,9 @@ def extrema(values: np.ndarray, least: float) -> int:
     return count
 
 
-def turned_in_all(known: Known, body: str, angle: str, half: str, path: str, wide: str) -> bool:
+def turned_in_all(
+    known: Known, body: str, angle: str, half: str, path: str, wide: str, wrist: str
+) -> bool:
     """The angles from frame to frame sum to it; so far from a wrist is 15 cm times the angle."""
     first, last = known.segment.first, known.segment.last
     turns = known.turns(body, range(first, last + 1))
@@ -431,6 +440,7 @@ def turned_in_all(known: Known, body: str, angle: str, half: str, path: str, wid
         and _asked("half_turn_mrad", half)
         and _is(float(steps), path, slack_m=0.03)
         and _is(0.15 * turned, wide, slack_m=0.05)
+        and _asked("wrist_mm", wrist)
     )
 
 
@@ -588,10 +598,24 @@ def turned_back_so_often(known: Known, _: str, count: str) -> bool:
 
 
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
+    (
+        rf"ended only {LENGTH} (higher|lower)(?: and {LENGTH} to the side)? \({LENGTH} up or down, "
+        rf"or {LENGTH} to the side, would count\)",
+        too_little,
+    ),
+    (
+        rf"ended only ()(){LENGTH} to the side \({LENGTH} up or down, or {LENGTH} to the side, "
+        r"would count\)",
+        too_little,
+    ),
     (rf"(rose|sank) by {LENGTH}, less than the {LENGTH} that count", too_low),
     (rf"did not (rise|sink) \({LENGTH} or more count\)", not_steep),
     (rf"went further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
     (rf"went further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
+    (
+        rf"went only {LENGTH} to the side, less than the {LENGTH} from which on a direction counts",
+        too_short_for_a_direction,
+    ),
     (rf"went {LENGTH} to the side, less than the {LENGTH} that count", too_little_aside),
     (rf"ended {LENGTH} from where it began, not within {LENGTH}", too_far),
     (rf"went only {LENGTH}, less than the {LENGTH} of a slide", too_short_to_slide),
@@ -601,12 +625,33 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         rf"in between\))?, a change of less than {DEGREES}",
         leant_too_little,
     ),
-    (rf"met the {NAME} at (\d+) mm/s, less than the 1000 mm/s of a blow", met_gently),
-    (rf"met the {NAME} at (\d+) mm/s, fast enough for a blow \(1000 mm/s\)", met_hard),
-    (rf"met the {NAME} at (\d+) mm/s \(a blow has 1000 mm/s or more\)", met_hard),
+    (
+        rf"reached the {NAME} at a relative speed of (\d+) mm/s, less than the 1000 mm/s of a blow",
+        met_gently,
+    ),
+    (
+        rf"reached the {NAME} at a relative speed of (\d+) mm/s \(a blow has 1000 mm/s or more\)",
+        met_hard,
+    ),
+    (
+        rf"had moved before this, while the {NAME} touched it, from {TIME} on",
+        moved_before,
+    ),
+    (
+        rf"had moved before in the same contact with the {NAME} \(since {TIME}\)",
+        moved_before,
+    ),
     (rf"had come to touch the {NAME} (?:before this, )?at {TIME}", met_first),
-    (rf"had the {NAME} already, and let go of it (?:after this, )?at {TIME}", let_go),
-    (rf"took the {NAME} (?:before this, )?at {TIME}", took),
+    (
+        rf"(?:touched|was within \d+ mm of) the {NAME} already when the {NAME} came to "
+        rf"(?:be so near|touch it), and until (?:after this, )?at {TIME}",
+        let_go,
+    ),
+    (
+        rf"(?:touched|was within \d+ mm of) the {NAME} from {TIME} on, and still (?:was|did) when "
+        rf"the {NAME} no longer (?:was|did) \(after {TIME}\)",
+        took,
+    ),
     (
         rf"moved along a path of {LENGTH}(?: until {TIME})? and ended (less than )?{LENGTH} from "
         "where it began",
@@ -627,11 +672,12 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"no rest of {TIME} or more, touching nothing, before {TIME}", never_rested),
     (rf"rested from {TIME} on", rests_from),
     (rf"\({LENGTH} or more down count\)", came_down),
-    (rf"before the {NAME} let go of it at {TIME}", lambda known, body, hand, at: held_until(
-        known, known.segment.objects[0], hand, at)),
-    (rf"\(the {NAME} held it until {TIME}", lambda known, body, hand, at: held_until(
-        known, known.segment.objects[0], hand, at)),
-    (rf"was moved on in the hand from {TIME} on", moved_on),
+    (
+        rf"(?:before|when) the {NAME} (?:let go of|was last tracked at) (?:it|them),? at {TIME}",
+        lambda known, _, hand, at: held_until(known, known.segment.objects[0], hand, at),
+    ),
+    (rf"was moved again from {TIME} on", moved_on),
+    (rf"was still moving at the end \({TIME}\)", moved_on),
     (
         rf"(?:of|touched) the {NAME} at the start \(until {TIME}\) and again at the end \(from "
         rf"{TIME}\)",
@@ -639,7 +685,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"the {NAME} at the start \({TIME}\) and until {TIME}", touched_until),
     (rf"{DEGREES} off straight up \({DEGREES} or less bears\)", pushed_at),
-    (rf"met the {NAME} from below at {TIME}", lambda known, body, other, at: any(
+    (rf"met the {NAME} from (?:below|the side) at {TIME}", lambda known, body, other, at: any(
         near(each.first, known.at(at))
         for each in (*known.touching(other, body), *known.touching(body, other)))),
     (rf"{DEGREES} off straight up; {DEGREES} or less bears", pushed_at),
@@ -657,18 +703,13 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"turned on its hinge from {NUMBER} rad to {NUMBER} rad open", swung),
     (r"turned back (\d+) times, in strokes of a finger's width and more", turned_back_so_often),
     (
-        rf"turned back (once|twice|\d+ times) at halts of the hand 2 cm or more apart, in {TIME}, "
-        "and what is shaken does so 25 times in 10 s or more",
-        not_shaken,
-    ),
-    (
-        rf"it turned back (once|twice|\d+ times) after ways of {LENGTH} or more(?:, of (\d+) "
-        rf"between {TIME} and {TIME})?",
+        rf"moved to and fro(?: from {TIME} to {TIME})? \((?:it|they) turned back "
+        rf"(never|once|twice|\d+ times) after ways of {LENGTH} or more\)",
         turned_to_and_fro,
     ),
     (
-        rf"turned by {DEGREES} in all \(half a turn, {DEGREES}, is asked for\) on a path of "
-        rf"{LENGTH} \(turned so far about the wrist it would go up to {LENGTH}\)",
+        rf"turned by {DEGREES} in all \({DEGREES} or more count\) on a path of {LENGTH} \(at most "
+        rf"{LENGTH} count as turning: that angle times {LENGTH}, from a wrist to what it turns\)",
         turned_in_all,
     ),
     (
@@ -697,15 +738,16 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"turned by {DEGREES} about the vertical \({DEGREES} or more count\)", spun_enough),
     (rf"stayed in place \(within {LENGTH} of its median place\)", kept_within),
     (
-        rf"kept still \(within {LENGTH} of its median place\) and touched [\w ]+ from {TIME} to "
-        rf"{TIME}",
+        rf"stayed within {LENGTH} of its median place and touched [\w ()]+? from {TIME} to {TIME}",
         kept_within,
     ),
     (r"longer than the (\d\.\d\d) s of a rest", rests_longer),
-    (r"for as long as a rest lasts \((\d\.\d\d) s\)", rest_lasts),
+    (rf"had no rest of {TIME} or more", rest_lasts),
     (rf"touched the {NAME} at {TIME}", touched_at),
     (rf"stayed within {LENGTH} of its median place", kept_within),
     (rf"too little to count as motion \(more than {LENGTH} from where it rests\)", counts_from),
+    (rf"no longer when last tracked \({TIME}\)", earlier),
+    (rf"throughout but for {TIME} to {TIME}", parted),
     (rf"at the start \({TIME}\)", starts),
     (rf"at the end \({TIME}\)", ends),
     (rf"until just before \({TIME}\)", precedes),

@@ -1,0 +1,215 @@
+"""The clauses that a summary says of atoms, each with what was measured for it."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+from capar_rules.explain.arrangements import untracked
+from capar_rules.explain.claimed_measures import ANY
+from capar_rules.explain.claims import Claim, Stretches, claim, joined_claims, resting_on
+from capar_rules.explain.clock import Clock
+from capar_rules.explain.contact_pairs import merged_contacts
+from capar_rules.explain.leading import DOUBTED, nodes_below, parsed, rank
+from capar_rules.explain.reason import Reason
+from capar_rules.explain.sentences import Sentences
+from capar_rules.explain.told_argument import UNBOUND
+
+CLEAR = "not sliding("
+"""Prefix of atoms that say that a body was clear of others; told of what goes aside."""
+
+COURSES = ("rises", "comes_down", "travels", "stays_near")
+"""Predicates that tell how a body moved, so that its motion need not be told again."""
+
+NUMBERED = ("stays(", "met_gently(")
+"""Prefixes of atoms of which a contrast tells the number that decided."""
+
+AT_ONE_SIDE = {
+    "touches_at_start": "start",
+    "near_at_start": "start",
+    "touches_at_end": "end",
+    "near_at_end": "end",
+}
+"""Clauses of contact at one border, and that border."""
+
+MOST_GAPS = 3
+"""So many gaps of a track are told one by one."""
+
+
+@dataclass(frozen=True)
+class Briefs:
+    """What a summary says of atoms."""
+
+    sentences: Sentences
+    clock: Clock
+    claims: dict[str, Claim] = field(default_factory=dict)
+    """Each clause so far, by its text."""
+
+    def tell(
+        self, predicate: str, arguments: Sequence[str], mood: str, reason: Reason | None = None
+    ) -> str:
+        """The clause for an atom, kept with what was measured for it; empty if nothing was.
+
+        Of the atom of a node, what was measured below it counts too.
+        """
+        text = self.sentences.tell(predicate, arguments, self.clock, mood=mood)
+        return self._kept(text, (predicate, arguments, mood), reason)
+
+    def _kept(self, text: str, told: tuple[str, Sequence[str], str], reason: Reason | None) -> str:
+        if not text or UNBOUND in text:
+            return text
+        if text not in self.claims:
+            found = claim(self.sentences, self.clock, told, text)
+            found = found if reason is None else resting_on(found, reason)
+            if not found.shown:
+                return ""
+            self.claims[text] = found
+        return text
+
+    def of(self, reason: Reason) -> str:
+        """The clause for a node; its sentence if there is no shorter one."""
+        absent = reason.atom.startswith("not ")
+        predicate, arguments = parsed(reason.atom.removeprefix("not "))
+        plain = self.sentences.tell(predicate, arguments, self.clock, mood="not" * absent)
+        if plain != reason.sentence:  # part of it is doubted
+            return self._kept(reason.sentence, (predicate, arguments, "mended"), reason)
+        if predicate == "rests" and self.clock.side(arguments[0], int(arguments[1])) == "end":
+            return self.tell("rests_afterwards", arguments, "brief", reason)
+        mood = "brief not" if absent else "brief"
+        if self.sentences.template(predicate, arguments, mood=mood):
+            return self.tell(predicate, arguments, mood, reason)
+        return self.tell(predicate, arguments, "not" * absent, reason)
+
+    def first(self, reason: Reason, top: Reason) -> list[str]:
+        """What the first node says, at or below one, that has something to say in a summary.
+
+        What the segment's own reasons, below the top, tell of the same contact, is told alike.
+        """
+        pairs = merged_contacts(list(reason.walk()), self.clock)
+        pairs |= merged_contacts(list(top.walk()), self.clock)
+        for each in nodes_below([reason], set()):
+            if each.atom.startswith((CLEAR, DOUBTED)):
+                continue  # what decides against a name is what the thing did
+            predicate, arguments = parsed(each.atom)
+            told = self.tell(predicate, arguments, "despite", each)
+            if each.atom in pairs and rank(each):
+                told = self.tell(*pairs[each.atom], "brief")
+            told = told or (self.of(each) if each.leading and rank(each) else "")
+            if told and UNBOUND not in told:
+                return [told]
+        return []
+
+    def contrasted(self, nodes: Sequence[Reason], top: Reason) -> list[str]:
+        """What is said of nodes that keep a segment from a name, with what numbers decided.
+
+        A contact that is at one border alone is told as begun or ended in between.
+        """
+        pairs = merged_contacts(list(top.walk()), self.clock)
+        for each in nodes:
+            told = self.tell(*pairs.get(each.atom, ("", ())), "brief")
+            if each.atom.startswith(NUMBERED):
+                told = self.tell(*parsed(each.atom), "despite")
+            if told and UNBOUND not in told:
+                return [told]
+        return self.clauses(nodes)
+
+    def lost(self, claims: Iterable[Claim]) -> list[Claim]:
+        """That bodies of which claims tell were not tracked at times within the segment."""
+        shown = [quantity.bodies for each in claims for quantity in each.quantities]
+        shown += [stretches.bodies for each in claims for stretches in each.stretches]
+        bodies = tuple(dict.fromkeys(body for each in shown for body in each if body != ANY))
+        return [
+            Claim(self._lost(body, gaps), (), (), (Stretches("lost", (body,)),))
+            for body, gaps in untracked(self.clock, bodies)
+        ]
+
+    def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:
+        was = "were" if self.clock.called(body) in self.clock.several else "was"
+        spans = [f"from {self.clock.at(first)} to {self.clock.at(last)}" for first, last in gaps]
+        if len(spans) > MOST_GAPS:
+            lost = sum(last - first for first, last in gaps) / self.clock.rate_hz
+            spans = [f"{len(gaps)} times, for {lost:.2f} s in all"]
+        return f"the {self.clock.called(body)} {was} not tracked {listed(spans)}"
+
+    def clauses(self, nodes: Sequence[Reason]) -> list[str]:
+        """What is said of nodes, each once; contacts of two bodies at both borders are one.
+
+        What holds of another segment is left to the tree: its start and end are not this one's.
+        """
+        nodes = [each for each in nodes if not self._of_another(each)]
+        nodes = [each for each in nodes if not self._within_border(each, nodes)]
+        pairs = merged_contacts(nodes, self.clock)
+        told: list[str] = []
+        courses = any(each.atom.startswith(COURSES) for each in nodes)
+        aside = any(node.atom.startswith("travels(") for node in nodes)
+        nodes = [node for node in nodes if aside or not node.atom.startswith(CLEAR)]
+        courses = courses or any(each.atom.startswith("wrung(") for each in nodes)
+        borne = {tuple(parsed(node.atom)[1][1:]) for node in nodes if node.atom.startswith("on(")}
+        for each in nodes:
+            pair = pairs.get(each.atom)
+            if pair is not None and pair[0] in AT_ONE_SIDE:
+                side = AT_ONE_SIDE[pair[0]]
+                if (side, *pair[1][1:]) in borne:
+                    continue  # which of the two is below is told of the same contact
+            if pair is not None:
+                told.append(self.tell(*pair, "brief"))
+            elif not (courses and each.atom.startswith("moved(")):
+                told.append(self.of(each))
+        told = [each for each in dict.fromkeys(told) if each and UNBOUND not in each]
+        return self._of_both(at_both(told))
+
+    def _of_both(self, clauses: Sequence[str]) -> list[str]:
+        """The clauses, of which two that differ in the side, and in numbers of it, are one."""
+        joined: dict[str, list[str]] = {}
+        for clause in clauses:
+            found = _SIDED.fullmatch(clause)
+            joined.setdefault(found[1] if found else clause, []).append(clause)
+        out = []
+        for begin, parts in joined.items():
+            text = " and ".join([parts[0], *(part.removeprefix(begin) for part in parts[1:])])
+            text = text.replace(" and  at ", " and at ")
+            if len(parts) > 1:
+                claims = [self.claims[part] for part in parts if part in self.claims]
+                self.claims[text] = joined_claims(text, claims)
+            out.append(text)
+        return out
+
+    def _within_border(self, reason: Reason, nodes: Iterable[Reason]) -> bool:
+        """Whether it is a contact at a time within a border, at which the two are told about."""
+        if not reason.atom.startswith("contact_at("):
+            return False
+        told = [parsed(each.atom)[1] for each in nodes if each.atom.startswith("contact_at(")]
+        own = parsed(reason.atom)[1]
+        at_border = [each[1:3] for each in told if self.clock.side(each[0], int(each[4]))]
+        return not self.clock.side(own[0], int(own[4])) and own[1:3] in at_border
+
+    def _of_another(self, reason: Reason) -> bool:
+        arguments = parsed(reason.atom.removeprefix("not "))[1]
+        return (
+            bool(arguments) and arguments[0].startswith("seg(") and arguments[0] != self.clock.own
+        )
+
+
+_SIDED = re.compile(r"(.*) at the (?:start|end) \([^()]*\)")
+"""A clause that tells a number of one side."""
+
+START, END, BOTH = " at the start", " at the end", " and at the end"
+
+
+def at_both(clauses: Sequence[str]) -> list[str]:
+    """The clauses, of which two that differ only in the side are one."""
+    ends = {each.removesuffix(END) for each in clauses if each.endswith(END)}
+    starts = {each.removesuffix(START) for each in clauses if each.endswith(START)}
+    both = ends & starts
+    return [
+        each + BOTH if each.removesuffix(START) in both else each
+        for each in clauses
+        if each.removesuffix(END) not in both
+    ]
+
+
+def listed(parts: Sequence[str], word: str = "and") -> str:
+    """Parts as a list in words."""
+    if len(parts) < 2:
+        return "".join(parts) or "the rules say so"
+    comma = "," * (len(parts) > 2 or any("," in each for each in parts))
+    return f"{', '.join(parts[:-1])}{comma} {word} {parts[-1]}"

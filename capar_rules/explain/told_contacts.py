@@ -1,0 +1,181 @@
+"""How arguments tell contacts: how near, from when to when, from which side, how fast."""
+
+from collections.abc import Sequence
+
+from capar_rules.borders.times import constants, in_frames, times
+from capar_rules.explain import arrangements
+from capar_rules.explain.told_argument import UNBOUND, ToldArgument
+
+
+class ContactsTold(ToldArgument):
+    """What touches what, and how bodies lie and go to each other."""
+
+    def _placed(self) -> str:
+        """Where the border of an event stands, if not at its frame, which is the sixth argument."""
+        frame = self.clock.frames[self.beside[0]][int(self.text)]
+        told = self.clock.at(frame)
+        began = self.clock.at(int(self.beside[5]))
+        return "" if told == began else f", and settled there by {told}"
+
+    def _reach(self) -> str:
+        """Up to which distance the second and the third argument count as touching."""
+        reach = self.clock.measured.reaches.get((self.beside[1], self.beside[2]))
+        return UNBOUND if reach is None else f"{reach.told_mm} mm"
+
+    def _keeper(self) -> str:
+        """Which other end-effector has the segment's object since before this one touched it."""
+        thing, span = self.clock.objects.get(self.text, ""), self.clock.span(self.text)
+        contacts = self.clock.measured.held.get(thing, ())
+        if span is None:
+            return UNBOUND
+        own = [first for ee, first, last in contacts if ee == self._hand and first <= span[0]]
+        before = [
+            (first, self.clock.called(ee))
+            for ee, first, last in contacts
+            if ee != self._hand and own and first <= max(own) and last >= span[1]
+        ]
+        if not before:
+            return UNBOUND
+        since, keeper = min(before)
+        return f"was held by the {keeper} already (since {self.clock.at(since)})"
+
+    def _struck(self) -> str:
+        """How fast the segment's object met this one at the end."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], "end")
+        thing = self.clock.objects.get(self.beside[0], "")
+        speeds = self.clock.measured.closing.get((thing, self.text), {})
+        merge = in_frames(times().merge_ms, self.clock.rate_hz)
+        near = [(abs(first - frame), first) for first in speeds] if frame is not None else []
+        if not near or min(near)[0] > merge:
+            return UNBOUND
+        blow = f"a blow has {constants()['blow_mm_s']} mm/s or more"
+        return f"at a relative speed of {speeds[min(near)[1]]} mm/s ({blow})"
+
+    def _contact(self, side: str, end: int) -> str:
+        """When the contact of the two bodies beside this that there is at a side begins or ends."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], side)
+        found = None if frame is None else self._met_near(self.beside[1], self.beside[2], frame)
+        return UNBOUND if found is None else self.clock.at(found[end])
+
+    def _on(self) -> str:
+        """Until when the contact that there is at the start lasts, if longer than a border."""
+        frame = arrangements.frame_of(self.clock, self.beside[0], "start")
+        found = None if frame is None else self._met_near(self.beside[1], self.beside[2], frame)
+        late = found and found[1] - (frame or 0) >= in_frames(times().merge_ms, self.clock.rate_hz)
+        return f" and until {self.clock.at(found[1])}," if found and late else ""
+
+    def _ended_at(self) -> str:
+        """When the contact ends that began at this frame, of the fourth argument and the fifth."""
+        first = int(self.text)
+        pair = (self.beside[3], self.beside[4])
+        contacts = self.clock.measured.contacts
+        found = [*contacts.get(pair, ()), *contacts.get(pair[::-1], ())]
+        last = next((end for begin, end in found if begin == first), None)
+        tick = self.clock.frames[self.beside[0]][int(self.beside[1])]
+        return self.clock.at(tick if last is None else last)
+
+    def _placed_end(self) -> str:
+        """Where the border of the end of a contact stands, if not where that ends."""
+        ended = type(self)(self.beside[5], self.beside, self.clock)._ended_at()
+        told = self.clock.at(self.clock.frames[self.beside[0]][int(self.text)])
+        until = f"; the border is at {told}, from when on they came apart"
+        return "" if told == ended else until
+
+    def _throughout(self) -> str:
+        """Throughout the segment; as far as the two bodies beside this were tracked."""
+        one, other = self.beside[1:3]
+        lost = any(self._gaps_within(body) for body in (one, other))
+        span = self.clock.span(self.text) or (0, 0)
+        known = self.clock.measured.flickers
+        apart = {*known.get((one, other), ()), *known.get((other, one), ())}
+        spans = [
+            f"{self.clock.at(first)} to {self.clock.at(last)}"
+            for first, last in sorted(apart)
+            if first <= span[1] and last >= span[0]
+        ]
+        gaps = f" but for {' and '.join(spans)}" if spans else ""
+        return f"throughout{gaps}" + ", as far as tracked" * lost
+
+    def _comes(self) -> str:
+        """That the second argument comes to touch the third, or to be within their reach."""
+        one, other = self.beside[1:3]
+        called = self.clock.called(other)
+        start, end = (self.clock.border(self.text, side) for side in ("start", "end"))
+        near = self.clock.measured.near(one, other)
+        first = f"was not within {self._reach()} of" if near else "did not touch"
+        then = "was" if near else "did"
+        if self._lost_at("start"):
+            met = f"was within {self._reach()} of" if near else "touched"
+            return f"{met} the {called} at the end ({end}) and was not tracked at the start"
+        return f"{first} the {called} at the start ({start}) but {then} at the end ({end})"
+
+    def _no_longer(self) -> str:
+        """That the two bodies beside this touch no longer at the end, or when they are seen again.
+
+        What is not tracked at the end is told of when it was seen last.
+        """
+        end = self.clock.border(self.text, "end")
+        if not self._lost_at("end"):
+            return f" but no longer at the end ({end})"
+        span = self.clock.span(self.text) or (0, 0)
+        last = max(
+            (gap[0] - 1 for body in self.beside[1:3] for gap in self._gaps_within(body)),
+            default=span[0],
+        )
+        found = self._met_near(self.beside[1], self.beside[2], span[0])
+        if found is None or last <= found[1]:
+            return f" and was not tracked at the end ({end})"
+        return f" but no longer when last tracked ({self.clock.at(last)})"
+
+    def _unseen(self) -> str:
+        """That the end-effector was not tracked at a border of the segment."""
+        lost = [side for side in ("start", "end") if self._lost_at(side, (self._hand,))]
+        return f" (at the {' and the '.join(lost)} it was not tracked)" * bool(lost)
+
+    def _gaps_within(self, body: str) -> list[tuple[int, int]]:
+        span = self.clock.span(self.text) or self.clock.span(self.clock.own) or (0, 0)
+        gaps = self.clock.measured.lost.get(body, ())
+        return [(first, last) for first, last in gaps if first < span[1] and last > span[0]]
+
+    def _lost_at(self, side: str, bodies: Sequence[str] = ()) -> bool:
+        """Whether one of two bodies was not tracked at a border, up to one frame inside it."""
+        frame = arrangements.frame_of(self.clock, self.text, side)
+        if frame is None:
+            return False
+        inner = frame + (1 if side == "start" else -1)
+        return any(
+            first <= frame <= last and first <= inner <= last
+            for body in bodies or self.beside[1:3]
+            for first, last in self._gaps_within(body)
+        )
+
+    def _lets_go(self) -> str:
+        """Until when another one touches the object of a segment, from before it was reached."""
+        segment, other, thing, last = self.beside
+        hand = self.clock.called(arrangements.hand_of(segment))
+        touched, did = self._touched(other, thing)
+        came = "to be so near" if did == "was" else "to touch it"
+        until = self._when_of(int(last))
+        return f"{touched} already when the {hand} came {came}, and until {until}"
+
+    def _takes(self) -> str:
+        """Since when another one touches the object of a segment, that is let go of there."""
+        segment, other, thing, first = self.beside
+        hand, span = arrangements.hand_of(segment), self.clock.span(segment)
+        left = self._met_near(hand, thing, span[0]) if span else None
+        if left is None:
+            return UNBOUND
+        touched, did = self._touched(other, thing)
+        ended = f"when the {self.clock.called(hand)} no longer {did}"
+        since = self.clock.at(int(first))
+        return (
+            f"{touched} from {since} on, and still {did} {ended} (after {self.clock.at(left[1])})"
+        )
+
+    def _touched(self, one: str, other: str) -> tuple[str, str]:
+        """How contact of two is told, and the verb that stands for it again."""
+        called = self.clock.called(other)
+        if self.clock.measured.near(one, other):
+            reach = self.clock.measured.reaches[one, other].told_mm
+            return f"was within {reach} mm of the {called}", "was"
+        return f"touched the {called}", "did"
