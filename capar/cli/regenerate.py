@@ -10,7 +10,7 @@ from capar.cli._options import Assume, NewBundle, Place, Rules
 
 if TYPE_CHECKING:
     from capar.cli._instantiation import Manner
-    from capar.pipelines.trials import Trial
+    from capar.model.capture import Capture
 
 app = typer.Typer()
 
@@ -166,7 +166,7 @@ def regenerate(
 
 
 def _perform_alone(
-    trial: "Trial",
+    trial: "Capture",
     who: str,
     how: "Manner",
     *,
