@@ -195,6 +195,18 @@ class Scene:
         ways = np.linalg.norm(places[[0, -1], :2] - there[-1, :2], axis=1)
         return float(ways[0] - ways[1])
 
+    def goes_about_rad(self, body: str, thing: str, start_s: float, end_s: float) -> float:
+        """By how much a body goes about where a thing is at the end, seen from above [rad].
+
+        0 where that was not kept.
+        """
+        places, there = self._places(body, start_s, end_s), self._places(thing, end_s, end_s)
+        if places is None or there is None:
+            return 0.0
+        offsets = (places - there[-1])[:, :2]
+        azimuths = np.unwrap(np.arctan2(offsets[:, 1], offsets[:, 0]))
+        return float(azimuths[-1] - azimuths[0])
+
     def leads_m(self, body: str, thing: str, start_s: float, end_s: float) -> float:
         """How far a body is mostly ahead of a thing that goes over the ground, where it goes [m].
 

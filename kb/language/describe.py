@@ -37,6 +37,7 @@ from kb.language.realisation import Realiser
 from kb.language.repeating import as_segmented, deeds, whole
 from kb.language.stowing import stowed
 from kb.language.turning import Turning, turned, with_turning
+from kb.language.turning import timed as in_course
 from kb.lexicon.english import PEOPLE, capital, the_agent
 from kb.lexicon.links import PrimitiveWords
 
@@ -101,9 +102,9 @@ def _story(
     if observation.profile != TO_THE_LETTER:
         turning = Turning(observation)
         steps = stowed(poured(steps, turning), observation.objects, scene)
-        there = placed(steps, observation.objects, scene, turning)
+        there = in_course(placed(steps, observation.objects, scene, turning), turning)
         steps = in_sequence(without_coming(set_down(there, scene), scene))
-        steps = turned_on_the_way(steps, timed=timed)
+        steps = turned_on_the_way(steps)
     if detail == "summary":
         steps = chosen(gathered(in_turns(steps), observation.objects, scene))
     paused = pauses(steps) if observation.profile != TO_THE_LETTER and detail == "steps" else {}

@@ -78,14 +78,11 @@ def placed(
     return tuple(out)
 
 
-def turned_on_the_way(steps: Sequence[Clause], *, timed: bool) -> tuple[Clause, ...]:
-    """The clauses; turning that outlasts what it began in, with what the hands do next.
-
-    Where times are not told, with what the hands do for most of it.
+def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses; turning that outlasts what it began in, with the carrying or what takes longest.
 
     Args:
         steps: What was done, in order of time.
-        timed: Whether times are told.
     """
     out = list(steps)
     for turning in steps:
@@ -98,10 +95,15 @@ def turned_on_the_way(steps: Sequence[Clause], *, timed: bool) -> tuple[Clause, 
         ]
         if begins and ends:
             start_s = max(turning.start_s, begins[0].start_s)
-            told = ends[0] if timed else max(own, key=turning.overlap_s)
+            overlaps = [step for step in own if turning.overlap_s(step) > 0.0]
+            told = max(overlaps, key=lambda step: (_carries(step), turning.overlap_s(step)))
             out[out.index(told)] = replace(told, along=(replace(turning, start_s=start_s),))
             out.remove(turning)
     return tuple(out)
+
+
+def _carries(step: Clause) -> bool:
+    return step.pattern.startswith(CARRY)
 
 
 def _moves_it_beside(turning: Clause, step: Clause) -> bool:
@@ -193,7 +195,7 @@ def _carried(step: Clause, scene: Scene, turning: Turning) -> Clause:
     if leant > OVER_RAD:
         return replace(step, pattern=f"{CARRY} upside down")
     if leant > LEANT_RAD:
-        return replace(step, pattern=f"{CARRY} tilted to one side")
+        return replace(step, pattern=f"{CARRY} tilted")
     few = 1 < scene.steps(*span) <= FEW_STEPS
     return replace(step, pattern=f"{CARRY} a few steps") if few else step
 
