@@ -102,7 +102,8 @@ def _story(
     if observation.profile != TO_THE_LETTER:
         turning = Turning(observation)
         steps = stowed(poured(steps, turning), observation.objects, scene)
-        there = in_course(placed(steps, observation.objects, scene, turning), turning)
+        there = placed(steps, observation.objects, scene, turning)
+        there = in_course(there, turning) if timed else there
         steps = in_sequence(without_coming(set_down(there, scene), scene))
         steps = turned_on_the_way(steps)
     if detail == "summary":

@@ -26,6 +26,7 @@ from kb.language.lexicalisation import (
     SLID,
     THIS_WAY,
     TURN,
+    TURNED,
     UPRIGHT,
     UPSIDE_DOWN,
     moves_only,
@@ -121,6 +122,11 @@ class Turning:
                 if until.time_s < clause.end_s:
                     yield _turned((clause,), pattern, since, until)
 
+    def spins_rad(self, clause: Clause) -> float:
+        """How far a thing is turned about the vertical at the end of a clause [rad]."""
+        seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
+        return abs(seen[-1].spin - seen[0].spin) if seen else 0.0
+
     def course(self, clause: Clause) -> tuple[float, float] | None:
         """From when to when a thing is turned about the vertical within a clause [s].
 
@@ -132,7 +138,7 @@ class Turning:
             None where it turns by less than is noticed, or the times are not known so closely.
         """
         seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
-        if len(seen) < 2 or abs(seen[-1].spin - seen[0].spin) < SOMEWHAT_RAD:
+        if self.spins_rad(clause) < SOMEWHAT_RAD:
             return None
         net = seen[-1].spin - seen[0].spin
         line = self._line(clause.ees, seen[0].time_s, seen[-1].time_s)
@@ -311,7 +317,8 @@ def _turn(clause: Clause, ways: Sequence[Clause], turning: Turning) -> Clause | 
 def timed(steps: Sequence[Clause], turning: Turning) -> tuple[Clause, ...]:
     """The clauses, those of turning about the vertical from when to when the thing turns.
 
-    Where that is not known closely, what goes on beside other clauses has no times of its own.
+    Where that is not known closely, turning has no times of its own: the thing is moved then, and
+    turned meanwhile.
 
     Args:
         steps: What was done, in order of time.
@@ -324,8 +331,17 @@ def timed(steps: Sequence[Clause], turning: Turning) -> tuple[Clause, ...]:
             continue
         course = turning.course(step)
         start_s, end_s = course or (step.start_s, step.end_s)
+        alone = not any(_moves_beside(step, other) for other in steps)
+        if course is None and alone and turning.spins_rad(step) > SOMEWHAT_RAD:
+            out.append(replace(step, pattern="move {1}", name="MoveObj"))
         out.append(replace(step, start_s=start_s, end_s=end_s, sharp=course is not None))
     return tuple(sorted(out, key=in_time))
+
+
+def _moves_beside(turn: Clause, other: Clause) -> bool:
+    """Whether the same hands are told to move the same thing otherwise meanwhile."""
+    same = (turn.ees, turn.objects[:1]) == (other.ees, other.objects[:1])
+    return same and other.changes and other.pattern not in TURNED and turn.overlaps(other)
 
 
 def with_turning(told: Sequence[Clause], ways: Sequence[Clause]) -> tuple[Clause, ...]:
