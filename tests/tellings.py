@@ -25,9 +25,6 @@ SPAN = re.compile(r"\((\d+\.\d\d)(?:–[^()]*?(\d+\.\d\d))? s\)")
 MEANWHILE = re.compile(r", turning [^,(]*\([^)]*\)")
 """What went on beside the step before it."""
 
-HOW_CARRIED = re.compile(r"carried [^,(.]* tilted")
-"""A thing that is carried, and how it leans."""
-
 IN_TURN = re.compile(r", then (with [^.]*)")
 """The hands that do one after the other what was said last."""
 
@@ -49,8 +46,7 @@ def steps_of(text: str) -> tuple[Instruction, ...]:
 def verbs_of(text: str) -> list[str]:
     """The verbs of a telling, each as often as it stands there, or goes on with another hand."""
     in_turn = [hand for hands in IN_TURN.findall(text) for hand in re.findall("with", hands)]
-    told = HOW_CARRIED.sub("carried", text)
-    return [word for word in re.findall(r"[a-z]+", told) if word in VERBS] + in_turn
+    return [word for word in re.findall(r"[a-z]+", text) if word in VERBS] + in_turn
 
 
 def sentences(text: str) -> list[str]:

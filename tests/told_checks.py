@@ -2,10 +2,11 @@
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Float
+from told_claims import Claim, claims
 
 from capar.model.capture import Capture
 from capar.model.geometry import rotations
@@ -16,35 +17,11 @@ SLACK_S = 0.3
 BEGUN, DONE = 0.1, 0.9
 """Before a told start at most this share of the way is done, after a told end at least this one."""
 
-SPAN = re.compile(r" \((\d[^()]*?) s\)")
-"""The times of a step: ``(1.20–3.50 s)``, ``(1.20–3.50 s and 4.00–5.00 s)``."""
-
 NEAR_M = 0.3
 """A hand that has a thing is no further than this [m] from it: markers sit up to 0.16 m off."""
 
-STEP_M, STILL_MPS, FALLEN_M, RISEN_M = 0.2, 0.1, 0.02, 0.03
-
-
-@dataclass(frozen=True)
-class Claim:
-    """One told step: its words, of which thing, by which hands, and when."""
-
-    said: str
-    thing: str
-    goal: str
-    hands: tuple[str, ...]
-    spans: tuple[tuple[float, float], ...]
-    sentence: int
-
-    @property
-    def start_s(self) -> float:
-        """When it began [s]."""
-        return self.spans[0][0]
-
-    @property
-    def end_s(self) -> float:
-        """When it ended [s]."""
-        return self.spans[-1][1]
+STEP_M, FALLEN_M, RISEN_M = 0.2, 0.02, 0.03
+"""What walks, comes down and rises goes so far at least [m]."""
 
 
 @dataclass(frozen=True)
@@ -155,61 +132,6 @@ class Numbers:
         return found[~np.isnan(found.reshape(len(found), -1)).any(axis=1)]
 
 
-HAND = re.compile(r"\b(?:the )?(left|right|both) hands?\b")
-SUBJECT = re.compile(r"^(?:,? ?(?:and )?(?:while )?)the (left|right) hand ")
-
-
-def claims(text: str, nouns: Mapping[str, str]) -> Iterator[Claim]:
-    """The steps of a timed telling.
-
-    Args:
-        text: The telling.
-        nouns: Objects by how they are spoken of.
-    """
-    spoken = sorted(nouns, key=len, reverse=True)
-    mention = re.compile(rf"\b(?:the |a )?({'|'.join(map(re.escape, spoken))}|it)\b") if spoken else None
-    thing, hands, verb = "", (), ""
-    for number, sentence in enumerate(re.split(r"(?<=\.) (?=[A-Z])", text)):
-        at = 0
-        for found in SPAN.finditer(sentence):
-            said, at = sentence[at : found.start()], found.end()
-            said = re.sub(r"^(?:\w+(?: \w+)*, )?(?:\w+ ){0,3}?agent ", "", said).strip(" ,")
-            said = re.sub(r"^(?:[A-Z]\w+ ,?)?(?:then )?(?:and )?", "", said)
-            subject = SUBJECT.match(said) or re.search(r"\bwhile the (left|right) hand ", said)
-            if subject:
-                hands = (subject.group(1),)
-                said = said[subject.end() :]
-            elif named := HAND.search(said):
-                side = named.group(1)
-                if "over to the" in said:
-                    pass
-                else:
-                    hands = ("left", "right") if side == "both" else (side,)
-            if said.startswith("which ") and hands:
-                hands = ("left",) if hands == ("right",) else ("right",)
-                said = said.removeprefix("which ")
-            listed = re.match(r"^(?:the |a )", said) or said.split(" ")[0] in nouns or said in nouns
-            if listed:
-                said = f"{verb} {said}"
-            else:
-                verb = said.split(" ")[0]
-            names = [match.group(1) for match in mention.finditer(said)] if mention else []
-            own = [nouns[name] for name in names if name != "it"]
-            if names and names[0] != "it":
-                thing = own[0]
-            rest = re.sub(r" \([^()]*\)", "", sentence[found.start() :])
-            goal = re.search(rf"\b(?:in|on|into) the ({'|'.join(map(re.escape, spoken))})\b", said)
-            goal = goal or re.search(
-                rf"^[^()]*?\b(?:in|on|into) the ({'|'.join(map(re.escape, spoken))})\b", rest
-            )
-            numbers = [float(value) for value in re.findall(r"\d+\.\d+", found.group(1))]
-            pairs = numbers if len(numbers) % 2 == 0 else numbers * 2
-            spans = tuple(zip(pairs[::2], pairs[1::2], strict=True))
-            yield Claim(said, thing, nouns[goal.group(1)] if goal else "", hands, spans, number)
-            if re.search(r"handed .* over to the (left|right) hand", said):
-                pass
-
-
 Check = Callable[[Claim, Numbers], Iterator[tuple[str, bool]]]
 
 
@@ -278,14 +200,7 @@ def _put(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
         yield f"{home_m:.2f} m from where it was", home_m < 0.25
     if claim.goal:
         yield from _at_goal(claim, numbers)
-    yield from _held(replace_span(claim, a, max(b - 0.3, a)), numbers)
-
-
-def replace_span(claim: Claim, start_s: float, end_s: float) -> Claim:
-    """The claim of another time."""
-    return Claim(
-        claim.said, claim.thing, claim.goal, claim.hands, ((start_s, end_s),), claim.sentence
-    )
+    yield from _held(replace(claim, spans=((a, max(b - SLACK_S, a)),)), numbers)
 
 
 def _at_goal(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
@@ -311,9 +226,11 @@ def _carried(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     low = numbers.lowest(claim.thing)
     way_m = float(np.linalg.norm((places - places[0])[:, :2], axis=1).max())
     yield f"carried over {way_m:.2f} m", way_m > STEP_M
-    off_m = float(np.median(numbers.during(low, claim.start_s, claim.end_s))) - float(np.nanmin(low))
+    off_m = float(np.median(numbers.during(low, claim.start_s, claim.end_s))) - float(
+        np.nanmin(low)
+    )
     yield f"{off_m:.2f} m off the floor", off_m > 0.01
-    if "tilted" in claim.said:
+    if "at an angle" in claim.said:
         lean = float(np.median(numbers.during(numbers.up(claim.thing), claim.start_s, claim.end_s)))
         yield f"leans {np.degrees(lean):.0f} degrees", 0.35 < lean < 2.4
     yield from _held(claim, numbers)
@@ -323,7 +240,7 @@ def _slid(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     places, low = numbers.middle(claim.thing), numbers.lowest(claim.thing)
     own = numbers.during(places, claim.start_s, claim.end_s)
     way_m = float(np.linalg.norm((own - own[0])[:, :2], axis=1).max())
-    yield f"goes {way_m:.2f} m", way_m > 0.05
+    yield f"goes {way_m:.2f} m", way_m > FALLEN_M / 2.0
     if "along the floor" in claim.said:
         off_m = float(np.quantile(numbers.during(low, claim.start_s, claim.end_s), 0.9))
         yield f"lowest part {off_m - float(np.nanmin(low)):.2f} m up", off_m - np.nanmin(low) < 0.06
@@ -349,7 +266,10 @@ def _ahead_m(claim: Claim, numbers: Numbers, places: np.ndarray) -> float:
     way = own[-1] - own[0]
     leads = [
         np.median(
-            (numbers.during(numbers.origin(f"{side} hand"), claim.start_s, claim.end_s)[:, :2] - own)
+            (
+                numbers.during(numbers.origin(f"{side} hand"), claim.start_s, claim.end_s)[:, :2]
+                - own
+            )
             @ way
         )
         for side in claim.hands
@@ -362,14 +282,16 @@ def _turned(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
         lean = numbers.up(claim.thing)
         a, b = (float(numbers.at(lean, time_s)) for time_s in (claim.start_s, claim.end_s))
         over = "upside down" in claim.said
-        yield f"leans {np.degrees(a):.0f} to {np.degrees(b):.0f} degrees", (
-            a < 0.9 < 2.2 < b if over else b < 0.9 < a
+        yield (
+            f"leans {np.degrees(a):.0f} to {np.degrees(b):.0f} degrees",
+            (a < 0.9 and b > 2.2) if over else b < 0.9 < a,
         )
         final = float(numbers.at(lean, claim.end_s + 0.5))
         done = _progress(lean, a, b if over else min(b, final))
         yield from _ends(numbers, done, claim, end=False)
         return
-    if " about" in claim.said and "a quarter" not in claim.said or "bit by bit" in claim.said:
+    aside = " about" in claim.said and "a quarter" not in claim.said
+    if aside or "bit by bit" in claim.said:
         turned = numbers.turned(claim.thing)
         way = float(numbers.at(turned, claim.end_s) - numbers.at(turned, claim.start_s))
         yield f"turns by {np.degrees(way):.0f} degrees", way > 1.0
@@ -378,9 +300,16 @@ def _turned(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     spin = numbers.spin(claim.thing)
     first, last = numbers.at(spin, claim.start_s - 0.6), numbers.at(spin, claim.end_s + 0.6)
     net = float(last - first)
-    lower, upper = (45, 135) if "a quarter" in claim.said else (110, 250) if "around" in claim.said else (25, 75)
+    lower, upper = (
+        (45, 135)
+        if "a quarter" in claim.said
+        else (110, 250)
+        if "around" in claim.said
+        else (25, 75)
+    )
     yield f"turned by {np.degrees(net):.0f} degrees", lower < abs(np.degrees(net)) < upper
-    yield from _ends(numbers, _progress(spin, float(first), float(last)), claim)
+    if claim.timed:
+        yield from _ends(numbers, _progress(spin, float(first), float(last)), claim)
     yield from _held(claim, numbers)
 
 
@@ -412,7 +341,9 @@ def _walked(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
         ways.append(float(np.linalg.norm(numbers.at(places, b) - numbers.at(places, a))))
     several = claim.said.startswith("walked")
     yield f"feet go {ways}", sum(way > 0.17 for way in ways) >= (2 if several else 1)
-    things = [name for name, body in numbers.streams().items() if getattr(body, "tag", "") == "mobile"]
+    things = [
+        name for name, body in numbers.streams().items() if getattr(body, "tag", "") == "mobile"
+    ]
     thing = claim.thing or things[0]
     pelvis, there = numbers.origin("pelvis")[:, :2], numbers.middle(thing)[:, :2]
     mean = np.mean([numbers.origin(foot)[:, :2] for foot in feet], axis=0)
@@ -456,7 +387,7 @@ def _stirred(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
         yield f"{tool} {far:.2f} m beside the middle of the {claim.goal}", far < 0.2
         path = float(np.linalg.norm(np.diff(own, axis=0), axis=1).sum())
         yield f"{tool} goes at {path / (end_s - start_s):.2f} m/s", path / (end_s - start_s) > 0.05
-    yield from _held(Claim(claim.said, tool, "", claim.hands, claim.spans, 0), numbers)
+    yield from _held(replace(claim, thing=tool), numbers)
 
 
 def _poured(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
@@ -480,7 +411,9 @@ def _poured(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
 
 def _steadied(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     places = numbers.during(numbers.middle(claim.thing), claim.start_s, claim.end_s)
-    strays_m = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max()) if len(places) else 0.0
+    strays_m = (
+        float(np.linalg.norm(places - places.mean(axis=0), axis=1).max()) if len(places) else 0.0
+    )
     yield f"strays {strays_m:.2f} m", strays_m < 0.12
     yield from _held(claim, numbers)
 
@@ -539,7 +472,12 @@ def _direction(claim: Claim, way: np.ndarray, facing: np.ndarray) -> Iterator[tu
     right = np.array([facing[1], -facing[0]])
     ahead, aside = float(way[:2] @ facing), float(way[:2] @ right)
     said = claim.said
-    for word, part in (("forward", ahead), ("backward", -ahead), ("to the left", -aside), ("to the right", aside)):
+    for word, part in (
+        ("forward", ahead),
+        ("backward", -ahead),
+        ("to the left", -aside),
+        ("to the right", aside),
+    ):
         if re.search(rf"\b{word}\b", said.replace("with the right hand", "")):
             yield f"{word}: {part:.2f} m", part > 0.05
 
@@ -550,7 +488,9 @@ def _held_up(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
         own = float(np.median(numbers.during(above, claim.start_s, claim.end_s)))
         yield f"{own:.2f} m above the head", own > 0.0
     if "upside down" in claim.said:
-        lean = numbers.during(numbers.up(claim.thing), claim.start_s + SLACK_S, claim.end_s - SLACK_S)
+        lean = numbers.during(
+            numbers.up(claim.thing), claim.start_s + SLACK_S, claim.end_s - SLACK_S
+        )
         yield f"leans {np.degrees(lean.min()):.0f} degrees at least", lean.min() > 2.0
     yield from _held(claim, numbers)
 
@@ -585,7 +525,7 @@ CHECKS: tuple[tuple[str, Check], ...] = (
     (r"^(put|lowered) ", _put),
     (r"^carried ", _carried),
     (r"^(pulled|slid|pushed) .* off ", _taken),
-    (r"^(pulled|slid|pushed|shifted) ", _slid),
+    (r"^(pulled|slid|pushed|shifted|moved) ", _slid),
     (r"^straightened up again", _reached),
     (r"^(bent|crouched|straightened|stood|began to straighten)", _bent),
     (r"^(walked|stepped|took a step)", _walked),

@@ -14,8 +14,8 @@ from kb.language.lexicalisation import (
     STEP_AWAY,
     STEP_UP,
     WALK,
-    WALK_AWAY,
     WALK_AROUND,
+    WALK_AWAY,
     WALK_UP,
 )
 from kb.language.thresholds import ASIDE_SHARE, QUARTER_RAD, STEP_M, STRIDE_S

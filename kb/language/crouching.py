@@ -131,7 +131,9 @@ def _changes(
         depth_m = standing_m - lowest_m
         lowest = low[heights[low] < standing_m - (1.0 - NOTICED_SHARE) * depth_m]
         if heights[before] - heights[lowest[0]] > least_m - STANDING_M:
-            stood = np.flatnonzero(heights[before : lowest[0]] > standing_m - NOTICED_SHARE * depth_m)
+            stood = np.flatnonzero(
+                heights[before : lowest[0]] > standing_m - NOTICED_SHARE * depth_m
+            )
             first = int(before + max(stood, default=0))
             yield _clause(deed, down, track, first, int(lowest[0]))
         leaves = int(max(low[heights[low] < lowest_m + STANDING_M]))

@@ -30,7 +30,7 @@ from kb.language.lexicalisation import FREE, LEAVES, STEP, WALK, Phrasebook
 from kb.language.listing import listed
 from kb.language.omitting import set_down, without_coming
 from kb.language.pauses import pauses
-from kb.language.placing import placed, turned_on_the_way
+from kb.language.placing import placed, turned_on_the_way, while_moving
 from kb.language.planning import sentences
 from kb.language.pouring import poured
 from kb.language.realisation import Realiser
@@ -103,7 +103,7 @@ def _story(
         turning = Turning(observation)
         steps = stowed(poured(steps, turning), observation.objects, scene)
         there = placed(steps, observation.objects, scene, turning)
-        there = in_course(there, turning) if timed else there
+        there = in_course(while_moving(there, scene), turning) if timed else there
         steps = in_sequence(without_coming(set_down(there, scene), scene))
         steps = turned_on_the_way(steps)
     if detail == "summary":

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from capar.model.observation import ObservedObject
-from kb.language.clause import Clause
+from kb.language.clause import Clause, in_time
 from kb.language.contacts import Scene
 from kb.language.lexicalisation import (
     DOWN,
@@ -76,6 +76,29 @@ def placed(
             works = _works_there(step, steps[at + 1 :]) and not _has_it(step, out)
             out.append(_taken(brought, objects, scene) if works else brought)
     return tuple(out)
+
+
+def while_moving(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
+    """The clauses; of what is put somewhere until it stays there, of what is slid while it goes.
+
+    A hand that stays at it before or afterwards for a moment that people do not notice is left out.
+
+    Args:
+        steps: What was done, in order of time.
+        scene: Measured contacts and places.
+    """
+    out: list[Clause] = []
+    for step in steps:
+        slid = step.pattern.startswith(tuple(f"{name.lower()} {{1}}" for name in SLID))
+        if not ((_puts(step) or slid) and step.possessed) or step.apart or step.pauses:
+            out.append(step)
+            continue
+        goes_s, stays_s = scene.moves_s(step.objects[0], step.start_s, step.end_s)
+        late = step.end_s - stays_s > UNSEEN_S
+        early = slid and goes_s - step.start_s > UNSEEN_S
+        start_s, end_s = goes_s if early else step.start_s, stays_s if late else step.end_s
+        out.append(replace(step, start_s=start_s, end_s=end_s))
+    return tuple(sorted(out, key=in_time))
 
 
 def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
@@ -195,7 +218,7 @@ def _carried(step: Clause, scene: Scene, turning: Turning) -> Clause:
     if leant > OVER_RAD:
         return replace(step, pattern=f"{CARRY} upside down")
     if leant > LEANT_RAD:
-        return replace(step, pattern=f"{CARRY} tilted")
+        return replace(step, pattern=f"{CARRY} at an angle")
     few = 1 < scene.steps(*span) <= FEW_STEPS
     return replace(step, pattern=f"{CARRY} a few steps") if few else step
 

@@ -119,13 +119,17 @@ class Turning:
             if pattern in {TURN, BY_A_QUARTER}:
                 seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
                 since, until = _course(seen)
-                if until.time_s < clause.end_s:
+                if until.time_s <= clause.end_s:
                     yield _turned((clause,), pattern, since, until)
 
     def spins_rad(self, clause: Clause) -> float:
         """How far a thing is turned about the vertical at the end of a clause [rad]."""
         seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
         return abs(seen[-1].spin - seen[0].spin) if seen else 0.0
+
+    def faces_aside(self, clause: Clause) -> bool:
+        """Whether a thing so large that people notice it faces another way at the end."""
+        return clause.objects[0] in self._large and self.spins_rad(clause) > SOMEWHAT_RAD
 
     def course(self, clause: Clause) -> tuple[float, float] | None:
         """From when to when a thing is turned about the vertical within a clause [s].
@@ -332,7 +336,7 @@ def timed(steps: Sequence[Clause], turning: Turning) -> tuple[Clause, ...]:
         course = turning.course(step)
         start_s, end_s = course or (step.start_s, step.end_s)
         alone = not any(_moves_beside(step, other) for other in steps)
-        if course is None and alone and turning.spins_rad(step) > SOMEWHAT_RAD:
+        if course is None and alone and turning.faces_aside(step):
             out.append(replace(step, pattern="move {1}", name="MoveObj"))
         out.append(replace(step, start_s=start_s, end_s=end_s, sharp=course is not None))
     return tuple(sorted(out, key=in_time))
