@@ -187,10 +187,10 @@ def _put(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     if len(after) > 2:
         gone_m = float(np.linalg.norm(after - after[0], axis=1).max())
         yield f"goes {gone_m:.2f} m after the end", gone_m < 0.06
-    moving = numbers.during(places, b - 0.5, b + 0.1)
+    moving = numbers.during(places, b - SLACK_S, b + 0.1)
     if len(moving) > 2:
         gone_m = float(np.linalg.norm(moving - moving[-1], axis=1).max())
-        yield f"goes {gone_m:.3f} m before the end", gone_m > 0.003
+        yield f"goes {gone_m:.3f} m before the end", gone_m > 0.004
     during = numbers.during(places, a, b)
     if len(during) > 2:
         way_m = float(np.linalg.norm(during - during[-1], axis=1).max())
@@ -428,11 +428,33 @@ def _taken(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     if len(own) > 2:
         way_m = float(np.linalg.norm(own - own[0], axis=1).max())
         yield f"goes {way_m:.2f} m", way_m > 0.05
+    if claim.goal or "from the table" in claim.said:
+        yield from _stood(claim, numbers)
     soon = numbers.during(places, claim.start_s, claim.start_s + 2.0 * SLACK_S)
     if len(soon) > 2:
         way_m = float(np.linalg.norm(soon - soon[0], axis=1).max())
         yield f"goes {way_m:.3f} m soon after the start", way_m > 0.005
     yield from _held(claim, numbers)
+
+
+def _stood(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
+    """Whether the thing stood on the table before it was taken."""
+    top_m = float(np.nanmax(numbers.surface("table")[..., 2]))
+    before = numbers.during(numbers.lowest(claim.thing), claim.start_s - 1.0, claim.start_s)
+    if len(before):
+        above_m = float(before[0]) - top_m
+        yield f"{above_m:.2f} m above the table", abs(above_m) < 0.15
+
+
+def _waited(text: str, steps: Sequence[Checked]) -> Iterator[str]:
+    """Pauses that are told otherwise than the times of the steps say."""
+    spans = [step.claim for step in steps if step.claim.timed]
+    for told in re.finditer(r"About (\d+) s later, [^()]*\((\d+\.\d+)", text):
+        start_s = float(told[2])
+        before = [claim.end_s for claim in spans if claim.start_s < start_s]
+        lasted_s = start_s - max(before)
+        if abs(lasted_s - float(told[1])) > 0.51:
+            yield f"{told[1]} s told, {lasted_s:.1f} s between the steps"
 
 
 def _reached(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
@@ -556,4 +578,5 @@ def checked(text: str, capture: Capture, nouns: Mapping[str, str]) -> list[Check
         results = list(check(claim, numbers)) if check else []
         wrong = tuple(what for what, holds in results if not holds)
         out.append(Checked(claim, len(results), wrong))
-    return out
+    pauses = tuple(_waited(text, out))
+    return [replace(out[0], wrong=(*out[0].wrong, *pauses)), *out[1:]] if pauses else out

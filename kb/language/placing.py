@@ -90,7 +90,8 @@ def while_moving(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
     out: list[Clause] = []
     for step in steps:
         slid = step.pattern.startswith(tuple(f"{name.lower()} {{1}}" for name in SLID))
-        if not ((_puts(step) or slid) and step.possessed) or step.apart or step.pauses:
+        told = _puts(step) or slid or step.pattern == LOWER
+        if not (told and step.possessed) or step.apart or step.pauses:
             out.append(step)
             continue
         goes_s, stays_s = scene.moves_s(step.objects[0], step.start_s, step.end_s)
