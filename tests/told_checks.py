@@ -129,7 +129,7 @@ class Numbers:
     def during(self, values: np.ndarray, start_s: float, end_s: float) -> np.ndarray:
         """The values of the frames of a time in which the body was seen."""
         found = values[(self.times >= start_s - 1e-6) & (self.times <= end_s + 1e-6)]
-        return found[~np.isnan(found.reshape(len(found), -1)).any(axis=1)]
+        return found[~np.isnan(found).any(axis=tuple(range(1, found.ndim)))]
 
 
 Check = Callable[[Claim, Numbers], Iterator[tuple[str, bool]]]
@@ -216,8 +216,7 @@ def _at_goal(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     place = places[-1]
     over = bool(((place > low - 0.05) & (place < high + 0.05))[:2].all())
     yield f"over the {claim.goal}", over
-    inside = " in " in f" {claim.said} " or " in the" in claim.said
-    if inside and len(corners) > 1:
+    if " in " in claim.said and len(corners) > 1:
         yield f"below the rim of the {claim.goal}", bool(place[2] < high[2] + 0.1)
 
 
@@ -469,7 +468,11 @@ def _reached(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     first = numbers.at(hand, a - 0.4 if lifted else a)
     last = numbers.at(hand, b)
     done = ((hand - first) @ (last - first)) / float((last - first) @ (last - first))
-    yield from _ends(numbers, done, claim)
+    if lifted:
+        yield from _ends(numbers, done, claim)
+    else:
+        after = float(numbers.at(done, b + SLACK_S))
+        yield f"{after:.0%} back {SLACK_S} s after the end", after > DONE
     rise_m = float(own[-1, 2] - own[0, 2])
     if lifted and " up" in claim.said:
         yield f"hand rises {rise_m:.2f} m", rise_m > 0.1
@@ -575,7 +578,9 @@ def checked(text: str, capture: Capture, nouns: Mapping[str, str]) -> list[Check
     out = []
     for claim in claims(text, nouns):
         check = next((own for words, own in CHECKS if re.match(words, claim.said)), None)
-        results = list(check(claim, numbers)) if check else []
+        beyond = claim.end_s > float(numbers.times[-1]) + 0.01
+        results = list(check(claim, numbers)) if check and not beyond else []
+        results += [("goes on beyond the recording", False)] if beyond else []
         wrong = tuple(what for what, holds in results if not holds)
         out.append(Checked(claim, len(results), wrong))
     pauses = tuple(_waited(text, out))

@@ -9,7 +9,9 @@ SPAN = re.compile(r" \((\d[^()]*?) s\)")
 
 HAND = re.compile(r"\bthe (left|right) hand\b|\b(both) hands\b")
 SUBJECT = re.compile(r"^(?:.*\bwhile )?the (left|right) hand (?=\w+ed |took |put |\w+ )")
-AGENT = re.compile(r"^.*?\bagent |^[A-Z].*? (?=(?:lifted|pulled) )")
+AGENT = re.compile(r"^.*?\b(?:agent|woman|man|child) |^[A-Z]\w+ (?=\w+ed |took |put )")
+"""Who acts, with what opens the sentence: in the recordings some have names."""
+
 UNTIMED = re.compile(r"^,? ?(turning (?:it|the [a-z ]+?)(?: (?!and )\w+)*)(?:, (?:and )?|\.$)")
 """A turn that has no times of its own, before the next step."""
 
@@ -68,7 +70,8 @@ def claims(text: str, nouns: Mapping[str, str]) -> Iterator[Claim]:
             mention = _mentioned(said.removeprefix("reached "), nouns)
             thing = mention or thing
             spans = _spans(found[1])
-            yield Claim(said, thing, _goal(said, rest, nouns), hands, spans)
+            goal, said = _goal(said, rest, nouns)
+            yield Claim(said, thing, goal, hands, spans)
         if beside := UNTIMED.match(sentence[at:]):
             yield Claim(beside[1], thing, "", hands, spans, timed=False)
 
@@ -92,13 +95,20 @@ def _mentioned(words: str, nouns: Mapping[str, str]) -> str:
     return "" if not places or (pronoun and pronoun.start() < first[0]) else places[first]
 
 
-def _goal(said: str, rest: str, nouns: Mapping[str, str]) -> str:
-    """Where the thing is put, or in what it is used, also where a list of things comes first."""
+def _goal(said: str, rest: str, nouns: Mapping[str, str]) -> tuple[str, str]:
+    """Where the thing is put, or in what it is used, also where a list of things comes first.
+
+    Returns:
+        That, and the words of the step with it.
+    """
     spoken = "|".join(map(re.escape, sorted(nouns, key=len, reverse=True))) or "-"
     goal = re.compile(rf"\b(?:in|on|into) (?:the )?({spoken})\b")
-    listed = re.compile(rf"^(?:,? (?:and )?(?:the )?(?:{spoken}))*,? (?:in|on) the ({spoken})\b")
-    found = goal.search(said) or listed.match(rest)
-    return nouns[found[1]] if found else ""
+    listed = re.compile(rf"^(?:,? (?:and )?(?:the )?(?:{spoken}))*,? ((?:in|on) the ({spoken}))\b")
+    if found := goal.search(said):
+        return nouns[found[1]], said
+    if found := listed.match(rest):
+        return nouns[found[2]], f"{said} {found[1]}"
+    return "", said
 
 
 def _spans(words: str) -> tuple[tuple[float, float], ...]:
