@@ -20,6 +20,9 @@ BEGUN, DONE = 0.1, 0.9
 NEAR_M = 0.3
 """A hand that has a thing is no further than this [m] from it: markers sit up to 0.16 m off."""
 
+FLOOR_M = 0.03
+"""What is stated to be lower than this [m] is the floor of a box, whose rim is not known."""
+
 STEP_M, FALLEN_M, RISEN_M = 0.2, 0.02, 0.03
 """What walks, comes down and rises goes so far at least [m]."""
 
@@ -136,7 +139,7 @@ Check = Callable[[Claim, Numbers], Iterator[tuple[str, bool]]]
 
 
 def _progress(values: np.ndarray, start: float, end: float) -> np.ndarray:
-    return (values - start) / (end - start)
+    return (values - start) / (end - start if end != start else np.inf)
 
 
 def _ends(
@@ -216,7 +219,7 @@ def _at_goal(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     place = places[-1]
     over = bool(((place > low - 0.05) & (place < high + 0.05))[:2].all())
     yield f"over the {claim.goal}", over
-    if " in " in claim.said and len(corners) > 1:
+    if " in " in claim.said and high[2] - low[2] > FLOOR_M:
         yield f"below the rim of the {claim.goal}", bool(place[2] < high[2] + 0.1)
 
 
