@@ -14,7 +14,7 @@ VERBS = {
     *(past(row["pattern"].split()[0]) for row in table("phrases")),
     *map(past, ("bend", "crouch", "lean", "shift")),
     past("pack"),
-    past("straighten"),
+    *map(past, ("begin", "stand", "straighten")),
     *(in_progress(pattern).split()[0] for pattern in TURNED),
 }
 """Every verb that a telling may have, in the past, or of what goes on beside something else."""

@@ -10,13 +10,15 @@ from kb.language.lexicalisation import (
     ON_FOOT,
     REACH,
     STEP,
+    STEP_ASIDE,
     STEP_AWAY,
     STEP_UP,
     WALK,
+    WALK_AROUND,
     WALK_AWAY,
     WALK_UP,
 )
-from kb.language.thresholds import STEP_M, STRIDE_S
+from kb.language.thresholds import ASIDE_SHARE, QUARTER_RAD, STEP_M, STRIDE_S
 
 Told = tuple[Clause, ...]
 
@@ -147,7 +149,7 @@ def with_walks(
             if link.kind == FOOT
         ]
     acts = [step for step in manual if step.changes] or manual
-    begin_s, end_s = min(step.start_s for step in acts), max(step.end_s for step in manual)
+    begin_s, end_s = min(step.start_s for step in acts), max(step.end_s for step in acts)
     out = list(steps)
     for walk in _walks((step for step in feet if step.end_s <= begin_s), scene):
         out = [_after(walk, step) for step in out if not _within(step, walk)]
@@ -157,7 +159,12 @@ def with_walks(
             scene.nears_m(foot, thing, walk.start_s, walk.end_s) > STEP_M for foot in walk.ees
         )
         walked = replace(walk, ees=first.ees)
-        if up_to:
+        about_rad = min(
+            abs(scene.goes_about_rad(foot, thing, walk.start_s, walk.end_s)) for foot in walk.ees
+        )
+        if walk.pattern == WALK and about_rad > QUARTER_RAD:
+            walked = replace(walked, pattern=WALK_AROUND, objects=(thing,))
+        elif up_to:
             pattern = WALK_UP if walk.pattern == WALK else STEP_UP
             walked = replace(walked, pattern=pattern, objects=(thing,))
         out.append(walked)
@@ -173,14 +180,18 @@ def _strides(link: ObservedLink, scene: Scene) -> Iterator[Clause]:
 
 
 def _away(walk: Clause, last: Clause, scene: Scene) -> Clause:
-    """A walk after the last deed, as one away from the thing where it is that."""
-    thing, own = last.objects[0], replace(walk, ees=last.ees)
-    leaves = all(
-        scene.nears_m(foot, thing, walk.start_s, walk.end_s) < -STEP_M for foot in walk.ees
-    )
-    if not leaves:
-        return own
-    return replace(own, pattern=WALK_AWAY if walk.pattern == WALK else STEP_AWAY)
+    """A walk after the last deed, as one away from the thing where it is that.
+
+    A single step that leads neither away from it nor nearer is one aside.
+    """
+    thing, own, span = last.objects[0], replace(walk, ees=last.ees), (walk.start_s, walk.end_s)
+    nears_m = [scene.nears_m(foot, thing, *span) for foot in walk.ees]
+    if walk.pattern == WALK:
+        return replace(own, pattern=WALK_AWAY) if max(nears_m) < -STEP_M else own
+    share = nears_m[0] / (scene.way_m(walk.ees[0], *span) or STEP_M)
+    if share < -ASIDE_SHARE:
+        return replace(own, pattern=STEP_AWAY)
+    return replace(own, pattern=STEP_ASIDE) if share < ASIDE_SHARE else own
 
 
 def _end_s(step: Clause) -> float:

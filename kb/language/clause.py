@@ -64,6 +64,9 @@ class Clause:
     unseen: bool = False
     """Whether no contact was measured in it: its motion tells that the hand moves the thing."""
 
+    sharp: bool = True
+    """Whether it is closely known when it began and ended."""
+
     rights: bool = False
     """Whether it ends as the first object is turned upright again."""
 

@@ -168,6 +168,23 @@ class Scene:
         step_s = (end_s - start_s) / max(len(above) - 1, 1)
         return start_s + float(max(high, default=0)) * step_s
 
+    def moves_s(self, thing: str, start_s: float, end_s: float) -> tuple[float, float]:
+        """From when to when, within a time, a thing is on its way from its first to its last place.
+
+        The whole time [s] where that was not kept, or it stays where it is.
+        """
+        places = self._places(thing, start_s, end_s)
+        if places is None:
+            return start_s, end_s
+        left = np.linalg.norm(places - places[0], axis=1) > 0.5 * STILL_M
+        there = np.linalg.norm(places - places[-1], axis=1) <= 0.5 * STILL_M
+        if not left.any() or there.all():
+            return start_s, end_s
+        step_s = (end_s - start_s) / max(len(places) - 1, 1)
+        first = max(int(np.argmax(left)) - 1, 0)
+        last = len(places) - int(np.argmax(~there[::-1]))
+        return start_s + first * step_s, min(start_s + last * step_s, end_s)
+
     def rises_s(self, thing: str, start_s: float, end_s: float) -> float:
         """Since when, within a time, a thing is off the height at which it was at first [s]."""
         places = self._places(thing, start_s, end_s)
@@ -194,6 +211,18 @@ class Scene:
             return 0.0
         ways = np.linalg.norm(places[[0, -1], :2] - there[-1, :2], axis=1)
         return float(ways[0] - ways[1])
+
+    def goes_about_rad(self, body: str, thing: str, start_s: float, end_s: float) -> float:
+        """By how much a body goes about where a thing is at the end, seen from above [rad].
+
+        0 where that was not kept.
+        """
+        places, there = self._places(body, start_s, end_s), self._places(thing, end_s, end_s)
+        if places is None or there is None:
+            return 0.0
+        offsets = (places - there[-1])[:, :2]
+        azimuths = np.unwrap(np.arctan2(offsets[:, 1], offsets[:, 0]))
+        return float(azimuths[-1] - azimuths[0])
 
     def leads_m(self, body: str, thing: str, start_s: float, end_s: float) -> float:
         """How far a body is mostly ahead of a thing that goes over the ground, where it goes [m].

@@ -9,8 +9,28 @@ import numpy as np
 from capar.model.observation import ObservedLink
 from capar.model.sampled_track import SampledTrack
 from kb.language.clause import Clause, in_time
-from kb.language.lexicalisation import BEND, CROUCH, STAND_UP, STEP, STEP_AWAY, STEP_UP
-from kb.language.thresholds import BENT_M, CROUCHED_M, STANDING_M, STILL_M, UNSEEN_S
+from kb.language.lexicalisation import (
+    BEGIN_UP,
+    BEND,
+    BEND_AND_CROUCH,
+    CROUCH,
+    STAND_UP,
+    STEP,
+    STEP_ASIDE,
+    STEP_AWAY,
+    STEP_UP,
+    STRAIGHTEN,
+)
+from kb.language.thresholds import (
+    BENT_M,
+    CROUCHED_M,
+    NOTICED_SHARE,
+    REST_S,
+    STANDING_M,
+    STILL_M,
+    UNSEEN_S,
+    UP_SHARE,
+)
 
 PELVIS, HEAD = "pelvis", "head"
 """The kinds of the links that go down: both in crouching, the head alone in bending."""
@@ -32,26 +52,35 @@ def with_crouching(
     if not manual:
         return tuple(steps)
     head = _track(HEAD, links, tracks)
+    bends = list(_changes(head, manual[0], BEND, BENT_M))
     crouches = [
-        _until_upright(each, head)
-        for each in _changes(_track(PELVIS, links, tracks), manual[0], CROUCH, CROUCHED_M)
+        _with_head(change, bends)
+        for change in _changes(_track(PELVIS, links, tracks), manual[0], CROUCH, CROUCHED_M)
     ]
-    bends = [_until_upright(each, head) for each in _changes(head, manual[0], BEND, BENT_M)]
-    own = [*crouches, *(each for each in bends if not any(map(each.overlaps, crouches)))]
-    own = [each for each in own if not any(_goes_with(each, step) for step in manual)]
+    own = [_after_bending(crouch, bends, head) for crouch in crouches]
+    own += [bend for bend in bends if not any(map(bend.overlaps, own))]
+    own = [change for change in own if not any(_goes_with(change, step) for step in manual)]
     rest = [step for step in steps if not _steadies(step, own)]
     return tuple(sorted((*rest, *own), key=in_time))
 
 
-def _until_upright(change: Clause, head: SampledTrack | None) -> Clause:
-    """Straightening up until the head rises no more."""
-    if change.pattern != STAND_UP or head is None:
-        return change
-    heights, brief = head.positions[:, 2], max(round(UNSEEN_S / head.step_s), 1)
-    at = round(change.end_s / head.step_s)
-    while at + brief < len(heights) and heights[at + brief] - heights[at] > 0.5 * STILL_M:
-        at += 1
-    return replace(change, end_s=max(change.end_s, at * head.step_s))
+def _with_head(change: Clause, bends: Sequence[Clause]) -> Clause:
+    """Standing up until the head is up, too."""
+    rises = [bend.end_s for bend in bends if bend.pattern == STRAIGHTEN and bend.overlaps(change)]
+    late = change.pattern == STAND_UP
+    return replace(change, end_s=max(change.end_s, *rises)) if late and rises else change
+
+
+def _after_bending(crouch: Clause, bends: Sequence[Clause], head: SampledTrack | None) -> Clause:
+    """Crouching by one who has bent down before, as both."""
+    first = next((bend for bend in bends if bend.pattern == BEND and bend.overlaps(crouch)), None)
+    if crouch.pattern != CROUCH or first is None or head is None:
+        return crouch
+    heights = head.positions[:, 2]
+    lower_m = float(heights.max() - heights[round(crouch.start_s / head.step_s)])
+    if lower_m < BENT_M or crouch.start_s - first.start_s < REST_S:
+        return crouch
+    return replace(crouch, pattern=BEND_AND_CROUCH, start_s=first.start_s)
 
 
 def _goes_with(change: Clause, step: Clause) -> bool:
@@ -61,7 +90,7 @@ def _goes_with(change: Clause, step: Clause) -> bool:
 
 def _steadies(step: Clause, changes: Sequence[Clause]) -> bool:
     """Whether it is a single step that the body takes as it goes down or comes up."""
-    single = step.pattern in {STEP, STEP_UP, STEP_AWAY}
+    single = step.pattern in {STEP, STEP_UP, STEP_ASIDE, STEP_AWAY}
     return single and any(
         each.start_s <= step.start_s and step.end_s <= each.end_s for each in changes
     )
@@ -80,6 +109,8 @@ def _changes(
 ) -> Iterator[Clause]:
     """Each time that the body goes down, or comes up again, as a clause of who does the deed.
 
+    A recording that begins or ends on the way down or up tells that part of it.
+
     Args:
         track: Where the link was that goes down.
         deed: A deed of the same person.
@@ -91,13 +122,44 @@ def _changes(
     heights = track.positions[:, 2]
     standing_m = float(heights.max())
     up = np.flatnonzero(heights > standing_m - STANDING_M)
-    for before, after in pairwise([*up, len(heights)]):
+    again = STAND_UP if down == CROUCH else STRAIGHTEN
+    for before, after in pairwise([0, *up, len(heights)]):
         low = before + np.flatnonzero(heights[before:after] < standing_m - least_m)
-        if len(low):
-            lowest = low[heights[low] < heights[low].min() + STANDING_M]
-            yield _clause(deed, down, track, int(before), int(lowest[0]))
-            if after < len(heights):
-                yield _clause(deed, STAND_UP, track, int(lowest[-1]), int(after))
+        if not len(low):
+            continue
+        lowest_m = float(heights[low].min())
+        depth_m = standing_m - lowest_m
+        lowest = low[heights[low] < standing_m - (1.0 - NOTICED_SHARE) * depth_m]
+        if heights[before] - heights[lowest[0]] > least_m - STANDING_M:
+            stood = np.flatnonzero(
+                heights[before : lowest[0]] > standing_m - NOTICED_SHARE * depth_m
+            )
+            first = int(before + max(stood, default=0))
+            yield _clause(deed, down, track, first, int(lowest[0]))
+        leaves = int(max(low[heights[low] < lowest_m + STANDING_M]))
+        if after < len(heights):
+            yield _clause(deed, again, track, leaves, _upright(track, int(after)))
+        elif heights[-1] - heights[leaves] > least_m - STANDING_M:
+            rises = heights[-1] - heights[max(len(heights) - 1 - _brief(track), 0)] > STILL_M
+            nearly = heights[-1] > standing_m - UP_SHARE * depth_m
+            if rises or nearly:
+                pattern = again if nearly else BEGIN_UP
+                yield _clause(deed, pattern, track, leaves, len(heights) - 1)
+
+
+def _upright(track: SampledTrack, frame: int) -> int:
+    """The frame, from one in which a body is nearly up, in which it is as high as it then gets."""
+    heights, brief = track.positions[:, 2], _brief(track)
+    last = frame
+    while last + brief < len(heights) and heights[last + brief] - heights[last] > 0.5 * STILL_M:
+        last += 1
+    done = heights[frame : last + 1] > heights[last] - STILL_M
+    return frame + int(np.argmax(done))
+
+
+def _brief(track: SampledTrack) -> int:
+    """How many frames last as long as an onlooker takes to react."""
+    return max(round(UNSEEN_S / track.step_s), 1)
 
 
 def _clause(deed: Clause, pattern: str, track: SampledTrack, first: int, last: int) -> Clause:

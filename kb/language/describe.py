@@ -30,13 +30,14 @@ from kb.language.lexicalisation import FREE, LEAVES, STEP, WALK, Phrasebook
 from kb.language.listing import listed
 from kb.language.omitting import set_down, without_coming
 from kb.language.pauses import pauses
-from kb.language.placing import placed, turned_on_the_way
+from kb.language.placing import placed, turned_on_the_way, while_moving
 from kb.language.planning import sentences
 from kb.language.pouring import poured
 from kb.language.realisation import Realiser
 from kb.language.repeating import as_segmented, deeds, whole
 from kb.language.stowing import stowed
 from kb.language.turning import Turning, turned, with_turning
+from kb.language.turning import timed as in_course
 from kb.lexicon.english import PEOPLE, capital, the_agent
 from kb.lexicon.links import PrimitiveWords
 
@@ -102,8 +103,9 @@ def _story(
         turning = Turning(observation)
         steps = stowed(poured(steps, turning), observation.objects, scene)
         there = placed(steps, observation.objects, scene, turning)
+        there = in_course(while_moving(there, scene), turning) if timed else there
         steps = in_sequence(without_coming(set_down(there, scene), scene))
-        steps = turned_on_the_way(steps, timed=timed)
+        steps = turned_on_the_way(steps)
     if detail == "summary":
         steps = chosen(gathered(in_turns(steps), observation.objects, scene))
     paused = pauses(steps) if observation.profile != TO_THE_LETTER and detail == "steps" else {}

@@ -145,6 +145,9 @@ HELD_OVER = "hold {1} upside down"
 TURNED = frozenset({TURN, BY_A_QUARTER, UPSIDE_DOWN, AROUND, UPRIGHT, BACK_UPRIGHT})
 """Patterns of how a thing is turned, which goes on beside what else is done to it."""
 
+ABOUT = frozenset({TURN, BY_A_QUARTER, AROUND})
+"""Patterns of a thing that is turned about the vertical."""
+
 LET_GO = "let go of {1}"
 """The pattern of a hand that leaves what it has."""
 
@@ -160,16 +163,26 @@ WALK, STEP = "walk", "take a step"
 WALK_UP, STEP_UP = "walk up to {1}", "step up to {1}"
 """The same, to the thing that a hand takes next."""
 
-STEP_AWAY, WALK_AWAY = "step away", "walk away"
-"""The same, from the thing that a hand has left."""
+WALK_AROUND = "walk around to another side of {1}"
+"""The same, about that thing."""
 
-CROUCH, BEND, STAND_UP = "crouch", "bend down", "straighten up"
-"""Patterns of a body that goes down with bent knees, or by the trunk, and comes up again."""
+STEP_AWAY, WALK_AWAY, STEP_ASIDE = "step away", "walk away", "step aside"
+"""The same, from the thing that a hand has left, or beside it."""
 
-LEAVES = frozenset({STEP_AWAY, WALK_AWAY})
-"""Patterns of who goes away when all is done."""
+CROUCH, BEND, BEND_AND_CROUCH = "crouch", "bend down", f"bend{JOINT}crouch"
+"""Patterns of a body that goes down with bent knees, by the trunk, and first by the trunk."""
 
-BODILY = LEAVES | {WALK, STEP, WALK_UP, STEP_UP, CROUCH, BEND, STAND_UP}
+STAND_UP, STRAIGHTEN, BEGIN_UP = "stand up", "straighten up", "begin to straighten up"
+"""Patterns of a body that comes up from crouching, and from bending down; and of one that is on its
+way up as the recording ends."""
+
+LEAVES = frozenset({STEP_AWAY, WALK_AWAY, STEP_ASIDE})
+"""Patterns of who leaves when all is done."""
+
+BODILY = LEAVES | {
+    *(WALK, STEP, WALK_UP, STEP_UP, WALK_AROUND),
+    *(CROUCH, BEND, BEND_AND_CROUCH, STAND_UP, STRAIGHTEN, BEGIN_UP),
+}
 """Patterns that name no end-effector."""
 
 ON_FOOT = frozenset({"Step", "Stand", "Walk", "StandOnOneLeg", "RestFoot"})

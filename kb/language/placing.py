@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from capar.model.observation import ObservedObject
-from kb.language.clause import Clause
+from kb.language.clause import Clause, in_time
 from kb.language.contacts import Scene
 from kb.language.lexicalisation import (
     DOWN,
@@ -78,14 +78,35 @@ def placed(
     return tuple(out)
 
 
-def turned_on_the_way(steps: Sequence[Clause], *, timed: bool) -> tuple[Clause, ...]:
-    """The clauses; turning that outlasts what it began in, with what the hands do next.
+def while_moving(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
+    """The clauses; of what is put somewhere until it stays there, of what is slid while it goes.
 
-    Where times are not told, with what the hands do for most of it.
+    A hand that stays at it before or afterwards for a moment that people do not notice is left out.
 
     Args:
         steps: What was done, in order of time.
-        timed: Whether times are told.
+        scene: Measured contacts and places.
+    """
+    out: list[Clause] = []
+    for step in steps:
+        slid = step.pattern.startswith(tuple(f"{name.lower()} {{1}}" for name in SLID))
+        told = _puts(step) or slid or step.pattern == LOWER
+        if not (told and step.possessed) or step.apart or step.pauses:
+            out.append(step)
+            continue
+        goes_s, stays_s = scene.moves_s(step.objects[0], step.start_s, step.end_s)
+        late = step.end_s - stays_s > UNSEEN_S
+        early = slid and goes_s - step.start_s > UNSEEN_S
+        start_s, end_s = goes_s if early else step.start_s, stays_s if late else step.end_s
+        out.append(replace(step, start_s=start_s, end_s=end_s))
+    return tuple(sorted(out, key=in_time))
+
+
+def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses; turning that outlasts what it began in, with the carrying or what takes longest.
+
+    Args:
+        steps: What was done, in order of time.
     """
     out = list(steps)
     for turning in steps:
@@ -98,10 +119,15 @@ def turned_on_the_way(steps: Sequence[Clause], *, timed: bool) -> tuple[Clause, 
         ]
         if begins and ends:
             start_s = max(turning.start_s, begins[0].start_s)
-            told = ends[0] if timed else max(own, key=turning.overlap_s)
+            overlaps = [step for step in own if turning.overlap_s(step) > 0.0]
+            told = max(overlaps, key=lambda step: (_carries(step), turning.overlap_s(step)))
             out[out.index(told)] = replace(told, along=(replace(turning, start_s=start_s),))
             out.remove(turning)
     return tuple(out)
+
+
+def _carries(step: Clause) -> bool:
+    return step.pattern.startswith(CARRY)
 
 
 def _moves_it_beside(turning: Clause, step: Clause) -> bool:
@@ -193,7 +219,7 @@ def _carried(step: Clause, scene: Scene, turning: Turning) -> Clause:
     if leant > OVER_RAD:
         return replace(step, pattern=f"{CARRY} upside down")
     if leant > LEANT_RAD:
-        return replace(step, pattern=f"{CARRY} tilted to one side")
+        return replace(step, pattern=f"{CARRY} at an angle")
     few = 1 < scene.steps(*span) <= FEW_STEPS
     return replace(step, pattern=f"{CARRY} a few steps") if few else step
 

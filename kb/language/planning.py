@@ -12,7 +12,7 @@ from types import MappingProxyType
 from kb.language.clause import Clause, in_time
 from kb.language.lexicalisation import HANDED_OVER, REACH
 from kb.language.repeating import repetition
-from kb.language.thresholds import REST_S
+from kb.language.thresholds import PAUSE_S, REST_S
 from kb.lexicon.english import times
 
 LONGEST = 6
@@ -104,8 +104,9 @@ def sentences(
     while any(streams.values()):
         part = _next_part(streams, lead, paused)
         opening = _opening(part, out, end_s, OPENINGS[afterwards % len(OPENINGS)])
-        waited_s = paused.get(min(each.start_s for each in part.steps))
-        if out and waited_s is not None and opening in OPENINGS:
+        start_s = min(each.start_s for each in part.steps)
+        waited_s = paused.get(start_s, start_s - end_s)
+        if out and waited_s >= PAUSE_S and opening in OPENINGS:
             opening = f"About {waited_s:.0f} s later, " if timed else LATER
         if opening == ONCE_MORE:
             out[-1] = replace(out[-1], more=True)

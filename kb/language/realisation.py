@@ -166,7 +166,7 @@ class Realiser:
     def _meanwhile(self, step: Clause) -> str:
         """How the thing was turned during what was told last."""
         text = in_progress(step.pattern).replace("{1}", self._mention(step.objects[0], 1))
-        return f", {text}{self._end(step)}"
+        return f", {text}{self._end(step) if step.sharp else ''}"
 
     def _on_the_way(self, step: Clause) -> str:
         """How the thing was turned until it was put there."""

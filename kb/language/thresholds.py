@@ -80,9 +80,21 @@ TURNED_RAD = 0.35
 NOTICED_SHARE = 0.1
 """A turn goes on between its first and its last such share [1], or ``TURNED_RAD`` of a long one."""
 
-SOMEWHAT_RAD = 0.7
-"""What is only moved, and turned about the vertical by more than this [rad], is turned: 40 degrees,
-twice what happens in carrying."""
+TURN_SHARE = 0.05
+"""A turn of which every frame is known is told from where this share of it is done to where all but
+this share is [1]."""
+
+SAME_TURN = 0.2
+"""The line between two hands turns as the thing that they have if their turns differ by less than
+this share [1]: else a hand slips on it."""
+
+KNOWN_S = 0.65
+"""What begins or ends between two samples that are closer than this [s] is known to about 0.3 s by
+their values, which is how closely people tell it."""
+
+SOMEWHAT_RAD = 0.6
+"""What is only moved, and turned about the vertical by more than this [rad], is turned: 34 degrees,
+more than sways in carrying."""
 
 FACING_M = 0.4
 """What is larger than this [m], as furniture, is seen to face aside when it is carried: smaller
@@ -121,6 +133,9 @@ nods or leans lowers it by less."""
 LEANT_M = 0.2
 """A head that goes so far [m] with a hand that reaches is that of one who leans: nobody moves it so
 far by the neck."""
+
+UP_SHARE = 0.2
+"""A body that has come up but for this share of how far it was down [1] has straightened up."""
 
 STANDING_M = 0.08
 """A body stands while its pelvis is lower than this [m] at most than it gets: what walking and

@@ -10,10 +10,14 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from statistics import median
 
+import numpy as np
+from jaxtyping import Float
+
 from capar.model.facts import Posture, Travelled
 from capar.model.observation import Observation, Segment
-from kb.language.clause import Clause
+from kb.language.clause import Clause, in_time
 from kb.language.lexicalisation import (
+    ABOUT,
     AROUND,
     BACK_UPRIGHT,
     BY_A_QUARTER,
@@ -22,6 +26,7 @@ from kb.language.lexicalisation import (
     SLID,
     THIS_WAY,
     TURN,
+    TURNED,
     UPRIGHT,
     UPSIDE_DOWN,
     moves_only,
@@ -29,15 +34,19 @@ from kb.language.lexicalisation import (
 from kb.language.thresholds import (
     AROUND_RAD,
     FACING_M,
+    KNOWN_S,
     NOTICED_SHARE,
     OVER_RAD,
     POURING_RAD,
     QUARTER_RAD,
     REST_S,
+    SAME_TURN,
+    SCRAP_M,
     SCRAP_S,
     SETTLING_S,
     SOMEWHAT_RAD,
     TO_AND_FRO_RAD,
+    TURN_SHARE,
     TURNED_RAD,
     UPRIGHT_RAD,
 )
@@ -65,6 +74,7 @@ class Turning:
         for fact in sorted(each for each in observation.facts if isinstance(each, Posture)):
             found = Attitude(fact.frame * self._step_s, fact.lean / 1000.0, fact.spin / 1000.0)
             self._postures[fact.body].append(found)
+        self._tracks = {track.body: track for track in observation.tracks}
         self._large = {each.name for each in observation.objects if max(each.size_m) > FACING_M}
         for way in observation.facts:
             if isinstance(way, Travelled):
@@ -109,8 +119,57 @@ class Turning:
             if pattern in {TURN, BY_A_QUARTER}:
                 seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
                 since, until = _course(seen)
-                if until.time_s < clause.end_s:
+                if until.time_s <= clause.end_s:
                     yield _turned((clause,), pattern, since, until)
+
+    def spins_rad(self, clause: Clause) -> float:
+        """How far a thing is turned about the vertical at the end of a clause [rad]."""
+        seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
+        return abs(seen[-1].spin - seen[0].spin) if seen else 0.0
+
+    def faces_aside(self, clause: Clause) -> bool:
+        """Whether a thing so large that people notice it faces another way at the end."""
+        return clause.objects[0] in self._large and self.spins_rad(clause) > SOMEWHAT_RAD
+
+    def course(self, clause: Clause) -> tuple[float, float] | None:
+        """From when to when a thing is turned about the vertical within a clause [s].
+
+        That is from where a share is done to where all but a share is, as the line between two
+        hands that have the thing tells it in every frame; else as its postures do, which were
+        measured where something began or ended, if they are close enough to each other.
+
+        Returns:
+            None where it turns by less than is noticed, or the times are not known so closely.
+        """
+        seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
+        if self.spins_rad(clause) < SOMEWHAT_RAD:
+            return None
+        net = seen[-1].spin - seen[0].spin
+        line = self._line(clause.ees, seen[0].time_s, seen[-1].time_s)
+        if line is not None and abs(line[1][-1] - line[1][0] - net) < SAME_TURN * abs(net):
+            first, last = _course_of(line[1], TURN_SHARE)
+            return float(line[0][first]), float(line[0][last])
+        times = np.array([attitude.time_s for attitude in seen])
+        between = np.linspace(times[0], times[-1], max(round((times[-1] - times[0]) * 100.0), 2))
+        spins = np.interp(between, times, [attitude.spin for attitude in seen])
+        first, last = _course_of(spins, NOTICED_SHARE)
+        ends = float(between[first]), float(between[last])
+        return ends if all(_gap_s(times, time_s) < KNOWN_S for time_s in ends) else None
+
+    def _line(
+        self, ees: Sequence[str], start_s: float, end_s: float
+    ) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]] | None:
+        """Times [s], and where the line between two hands then points over the ground [rad]."""
+        tracks = [self._tracks[ee] for ee in ees if ee in self._tracks]
+        if len(tracks) != 2 or not tracks[0].step_s == tracks[1].step_s > 0.0:
+            return None
+        step_s = tracks[0].step_s
+        frames = np.arange(round(start_s / step_s), round(end_s / step_s) + 1)
+        frames = frames[frames < min(len(track.positions) for track in tracks)]
+        offsets = (tracks[1].positions[frames] - tracks[0].positions[frames])[:, :2]
+        if len(frames) < 2 or not np.linalg.norm(offsets, axis=1).min() > SCRAP_M:
+            return None
+        return frames * step_s, np.unwrap(np.arctan2(offsets[:, 1], offsets[:, 0]))
 
     def tipped_s(self, thing: str, start_s: float, end_s: float) -> float:
         """Until when, from a time on, it leans so far that it is poured from [s]."""
@@ -181,6 +240,19 @@ def _course(seen: Sequence[Attitude]) -> tuple[Attitude, Attitude]:
     return seen[max(moved.index(True) - 1, 0)], seen[min(last + 1, len(seen) - 1)]
 
 
+def _course_of(spins: Float[np.ndarray, "frames"], share: float) -> tuple[int, int]:
+    """The first frame in which a share of a turn is done, and from which on all but a share is."""
+    done = (spins - spins[0]) / (spins[-1] - spins[0])
+    going = done < 1.0 - share
+    return int(np.argmax(done > share)), min(len(done) - int(np.argmax(going[::-1])), len(done) - 1)
+
+
+def _gap_s(times: Float[np.ndarray, "samples"], time_s: float) -> float:
+    """How far the samples before and after a time are apart [s]."""
+    after = min(int(np.searchsorted(times, time_s)), len(times) - 1)
+    return float(times[after] - times[max(after - 1, 0)])
+
+
 def _turned(grip: Sequence[Clause], pattern: str, since: Attitude, until: Attitude) -> Clause:
     return replace(
         grip[0],
@@ -244,6 +316,36 @@ def _turn(clause: Clause, ways: Sequence[Clause], turning: Turning) -> Clause | 
         return None
     turns = turning.seen_to_turn(clause)
     return replace(clause, pattern=TURN, name="Turn") if turns else clause
+
+
+def timed(steps: Sequence[Clause], turning: Turning) -> tuple[Clause, ...]:
+    """The clauses, those of turning about the vertical from when to when the thing turns.
+
+    Where that is not known closely, turning has no times of its own: the thing is moved then, and
+    turned meanwhile.
+
+    Args:
+        steps: What was done, in order of time.
+        turning: How things are turned.
+    """
+    out: list[Clause] = []
+    for step in steps:
+        if step.pattern not in ABOUT or not step.possessed or step.pauses:
+            out.append(step)
+            continue
+        course = turning.course(step)
+        start_s, end_s = course or (step.start_s, step.end_s)
+        alone = not any(_moves_beside(step, other) for other in steps)
+        if course is None and alone and turning.faces_aside(step):
+            out.append(replace(step, pattern="move {1}", name="MoveObj"))
+        out.append(replace(step, start_s=start_s, end_s=end_s, sharp=course is not None))
+    return tuple(sorted(out, key=in_time))
+
+
+def _moves_beside(turn: Clause, other: Clause) -> bool:
+    """Whether the same hands are told to move the same thing otherwise meanwhile."""
+    same = (turn.ees, turn.objects[:1]) == (other.ees, other.objects[:1])
+    return same and other.changes and other.pattern not in TURNED and turn.overlaps(other)
 
 
 def with_turning(told: Sequence[Clause], ways: Sequence[Clause]) -> tuple[Clause, ...]:

@@ -93,7 +93,7 @@ def test_what_is_carried_away_and_back_is_carried() -> None:
 
 
 @pytest.mark.parametrize(
-    ("lean", "how"), [(100, ""), (700, " tilted to one side"), (3000, " upside down")]
+    ("lean", "how"), [(100, ""), (700, " at an angle"), (3000, " upside down")]
 )
 def test_how_a_thing_leans_while_it_is_carried_is_told(lean: int, how: str) -> None:
     way = (*TAKEN, (0.5, 0.0, 1.0), (1.0, 0.0, 1.0))
