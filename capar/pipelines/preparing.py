@@ -88,7 +88,7 @@ def problem_of(instance: Instance, world: World, kinds: Kinds) -> Problem:
     wanted += [
         ("stand", parts[first], parts[second])
         for first, second in _stands(source.observation)
-        if first in parts and second in parts
+        if first in parts and second in parts and first not in source.scene.fastened
     ]
     wanted += [("clear", name) for name in sorted(goals)]
     bare = (role for role in instance.roles if role.moved and not role.bears)

@@ -62,13 +62,14 @@ def kind_of(thing: Thing) -> str:
 
 
 def roles_of(source: Source) -> tuple[Role, ...]:
-    """What takes part in a recorded action: what is acted on, and what that stands on.
+    """What takes part in a recorded action: what is acted on, what that bears, and its supports.
 
     Other things of the recorded scene have no part.
     """
     acted = list(source.observation.complex_par.objects)
     acted += [hold.thing for hold in source.holds]
     acted += [poise.other for poise in source.poises]
+    acted += [ride.thing for ride in source.rides]
     taking = [name for name in dict.fromkeys(acted) if name in source.scene.things]
     for name in tuple(taking):
         taking += [one for one in dict.fromkeys(ends_on(source, name)) if one and one not in taking]

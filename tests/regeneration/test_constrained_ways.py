@@ -40,8 +40,7 @@ def _source(action: str) -> Source:
 def _planned(source: Source, scene: Scene, name: str) -> RigidTransform:
     old, new = body_frames(source.human, source.scene), body_frames(source.human, scene)
     goals = thing_goals(source, scene, old, new)
-    paths, _ = thing_paths(source, scene, goals, source.human, own_style(source))
-    return paths[name]
+    return thing_paths(source, scene, goals, source.human, own_style(source)).paths[name]
 
 
 def _constraint(kind: str) -> Constraint:
