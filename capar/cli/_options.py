@@ -57,7 +57,7 @@ Assume = Annotated[
 
 NewBundle = Annotated[
     Path | None,
-    typer.Option(help="A new folder for the capture bundle.", show_default=False),
+    typer.Option("--output", "-o", help="A new folder for the capture bundle.", show_default=False),
 ]
 
 Beside = Annotated[
