@@ -194,7 +194,8 @@ def _not_steep(aside_mm: float, height_mm: float, verb: str, sense: str) -> Shor
         return _little(aside_mm, height_mm if sense == "up" else -height_mm, height_mm)
     if height_mm < LEVEL_MM:
         plain = "rise" if sense == "up" else "sink"
-        return Shortfall(f"did not {plain} ({length(least / 1000.0)} or more count)", FAR_OFF)
+        asked = length(least / 1000.0)
+        return Shortfall(f"did not {plain} as a whole ({asked} or more count)", FAR_OFF)
     if height_mm < least:
         far, wanted = _apart(height_mm, least)
         return Shortfall(f"{verb} by {far}, less than the {wanted} that count", height_mm / least)

@@ -72,7 +72,7 @@ class RestsTold(ToldArgument):
         """A place where the end-effector had been, touching nothing."""
         how = "was" if frame == self.clock.frames[self._hand][0] else "rested"
         return (
-            f"where it {how} at {self.clock.at(frame)} (of its earlier places of rest the nearest; "
+            f"where it {how} at {self.clock.at(frame)} (of where it began and rested the nearest; "
             f"within {quantities.length(near_m)} it is back there)"
         )
 

@@ -95,7 +95,7 @@ def test_two_lengths_that_decide_are_never_told_as_the_same(x: int, y: int, z: i
             "ended only 3 cm higher and 3 cm to the side (5 cm up or down, or 10 cm to the side, "
             "would count)",
         ),
-        ((0, 0, -300), "did not rise (5 cm or more count)"),
+        ((0, 0, -300), "did not rise as a whole (5 cm or more count)"),
     ],
 )
 def test_a_way_that_is_no_rise(way: tuple[int, int, int], told: str) -> None:

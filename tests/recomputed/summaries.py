@@ -609,7 +609,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         too_little,
     ),
     (rf"(rose|sank) by {LENGTH}, less than the {LENGTH} that count", too_low),
-    (rf"did not (rise|sink) \({LENGTH} or more count\)", not_steep),
+    (rf"did not (rise|sink) as a whole \({LENGTH} or more count\)", not_steep),
     (rf"went further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
     (rf"went further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
     (
@@ -660,13 +660,13 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"ended less than {LENGTH} from where it began", ended_there),
     (rf"moved {LENGTH}", moved),
     (
-        rf"ended {LENGTH} from where it (?:was|rested) at {TIME} \(of its earlier places of rest "
+        rf"ended {LENGTH} from where it (?:was|rested) at {TIME} \(of where it began and rested "
         rf"the nearest; within {LENGTH} it is back there\)",
         rested_near,
     ),
     (
-        rf"ended less than {LENGTH} from where it (?:was|rested) at {TIME} \(of its earlier places "
-        rf"of rest the nearest; within {LENGTH} it is back there\)",
+        rf"ended less than {LENGTH} from where it (?:was|rested) at {TIME} \(of where it began "
+        rf"and rested the nearest; within {LENGTH} it is back there\)",
         rested_there,
     ),
     (rf"no rest of {TIME} or more, touching nothing, before {TIME}", never_rested),
