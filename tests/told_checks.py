@@ -232,7 +232,7 @@ def _carried(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
         np.nanmin(low)
     )
     yield f"{off_m:.2f} m off the floor", off_m > 0.01
-    if "at an angle" in claim.said:
+    if " at a tilt" in claim.said:
         lean = float(np.median(numbers.during(numbers.up(claim.thing), claim.start_s, claim.end_s)))
         yield f"leans {np.degrees(lean):.0f} degrees", 0.35 < lean < 2.4
     yield from _held(claim, numbers)

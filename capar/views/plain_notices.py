@@ -138,20 +138,21 @@ def _gap(group: Sequence[Notice]) -> Iterable[str]:
         _, side, *part = [*first.split(), "", ""]
         finger = " ".join(filter(None, part))
         if _SIDED.match(each.bodies[0]) and finger.split()[0] in _parts():
-            held = f"The {side} hand is taken to have held {second}"
-            yield f"{held}, though its {finger} was measured {gap_cm:.0f} cm away"
+            held = f"The {side} hand is assumed to have held {second}"
+            yield f"{held}, though that hand's {finger} was measured {gap_cm:.0f} cm from it"
         else:
             moved = f"{capital(first)} and {second} moved as one"
             yield f"{moved}, but were measured {gap_cm:.0f} cm apart"
 
 
 def _unmoved(group: Sequence[Notice]) -> Iterable[str]:
-    """What moves although nobody is seen to move it."""
+    """What moves although no contact tells who moves it."""
     for each in group:
         when = "At times" if each.start_s is None or int(each["times"]) > 1 else (
             f"From {each.start_s:.2f} to {each.end_s:.2f} s"
         )  # fmt: skip
-        yield f"{when}, nothing that was recorded moved {_the(each.bodies[0])}"
+        found = "no contact was found that could have moved"
+        yield f"{when}, {found} {_the(each.bodies[0])}"
 
 
 def _stretched(group: Sequence[Notice]) -> Iterable[str]:

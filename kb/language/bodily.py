@@ -10,15 +10,16 @@ from kb.language.lexicalisation import (
     ON_FOOT,
     REACH,
     STEP,
-    STEP_ASIDE,
     STEP_AWAY,
+    STEP_BACK,
     STEP_UP,
+    TWO_STEPS,
     WALK,
     WALK_AROUND,
     WALK_AWAY,
     WALK_UP,
 )
-from kb.language.thresholds import ASIDE_SHARE, QUARTER_RAD, STEP_M, STRIDE_S
+from kb.language.thresholds import ASIDE_SHARE, FEWEST_STEPS, QUARTER_RAD, STEP_M, STRIDE_S
 
 Told = tuple[Clause, ...]
 
@@ -162,14 +163,14 @@ def with_walks(
         about_rad = min(
             abs(scene.goes_about_rad(foot, thing, walk.start_s, walk.end_s)) for foot in walk.ees
         )
-        if walk.pattern == WALK and about_rad > QUARTER_RAD:
+        if walk.pattern != STEP and about_rad > QUARTER_RAD:
             walked = replace(walked, pattern=WALK_AROUND, objects=(thing,))
         elif up_to:
             pattern = WALK_UP if walk.pattern == WALK else STEP_UP
             walked = replace(walked, pattern=pattern, objects=(thing,))
         out.append(walked)
     for walk in _walks((step for step in feet if step.start_s >= end_s), scene):
-        out.append(_away(walk, max(manual, key=_end_s), scene))
+        out += _away(walk, max(manual, key=_end_s), scene)
     return tuple(sorted(out, key=in_time))
 
 
@@ -179,19 +180,25 @@ def _strides(link: ObservedLink, scene: Scene) -> Iterator[Clause]:
         yield Clause(STEP, (), (link.ee,), start_s, end_s, changes=False, name="Step")
 
 
-def _away(walk: Clause, last: Clause, scene: Scene) -> Clause:
+def _away(walk: Clause, last: Clause, scene: Scene) -> Iterator[Clause]:
     """A walk after the last deed, as one away from the thing where it is that.
 
-    A single step that leads neither away from it nor nearer is one aside.
+    Who goes backwards steps back, however often. A step or two that do not lead away are not told:
+    where to is not known.
     """
     thing, own, span = last.objects[0], replace(walk, ees=last.ees), (walk.start_s, walk.end_s)
     nears_m = [scene.nears_m(foot, thing, *span) for foot in walk.ees]
-    if walk.pattern == WALK:
-        return replace(own, pattern=WALK_AWAY) if max(nears_m) < -STEP_M else own
-    share = nears_m[0] / (scene.way_m(walk.ees[0], *span) or STEP_M)
-    if share < -ASIDE_SHARE:
-        return replace(own, pattern=STEP_AWAY)
-    return replace(own, pattern=STEP_ASIDE) if share < ASIDE_SHARE else own
+    ways_m = [scene.way_m(foot, *span) or STEP_M for foot in walk.ees]
+    away = all(
+        near_m < -max(ASIDE_SHARE * way_m, STEP_M if walk.pattern == WALK else 0.0)
+        for near_m, way_m in zip(nears_m, ways_m, strict=True)
+    )
+    if away and all(scene.goes_back(foot, *span) for foot in walk.ees):
+        yield replace(own, pattern=STEP_BACK)
+    elif walk.pattern == WALK:
+        yield replace(own, pattern=WALK_AWAY) if away else own
+    elif away:
+        yield replace(own, pattern=STEP_AWAY)
 
 
 def _end_s(step: Clause) -> float:
@@ -224,10 +231,10 @@ def _walks(steps: Iterable[Clause], scene: Scene) -> Iterable[Clause]:
 
 
 def _walk(going: Sequence[Clause]) -> Clause:
-    single = len(going) == 1 and going[0].name == "Step"
+    few = len(going) < FEWEST_STEPS and all(each.name == "Step" for each in going)
     return replace(
         going[0],
-        pattern=STEP if single else WALK,
+        pattern=(STEP if len(going) == 1 else TWO_STEPS) if few else WALK,
         objects=(),
         ees=tuple(sorted({ee for each in going for ee in each.ees})),
         start_s=min(each.start_s for each in going),

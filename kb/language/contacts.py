@@ -14,6 +14,7 @@ from capar.model.geometry import rotations
 from capar.model.observation import Observation, ObservedLink, ObservedObject, Segment
 from kb.language.lexicalisation import OPEN
 from kb.language.thresholds import (
+    ASIDE_SHARE,
     FLOOR_M,
     LEVEL_M,
     REST_S,
@@ -29,6 +30,10 @@ from kb.lexicon.english import the_agent
 
 LEFT_OUT = "objects-left-out"
 """The code of a notice that not all things are observed that were there."""
+
+SIDES = ("left", "right")
+HIP = "hip"
+"""The kind of links by which a body faces ahead, one on each side."""
 
 FOOT, HEAD = "foot", "head"
 """The kind of links that step, and the body above which a thing is held overhead."""
@@ -61,6 +66,12 @@ class Scene:
         self._tracks = {each.body: each for each in observation.tracks}
         self._complete = all(each.code != LEFT_OUT for each in observation.notices)
         self._feet = [link.ee for link in observation.links if link.kind == FOOT]
+        self._hips = [
+            link.ee
+            for side in SIDES
+            for link in observation.links
+            if (link.kind, link.side) == (HIP, side)
+        ]
         self._worked_in = [
             each
             for each in observation.segments
@@ -224,6 +235,21 @@ class Scene:
         azimuths = np.unwrap(np.arctan2(offsets[:, 1], offsets[:, 0]))
         return float(azimuths[-1] - azimuths[0])
 
+    def goes_back(self, foot: str, start_s: float, end_s: float) -> bool:
+        """Whether a foot goes mostly backwards over the ground, by how the hips face at the start.
+
+        Not where one of these was not kept.
+        """
+        places = self._places(foot, start_s, end_s)
+        hips = [self._places(hip, start_s, start_s) for hip in self._hips]
+        if places is None or len(hips) != len(SIDES) or any(hip is None for hip in hips):
+            return False
+        left, right = (hip[-1] for hip in hips if hip is not None)
+        ahead = np.cross(left - right, (0.0, 0.0, 1.0))[:2]
+        way = (places[-1] - places[0])[:2]
+        far = float(np.linalg.norm(ahead) * np.linalg.norm(way))
+        return far > 0.0 and -float(ahead @ way) > ASIDE_SHARE * far
+
     def leads_m(self, body: str, thing: str, start_s: float, end_s: float) -> float:
         """How far a body is mostly ahead of a thing that goes over the ground, where it goes [m].
 
@@ -270,8 +296,9 @@ class Scene:
         if within and container.size_m[2] >= FLOOR_M:
             frame = min(round(time_s / self._step_s), self._last)
             there = {each.body for each in within if each.first <= frame <= each.last}
-            return thing in there or self._heaped(thing, there, container.name, frame)
-        return self.over(thing, container, time_s, below_rim=True)
+            heaped = self._heaped(thing, there, container.name, frame)
+            return thing in there or heaped or self._at_rim(thing, container, frame)
+        return self.over(thing, container, time_s, rim_m=0.0)
 
     def _heaped(self, thing: str, there: Collection[str], container: str, frame: int) -> bool:
         """Whether a thing lies above a box and touches what is in it."""
@@ -285,8 +312,19 @@ class Scene:
             for each in self._pairs
         )
 
+    def _at_rim(self, thing: str, container: ObservedObject, frame: int) -> bool:
+        """Whether a thing touches a box from above, with its middle no higher than about the rim.
+
+        It is in there for all but the tolerance of contacts.
+        """
+        touches = any(
+            {each.body, each.other} == {thing, container.name} and each.first <= frame <= each.last
+            for each in self._pairs
+        )
+        return touches and self.over(thing, container, frame * self._step_s, rim_m=STILL_M)
+
     def over(
-        self, thing: str, container: ObservedObject, time_s: float, *, below_rim: bool = False
+        self, thing: str, container: ObservedObject, time_s: float, *, rim_m: float | None = None
     ) -> bool:
         """Whether a thing's middle is within the shadow of a box, and above its floor.
 
@@ -294,7 +332,7 @@ class Scene:
             thing: The thing.
             container: The box.
             time_s: When [s].
-            below_rim: Whether it is to be below the rim of the box, too, where it has one.
+            rim_m: How far above the rim of the box, where it has one, it is at most [m].
         """
         places = self._places(thing, time_s, time_s)
         if places is None:
@@ -302,7 +340,8 @@ class Scene:
         own = rotations(np.array(container.orientation)).inv()
         offset = own.apply(places[-1] - np.array(container.position_m))
         size = np.array(container.size_m)
-        above = bool(below_rim and size[2] >= FLOOR_M and offset[2] >= size[2])
+        walled = rim_m is not None and size[2] >= FLOOR_M
+        above = walled and bool(offset[2] >= size[2] + (rim_m or 0.0))
         around = bool((np.abs(offset[:2]) < 0.5 * size[:2]).all())
         return around and bool(offset[2] > -size[2]) and not above
 

@@ -12,14 +12,14 @@ from kb.language.clause import Clause, in_time
 from kb.language.lexicalisation import (
     BEGIN_UP,
     BEND,
-    BEND_AND_CROUCH,
     CROUCH,
     STAND_UP,
     STEP,
-    STEP_ASIDE,
     STEP_AWAY,
+    STEP_BACK,
     STEP_UP,
     STRAIGHTEN,
+    TWO_STEPS,
 )
 from kb.language.thresholds import (
     BENT_M,
@@ -72,7 +72,7 @@ def _with_head(change: Clause, bends: Sequence[Clause]) -> Clause:
 
 
 def _after_bending(crouch: Clause, bends: Sequence[Clause], head: SampledTrack | None) -> Clause:
-    """Crouching by one who has bent down before, as both."""
+    """Crouching by one who has bent down before, since then."""
     first = next((bend for bend in bends if bend.pattern == BEND and bend.overlaps(crouch)), None)
     if crouch.pattern != CROUCH or first is None or head is None:
         return crouch
@@ -80,7 +80,7 @@ def _after_bending(crouch: Clause, bends: Sequence[Clause], head: SampledTrack |
     lower_m = float(heights.max() - heights[round(crouch.start_s / head.step_s)])
     if lower_m < BENT_M or crouch.start_s - first.start_s < REST_S:
         return crouch
-    return replace(crouch, pattern=BEND_AND_CROUCH, start_s=first.start_s)
+    return replace(crouch, start_s=first.start_s)
 
 
 def _goes_with(change: Clause, step: Clause) -> bool:
@@ -89,8 +89,8 @@ def _goes_with(change: Clause, step: Clause) -> bool:
 
 
 def _steadies(step: Clause, changes: Sequence[Clause]) -> bool:
-    """Whether it is a single step that the body takes as it goes down or comes up."""
-    single = step.pattern in {STEP, STEP_UP, STEP_ASIDE, STEP_AWAY}
+    """Whether it is a step or two that the body takes as it goes down or comes up."""
+    single = step.pattern in {STEP, TWO_STEPS, STEP_UP, STEP_BACK, STEP_AWAY}
     return single and any(
         each.start_s <= step.start_s and step.end_s <= each.end_s for each in changes
     )

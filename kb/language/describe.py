@@ -26,7 +26,7 @@ from kb.language.hands import (
     told_in_order,
 )
 from kb.language.holding import Holding
-from kb.language.lexicalisation import FREE, LEAVES, STEP, WALK, Phrasebook
+from kb.language.lexicalisation import FREE, LEAVES, STEP, STEP_UP, TWO_STEPS, WALK, Phrasebook
 from kb.language.listing import listed
 from kb.language.omitting import set_down, without_coming
 from kb.language.pauses import pauses
@@ -48,6 +48,10 @@ AGENT = "the agent"
 
 INITIALS = 2
 """So many letters at most before a number are no name."""
+
+UNTOLD = frozenset({STEP, TWO_STEPS, STEP_UP, WALK, *LEAVES})
+"""Patterns of what the feet do that a summary leaves out: all but a walk to a thing, or around it.
+"""
 
 TO_THE_LETTER = "thesis"
 """The profile of rules of which every segment is told as a step of its own."""
@@ -92,7 +96,7 @@ def _story(
         plain = [replace(each, pauses=0) for each in told_in_order(links, told)]
         if any(each.changes for each in plain):
             walked = with_walks(plain, links, seen, observation.objects, scene)
-            plain = [each for each in walked if each.pattern not in {STEP, WALK, *LEAVES}]
+            plain = [each for each in walked if each.pattern not in UNTOLD]
         steps = mostly_together(links, plain)
     else:
         steps = with_walks(told_in_order(links, told), links, seen, observation.objects, scene)

@@ -157,7 +157,7 @@ REACH = "reach for {1}"
 STIR = "stir in {2} with {1}"
 """The pattern of an instrument that goes without saying where it was just spoken of."""
 
-WALK, STEP = "walk", "take a step"
+WALK, STEP, TWO_STEPS = "walk", "take a step", "take two steps"
 """What the whole body does, with no word of the feet."""
 
 WALK_UP, STEP_UP = "walk up to {1}", "step up to {1}"
@@ -166,22 +166,22 @@ WALK_UP, STEP_UP = "walk up to {1}", "step up to {1}"
 WALK_AROUND = "walk around to another side of {1}"
 """The same, about that thing."""
 
-STEP_AWAY, WALK_AWAY, STEP_ASIDE = "step away", "walk away", "step aside"
-"""The same, from the thing that a hand has left, or beside it."""
+STEP_AWAY, WALK_AWAY, STEP_BACK = "step away", "walk away", "step back"
+"""The same, from the thing that a hand has left; the last by one who still faces it."""
 
-CROUCH, BEND, BEND_AND_CROUCH = "crouch", "bend down", f"bend{JOINT}crouch"
-"""Patterns of a body that goes down with bent knees, by the trunk, and first by the trunk."""
+CROUCH, BEND = "crouch down", "bend down"
+"""Patterns of a body that goes down with bent knees, and by the trunk alone."""
 
 STAND_UP, STRAIGHTEN, BEGIN_UP = "stand up", "straighten up", "begin to straighten up"
 """Patterns of a body that comes up from crouching, and from bending down; and of one that is on its
 way up as the recording ends."""
 
-LEAVES = frozenset({STEP_AWAY, WALK_AWAY, STEP_ASIDE})
+LEAVES = frozenset({STEP_AWAY, WALK_AWAY, STEP_BACK})
 """Patterns of who leaves when all is done."""
 
 BODILY = LEAVES | {
-    *(WALK, STEP, WALK_UP, STEP_UP, WALK_AROUND),
-    *(CROUCH, BEND, BEND_AND_CROUCH, STAND_UP, STRAIGHTEN, BEGIN_UP),
+    *(WALK, STEP, TWO_STEPS, WALK_UP, STEP_UP, WALK_AROUND),
+    *(CROUCH, BEND, STAND_UP, STRAIGHTEN, BEGIN_UP),
 }
 """Patterns that name no end-effector."""
 

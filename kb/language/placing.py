@@ -13,12 +13,14 @@ from kb.language.lexicalisation import (
     DOWN,
     GOALS,
     GROUNDS,
+    HELD_OVER,
     LOWER,
     RAISE,
     SLID,
     TURN,
     TURNED,
     UP_AND_DOWN,
+    UPSIDE_DOWN,
 )
 from kb.language.thresholds import (
     FEW_STEPS,
@@ -35,6 +37,8 @@ from kb.language.thresholds import (
 )
 from kb.language.turning import Turning
 
+OVERHEAD = "hold {1} overhead"
+HELD_THERE = "hold {1} there"
 IN_ITS_PLACE = "put {1} back in its place"
 SLIDE = "slide {1}"
 BRING = "bring {1} to {2}"
@@ -58,13 +62,17 @@ def placed(
         if _puts(step) and grounds.intersection(step.objects[1:]):
             out.append(_on_the_ground(step, out, scene))
         elif step.pattern == CARRY:
-            out.append(_carried(step, scene, turning))
+            carried = _carried(step, scene, turning)
+            up = carried.pattern == OVERHEAD and any(_brings_overhead(each, step) for each in out)
+            out.append(replace(carried, pattern=HELD_THERE) if up else carried)
         elif step.pattern == LOWER and scene.left_there(step.objects[0], step.end_s):
             out.append(replace(step, pattern=DOWN))
         elif out and _settles(step, out[-1], scene):
             out[-1] = replace(out[-1], end_s=step.end_s)
         elif step.pattern == TURN and step.possessed and not step.pauses:
             out.append(replace(step, pattern=turning.seen_to_turn(step) or TURN))
+        elif out and _holds_on(step, out[-1]):
+            out.append(replace(step, pattern=HELD_THERE))
         elif step.pattern.startswith(SLIDE):
             out.append(_drawn(step, scene))
         elif step.pattern in RISES:
@@ -105,6 +113,8 @@ def while_moving(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
 def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses; turning that outlasts what it began in, with the carrying or what takes longest.
 
+    What begins before that is told where it begins.
+
     Args:
         steps: What was done, in order of time.
     """
@@ -121,6 +131,7 @@ def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
             start_s = max(turning.start_s, begins[0].start_s)
             overlaps = [step for step in own if turning.overlap_s(step) > 0.0]
             told = max(overlaps, key=lambda step: (_carries(step), turning.overlap_s(step)))
+            told = begins[0] if start_s < told.start_s else told
             out[out.index(told)] = replace(told, along=(replace(turning, start_s=start_s),))
             out.remove(turning)
     return tuple(out)
@@ -138,6 +149,19 @@ def _moves_it_beside(turning: Clause, step: Clause) -> bool:
         turning.objects[:1],
     )
     return same and step.changes and step.pattern not in TURNED
+
+
+def _brings_overhead(before: Clause, step: Clause) -> bool:
+    """Whether the same hands, in the same grip, have got the thing overhead until then."""
+    same = (step.ees, step.grip, step.objects[:1]) == (before.ees, before.grip, before.objects[:1])
+    until = abs(before.end_s - step.start_s) < REST_S
+    return same and until and before.pattern in {f"{rises} overhead" for rises in RISES}
+
+
+def _holds_on(step: Clause, before: Clause) -> bool:
+    """Whether a thing is held as it was just turned."""
+    same = (step.ees, step.grip, step.objects[:1]) == (before.ees, before.grip, before.objects[:1])
+    return same and step.pattern == HELD_OVER and before.pattern == UPSIDE_DOWN
 
 
 def _settles(step: Clause, before: Clause, scene: Scene) -> bool:
@@ -219,7 +243,7 @@ def _carried(step: Clause, scene: Scene, turning: Turning) -> Clause:
     if leant > OVER_RAD:
         return replace(step, pattern=f"{CARRY} upside down")
     if leant > LEANT_RAD:
-        return replace(step, pattern=f"{CARRY} at an angle")
+        return replace(step, pattern=f"{CARRY} at a tilt")
     few = 1 < scene.steps(*span) <= FEW_STEPS
     return replace(step, pattern=f"{CARRY} a few steps") if few else step
 

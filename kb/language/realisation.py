@@ -170,7 +170,7 @@ class Realiser:
 
     def _on_the_way(self, step: Clause) -> str:
         """How the thing was turned until it was put there."""
-        where = " on the way" if self._timed else ""
+        where = " on the way" if self._timed and step.pattern.startswith("carry") else ""
         ways = (replace(each, pattern=f"{each.pattern}{where}") for each in step.along)
         return "".join(map(self._meanwhile, ways))
 

@@ -119,6 +119,10 @@ rolls more slowly."""
 FEW_STEPS = 5
 """Of more steps while a thing is carried, it is not told that they were a few."""
 
+FEWEST_STEPS = 3
+"""Who takes fewer steps in turn has stepped somewhere and not walked, as the rules have it
+(a walk is three steps or more)."""
+
 STRIDE_S = 1.0
 """Who stands for longer than this [s] between two steps has stopped walking (``halt_ms``)."""
 

@@ -81,12 +81,12 @@ TOLD: tuple[tuple[list[Notice], str], ...] = (
     ),
     (
         [notice("mount-gap", "r_middle1", "chair", touch_m=0.02, shown_m=0.04, frames=9)],
-        "The right hand is taken to have held the chair, though its middle finger was measured "
-        "4 cm away.",
+        "The right hand is assumed to have held the chair, though that hand's middle finger was "
+        "measured 4 cm from it.",
     ),
     (
         [notice("no-mover", "chair", start_s=1.0, end_s=2.0, share=0.3, times=1, why="nobody")],
-        "From 1.00 to 2.00 s, nothing that was recorded moved the chair.",
+        "From 1.00 to 2.00 s, no contact was found that could have moved the chair.",
     ),
     (
         [

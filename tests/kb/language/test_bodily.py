@@ -99,13 +99,13 @@ def crouching(*heights_m: float) -> str:
 
 def test_who_goes_down_beside_what_the_hands_do_crouches_and_stands_up() -> None:
     assert crouching(1.0, 1.0, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 1.0) == (
-        "The agent crouched, lifted the mug with the right hand, let go, and stood up."
+        "The agent crouched down, lifted the mug with the right hand, let go, and stood up."
     )
 
 
 def test_who_stands_up_with_a_thing_lifts_it() -> None:
     assert crouching(1.0, 1.0, 0.5, 0.5, 0.5, 0.8, 1.0, 1.0, 1.0) == (
-        "The agent crouched, lifted the mug with the right hand, and let go."
+        "The agent crouched down, lifted the mug with the right hand, and let go."
     )
 
 
@@ -157,11 +157,11 @@ def test_who_is_on_the_way_up_as_a_recording_ends_began_to_straighten_up(
     assert text.endswith("–4.00 s).")
 
 
-def test_who_bends_well_before_crouching_is_told_to_do_both() -> None:
+def test_who_bends_well_before_crouching_goes_down_since_then() -> None:
     early = bending((0.2, 1.0, 1.8), (1.7, 1.3, 0.9), crouches=True)
-    assert re.search(r"^The agent bent and crouched \(0\.[23]\d–1\.[78]\d s\), lifted", early)
+    assert re.search(r"^The agent crouched down \(0\.[23]\d–1\.[78]\d s\), lifted", early)
     late = bending((0.9, 1.8), (1.7, 0.9), crouches=True)
-    assert re.search(r"^The agent crouched \(1\.\d\d–1\.[78]\d s\), lifted", late)
+    assert re.search(r"^The agent crouched down \(1\.\d\d–1\.[78]\d s\), lifted", late)
 
 
 def striding(*strides: tuple[str, float, float]) -> Observation:
@@ -192,6 +192,8 @@ def striding(*strides: tuple[str, float, float]) -> Observation:
 
 def test_steps_are_told_by_how_feet_go_though_their_contacts_were_missed() -> None:
     made = striding(("left_foot", 0.2, 0.8), ("right_foot", 0.8, 1.4))
+    assert describe(made).startswith("The agent stepped up to the mug, lifted it with")
+    made = striding(("left_foot", 0.1, 0.6), ("right_foot", 0.6, 1.1), ("left_foot", 1.1, 1.6))
     assert describe(made).startswith("The agent walked up to the mug, lifted it with")
     made = striding(("left_foot", 0.2, 0.8), ("right_foot", 1.7, 2.4))
     assert describe(made).startswith("The agent stepped up to the mug, lifted it with")
@@ -199,21 +201,42 @@ def test_steps_are_told_by_how_feet_go_though_their_contacts_were_missed() -> No
 
 def test_who_goes_away_in_the_end_is_told_to_but_not_in_a_summary() -> None:
     made = striding(("left_foot", 3.1, 3.5), ("right_foot", 3.5, 3.9))
-    assert describe(made).endswith("and walked away.")
+    assert describe(made).endswith("and stepped away.")
     assert "away" not in describe(made, detail="summary")
+    made = striding(("left_foot", 3.1, 3.35), ("right_foot", 3.35, 3.6), ("left_foot", 3.6, 3.9))
+    assert describe(made).endswith("and walked away.")
     assert describe(striding(("left_foot", 3.1, 3.7))).endswith("and stepped away.")
 
 
-def test_who_takes_a_step_neither_nearer_nor_away_in_the_end_steps_aside() -> None:
+@pytest.mark.parametrize(("facing", "words"), [(1.0, "stepped back."), (-1.0, "stepped away.")])
+def test_who_leaves_backwards_by_the_hips_steps_back(facing: float, words: str) -> None:
+    made = striding(("left_foot", 3.1, 3.5), ("right_foot", 3.5, 3.9))
+    hips = [
+        sampled_track(f"{side}_hip", 0.01, np.tile((0.0, facing * y_m, 0.9), (401, 1)))
+        for side, y_m in (("left", 0.1), ("right", -0.1))
+    ]
+    feet = [link for link in made.links if link.kind == "foot"]
+    links = [replace(foot, ee=f"{foot.side}_hip", kind="hip", segments=()) for foot in feet]
+    made = replace(made, links=(*made.links, *links), tracks=(*made.tracks, *hips))
+    assert describe(made).endswith(f"and {words}")
+
+
+def test_a_summary_tells_no_steps_to_a_thing() -> None:
+    made = striding(("left_foot", 0.2, 0.8), ("right_foot", 0.8, 1.4))
+    assert "stepped up" in describe(made)
+    assert "stepped" not in describe(made, detail="summary")
+
+
+def test_a_step_in_the_end_neither_nearer_nor_away_is_not_told() -> None:
     made = striding(("left_foot", 3.1, 3.7))
     feet = [track for track in made.tracks if track.body == "left_foot"]
     turned = sampled_track("left_foot", 0.01, feet[0].positions[:, [1, 0, 2]])
     rest = tuple(track for track in made.tracks if track.body != "left_foot")
-    assert describe(replace(made, tracks=(*rest, turned))).endswith("and stepped aside.")
+    assert "step" not in describe(replace(made, tracks=(*rest, turned)))
 
 
 @pytest.mark.parametrize(
-    ("about_rad", "words"), [(0.5, "walked"), (1.8, "walked around to another")]
+    ("about_rad", "words"), [(0.5, "took two steps"), (1.8, "walked around to another")]
 )
 def test_who_goes_about_a_thing_walks_around_to_another_side_of_it(
     about_rad: float, words: str

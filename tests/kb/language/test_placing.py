@@ -72,7 +72,7 @@ CARRIED = Piece("Carry", 400, ("mug",), features=OWN)
     ("far_m", "head_m", "words"),
     [
         (0.1, None, "held it up"),
-        (0.1, 0.5, "held it overhead"),
+        (0.1, 0.5, "held it there"),
         (0.1, 1.5, "held it up"),
         (0.6, 0.5, "carried it"),
     ],
@@ -92,9 +92,7 @@ def test_what_is_carried_away_and_back_is_carried() -> None:
     assert told(REACHED, LIFTED, CARRIED, way=way).endswith("and carried it.")
 
 
-@pytest.mark.parametrize(
-    ("lean", "how"), [(100, ""), (700, " at an angle"), (3000, " upside down")]
-)
+@pytest.mark.parametrize(("lean", "how"), [(100, ""), (700, " at a tilt"), (3000, " upside down")])
 def test_how_a_thing_leans_while_it_is_carried_is_told(lean: int, how: str) -> None:
     way = (*TAKEN, (0.5, 0.0, 1.0), (1.0, 0.0, 1.0))
     leans = tuple(Posture("mug", frame, lean, 0) for frame in (200, 300, 400))

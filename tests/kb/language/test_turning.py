@@ -49,7 +49,7 @@ def test_what_ends_over_is_turned_upside_down() -> None:
 
 def test_what_stands_again_is_turned_upright() -> None:
     assert told("MoveObj", (0.0, 0.0), (3.0, 0.0), (3.0, 0.0), (0.1, 0.0)) == (
-        "turned the mug upside down with the right hand (0.00–1.00 s), held it upside down "
+        "turned the mug upside down with the right hand (0.00–1.00 s), held it there "
         "(1.00–2.00 s), and turned it back upright (2.00–3.00 s)."
     )
 
