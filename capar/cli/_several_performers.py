@@ -131,7 +131,7 @@ def tell_joint_trips(
         seed: Of the scenes.
         json: Whether JSON is printed.
     """
-    from capar.cli._output import print_json
+    from capar.cli._round_trips import tell_trips
     from capar.pipelines.joint_round_trips import (
         bodies,
         joint_round_trips,
@@ -141,19 +141,8 @@ def tell_joint_trips(
     source = observed_joint_source(capture)
     for cast in casts:
         bodies(cast.split("+"), source)  # a misspelt one is refused before anything is computed
-    if not json:
-        typer.echo(HEADING)
-    trips = []
-    for trip in joint_round_trips(source, casts, scenes=scenes, seed=seed):
-        trips.append(trip)
-        if not json:
-            typer.echo(_row(trip))
-    if json:
-        print_json(trips)
-        return
-    done = [trip for trip in trips if not trip.refused]
-    passed = sum(trip.passed for trip in done)
-    typer.echo(f"{len(trips)} asked, {len(done)} in reach, {passed} passed")
+    trips = joint_round_trips(source, casts, scenes=scenes, seed=seed)
+    tell_trips(trips, _row, heading=HEADING, json=json)
 
 
 def _row(trip: "JointTrip") -> str:

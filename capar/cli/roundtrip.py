@@ -35,7 +35,7 @@ def roundtrip(
     json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
 ) -> None:
     """Observe CAPTURE, perform it on other bodies, observe that, and compare."""
-    from capar.cli._output import print_json
+    from capar.cli._round_trips import tell_trips
     from capar.cli._several_performers import check_no_others, tell_joint_trips
     from capar.pipelines.round_trips import body, observed_source, round_trips
     from capar.pipelines.trials import trial_of
@@ -51,19 +51,8 @@ def roundtrip(
     names = tuple(each.strip() for each in agents.split(","))
     for name in names:
         body(name, source)  # a misspelt one is refused before anything is computed
-    trips = []
-    if not json:
-        typer.echo(HEADING)
-    for trip in round_trips(source, names, scenes=scenes, seed=seed):
-        trips.append(trip)
-        if not json:
-            typer.echo(_row(trip))
-    if json:
-        print_json(trips)
-        return
-    done = [trip for trip in trips if not trip.refused]
-    passed = sum(trip.passed for trip in done)
-    typer.echo(f"{len(trips)} asked, {len(done)} in reach, {passed} passed")
+    trips = round_trips(source, names, scenes=scenes, seed=seed)
+    tell_trips(trips, _row, heading=HEADING, json=json)
 
 
 def _row(trip: "Trip") -> str:
