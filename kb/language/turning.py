@@ -147,12 +147,14 @@ class Turning:
         net = seen[-1].spin - seen[0].spin
         line = self._line(clause.ees, seen[0].time_s, seen[-1].time_s)
         if line is not None and abs(line[1][-1] - line[1][0] - net) < SAME_TURN * abs(net):
-            first, last = _course_of(line[1], TURN_SHARE)
+            done = (line[1] - line[1][0]) / (line[1][-1] - line[1][0])
+            first, last = _course_of(done, TURN_SHARE)
             return float(line[0][first]), float(line[0][last])
         times = np.array([attitude.time_s for attitude in seen])
         between = np.linspace(times[0], times[-1], max(round((times[-1] - times[0]) * 100.0), 2))
         spins = np.interp(between, times, [attitude.spin for attitude in seen])
-        first, last = _course_of(spins, NOTICED_SHARE)
+        done = (spins - spins[0]) / (spins[-1] - spins[0])
+        first, last = _course_of(np.minimum(done, 2.0 - done), NOTICED_SHARE)
         ends = float(between[first]), float(between[last])
         return ends if all(_gap_s(times, time_s) < KNOWN_S for time_s in ends) else None
 
@@ -240,9 +242,8 @@ def _course(seen: Sequence[Attitude]) -> tuple[Attitude, Attitude]:
     return seen[max(moved.index(True) - 1, 0)], seen[min(last + 1, len(seen) - 1)]
 
 
-def _course_of(spins: Float[np.ndarray, "frames"], share: float) -> tuple[int, int]:
+def _course_of(done: Float[np.ndarray, "frames"], share: float) -> tuple[int, int]:
     """The first frame in which a share of a turn is done, and from which on all but a share is."""
-    done = (spins - spins[0]) / (spins[-1] - spins[0])
     going = done < 1.0 - share
     return int(np.argmax(done > share)), min(len(done) - int(np.argmax(going[::-1])), len(done) - 1)
 
