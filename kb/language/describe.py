@@ -107,7 +107,7 @@ def _story(
         turning = Turning(observation)
         steps = stowed(poured(steps, turning), observation.objects, scene)
         there = placed(steps, observation.objects, scene, turning)
-        there = in_course(while_moving(there, scene), turning) if timed else there
+        there = in_course(while_moving(there, scene), scene, turning) if timed else there
         steps = in_sequence(without_coming(set_down(there, scene), scene))
         steps = turned_on_the_way(steps)
     if detail == "summary":

@@ -130,6 +130,10 @@ CROUCHED_M = 0.25
 """A pelvis that is so far [m] lower than when the body stands has bent knees below it: a quarter of
 a leg, which nobody needs for stooping."""
 
+CROUCHED_SHARE = 0.5
+"""Who lowers the pelvis by less than this share of how far the head goes down [1] bends: the trunk
+does more of it than the knees."""
+
 BENT_M = 0.3
 """A head that is so far [m] lower than when the body stands is that of one who has bent down: who
 nods or leans lowers it by less."""

@@ -16,6 +16,7 @@ from jaxtyping import Float
 from capar.model.facts import Posture, Travelled
 from capar.model.observation import Observation, Segment
 from kb.language.clause import Clause, in_time
+from kb.language.contacts import Scene
 from kb.language.lexicalisation import (
     ABOUT,
     AROUND,
@@ -37,6 +38,7 @@ from kb.language.thresholds import (
     KNOWN_S,
     NOTICED_SHARE,
     OVER_RAD,
+    PLACE_M,
     POURING_RAD,
     QUARTER_RAD,
     REST_S,
@@ -319,14 +321,15 @@ def _turn(clause: Clause, ways: Sequence[Clause], turning: Turning) -> Clause | 
     return replace(clause, pattern=TURN, name="Turn") if turns else clause
 
 
-def timed(steps: Sequence[Clause], turning: Turning) -> tuple[Clause, ...]:
+def timed(steps: Sequence[Clause], scene: Scene, turning: Turning) -> tuple[Clause, ...]:
     """The clauses, those of turning about the vertical from when to when the thing turns.
 
     Where that is not known closely, turning has no times of its own: the thing is moved then, and
-    turned meanwhile.
+    turned meanwhile. One that hardly leaves its place is only turned, while it moves.
 
     Args:
         steps: What was done, in order of time.
+        scene: Measured contacts and places.
         turning: How things are turned.
     """
     out: list[Clause] = []
@@ -337,6 +340,10 @@ def timed(steps: Sequence[Clause], turning: Turning) -> tuple[Clause, ...]:
         course = turning.course(step)
         start_s, end_s = course or (step.start_s, step.end_s)
         alone = not any(_moves_beside(step, other) for other in steps)
+        _, strays_m = scene.over_ground_m(step.objects[0], step.start_s, step.end_s)
+        if course is None and alone and strays_m < PLACE_M:
+            out.append(step)
+            continue
         if course is None and alone and turning.faces_aside(step):
             out.append(replace(step, pattern="move {1}", name="MoveObj"))
         out.append(replace(step, start_s=start_s, end_s=end_s, sharp=course is not None))
