@@ -67,6 +67,10 @@ LEANT_RAD = 0.52
 """What leans more than this [rad] while it is carried is carried tilted: 30 degrees, beside which
 the sway of carrying is not noticed."""
 
+TIPPED_RAD = 0.26
+"""What leans more than this [rad] while it slides stands on some of its legs, or on an edge: 15
+degrees, by which one side of a table is a hand's width up."""
+
 OVER_RAD = 2.36
 """What leans more than this [rad] is upside down: 135 degrees."""
 

@@ -129,6 +129,14 @@ class Turning:
         seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
         return abs(seen[-1].spin - seen[0].spin) if seen else 0.0
 
+    def swings_rad(self, clause: Clause) -> float:
+        """Over which angle the line between two hands turns that have a thing [rad].
+
+        0 where that was not kept.
+        """
+        line = self._line(clause.ees, clause.start_s, clause.end_s)
+        return 0.0 if line is None else float(np.ptp(line[1]))
+
     def faces_aside(self, clause: Clause) -> bool:
         """Whether a thing so large that people notice it faces another way at the end."""
         return clause.objects[0] in self._large and self.spins_rad(clause) > SOMEWHAT_RAD
@@ -187,6 +195,15 @@ class Turning:
         """How far it leans from upright most of that time [rad]; 0 where that is not known."""
         seen = self._between(thing, start_s, end_s)
         return median(each.lean for each in seen) if seen else 0.0
+
+    def leans_rad(self, thing: str, start_s: float, end_s: float) -> float:
+        """How far it leans from upright for half of a time at least [rad]; 0 if unknown."""
+        seen = self._between(thing, start_s, end_s)
+        if not seen:
+            return 0.0
+        times = np.linspace(start_s, end_s, max(round((end_s - start_s) * 100.0), 2))
+        leans = np.interp(times, [each.time_s for each in seen], [each.lean for each in seen])
+        return float(np.median(leans))
 
     def told(self, grip: Sequence[Clause]) -> Iterator[Clause]:
         """Clauses of how a thing is turned over or around while a hand moves it.
