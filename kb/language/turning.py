@@ -160,6 +160,7 @@ class Turning:
             done = (line[1] - line[1][0]) / (line[1][-1] - line[1][0])
             first, last = _course_of(done, TURN_SHARE)
             return float(line[0][first]), float(line[0][last])
+        seen = self._between(clause.objects[0], clause.start_s, clause.end_s + REST_S)
         times = np.array([attitude.time_s for attitude in seen])
         between = np.linspace(times[0], times[-1], max(round((times[-1] - times[0]) * 100.0), 2))
         spins = np.interp(between, times, [attitude.spin for attitude in seen])
