@@ -28,6 +28,7 @@ from kb.language.thresholds import (
     FEW_STEPS,
     FURTHER_M,
     HELD_M,
+    IN_PLACE_M,
     LEADS_M,
     LEANT_RAD,
     OVER_RAD,
@@ -310,8 +311,8 @@ def _on_the_ground(step: Clause, before: Sequence[Clause], scene: Scene) -> Clau
     taken_s = min(each.start_s for each in since)
     gone_m, _ = scene.over_ground_m(step.objects[0], taken_s, step.end_s)
     if gone_m < PLACE_M:
-        exact = gone_m < 0.5 * PLACE_M
-        return replace(step, pattern=IN_ITS_PLACE if exact else NEAR_ITS_PLACE)
+        there = gone_m < IN_PLACE_M
+        return replace(step, pattern=IN_ITS_PLACE if there else NEAR_ITS_PLACE)
     carried = any(each.pattern.startswith(CARRY) for each in since)
     elsewhere = gone_m > FURTHER_M and not carried
     return replace(step, pattern=f"{DOWN} elsewhere" if elsewhere else DOWN)

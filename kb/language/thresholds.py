@@ -33,8 +33,12 @@ carried anywhere, if it got no further than twice that on the way: whoever holds
 sways with it by so much."""
 
 PLACE_M = 0.2
-"""What is put down less far than this [m] from where it was taken is back in its place: less than a
-step."""
+"""What is put down less far than this [m] from where it was taken is back almost in its place: less
+than a step."""
+
+IN_PLACE_M = 0.1
+"""What is put down less far than this [m] from where it was taken is back in its place: a hand's
+width."""
 
 LEADS_M = 0.1
 """A hand that is mostly so far [m] before or behind the middle of what slides pulls or pushes it: a

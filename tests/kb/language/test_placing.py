@@ -102,7 +102,7 @@ def test_how_a_thing_leans_while_it_is_carried_is_told(lean: int, how: str) -> N
 
 @pytest.mark.parametrize(
     ("far_m", "words"),
-    [(0.1, "put it back in its place"), (0.3, "put it down"), (0.9, "put it down elsewhere")],
+    [(0.05, "put it back in its place"), (0.15, "put it back almost in its place"), (0.3, "put it down"), (0.9, "put it down elsewhere")],
 )
 def test_what_is_put_on_the_ground_is_put_back_or_elsewhere(far_m: float, words: str) -> None:
     way = (*TAKEN, (far_m, 0.0, 1.0), (far_m, 0.0, 0.0))
