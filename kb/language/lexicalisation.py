@@ -96,6 +96,9 @@ GOALS = ("put {1} on {2}", "bring {1} to {2}")
 CONTAINERS = frozenset({"carton", "container", "crate", "basket", "bin", "drawer"})
 """Kinds of what is open above: what is left within its shadow and below its rim is in it."""
 
+PACKS = frozenset({"bag", "bottle", "box", "can", "carton", "jar", "tin", "tube"})
+"""Kinds of things that are named by what is in them, where there are several."""
+
 OPEN = CONTAINERS | {
     *(
         "bag",
