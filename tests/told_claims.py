@@ -103,7 +103,8 @@ def _goal(said: str, rest: str, nouns: Mapping[str, str]) -> tuple[str, str]:
     """
     spoken = "|".join(map(re.escape, sorted(nouns, key=len, reverse=True))) or "-"
     goal = re.compile(rf"\b(?:in|on|into) (?:the )?({spoken})\b")
-    listed = re.compile(rf"^(?:,? (?:and )?(?:(?:the|an?) )?(?:{spoken}))*,? ((?:in|on) the ({spoken}))\b")
+    item = rf",? (?:and )?(?:(?:the|an?) )?(?:{spoken})"
+    listed = re.compile(rf"^(?:{item})*,? ((?:in|on) the ({spoken}))\b")
     if found := goal.search(said):
         return nouns[found[1]], said
     if found := listed.match(rest):

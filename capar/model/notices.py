@@ -283,7 +283,8 @@ KINDS: Mapping[str, NoticeKind] = {
         fault=True,
     ),
     "contact-gap": NoticeKind(
-        "{0!r} moves, and no contact of {1!r} with it was found from {start_s:.2f} to {end_s:.2f} s",
+        "{0!r} moves, and no contact of {1!r} with it was found from {start_s:.2f} to "
+        "{end_s:.2f} s",
         "times without contact in which something was moved",
     ),
     "up-contradicted": NoticeKind(

@@ -19,7 +19,7 @@ Frames = tuple[int, int]
 
 
 def contact_gaps(observation: Observation) -> tuple[Notice, ...]:
-    """Each whole time between two contacts in which a movable thing moves, with the hand that has it.
+    """Each time between two contacts in which a movable thing moves, with the hand that has it.
 
     Not where no hand is found to move it, or to move as one with it.
 
@@ -51,9 +51,7 @@ def _gaps(observation: Observation, thing: str) -> Iterator[Notice]:
         if hand is not None and sum(_shared(gap, move) for move in moves) * step_s > NOTICED_S:
             start_s, end_s = (frame * step_s for frame in gap)
             called = f"{hand.side} {hand.kind}".strip()
-            yield notice(
-                "contact-gap", thing, hand.ee, start_s=start_s, end_s=end_s, called=called
-            )
+            yield notice("contact-gap", thing, hand.ee, start_s=start_s, end_s=end_s, called=called)
 
 
 def _between(touches: Sequence[Frames]) -> Iterator[Frames]:

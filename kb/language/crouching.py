@@ -69,9 +69,7 @@ def with_crouching(
     return tuple(sorted((*rest, *own), key=in_time))
 
 
-def _by_the_knees(
-    change: Clause, head: SampledTrack | None, pelvis: SampledTrack | None
-) -> bool:
+def _by_the_knees(change: Clause, head: SampledTrack | None, pelvis: SampledTrack | None) -> bool:
     """Whether the pelvis goes down or up by as much as makes crouching of bending."""
     if head is None or pelvis is None:
         return True
@@ -107,9 +105,7 @@ def _after_bending(crouch: Clause, bends: Sequence[Clause], head: SampledTrack |
 def _after_walking(change: Clause, steps: Sequence[Clause]) -> Clause:
     """Going down by one who still walks for a noticed time, since the walk is over."""
     ends = [
-        step.end_s
-        for step in steps
-        if step.pattern in WALKING and step.start_s <= change.start_s
+        step.end_s for step in steps if step.pattern in WALKING and step.start_s <= change.start_s
     ]
     late = change.start_s + SCRAP_S < max(ends, default=0.0) < change.end_s
     return replace(change, start_s=max(ends)) if late and change.pattern == CROUCH else change

@@ -95,8 +95,8 @@ TOLD: tuple[tuple[list[Notice], str], ...] = (
             )
             for start_s, end_s in ((1.0, 2.0), (2.5, 4.0))
         ],
-        "From 1.00 to 2.00 s and from 2.50 to 4.00 s, no contact with the chair was found, although "
-        "it moved; the right hand is assumed to have held it.",
+        "From 1.00 to 2.00 s and from 2.50 to 4.00 s, no contact with the chair was found, "
+        "although it moved; the right hand is assumed to have held it.",
     ),
     (
         [

@@ -260,7 +260,7 @@ def _open(reader: Reader, at: int) -> Noun | None:
 
 
 def _one_of(reader: Reader, at: int) -> Noun | None:
-    """A thing by what packs it, or one of several alike: ``can of tuna``, ``second can of tuna``."""
+    """A thing by what packs it, or one of several alike: ``can of tuna``, ``second coffee can``."""
     cursor, known = reader.cursor, reader.words.nouns
     start = cursor.at
     first = cursor.peek()

@@ -197,3 +197,11 @@ def test_when_a_large_thing_turned_is_not_told_where_that_is_not_known(
 ) -> None:
     text = slid(begins_s=0.5, lasts_s=1.0, seen_s=(0.0, 4.0), held=False, size_m=size_m)
     assert text == f"The agent {words}"
+
+
+def test_a_turn_lasts_until_the_thing_stays_as_it_is_at_the_end() -> None:
+    """It turns beyond that, and back."""
+    beyond = told("MoveObj", *((0.0, spin) for spin in (0.0, 0.0, 1.5, 3.0, 3.6, 3.0, 3.0)))
+    straight = told("MoveObj", *((0.0, spin) for spin in (0.0, 0.0, 1.5, 3.0, 3.0, 3.0, 3.0)))
+    ends = [float(text.split("–")[1].split(" ")[0]) for text in (straight, beyond)]
+    assert ends[1] > ends[0] + 1.0
