@@ -15,7 +15,7 @@ from capar.model.facts import MovedBy, MovesWith, Moving, OfAgent, Touching
 from capar.model.observation import Observation, ObservedLink, Segment
 from kb.language.clause import Clause
 from kb.language.lexicalisation import GIVEN, TO_A_SIDE
-from kb.language.thresholds import BESIDE_MM, REST_S, RISEN_M, SCRAP_S, UNSEEN_S
+from kb.language.thresholds import BESIDE_MM, REST_S, RISEN_M, SCRAP_S, STILL_M, UNSEEN_S
 from kb.lexicon.tables import table
 
 BY_HAND = ("carried", "pushed")
@@ -181,16 +181,16 @@ class Holding:
             unseen=True,
             rights=False,
         )
-        highest_s = self._highest_s(thing, start_s, end_s) if name == "MoveObj" else None
+        high = self._high(thing, start_s, end_s) if name == "MoveObj" else None
         out = [Handled(first, move)]
-        if highest_s is not None:
+        if high is not None:
             up, down = (
                 replace(move, pattern=said, name=called, general=GENERAL[called])
                 for said, called in (("lift {1}", "Lift"), ("put {1} down", "PutDown"))
             )
             out = [
-                Handled(first, replace(up, end_s=highest_s)),
-                Handled(first, replace(down, start_s=highest_s)),
+                Handled(first, replace(up, end_s=high.start_s)),
+                Handled(first, replace(down, start_s=high.end_s)),
             ]
         if not had:
             came_s = self._first_touch_s(first.ee, thing, first.start_s, start_s)
@@ -236,8 +236,8 @@ class Holding:
             return "put {1} down", "PutDown"
         return ("lift {1}", "Lift") if borne == (True, False) else ("move {1}", "MoveObj")
 
-    def _highest_s(self, thing: Sequence[str], start_s: float, end_s: float) -> float | None:
-        """When a thing is highest that is lifted and put down again within a time [s].
+    def _high(self, thing: Sequence[str], start_s: float, end_s: float) -> Span | None:
+        """From when to when a thing is highest that is lifted and put down again within a time [s].
 
         None where it is not off what bears it for a noticed time, or rises by less than is noticed.
         """
@@ -257,9 +257,11 @@ class Holding:
             return None
         first, last = (round(time_s / track.step_s) for time_s in off)
         heights = track.positions[:, 2]
-        if not heights[first : last + 1].max(initial=-np.inf) > heights[first] + RISEN_M:
+        top_m = float(np.nanmax(heights[first : last + 1], initial=-np.inf))
+        if not top_m > heights[first] + RISEN_M:
             return None
-        return float((first + int(np.nanargmax(heights[first : last + 1]))) * track.step_s)
+        there = first + np.flatnonzero(heights[first : last + 1] > top_m - STILL_M)
+        return Span(float(there[0]) * track.step_s, float(there[-1]) * track.step_s)
 
     def _borne(self, thing: Sequence[str], time_s: float) -> bool:
         frame = time_s / self._step_s if self._step_s else 0.0

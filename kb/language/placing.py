@@ -46,7 +46,7 @@ OVERHEAD = "hold {1} overhead"
 HELD_THERE = "hold {1} there"
 SWUNG = "swing {1} to and fro overhead"
 IN_ITS_PLACE = "put {1} back in its place"
-NEAR_ITS_PLACE = "put {1} back almost in its place"
+NEAR_ITS_PLACE = "put {1} down almost where it had stood"
 SLIDE = "slide {1}"
 BRING = "bring {1} to {2}"
 CARRY, RISES = "carry {1}", frozenset({"lift {1}", "raise {1}"})
@@ -122,7 +122,8 @@ def while_moving(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
 def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses; turning that outlasts what it began in, with the carrying or what takes longest.
 
-    What begins before that is told where it begins.
+    What begins before that is told where it begins; what goes on from lifting a thing until it is
+    put down there, by itself.
 
     Args:
         steps: What was done, in order of time.
@@ -136,9 +137,10 @@ def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
         ends = [
             step for step in own if turning.start_s < step.start_s < turning.end_s <= step.end_s
         ]
-        if begins and ends:
+        overlaps = [step for step in own if turning.overlap_s(step) > 0.0]
+        in_place = all(step.pattern in RISES or _puts(step) for step in overlaps)
+        if begins and ends and not in_place:
             start_s = max(turning.start_s, begins[0].start_s)
-            overlaps = [step for step in own if turning.overlap_s(step) > 0.0]
             told = max(overlaps, key=lambda step: (_carries(step), turning.overlap_s(step)))
             told = begins[0] if start_s < told.start_s else told
             out[out.index(told)] = replace(told, along=(replace(turning, start_s=start_s),))
