@@ -309,6 +309,11 @@ def _turned(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
         done = _progress(lean, a, b if over else min(b, final))
         yield from _ends(numbers, done, claim, end=False)
         return
+    if "from side to side" in claim.said:
+        ways = np.degrees(numbers.during(numbers.spin(claim.thing), claim.start_s, claim.end_s))
+        yield f"turns over {np.ptp(ways):.0f} degrees", float(np.ptp(ways)) > 60.0
+        yield from _held_up(claim, numbers)
+        return
     aside = " about" in claim.said and "a quarter" not in claim.said
     if aside or "bit by bit" in claim.said:
         turned = numbers.turned(claim.thing)

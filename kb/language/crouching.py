@@ -117,8 +117,12 @@ def _goes_with(change: Clause, step: Clause) -> bool:
 
 
 def _steadies(step: Clause, changes: Sequence[Clause]) -> bool:
-    """Whether it is a step or two that the body takes as it goes down or comes up."""
-    single = step.pattern in {STEP, TWO_STEPS, STEP_UP, STEP_BACK, STEP_AWAY}
+    """Whether it is a step or two that the body takes as it goes down or comes up.
+
+    Who steps back for longer than a step lasts goes somewhere.
+    """
+    leaves = step.pattern == STEP_BACK and step.end_s - step.start_s > SCRAP_S
+    single = step.pattern in {STEP, TWO_STEPS, STEP_UP, STEP_BACK, STEP_AWAY} and not leaves
     return single and any(
         each.start_s <= step.start_s and step.end_s <= each.end_s for each in changes
     )

@@ -44,9 +44,9 @@ from kb.language.turning import Turning
 
 OVERHEAD = "hold {1} overhead"
 HELD_THERE = "hold {1} there"
-SWUNG = "swing {1} to and fro overhead"
+SWUNG = "turn {1} from side to side overhead"
 IN_ITS_PLACE = "put {1} back in its place"
-NEAR_ITS_PLACE = "put {1} down almost where it had stood"
+NEAR_ITS_PLACE = "put {1} down almost where it had been"
 SLIDE = "slide {1}"
 BRING = "bring {1} to {2}"
 CARRY, RISES = "carry {1}", frozenset({"lift {1}", "raise {1}"})
@@ -203,7 +203,7 @@ def _tipped(step: Clause, turning: Turning) -> Clause:
 
 
 def _swung(step: Clause, turning: Turning) -> Clause:
-    """What is held overhead, as swung where it is turned far meanwhile."""
+    """What is held overhead, as turned from side to side where it is turned far meanwhile."""
     return replace(step, pattern=SWUNG) if turning.swings_rad(step) > QUARTER_RAD else step
 
 

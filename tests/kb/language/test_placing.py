@@ -104,7 +104,7 @@ def test_how_a_thing_leans_while_it_is_carried_is_told(lean: int, how: str) -> N
     ("far_m", "words"),
     [
         (0.05, "put it back in its place"),
-        (0.15, "put it down almost where it had stood"),
+        (0.15, "put it down almost where it had been"),
         (0.3, "put it down"),
         (0.9, "put it down elsewhere"),
     ],
