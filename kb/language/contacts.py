@@ -184,7 +184,7 @@ class Scene:
         return self.left_there(thing, end_s) and not self.left_there(thing, start_s)
 
     def is_up_between(self, thing: str, start_s: float, end_s: float) -> bool:
-        """Whether a thing stands at the start and is left at the end, and is taken up in between."""
+        """Whether a thing that stands at the start, and is left at the end, is up in between."""
         places = self._places(thing, start_s, end_s)
         if places is None or not self.left_there(thing, end_s):
             return False
