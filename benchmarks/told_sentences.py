@@ -14,9 +14,11 @@ observations are kept there and read again the next time.
 import argparse
 import os
 import pickle
+from collections.abc import Mapping
 from pathlib import Path
 
-from told_checks import checked
+import numpy as np
+from told_checks import Numbers, checked
 
 from capar.model.capture import Capture
 from capar.model.observation import Observation
@@ -25,8 +27,8 @@ from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from extractors.measure import measure
 from kb.language.describe import describe
-from kb.language.realisation import nouns
-from kb.lexicon.english import noun
+from kb.language.realisation import alike, nouns
+from kb.lexicon.english import noun, ordinal
 
 ROOT = Path(__file__).parents[1]
 DEMO = ROOT / "capar" / "demo" / "drink_from_mug"
@@ -54,6 +56,10 @@ TAKES = (
 )
 
 
+MOVED_M = 0.1
+"""A thing that is so far [m] from where it was at first has begun to move."""
+
+
 def observed(take: str, kept: Path | None) -> tuple[Observation, Capture]:
     """What was understood of a take, and its capture."""
     name = take.replace("/", ".").replace(":", ".")
@@ -66,6 +72,20 @@ def observed(take: str, kept: Path | None) -> tuple[Observation, Capture]:
     for file, value in zip(files, (observation, capture), strict=bool(files)):
         file.write_bytes(pickle.dumps(value))
     return observation, capture
+
+
+def in_order(called: Mapping[str, str], numbers: Numbers) -> dict[str, str]:
+    """Things that are alike by how they are spoken of: in the order in which they begin to move."""
+    found: dict[str, str] = {}
+    begins = {}
+    for name in called:
+        places = numbers.middle(name)
+        seen = places[~np.isnan(places).any(axis=1)]
+        begins[name] = int(np.argmax(np.linalg.norm(places - seen[0], axis=1) > MOVED_M))
+    for name in sorted(called, key=lambda name: begins[name] or len(numbers.times)):
+        count = sum(called[other] == called[name] for other in found.values()) + 1
+        found[f"{ordinal(count)} {called[name]}" if count > 1 else called[name]] = name
+    return found
 
 
 def main() -> None:
@@ -84,6 +104,7 @@ def main() -> None:
         things = {
             noun(called.get(thing.name, thing.name)): thing.name for thing in observation.objects
         }
+        things |= in_order(alike(observation.objects), Numbers(capture))
         text = describe(observation, timed=True, words=words)
         for found in checked(text, capture, things):
             steps += 1

@@ -23,6 +23,9 @@ NEAR_M = 0.3
 FLOOR_M = 0.03
 """What is stated to be lower than this [m] is the floor of a box, whose rim is not known."""
 
+GOES_MPS, UNTOLD_M = 0.1, 0.1
+"""What goes faster than this [m/s], and so far on end [m], is seen to go."""
+
 STEP_M, FALLEN_M, RISEN_M = 0.2, 0.02, 0.03
 """What walks, comes down and rises goes so far at least [m]."""
 
@@ -113,6 +116,20 @@ class Numbers:
         turned = rotations(orientations[known])
         axis = turned[:1].inv().apply([[0.0, 0.0, 1.0]])[0]
         out[known] = np.arccos(np.clip(turned.apply(axis)[:, 2], -1.0, 1.0))
+        return out
+
+    def turned_to(self, name: str, start_s: float, end_s: float) -> Float[np.ndarray, "frames"]:
+        """The share of how it is turned from a time to another that is done in each frame [1].
+
+        By whole orientations: what leans yet has not got there.
+        """
+        stream = self.streams()[name].stream  # type: ignore[attr-defined]
+        known = ~np.isnan(stream.orientations).any(axis=1)
+        turned = rotations(stream.orientations[known])
+        first, last = (int(np.argmin(np.abs(self.times[known] - at))) for at in (start_s, end_s))
+        left = (turned[last].inv() * turned).magnitude()
+        out = np.full(len(known), np.nan)
+        out[known] = 1.0 - left / max(float(left[first]), 1e-6)
         return out
 
     def apart(self, one: str, other: str) -> Float[np.ndarray, "frames"]:
@@ -292,6 +309,11 @@ def _turned(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
         done = _progress(lean, a, b if over else min(b, final))
         yield from _ends(numbers, done, claim, end=False)
         return
+    if "from side to side" in claim.said:
+        ways = np.degrees(numbers.during(numbers.spin(claim.thing), claim.start_s, claim.end_s))
+        yield f"turns over {np.ptp(ways):.0f} degrees", float(np.ptp(ways)) > 60.0
+        yield from _held_up(claim, numbers)
+        return
     aside = " about" in claim.said and "a quarter" not in claim.said
     if aside or "bit by bit" in claim.said:
         turned = numbers.turned(claim.thing)
@@ -311,8 +333,52 @@ def _turned(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     )
     yield f"turned by {np.degrees(net):.0f} degrees", lower < abs(np.degrees(net)) < upper
     if claim.timed:
-        yield from _ends(numbers, _progress(spin, float(first), float(last)), claim)
+        done = _progress(spin, float(first), float(last))
+        whole = numbers.turned_to(claim.thing, claim.start_s - 0.6, claim.end_s + 0.6)
+        stays = np.minimum(done, 2.0 - done)
+        before = float(np.fmin(numbers.at(stays, claim.end_s - SLACK_S),
+                               numbers.at(whole, claim.end_s - SLACK_S)))  # fmt: skip
+        after = float(numbers.at(stays, claim.end_s + SLACK_S))
+        yield from _ends(numbers, done, claim, end=False)
+        yield f"end: {after:.0%} done {SLACK_S} s after", not after < DONE
+        yield f"end: {before:.1%} done {SLACK_S} s before", not before > 0.99
     yield from _held(claim, numbers)
+
+
+def _left_turned(steps: Sequence[Checked], numbers: Numbers) -> Iterator[tuple[int, str]]:
+    """Turns after which a thing turns on, with no further step of it told: by place in the text."""
+    for place, step in enumerate(steps):
+        claim = step.claim
+        turned = re.match(r"turn(?:ed|ing) .*(?:around|quarter)", claim.said) and claim.timed
+        own = [other.claim for other in steps if other.claim.thing == claim.thing]
+        if not turned or any(other.end_s > claim.end_s + SLACK_S for other in own):
+            continue
+        done = numbers.turned_to(claim.thing, claim.start_s - 0.6, float(numbers.times[-1]))
+        after = float(numbers.at(done, claim.end_s + SLACK_S))
+        if after < DONE:
+            yield place, f"{after:.0%} of the whole turn done {SLACK_S} s after the end"
+
+
+def _untold(steps: Sequence[Checked], numbers: Numbers) -> Iterator[tuple[int, str]]:
+    """Times in which a thing goes, and no step of it is told: by place of the last step of it."""
+    for thing in {step.claim.thing for step in steps} & set(numbers.streams()):
+        own = [place for place, step in enumerate(steps) if step.claim.thing == thing]
+        tools = [step.claim for step in steps if step.claim.said.startswith("stirred")]
+        if getattr(numbers.streams()[thing], "tag", "") != "mobile":
+            continue
+        places = numbers.middle(thing)
+        ways = np.r_[0.0, np.linalg.norm(np.nan_to_num(np.diff(places, axis=0)), axis=1)]
+        for claim in (*(steps[place].claim for place in own), *tools):
+            for start_s, end_s in claim.spans:
+                near = (numbers.times > start_s - SLACK_S) & (numbers.times < end_s + SLACK_S)
+                ways[near] = 0.0
+        speeds = ways / np.gradient(numbers.times)
+        going = np.flatnonzero(np.diff(np.r_[0, (speeds > GOES_MPS).astype(int), 0]))
+        for first, after in zip(going[::2], going[1::2], strict=True):
+            way_m = float(ways[first:after].sum())
+            if way_m > UNTOLD_M:
+                spoken = f"{numbers.times[first]:.2f} to {numbers.times[after - 1]:.2f} s"
+                yield own[-1], f"{thing} goes {way_m:.2f} m from {spoken}, untold"
 
 
 def _bent(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
@@ -327,6 +393,13 @@ def _bent(claim: Claim, numbers: Numbers) -> Iterator[tuple[str, bool]]:
     begins = "began" in claim.said
     opens = a > float(numbers.times[0]) + 0.01
     done = _progress(heights, float(first), float(last))
+    if "crouch" in claim.said:
+        hips = numbers.origin("pelvis")[:, 2]
+        about = numbers.during(hips, a - 0.5, b + 0.5)
+        knees = _progress(hips, float(about.max()), float(about.min()))
+        begun = min(float(numbers.at(each, a - SLACK_S)) for each in (done, knees))
+        yield f"start: {begun:.0%} done {SLACK_S} s before", not (opens and begun > BEGUN)
+        opens = False
     yield from _ends(numbers, done, claim, start=opens, end=not begins)
     if "crouch" in claim.said or claim.said.startswith("stood"):
         pelvis = numbers.origin("pelvis")[:, 2]
@@ -586,5 +659,7 @@ def checked(text: str, capture: Capture, nouns: Mapping[str, str]) -> list[Check
         results += [("goes on beyond the recording", False)] if beyond else []
         wrong = tuple(what for what, holds in results if not holds)
         out.append(Checked(claim, len(results), wrong))
+    for place, what in (*_left_turned(out, numbers), *_untold(out, numbers)):
+        out[place] = replace(out[place], wrong=(*out[place].wrong, what))
     pauses = tuple(_waited(text, out))
     return [replace(out[0], wrong=(*out[0].wrong, *pauses)), *out[1:]] if pauses else out

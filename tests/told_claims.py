@@ -64,7 +64,7 @@ def claims(text: str, nouns: Mapping[str, str]) -> Iterator[Claim]:
                 hands, said = (subject[1],), said[subject.end() :]
             elif " over to " not in said:
                 hands = _hands(said) or _hands(rest.split(" while ")[0]) or hands
-            if said.startswith(("the ", "a ")) or said in nouns:
+            if said.startswith(("the ", "a ", "an ")) or said in nouns:
                 said = f"{verb} {said}"
             verb = said.split(" ")[0]
             mention = _mentioned(said.removeprefix("reached "), nouns)
@@ -103,7 +103,8 @@ def _goal(said: str, rest: str, nouns: Mapping[str, str]) -> tuple[str, str]:
     """
     spoken = "|".join(map(re.escape, sorted(nouns, key=len, reverse=True))) or "-"
     goal = re.compile(rf"\b(?:in|on|into) (?:the )?({spoken})\b")
-    listed = re.compile(rf"^(?:,? (?:and )?(?:the )?(?:{spoken}))*,? ((?:in|on) the ({spoken}))\b")
+    item = rf",? (?:and )?(?:(?:the|an?) )?(?:{spoken})"
+    listed = re.compile(rf"^(?:{item})*,? ((?:in|on) the ({spoken}))\b")
     if found := goal.search(said):
         return nouns[found[1]], said
     if found := listed.match(rest):

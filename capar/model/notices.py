@@ -282,6 +282,11 @@ KINDS: Mapping[str, NoticeKind] = {
         "objects that move and nothing moves them",
         fault=True,
     ),
+    "contact-gap": NoticeKind(
+        "{0!r} moves, and no contact of {1!r} with it was found from {start_s:.2f} to "
+        "{end_s:.2f} s",
+        "times without contact in which something was moved",
+    ),
     "up-contradicted": NoticeKind(
         lambda each: up_contradicted(each.bodies, each.fields),
         "falls and rests against the upward axis",

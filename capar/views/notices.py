@@ -6,6 +6,7 @@ from types import MappingProxyType
 
 from capar.model.notices import KINDS, Notice
 from capar.model.observation import Observation
+from capar.views.lost_contact import contact_gaps
 from capar.views.plain_notices import NAMED, sentences_of
 from kb.lexicon.english import capital
 
@@ -13,6 +14,9 @@ HEADING = "Known with reservations:"
 
 LOSS, SUPPORT = "long-gap", "assumed-support"
 """The codes of a body that was not tracked for some time, and of what bears things."""
+
+UNEXPLAINED = frozenset({"mount-gap", "no-mover"})
+"""The codes of what moves without contact."""
 
 MOST = 5
 """So many notices of one code are listed one by one."""
@@ -32,13 +36,21 @@ def reservations(
 def reservations_on_told(observation: Observation) -> tuple[Notice, ...]:
     """The notices that affect a telling.
 
-    Without losses of what neither acts nor is a thing, and supports where nothing can be put.
+    Without losses of what neither acts nor is a thing, and supports where nothing can be put. Of a
+    thing that moves while no contact is found, when that is, and which hand is taken to have it.
     """
+    gaps = contact_gaps(observation)
+    told_of = {each.bodies[0] for each in gaps}
     told = {link.ee for link in observation.links} | {thing.name for thing in observation.objects}
     movable = any(thing.tag == "mobile" for thing in observation.objects)
-    return tuple(
+    known = (
         each
         for each in reservations(observation.notices)
+        if each.code not in UNEXPLAINED or told_of.isdisjoint(each.bodies)
+    )
+    return gaps + tuple(
+        each
+        for each in known
         if (each.code != LOSS or told.intersection(each.bodies))
         and (each.code != SUPPORT or movable)
     )

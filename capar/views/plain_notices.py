@@ -155,6 +155,22 @@ def _unmoved(group: Sequence[Notice]) -> Iterable[str]:
         yield f"{when}, {found} {_the(each.bodies[0])}"
 
 
+def _unfelt(group: Sequence[Notice]) -> Iterable[str]:
+    """When things moved without contact, by thing and hand that is taken to have it."""
+    for bodies in dict.fromkeys(each.bodies for each in group):
+        when = joined(
+            [
+                f"from {each.start_s:.2f} to {each.end_s:.2f} s"
+                for each in group
+                if each.bodies == bodies
+            ]
+        )
+        thing = _the(bodies[0])
+        hand = next(the(str(each["called"])) for each in group if each.bodies == bodies)
+        found = f"no contact with {thing} was found, although it moved"
+        yield f"{capital(when)}, {found}; {hand} is assumed to have held it"
+
+
 def _stretched(group: Sequence[Notice]) -> Iterable[str]:
     """By how much parts of the body come apart that bones hold together."""
     by_cm = max(100.0 * (float(each["longest_m"]) - float(each["shortest_m"])) for each in group)
@@ -170,6 +186,7 @@ PLAIN: Mapping[str, Callable[[Sequence[Notice]], Iterable[str]]] = {
     "objects-left-out": _left_out,
     "mount-gap": _gap,
     "no-mover": _unmoved,
+    "contact-gap": _unfelt,
     "bone-stretches": _stretched,
 }
 """What makes plain sentences of the notices of a code; of others the messages are told."""

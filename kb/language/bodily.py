@@ -15,11 +15,19 @@ from kb.language.lexicalisation import (
     STEP_UP,
     TWO_STEPS,
     WALK,
-    WALK_AROUND,
     WALK_AWAY,
+    WALK_HALFWAY,
+    WALK_PARTLY,
     WALK_UP,
 )
-from kb.language.thresholds import ASIDE_SHARE, FEWEST_STEPS, QUARTER_RAD, STEP_M, STRIDE_S
+from kb.language.thresholds import (
+    AROUND_RAD,
+    ASIDE_SHARE,
+    FEWEST_STEPS,
+    QUARTER_RAD,
+    STEP_M,
+    STRIDE_S,
+)
 
 Told = tuple[Clause, ...]
 
@@ -164,7 +172,8 @@ def with_walks(
             abs(scene.goes_about_rad(foot, thing, walk.start_s, walk.end_s)) for foot in walk.ees
         )
         if walk.pattern != STEP and about_rad > QUARTER_RAD:
-            walked = replace(walked, pattern=WALK_AROUND, objects=(thing,))
+            pattern = WALK_HALFWAY if about_rad > AROUND_RAD else WALK_PARTLY
+            walked = replace(walked, pattern=pattern, objects=(thing,))
         elif up_to:
             pattern = WALK_UP if walk.pattern == WALK else STEP_UP
             walked = replace(walked, pattern=pattern, objects=(thing,))

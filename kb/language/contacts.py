@@ -160,14 +160,46 @@ class Scene:
         for each in sorted(touches, key=lambda each: each.first):
             if each.first * step_s <= after_s + step_s:
                 after_s = max(after_s, each.last * step_s)
-        then, now = self._places(thing, after_s, after_s), self._places(thing, time_s, time_s)
-        if then is None or now is None or after_s >= (len(track.positions) - 2) * track.step_s:
+        now = self._places(thing, time_s, time_s)
+        if after_s >= (len(track.positions) - 2) * track.step_s:
+            then = self._stands_again(thing, after_s)
+        else:
+            then = self._places(thing, after_s, after_s)
+        if then is None or now is None:
             return False
         return abs(float(then[-1, 2] - now[-1, 2])) < LEVEL_M
+
+    def _stands_again(self, thing: str, end_s: float) -> np.ndarray | None:
+        """Where a thing is as a recording ends, if it stays there, as high as it was at first."""
+        last = self._places(thing, end_s - UNSEEN_S, end_s)
+        first = self._places(thing, 0.0, 0.0)
+        if last is None or first is None:
+            return None
+        strays_m = float(np.linalg.norm(last - last[-1], axis=1).max())
+        again = abs(float(last[-1, 2] - first[-1, 2])) < 0.5 * STILL_M
+        return last if again and strays_m < 0.5 * STILL_M else None
 
     def sets_down(self, thing: str, start_s: float, end_s: float) -> bool:
         """Whether a thing stands at the end where it is left, and did not at the start."""
         return self.left_there(thing, end_s) and not self.left_there(thing, start_s)
+
+    def is_up_between(self, thing: str, start_s: float, end_s: float) -> bool:
+        """Whether a thing that stands at the start, and is left at the end, is up in between."""
+        places = self._places(thing, start_s, end_s)
+        if places is None or not self.left_there(thing, end_s):
+            return False
+        level = abs(float(places[-1, 2] - places[0, 2])) < LEVEL_M
+        return level and float(places[:, 2].max() - places[0, 2]) > RISEN_M
+
+    def goes_up_s(self, thing: str, start_s: float, end_s: float) -> float:
+        """When, within a time, a thing is first clear of where it stood at its start [s]."""
+        places = self._places(thing, start_s, end_s)
+        if places is None:
+            return start_s
+        above = places[:, 2] - places[0, 2]
+        step_s = (end_s - start_s) / max(len(above) - 1, 1)
+        up = above > 0.5 * min(RISEN_M, float(above.max()))
+        return start_s + float(np.argmax(up)) * step_s
 
     def comes_down_s(self, thing: str, start_s: float, end_s: float) -> float:
         """Since when, within a time, a thing is on its way down to where it is at the end [s]."""

@@ -20,12 +20,15 @@ from kb.language.lexicalisation import (
     STEP_UP,
     STRAIGHTEN,
     TWO_STEPS,
+    WALKING,
 )
 from kb.language.thresholds import (
     BENT_M,
     CROUCHED_M,
+    CROUCHED_SHARE,
     NOTICED_SHARE,
     REST_S,
+    SCRAP_S,
     STANDING_M,
     STILL_M,
     UNSEEN_S,
@@ -56,12 +59,28 @@ def with_crouching(
     crouches = [
         _with_head(change, bends)
         for change in _changes(_track(PELVIS, links, tracks), manual[0], CROUCH, CROUCHED_M)
+        if _by_the_knees(change, head, _track(PELVIS, links, tracks))
     ]
     own = [_after_bending(crouch, bends, head) for crouch in crouches]
+    own = [_after_walking(change, steps) for change in own]
     own += [bend for bend in bends if not any(map(bend.overlaps, own))]
     own = [change for change in own if not any(_goes_with(change, step) for step in manual)]
     rest = [step for step in steps if not _steadies(step, own)]
     return tuple(sorted((*rest, *own), key=in_time))
+
+
+def _by_the_knees(change: Clause, head: SampledTrack | None, pelvis: SampledTrack | None) -> bool:
+    """Whether the pelvis goes down or up by as much as makes crouching of bending."""
+    if head is None or pelvis is None:
+        return True
+    head_m, pelvis_m = (
+        float(np.ptp(each.positions[_frames(each, change), 2])) for each in (head, pelvis)
+    )
+    return pelvis_m > CROUCHED_SHARE * head_m
+
+
+def _frames(track: SampledTrack, change: Clause) -> slice:
+    return slice(round(change.start_s / track.step_s), round(change.end_s / track.step_s) + 1)
 
 
 def _with_head(change: Clause, bends: Sequence[Clause]) -> Clause:
@@ -83,14 +102,27 @@ def _after_bending(crouch: Clause, bends: Sequence[Clause], head: SampledTrack |
     return replace(crouch, start_s=first.start_s)
 
 
+def _after_walking(change: Clause, steps: Sequence[Clause]) -> Clause:
+    """Going down by one who still walks for a noticed time, since the walk is over."""
+    ends = [
+        step.end_s for step in steps if step.pattern in WALKING and step.start_s <= change.start_s
+    ]
+    late = change.start_s + SCRAP_S < max(ends, default=0.0) < change.end_s
+    return replace(change, start_s=max(ends)) if late and change.pattern == CROUCH else change
+
+
 def _goes_with(change: Clause, step: Clause) -> bool:
     """Whether the body mostly goes down or comes up while a thing is moved."""
     return change.overlap_s(step) > 0.5 * (change.end_s - change.start_s)
 
 
 def _steadies(step: Clause, changes: Sequence[Clause]) -> bool:
-    """Whether it is a step or two that the body takes as it goes down or comes up."""
-    single = step.pattern in {STEP, TWO_STEPS, STEP_UP, STEP_BACK, STEP_AWAY}
+    """Whether it is a step or two that the body takes as it goes down or comes up.
+
+    Who steps back for longer than a step lasts goes somewhere.
+    """
+    leaves = step.pattern == STEP_BACK and step.end_s - step.start_s > SCRAP_S
+    single = step.pattern in {STEP, TWO_STEPS, STEP_UP, STEP_BACK, STEP_AWAY} and not leaves
     return single and any(
         each.start_s <= step.start_s and step.end_s <= each.end_s for each in changes
     )

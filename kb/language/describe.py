@@ -30,7 +30,7 @@ from kb.language.lexicalisation import FREE, LEAVES, STEP, STEP_UP, TWO_STEPS, W
 from kb.language.listing import listed
 from kb.language.omitting import set_down, without_coming
 from kb.language.pauses import pauses
-from kb.language.placing import placed, turned_on_the_way, while_moving
+from kb.language.placing import placed, righted, turned_on_the_way, while_moving
 from kb.language.planning import sentences
 from kb.language.pouring import poured
 from kb.language.realisation import Realiser
@@ -107,9 +107,9 @@ def _story(
         turning = Turning(observation)
         steps = stowed(poured(steps, turning), observation.objects, scene)
         there = placed(steps, observation.objects, scene, turning)
-        there = in_course(while_moving(there, scene), turning) if timed else there
+        there = in_course(while_moving(there, scene), scene, turning) if timed else there
         steps = in_sequence(without_coming(set_down(there, scene), scene))
-        steps = turned_on_the_way(steps)
+        steps = turned_on_the_way(righted(steps))
     if detail == "summary":
         steps = chosen(gathered(in_turns(steps), observation.objects, scene))
     paused = pauses(steps) if observation.profile != TO_THE_LETTER and detail == "steps" else {}

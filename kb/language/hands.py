@@ -6,7 +6,7 @@ from difflib import SequenceMatcher
 
 from capar.model.observation import ObservedLink
 from kb.language.clause import Clause, in_time
-from kb.language.lexicalisation import REACH, THIS_WAY, TURN
+from kb.language.lexicalisation import ABOUT, REACH, THIS_WAY, TURN
 from kb.language.thresholds import MOSTLY, REST_S, SETTLING_S
 from kb.lexicon.tables import table
 
@@ -76,7 +76,8 @@ def told_in_order(
 def in_sequence(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses, each ended as the same hands do the next to the same thing.
 
-    That is where hands that do the same begin and end it not quite at once.
+    That is where hands that do the same begin and end it not quite at once. Turning a thing about
+    the vertical goes on beside what else is done to it.
     """
     out: list[Clause] = []
     for step in sorted(steps, key=in_time):
@@ -85,7 +86,8 @@ def in_sequence(steps: Sequence[Clause]) -> tuple[Clause, ...]:
         same = last is not None and bool(last.objects) and last.objects[:1] == step.objects[:1]
         if last is not None and at is not None and same:
             over_s = last.end_s - step.start_s
-            if last.start_s < step.start_s and last.end_s < step.end_s and 0.0 < over_s < REST_S:
+            after = last.start_s < step.start_s and last.end_s < step.end_s
+            if after and step.pattern not in ABOUT and 0.0 < over_s < REST_S:
                 out[at] = replace(last, end_s=step.start_s)
         out.append(step)
     return tuple(out)

@@ -6,13 +6,16 @@ them a text tells what a hand did to a thing. Wording only: segments stay as the
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
+
+import numpy as np
 
 from capar.model.facts import MovedBy, MovesWith, Moving, OfAgent, Touching
 from capar.model.observation import Observation, ObservedLink, Segment
 from kb.language.clause import Clause
 from kb.language.lexicalisation import GIVEN, TO_A_SIDE
-from kb.language.thresholds import BESIDE_MM, REST_S, SCRAP_S, UNSEEN_S
+from kb.language.thresholds import BESIDE_MM, REST_S, RISEN_M, SCRAP_S, STILL_M, UNSEEN_S
 from kb.lexicon.tables import table
 
 BY_HAND = ("carried", "pushed")
@@ -57,6 +60,7 @@ class Holding:
         owners = [fact for fact in observation.facts if isinstance(fact, OfAgent)]
         self._owners = {each.body: each.agent for each in owners}
         self._links = observation.links
+        self._tracks = {each.body: each for each in observation.tracks}
         self._gives = [each for each in observation.segments if each.name == "Give"]
 
     def released_s(self, segment: Segment) -> float:
@@ -177,7 +181,17 @@ class Holding:
             unseen=True,
             rights=False,
         )
+        high = self._high(thing, start_s, end_s) if name == "MoveObj" else None
         out = [Handled(first, move)]
+        if high is not None:
+            up, down = (
+                replace(move, pattern=said, name=called, general=GENERAL[called])
+                for said, called in (("lift {1}", "Lift"), ("put {1} down", "PutDown"))
+            )
+            out = [
+                Handled(first, replace(up, end_s=high.start_s)),
+                Handled(first, replace(down, start_s=high.end_s)),
+            ]
         if not had:
             came_s = self._first_touch_s(first.ee, thing, first.start_s, start_s)
             came = replace(
@@ -221,6 +235,33 @@ class Holding:
         if borne == (False, True):
             return "put {1} down", "PutDown"
         return ("lift {1}", "Lift") if borne == (True, False) else ("move {1}", "MoveObj")
+
+    def _high(self, thing: Sequence[str], start_s: float, end_s: float) -> Span | None:
+        """From when to when a thing is highest that is lifted and put down again within a time [s].
+
+        None where it is not off what bears it for a noticed time, or rises by less than is noticed.
+        """
+        track = self._tracks.get("".join(thing[:1]))
+        borne = sorted(
+            Span(each.first * self._step_s, each.last * self._step_s)
+            for each in self._supports
+            if each.body in thing or each.other in thing
+        )
+        free = [
+            Span(before.end_s, after.start_s)
+            for before, after in pairwise(borne)
+            if start_s <= before.end_s and after.start_s <= end_s
+        ]
+        off = max(free, key=lambda span: span.end_s - span.start_s, default=Span(0.0, 0.0))
+        if track is None or track.step_s == 0.0 or off.end_s - off.start_s < REST_S:
+            return None
+        first, last = (round(time_s / track.step_s) for time_s in off)
+        heights = track.positions[:, 2]
+        top_m = float(np.nanmax(heights[first : last + 1], initial=-np.inf))
+        if not top_m > heights[first] + RISEN_M:
+            return None
+        there = first + np.flatnonzero(heights[first : last + 1] > top_m - STILL_M)
+        return Span(float(there[0]) * track.step_s, float(there[-1]) * track.step_s)
 
     def _borne(self, thing: Sequence[str], time_s: float) -> bool:
         frame = time_s / self._step_s if self._step_s else 0.0

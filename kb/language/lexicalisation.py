@@ -96,6 +96,9 @@ GOALS = ("put {1} on {2}", "bring {1} to {2}")
 CONTAINERS = frozenset({"carton", "container", "crate", "basket", "bin", "drawer"})
 """Kinds of what is open above: what is left within its shadow and below its rim is in it."""
 
+PACKS = frozenset({"bag", "bottle", "box", "can", "carton", "jar", "tin", "tube"})
+"""Kinds of things that are named by what is in them, where there are several."""
+
 OPEN = CONTAINERS | {
     *(
         "bag",
@@ -163,8 +166,11 @@ WALK, STEP, TWO_STEPS = "walk", "take a step", "take two steps"
 WALK_UP, STEP_UP = "walk up to {1}", "step up to {1}"
 """The same, to the thing that a hand takes next."""
 
-WALK_AROUND = "walk around to another side of {1}"
+WALK_PARTLY, WALK_HALFWAY = "walk partway around {1}", "walk halfway around {1}"
 """The same, about that thing."""
+
+WALKING = frozenset({WALK, WALK_UP, WALK_PARTLY, WALK_HALFWAY})
+"""Patterns of three steps or more."""
 
 STEP_AWAY, WALK_AWAY, STEP_BACK = "step away", "walk away", "step back"
 """The same, from the thing that a hand has left; the last by one who still faces it."""
@@ -180,7 +186,7 @@ LEAVES = frozenset({STEP_AWAY, WALK_AWAY, STEP_BACK})
 """Patterns of who leaves when all is done."""
 
 BODILY = LEAVES | {
-    *(WALK, STEP, TWO_STEPS, WALK_UP, STEP_UP, WALK_AROUND),
+    *(WALK, STEP, TWO_STEPS, WALK_UP, STEP_UP, WALK_PARTLY, WALK_HALFWAY),
     *(CROUCH, BEND, STAND_UP, STRAIGHTEN, BEGIN_UP),
 }
 """Patterns that name no end-effector."""

@@ -42,7 +42,7 @@ def without_coming(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
 
 
 def set_down(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
-    """The clauses, with putting a thing down where it comes down while it is turned.
+    """The clauses, with taking a thing up and putting it down where that is part of turning it.
 
     Args:
         steps: What was done, in order of time.
@@ -52,13 +52,24 @@ def set_down(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
     for step in steps:
         turns = step.pattern in {THIS_WAY, TURN, TILT} and step.possessed and step.changes
         beside = any(each is not step and step.within(each) for each in steps)
-        if not turns or beside or not scene.sets_down(step.objects[0], step.start_s, step.end_s):
+        span = (step.start_s, step.end_s)
+        taken_up = turns and not step.pauses and scene.is_up_between(step.objects[0], *span)
+        if not turns or beside or not (taken_up or scene.sets_down(step.objects[0], *span)):
             out.append(step)
             continue
-        begin_s = scene.comes_down_s(step.objects[0], step.start_s, step.end_s)
-        if begin_s - step.start_s > UNSEEN_S:
-            out.append(replace(step, end_s=begin_s))
-        down = replace(step, pattern=DOWN, name="PutDown", start_s=begin_s)
+        turned_s = step.start_s
+        if taken_up:
+            turned_s = scene.goes_up_s(step.objects[0], *span)
+            since_s, _ = scene.moves_s(step.objects[0], *span)
+            out.append(
+                replace(step, pattern="lift {1}", name="Lift", start_s=since_s, end_s=turned_s)
+            )
+        begin_s = scene.comes_down_s(step.objects[0], *span)
+        if begin_s - turned_s > UNSEEN_S:
+            out.append(replace(step, start_s=turned_s, end_s=begin_s))
+        _, stays_s = scene.moves_s(step.objects[0], begin_s, step.end_s)
+        end_s = stays_s if step.end_s - stays_s > UNSEEN_S else step.end_s
+        down = replace(step, pattern=DOWN, name="PutDown", start_s=begin_s, end_s=end_s)
         out.append(replace(down, pauses=0, rests=()))
     return tuple(out)
 

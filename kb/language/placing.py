@@ -10,6 +10,7 @@ from capar.model.observation import ObservedObject
 from kb.language.clause import Clause, in_time
 from kb.language.contacts import Scene
 from kb.language.lexicalisation import (
+    BACK_UPRIGHT,
     DOWN,
     GOALS,
     GROUNDS,
@@ -20,26 +21,32 @@ from kb.language.lexicalisation import (
     TURN,
     TURNED,
     UP_AND_DOWN,
+    UPRIGHT,
     UPSIDE_DOWN,
 )
 from kb.language.thresholds import (
     FEW_STEPS,
     FURTHER_M,
     HELD_M,
+    IN_PLACE_M,
     LEADS_M,
     LEANT_RAD,
     OVER_RAD,
     PLACE_M,
+    QUARTER_RAD,
     REST_S,
     RISEN_M,
     SETTLING_S,
+    TIPPED_RAD,
     UNSEEN_S,
 )
 from kb.language.turning import Turning
 
 OVERHEAD = "hold {1} overhead"
 HELD_THERE = "hold {1} there"
+SWUNG = "turn {1} from side to side overhead"
 IN_ITS_PLACE = "put {1} back in its place"
+NEAR_ITS_PLACE = "put {1} down almost where it had been"
 SLIDE = "slide {1}"
 BRING = "bring {1} to {2}"
 CARRY, RISES = "carry {1}", frozenset({"lift {1}", "raise {1}"})
@@ -64,7 +71,7 @@ def placed(
         elif step.pattern == CARRY:
             carried = _carried(step, scene, turning)
             up = carried.pattern == OVERHEAD and any(_brings_overhead(each, step) for each in out)
-            out.append(replace(carried, pattern=HELD_THERE) if up else carried)
+            out.append(_swung(replace(carried, pattern=HELD_THERE), turning) if up else carried)
         elif step.pattern == LOWER and scene.left_there(step.objects[0], step.end_s):
             out.append(replace(step, pattern=DOWN))
         elif out and _settles(step, out[-1], scene):
@@ -72,9 +79,11 @@ def placed(
         elif step.pattern == TURN and step.possessed and not step.pauses:
             out.append(replace(step, pattern=turning.seen_to_turn(step) or TURN))
         elif out and _holds_on(step, out[-1]):
-            out.append(replace(step, pattern=HELD_THERE))
+            above = scene.overhead(step.objects[0], step.ees, step.start_s, step.end_s)
+            held = replace(step, pattern=OVERHEAD if above else HELD_THERE)
+            out.append(_swung(held, turning) if above else held)
         elif step.pattern.startswith(SLIDE):
-            out.append(_drawn(step, scene))
+            out.append(_tipped(_drawn(step, scene), turning))
         elif step.pattern in RISES:
             own = (step.ees, step.grip)
             same = [each for each in out if each.changes and (each.ees, each.grip) == own]
@@ -113,7 +122,8 @@ def while_moving(steps: Sequence[Clause], scene: Scene) -> tuple[Clause, ...]:
 def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
     """The clauses; turning that outlasts what it began in, with the carrying or what takes longest.
 
-    What begins before that is told where it begins.
+    What begins before that is told where it begins; what goes on from lifting a thing until it is
+    put down there, by itself.
 
     Args:
         steps: What was done, in order of time.
@@ -127,9 +137,10 @@ def turned_on_the_way(steps: Sequence[Clause]) -> tuple[Clause, ...]:
         ends = [
             step for step in own if turning.start_s < step.start_s < turning.end_s <= step.end_s
         ]
-        if begins and ends:
+        overlaps = [step for step in own if turning.overlap_s(step) > 0.0]
+        in_place = all(step.pattern in RISES or _puts(step) for step in overlaps)
+        if begins and ends and not in_place:
             start_s = max(turning.start_s, begins[0].start_s)
-            overlaps = [step for step in own if turning.overlap_s(step) > 0.0]
             told = max(overlaps, key=lambda step: (_carries(step), turning.overlap_s(step)))
             told = begins[0] if start_s < told.start_s else told
             out[out.index(told)] = replace(told, along=(replace(turning, start_s=start_s),))
@@ -167,7 +178,7 @@ def _holds_on(step: Clause, before: Clause) -> bool:
 def _settles(step: Clause, before: Clause, scene: Scene) -> bool:
     """Whether a thing that was just put on the ground only stirs until it stands there."""
     same = (step.ees, step.grip, step.objects[:1]) == (before.ees, before.grip, before.objects[:1])
-    put = before.pattern.startswith(DOWN) or before.pattern == IN_ITS_PLACE
+    put = before.pattern.startswith(DOWN) or before.pattern in {IN_ITS_PLACE, NEAR_ITS_PLACE}
     soon = step.start_s - before.end_s < REST_S
     if not (same and put and soon and step.name in SLID):
         return False
@@ -183,6 +194,37 @@ def _drawn(step: Clause, scene: Scene) -> Clause:
             verb = step.pattern.replace("slide", name.lower(), 1)
             return replace(step, pattern=verb, name=name, general=("Slide", *step.general))
     return step
+
+
+def _tipped(step: Clause, turning: Turning) -> Clause:
+    """What is slid while it leans: it goes on a part of what it stands on."""
+    leant = turning.leans_rad(step.objects[0], step.start_s, step.end_s)
+    return replace(step, pattern=f"{step.pattern} at a tilt") if leant > TIPPED_RAD else step
+
+
+def _swung(step: Clause, turning: Turning) -> Clause:
+    """What is held overhead, as turned from side to side where it is turned far meanwhile."""
+    return replace(step, pattern=SWUNG) if turning.swings_rad(step) > QUARTER_RAD else step
+
+
+def righted(steps: Sequence[Clause]) -> tuple[Clause, ...]:
+    """The clauses; what is turned upright on its way down is put down after that.
+
+    Args:
+        steps: What was done, in order of time.
+    """
+    out: list[Clause] = []
+    for step in steps:
+        turns = [
+            each.end_s
+            for each in steps
+            if each.pattern in {UPRIGHT, BACK_UPRIGHT}
+            and each.within(step)
+            and (each.ees, each.grip) == (step.ees, step.grip)
+        ]
+        down = _puts(step) and bool(turns)
+        out.append(replace(step, start_s=max(turns)) if down else step)
+    return tuple(sorted(out, key=in_time))
 
 
 def _works_there(step: Clause, later: Sequence[Clause]) -> bool:
@@ -271,7 +313,8 @@ def _on_the_ground(step: Clause, before: Sequence[Clause], scene: Scene) -> Clau
     taken_s = min(each.start_s for each in since)
     gone_m, _ = scene.over_ground_m(step.objects[0], taken_s, step.end_s)
     if gone_m < PLACE_M:
-        return replace(step, pattern=IN_ITS_PLACE)
+        there = gone_m < IN_PLACE_M
+        return replace(step, pattern=IN_ITS_PLACE if there else NEAR_ITS_PLACE)
     carried = any(each.pattern.startswith(CARRY) for each in since)
     elsewhere = gone_m > FURTHER_M and not carried
     return replace(step, pattern=f"{DOWN} elsewhere" if elsewhere else DOWN)

@@ -8,13 +8,24 @@ from dataclasses import replace
 from capar.model.observation import ObservedLink, ObservedObject
 from kb.language.clause import Clause
 from kb.language.free_motion import Reached
-from kb.language.lexicalisation import BIT_BY_BIT, BODILY, STIR, SUSTAINED, in_past, in_progress
+from kb.language.lexicalisation import (
+    BIT_BY_BIT,
+    BODILY,
+    PACKS,
+    STIR,
+    SUSTAINED,
+    in_past,
+    in_progress,
+)
 from kb.language.planning import Part
 from kb.language.vocabulary import SIDES
-from kb.lexicon.english import a, joined, noun, number, the, times
+from kb.lexicon.english import a, joined, noun, number, ordinal, the, times
 
 _ALL_PLACES = re.compile(r"\{1\}(?:, \{\d\})*,? and \{\d\}")
 """Places of several objects that a verb has as one."""
+
+_NUMBER = re.compile(r"_\d+$")
+"""What parts the names of things that are alike."""
 
 FIXED = frozenset({"fixed", "self"})
 """Tags of what stays where it is, or is the agent's own: ``it`` after that is what was moved."""
@@ -27,6 +38,8 @@ class Realiser:
         self, links: Sequence[ObservedLink], objects: Sequence[ObservedObject], *, timed: bool
     ) -> None:
         self._nouns = nouns(objects)
+        self._alike = alike(objects)
+        self._told_of: dict[str, list[str]] = {}
         self._kinds = {link.ee: link.kind for link in links}
         self._names = {link.ee: _spoken(link) for link in links}
         self._timed = timed
@@ -205,6 +218,8 @@ class Realiser:
         self._rivals -= set(_named(pattern, step.objects))
         spans = [*map(_span, step.apart)] if self._spans else []
         for place, name in enumerate(step.objects, 1):
+            if f"{{{place}}}" not in filled:
+                continue
             when = f" ({spans[place - 1]})" if place <= len(spans) else ""
             mention = self._mention(name, place)
             tool = place == 1 and pattern.endswith(" with {1}")
@@ -222,8 +237,19 @@ class Realiser:
         return filled
 
     def _mention(self, name: str, place: int) -> str:
-        known = place == 1 and name == self._topic and not self._rivals
-        return "it" if known else the(self._nouns.get(name, name))
+        if place == 1 and name == self._topic and not self._rivals:
+            return "it"
+        return self._one_of(name) if name in self._alike else the(self._nouns.get(name, name))
+
+    def _one_of(self, name: str) -> str:
+        """One of several things alike, by the order in which they are told of."""
+        called = self._alike[name]
+        told_of = self._told_of.setdefault(called, [])
+        if name in told_of:
+            return f"the {ordinal(told_of.index(name) + 1)} {called}"
+        told_of.append(name)
+        count = len(told_of)
+        return a(called) if count == 1 else f"a {ordinal(count)} {called}"
 
     def _moved_away(self, step: Clause) -> str:
         if step.ees == self._ees and len(step.ees) == 1:
@@ -245,6 +271,21 @@ def nouns(objects: Sequence[ObservedObject]) -> dict[str, str]:
     """
     kinds = Counter(each.kind for each in objects)
     return {each.name: each.kind for each in objects if "_" in each.kind and kinds[each.kind] == 1}
+
+
+def alike(objects: Sequence[ObservedObject]) -> dict[str, str]:
+    """Things of which there are several of one kind, by what each of them is called.
+
+    Their names are numbered: ``tuna`` and ``tuna_2``, cans, are both a ``can of tuna``.
+    """
+    several = Counter((each.kind, _NUMBER.sub("", each.name)) for each in objects)
+    out = {}
+    for each in objects:
+        stem = _NUMBER.sub("", each.name)
+        if several[each.kind, stem] > 1:
+            packed = each.kind in PACKS and each.kind not in stem
+            out[each.name] = f"{each.kind} of {noun(stem)}" if packed else noun(stem)
+    return out
 
 
 def _named(pattern: str, objects: Sequence[str], *, first: int = 1) -> Iterator[str]:

@@ -33,8 +33,12 @@ carried anywhere, if it got no further than twice that on the way: whoever holds
 sways with it by so much."""
 
 PLACE_M = 0.2
-"""What is put down less far than this [m] from where it was taken is back in its place: less than a
-step."""
+"""What is put down less far than this [m] from where it was taken is back almost in its place: less
+than a step."""
+
+IN_PLACE_M = 0.1
+"""What is put down less far than this [m] from where it was taken is back in its place: a hand's
+width."""
 
 LEADS_M = 0.1
 """A hand that is mostly so far [m] before or behind the middle of what slides pulls or pushes it: a
@@ -66,6 +70,10 @@ UPRIGHT_RAD = 0.79
 LEANT_RAD = 0.52
 """What leans more than this [rad] while it is carried is carried tilted: 30 degrees, beside which
 the sway of carrying is not noticed."""
+
+TIPPED_RAD = 0.26
+"""What leans more than this [rad] while it slides stands on some of its legs, or on an edge: 15
+degrees, by which one side of a table is a hand's width up."""
 
 OVER_RAD = 2.36
 """What leans more than this [rad] is upside down: 135 degrees."""
@@ -129,6 +137,10 @@ STRIDE_S = 1.0
 CROUCHED_M = 0.25
 """A pelvis that is so far [m] lower than when the body stands has bent knees below it: a quarter of
 a leg, which nobody needs for stooping."""
+
+CROUCHED_SHARE = 0.5
+"""Who lowers the pelvis by less than this share of how far the head goes down [1] bends: the trunk
+does more of it than the knees."""
 
 BENT_M = 0.3
 """A head that is so far [m] lower than when the body stands is that of one who has bent down: who

@@ -16,6 +16,7 @@ from jaxtyping import Float
 from capar.model.facts import Posture, Travelled
 from capar.model.observation import Observation, Segment
 from kb.language.clause import Clause, in_time
+from kb.language.contacts import Scene
 from kb.language.lexicalisation import (
     ABOUT,
     AROUND,
@@ -37,6 +38,7 @@ from kb.language.thresholds import (
     KNOWN_S,
     NOTICED_SHARE,
     OVER_RAD,
+    PLACE_M,
     POURING_RAD,
     QUARTER_RAD,
     REST_S,
@@ -127,6 +129,14 @@ class Turning:
         seen = self._between(clause.objects[0], clause.start_s, clause.end_s)
         return abs(seen[-1].spin - seen[0].spin) if seen else 0.0
 
+    def swings_rad(self, clause: Clause) -> float:
+        """Over which angle the line between two hands turns that have a thing [rad].
+
+        0 where that was not kept.
+        """
+        line = self._line(clause.ees, clause.start_s, clause.end_s)
+        return 0.0 if line is None else float(np.ptp(line[1]))
+
     def faces_aside(self, clause: Clause) -> bool:
         """Whether a thing so large that people notice it faces another way at the end."""
         return clause.objects[0] in self._large and self.spins_rad(clause) > SOMEWHAT_RAD
@@ -147,12 +157,15 @@ class Turning:
         net = seen[-1].spin - seen[0].spin
         line = self._line(clause.ees, seen[0].time_s, seen[-1].time_s)
         if line is not None and abs(line[1][-1] - line[1][0] - net) < SAME_TURN * abs(net):
-            first, last = _course_of(line[1], TURN_SHARE)
+            done = (line[1] - line[1][0]) / (line[1][-1] - line[1][0])
+            first, last = _course_of(done, TURN_SHARE)
             return float(line[0][first]), float(line[0][last])
+        seen = self._between(clause.objects[0], clause.start_s, clause.end_s + REST_S)
         times = np.array([attitude.time_s for attitude in seen])
         between = np.linspace(times[0], times[-1], max(round((times[-1] - times[0]) * 100.0), 2))
         spins = np.interp(between, times, [attitude.spin for attitude in seen])
-        first, last = _course_of(spins, NOTICED_SHARE)
+        done = (spins - spins[0]) / (spins[-1] - spins[0])
+        first, last = _course_of(np.minimum(done, 2.0 - done), NOTICED_SHARE)
         ends = float(between[first]), float(between[last])
         return ends if all(_gap_s(times, time_s) < KNOWN_S for time_s in ends) else None
 
@@ -183,6 +196,15 @@ class Turning:
         """How far it leans from upright most of that time [rad]; 0 where that is not known."""
         seen = self._between(thing, start_s, end_s)
         return median(each.lean for each in seen) if seen else 0.0
+
+    def leans_rad(self, thing: str, start_s: float, end_s: float) -> float:
+        """How far it leans from upright for half of a time at least [rad]; 0 if unknown."""
+        seen = self._between(thing, start_s, end_s)
+        if not seen:
+            return 0.0
+        times = np.linspace(start_s, end_s, max(round((end_s - start_s) * 100.0), 2))
+        leans = np.interp(times, [each.time_s for each in seen], [each.lean for each in seen])
+        return float(np.median(leans))
 
     def told(self, grip: Sequence[Clause]) -> Iterator[Clause]:
         """Clauses of how a thing is turned over or around while a hand moves it.
@@ -240,9 +262,8 @@ def _course(seen: Sequence[Attitude]) -> tuple[Attitude, Attitude]:
     return seen[max(moved.index(True) - 1, 0)], seen[min(last + 1, len(seen) - 1)]
 
 
-def _course_of(spins: Float[np.ndarray, "frames"], share: float) -> tuple[int, int]:
+def _course_of(done: Float[np.ndarray, "frames"], share: float) -> tuple[int, int]:
     """The first frame in which a share of a turn is done, and from which on all but a share is."""
-    done = (spins - spins[0]) / (spins[-1] - spins[0])
     going = done < 1.0 - share
     return int(np.argmax(done > share)), min(len(done) - int(np.argmax(going[::-1])), len(done) - 1)
 
@@ -318,14 +339,15 @@ def _turn(clause: Clause, ways: Sequence[Clause], turning: Turning) -> Clause | 
     return replace(clause, pattern=TURN, name="Turn") if turns else clause
 
 
-def timed(steps: Sequence[Clause], turning: Turning) -> tuple[Clause, ...]:
+def timed(steps: Sequence[Clause], scene: Scene, turning: Turning) -> tuple[Clause, ...]:
     """The clauses, those of turning about the vertical from when to when the thing turns.
 
     Where that is not known closely, turning has no times of its own: the thing is moved then, and
-    turned meanwhile.
+    turned meanwhile. One that hardly leaves its place is only turned, while it moves.
 
     Args:
         steps: What was done, in order of time.
+        scene: Measured contacts and places.
         turning: How things are turned.
     """
     out: list[Clause] = []
@@ -336,6 +358,10 @@ def timed(steps: Sequence[Clause], turning: Turning) -> tuple[Clause, ...]:
         course = turning.course(step)
         start_s, end_s = course or (step.start_s, step.end_s)
         alone = not any(_moves_beside(step, other) for other in steps)
+        _, strays_m = scene.over_ground_m(step.objects[0], step.start_s, step.end_s)
+        if course is None and alone and strays_m < PLACE_M:
+            out.append(step)
+            continue
         if course is None and alone and turning.faces_aside(step):
             out.append(replace(step, pattern="move {1}", name="MoveObj"))
         out.append(replace(step, start_s=start_s, end_s=end_s, sharp=course is not None))

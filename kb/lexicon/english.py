@@ -119,6 +119,20 @@ def number(count: int) -> str:
     return _TENS[tens - 2] + (f"-{_SMALL[ones]}" if ones else "")
 
 
+_FIRST = (
+    *("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth"),
+    *("tenth", "eleventh", "twelfth"),
+)
+
+
+def ordinal(count: int) -> str:
+    """Which of several in words up to twelve, else in figures: ``second``, ``13th``, ``21st``."""
+    if count <= len(_FIRST):
+        return _FIRST[count - 1]
+    ending = "th" if count % 100 in {11, 12, 13} else {1: "st", 2: "nd", 3: "rd"}.get(count % 10)
+    return f"{count}{ending or 'th'}"
+
+
 def times(count: int) -> str:
     """How often: ``twice``, ``three times``."""
     return {1: "once", 2: "twice"}.get(count, f"{number(count)} times")

@@ -32,6 +32,8 @@ ONE_OF_EACH = {
         "nothing moves 'mug' in 25.0 % of its motion, from 1.00 to 2.50 s, the longest of 2 times; "
         "nothing that is recorded was near and went with it: is a sensor missing, is the unit of "
         "a file wrong, or was it tracked wrongly?",
+    notice("contact-gap", "mug", "hand", start_s=1.0, end_s=2.5, called="right hand"):
+        "'mug' moves, and no contact of 'hand' with it was found from 1.00 to 2.50 s",
     notice("up-contradicted", "ball", start_s=1.0, end_s=1.5, shown="fall", angle_deg=90.0, up="y",
            declared="z"):
         "'ball' falls freely from 1.00 to 1.50 s, 90 degrees off the declared down: "

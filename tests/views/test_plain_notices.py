@@ -90,6 +90,16 @@ TOLD: tuple[tuple[list[Notice], str], ...] = (
     ),
     (
         [
+            notice(
+                "contact-gap", "chair", "r_wrist", start_s=start_s, end_s=end_s, called="right hand"
+            )
+            for start_s, end_s in ((1.0, 2.0), (2.5, 4.0))
+        ],
+        "From 1.00 to 2.00 s and from 2.50 to 4.00 s, no contact with the chair was found, "
+        "although it moved; the right hand is assumed to have held it.",
+    ),
+    (
+        [
             notice("bone-stretches", "head", "neck", "jaw", shortest_m=0.1, longest_m=long_m)
             for long_m in (0.15, 0.32)
         ],

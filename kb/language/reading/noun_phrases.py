@@ -3,12 +3,16 @@
 from dataclasses import dataclass, replace
 
 from kb.language.instruction import Window
+from kb.language.lexicalisation import PACKS
 from kb.language.reading.adjuncts import around, window_at
 from kb.language.reading.function_words import first_words, is_next, number_at, of_class
 from kb.language.reading.reader import RELATIVES, Reader
 from kb.language.tokens import ARTICLES
 from kb.language.vocabulary import SIDES
-from kb.lexicon.english import PEOPLE
+from kb.lexicon.english import PEOPLE, ordinal
+
+MOST_ALIKE = 20
+"""Of more things alike, none is read by its ordinal."""
 
 
 @dataclass(frozen=True)
@@ -141,6 +145,8 @@ def _single(reader: Reader) -> Noun | None:  # noqa: PLR0911 (each is one kind o
         return None
     if (known := _known(reader, at)) is not None:
         return known
+    if (one := _one_of(reader, at)) is not None:
+        return one
     if (limb := _limb(reader, at)) is not None:
         return limb
     if (person := _person(reader, at)) is not None:
@@ -251,6 +257,26 @@ def _open(reader: Reader, at: int) -> Noun | None:
     if not name and cursor.longest(of_class("part")) is None:
         return None
     return _with_part(reader, at, start)
+
+
+def _one_of(reader: Reader, at: int) -> Noun | None:
+    """A thing by what packs it, or one of several alike: ``can of tuna``, ``second coffee can``."""
+    cursor, known = reader.cursor, reader.words.nouns
+    start = cursor.at
+    first = cursor.peek()
+    count = next((each for each in range(1, MOST_ALIKE) if ordinal(each) == first), 0)
+    if count:
+        cursor.take()
+    packed = cursor.peek() in PACKS and cursor.peek(1) == "of"
+    if packed:
+        cursor.take()
+        cursor.take()
+    name = cursor.longest(known) if known and (count or packed) else None
+    if name is None:
+        cursor.at = start
+        return None
+    numbered = f"{name}_{count}"
+    return Noun((numbered if numbered in (known or {}).values() else name,), at=at)
 
 
 def _with_part(reader: Reader, at: int, start: int) -> Noun | None:

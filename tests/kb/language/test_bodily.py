@@ -236,9 +236,14 @@ def test_a_step_in_the_end_neither_nearer_nor_away_is_not_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("about_rad", "words"), [(0.5, "took two steps"), (1.8, "walked around to another")]
+    ("about_rad", "words"),
+    [
+        (0.5, "took two steps"),
+        (1.8, "walked partway around the mug"),
+        (2.6, "walked halfway around the mug"),
+    ],
 )
-def test_who_goes_about_a_thing_walks_around_to_another_side_of_it(
+def test_who_goes_about_a_thing_walks_a_part_of_the_way_around_it(
     about_rad: float, words: str
 ) -> None:
     made = striding(("left_foot", 0.2, 0.8), ("right_foot", 0.8, 1.4))

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from observations import MUG, Piece, observation
 from tellings import steps_of
@@ -10,6 +11,7 @@ from tellings import steps_of
 from capar.model.facts import Fact, MovedBy, Moving, Touching
 from capar.model.observation import Observation
 from capar.model.par import FeatureSet
+from capar.model.sampled_track import sampled_track
 from kb.language.describe import describe
 from kb.language.holding import Holding
 
@@ -137,3 +139,21 @@ def test_a_hand_that_goes_along_beside_a_thing_does_what_the_other_is_seen_to_do
     gone = piece("ResumePosture", 400)
     told = describe(seen({"right_hand": right, "left_hand": (*left, gone)}, *touches, *moves))
     assert told == "The agent lifted, carried, and lowered the chair with both hands."
+
+
+@pytest.mark.parametrize(
+    ("high_m", "words"),
+    [(0.3, "lifted the chair with the right hand and put it down"), (0.0, "moved the chair")],
+)
+def test_what_is_off_the_floor_while_contact_is_lost_is_lifted_and_put_down(
+    high_m: float, words: str
+) -> None:
+    pieces = (piece("Reach", 300), piece("Touch", 340), piece("ResumePosture", 400))
+    touches = (Touching("right_hand", "chair", 60, 70), Touching("right_hand", "chair", 300, 340))
+    floor = (Touching("chair", "floor", 0, 120), Touching("chair", "floor", 240, 400))
+    moves = (Moving("chair", 100, 280), MovedBy("chair", "right_hand", "carried", 100, 280))
+    made = seen({"right_hand": pieces}, *touches, *floor, *moves)
+    heights = np.interp(np.arange(401), (100, 180, 280), (0.0, high_m, 0.0))
+    way = sampled_track("chair", 0.01, np.column_stack((np.zeros((401, 2)), heights)))
+    told = describe(replace(made, tracks=(way,)))
+    assert told.startswith(f"The agent {words}")

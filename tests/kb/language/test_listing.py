@@ -117,3 +117,26 @@ def test_numbered_things_of_several_words_are_read_where_they_are_known() -> Non
     value = parse(told_so, known)
     assert isinstance(value, Instruction)
     assert value.call.objects == ("coffee_can", "coffee_can_2", "tuna", "carton")
+
+
+def test_things_alike_are_numbered_in_the_order_in_which_they_are_told() -> None:
+    names = ("tuna_2", "mug", "tuna", "tuna_3")
+    kinds = {"mug": "mug"}
+    things = tuple(replace(MUG, name=name, kind=kinds.get(name, "can")) for name in names)
+    pieces = [
+        Piece("MoveObjTo", 100 * at + 100, (name, "table"), features=PLACED)
+        for at, name in enumerate(names)
+    ]
+    made = observation(
+        "Put", {"right_hand": tuple(pieces)}, (*things, TABLE), frames=401, rate_hz=100.0
+    )
+    text = describe(made)
+    order = [
+        text.index(words)
+        for words in ("a can of tuna", "the mug", "a second can of tuna", "a third can of tuna")
+    ]
+    assert order == sorted(order)
+    known = Vocabulary(WORDS.words, frozenset({*names, "table"}))
+    value = parse("The agent put a can of tuna and a third can of tuna on the table.", known)
+    assert isinstance(value, Instruction)
+    assert value.call.objects == ("tuna", "tuna_3", "table")

@@ -102,7 +102,12 @@ def test_how_a_thing_leans_while_it_is_carried_is_told(lean: int, how: str) -> N
 
 @pytest.mark.parametrize(
     ("far_m", "words"),
-    [(0.1, "put it back in its place"), (0.3, "put it down"), (0.9, "put it down elsewhere")],
+    [
+        (0.05, "put it back in its place"),
+        (0.15, "put it down almost where it had been"),
+        (0.3, "put it down"),
+        (0.9, "put it down elsewhere"),
+    ],
 )
 def test_what_is_put_on_the_ground_is_put_back_or_elsewhere(far_m: float, words: str) -> None:
     way = (*TAKEN, (far_m, 0.0, 1.0), (far_m, 0.0, 0.0))
@@ -302,3 +307,12 @@ def test_a_large_thing_that_faces_aside_in_the_end_is_turned_on_the_way(
     large = replace(MUG, size_m=(size_m, size_m, size_m))
     text = told(*pieces, way=way, facts=facts, things=(large, TABLE, FLOOR))
     assert text.endswith(words)
+
+
+@pytest.mark.parametrize(("lean", "how"), [(150, ""), (350, " at a tilt")])
+def test_what_leans_while_it_is_slid_is_told_so(lean: int, how: str) -> None:
+    way = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.5, 0.0, 0.0))
+    slid = Piece("Slide", 200, ("mug", "table"), features=PLACED)
+    leans = tuple(Posture("mug", frame, lean, 0) for frame in (100, 150, 200))
+    done = told(REACHED, slid, way=way, facts=(Touching("mug", "table", 0, 200), *leans))
+    assert done == f"slid the mug along the table{how} with the right hand."

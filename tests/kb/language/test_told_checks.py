@@ -50,6 +50,14 @@ def test_other_times_are_contradicted(name: str, late_s: float) -> None:
     assert all(step.wrong for step in of(moved, capture))
 
 
+def test_a_motion_of_which_no_step_is_told_is_found() -> None:
+    text, capture = observed("lifted")
+    told = re.sub(r",? and put it .*", ".", text)
+    assert told != text
+    (*_, last) = of(told, capture)
+    assert any(what.endswith("untold") for what in last.wrong)
+
+
 @pytest.mark.parametrize(
     ("name", "told", "other"),
     [

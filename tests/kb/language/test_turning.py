@@ -1,5 +1,6 @@
 """What is turned over, set upright or made to face another way is told to be."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 from observations import MUG, Piece, observation
 from tellings import spans, steps_of
 
-from capar.model.facts import Posture, Travelled
+from capar.model.facts import Posture, Touching, Travelled
 from capar.model.par import FeatureSet
 from capar.model.sampled_track import sampled_track
 from kb.language.describe import describe
@@ -197,3 +198,38 @@ def test_when_a_large_thing_turned_is_not_told_where_that_is_not_known(
 ) -> None:
     text = slid(begins_s=0.5, lasts_s=1.0, seen_s=(0.0, 4.0), held=False, size_m=size_m)
     assert text == f"The agent {words}"
+
+
+def test_a_turn_lasts_until_the_thing_stays_as_it_is_at_the_end() -> None:
+    """It turns beyond that, and back."""
+    beyond = told("MoveObj", *((0.0, spin) for spin in (0.0, 0.0, 1.5, 3.0, 3.6, 3.0, 3.0)))
+    straight = told("MoveObj", *((0.0, spin) for spin in (0.0, 0.0, 1.5, 3.0, 3.0, 3.0, 3.0)))
+    ends = [float(text.split("–")[1].split(" ")[0]) for text in (straight, beyond)]
+    assert ends[1] > ends[0] + 1.0
+
+
+def test_what_is_taken_up_turned_about_and_set_down_in_one_segment_is_told_as_three() -> None:
+    made = observation(
+        "Turned",
+        {
+            "right_hand": (
+                Piece("Turn", 400, ("mug",), features=OWN),
+                Piece("ResumePosture", 500, ("mug",)),
+            )
+        },
+        (MUG,),
+        facts=(Touching("right_hand", "mug", 0, 410),),
+        frames=501,
+        rate_hz=100.0,
+    )
+    (link,) = made.links
+    own = tuple(replace(each, possessed=each.name == "Turn") for each in link.segments)
+    heights = np.interp(np.arange(501), (100, 200, 300, 400), (0.0, 0.3, 0.3, 0.0))
+    way = sampled_track("mug", 0.01, np.column_stack((np.zeros((501, 2)), heights)))
+    text = describe(replace(made, links=(replace(link, segments=own),), tracks=(way,)), timed=True)
+    said = re.findall(r"(\w+) (?:the mug|it)", text)
+    assert said == ["lifted", "turned", "put"]
+    times = [(float(a), float(b)) for a, b in re.findall(r"\((\S+)–(\S+) s\)", text)]
+    assert [before[1] for before in times[:-1]] == [after[0] for after in times[1:]]
+    assert 1.0 <= times[0][0] < times[0][1] < 1.5
+    assert 3.5 < times[-1][0] < times[-1][1] <= 4.0
