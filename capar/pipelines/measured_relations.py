@@ -1,13 +1,13 @@
 """What is measured of two bodies as a panel over time: how far apart, above, inside, which way."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
-from jaxtyping import Float, Int
 
 from capar.model.calibration import Found, PairCalibration
 from capar.model.facts import ClosingSpeed, Lies, Touching
+from capar.pipelines.distances import distances, frames_between
 from capar.pipelines.shown_recording import CENTI, MILLI, Recording
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
@@ -16,14 +16,8 @@ from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import LEAST_M, length, percent, upward
 from extractors.calibration import thresholds_of
-from extractors.contact.contacts import points_apart
-from extractors.contact.proximity import separation
-from extractors.contact.touch_distances import touchable
 from extractors.motion.impacts import APPROACH_S, closing_speed
 from extractors.relations.arrangement import Pair
-
-SAMPLES = 240
-"""At so many frames at most distances of surfaces are measured [1]."""
 
 CLOSE = 5.0
 """A distance is shown up to so many times what counts as contact: beyond, it only is far [1]."""
@@ -40,9 +34,10 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
         return None
     touching = known.bars(Touching, body=one, other=other)
     every = known.frames
-    some = every[:: max(1, math.ceil(len(every) / SAMPLES))]
-    frames = np.unique([*some, every[-1], *(at for at in (told.first, told.last) if at in every)])
-    apart = MILLI * np.min(list(_apart(known, pair, frames)), axis=0)
+    spans = (every[0], told.first), (told.first, told.last), (told.last, every[-1])
+    some = [frames_between(int(first), int(last)) for first, last in spans if first <= last]
+    frames = np.unique(np.clip(np.concatenate(some), every[0], every[-1]))
+    apart = MILLI * distances(known.seen.measurements, pair, frames)
     limits = {MILLI * pair.touch_m: "contact begins within {:.0f} mm"}
     limits[MILLI * pair.release_m] = "contact ends beyond {:.0f} mm"
     if pair.touch_m >= pair.release_m:
@@ -81,25 +76,6 @@ def _between(pair: PairCalibration, *, shaped: bool) -> str:
     if not pair.pivots:
         return "their surfaces" if shaped else "the surface of one and the origin of the other"
     return "their origins" if pair.found is Found.STATED else "a point of each"
-
-
-def _apart(
-    known: Recording, pair: PairCalibration, frames: Int[np.ndarray, "some"]
-) -> Iterator[Float[np.ndarray, "some"]]:
-    """How far each part of an end-effector, or a thing, is from a thing [m]."""
-    bodies, calibration = known.seen.measurements.bodies, known.seen.measurements.calibration
-    other = bodies.objects[pair.second]
-    hand = pair.first in bodies.sensors
-    parts = bodies.on_end_effector(pair.first) if hand else (bodies.objects[pair.first],)
-    nowhere = np.full(len(frames), np.inf)
-    for part in parts:
-        own = calibration.sought(part.name, other.name)
-        if own is None or own.found is Found.NEVER:
-            yield nowhere
-        elif own.pivots:
-            yield points_apart(own, part, other)[frames]
-        else:
-            yield separation(touchable(part), touchable(other), frames)
 
 
 def _closing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:

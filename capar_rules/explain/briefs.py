@@ -5,11 +5,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from capar_rules.explain.arrangements import untracked
-from capar_rules.explain.claimed_measures import ANY
-from capar_rules.explain.claims import Claim, Stretches, claim, joined_claims, resting_on
+from capar_rules.explain.claimed_measures import ANY, Measure
+from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined_claims, resting_on
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.leading import DOUBTED, nodes_below, parsed, rank
+from capar_rules.explain.quantities import degrees
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
 from capar_rules.explain.told_argument import UNBOUND
@@ -30,6 +31,9 @@ AT_ONE_SIDE = {
     "near_at_end": "end",
 }
 """Clauses of contact at one border, and that border."""
+
+LEANING = {"tips": "begins to lean far over", "rights": "ceases to lean far over"}
+"""Kinds of events at which borders lie, of how far a thing leans."""
 
 MOST_GAPS = 3
 """So many gaps of a track are told one by one."""
@@ -121,6 +125,27 @@ class Briefs:
             Claim(self._lost(body, gaps), (), (), (Stretches("lost", (body,)),))
             for body, gaps in untracked(self.clock, bodies)
         ]
+
+    def leaning(self, top: Reason) -> list[Claim]:
+        """That the segment's borders are where its thing begins or ceases to lean far over."""
+        thing, span = self.clock.objects.get(self.clock.own, ""), self.clock.span(self.clock.own)
+        hand, since = self.clock.own.removeprefix("seg(").removesuffix(")").split(",")
+        ticks = {int(since): "begins"}
+        ticks[self.clock.ends.get((hand, int(since)), int(since))] = "ends"
+        found: dict[str, str] = {}
+        for node in top.walk():
+            predicate, arguments = parsed(node.atom)
+            if predicate == "event" and arguments[2] in LEANING and arguments[3] == thing:
+                side = ticks.get(int(arguments[1])) if arguments[0] == hand else None
+                if side is not None:
+                    found[side] = LEANING[arguments[2]]
+        if not found or span is None:
+            return []
+        called = self.clock.called(thing)
+        least = degrees(round(1000.0 * self.clock.measured.far_over_rad))
+        told = listed([f"{side} where the {called} {how}" for side, how in sorted(found.items())])
+        text = f"the segment {told} (far over is {least} or more)"
+        return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="far_over"),))]
 
     def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:
         was = "were" if self.clock.called(body) in self.clock.several else "was"

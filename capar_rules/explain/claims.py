@@ -67,6 +67,9 @@ class Claim:
     stretches: tuple[Stretches, ...] = ()
     """What held when, of what it says."""
 
+    of: str = ""
+    """The predicate that it tells."""
+
     @property
     def shown(self) -> bool:
         """Whether anything of it can be drawn."""
@@ -117,7 +120,7 @@ def claim(
         for kind, places in _rows(predicate, arguments)
         for bodies in _bodies(places, arguments, clock)
     ]
-    return Claim(text, tuple(dict.fromkeys(found)), tuple(frames), tuple(dict.fromkeys(stretches)))
+    return Claim(text, tuple(dict.fromkeys(found)), tuple(frames), tuple(dict.fromkeys(stretches)), predicate)
 
 
 def _since(clock: Clock, frame: int) -> list[int]:

@@ -57,7 +57,6 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
         of_itself = {
             "listed": self._listed,
             "placed": self._placed,
-            "reach": self._reach,
             "hand": lambda: self.clock.called(self._hand),
             "as_foot": self._as_foot,
             "floor": self._floor,
@@ -68,7 +67,7 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
             "back": self._back,
             "keeper": self._keeper,
             "laid": lambda: arrangements.laid(self.clock, self.text) or UNBOUND,
-            "kept": self._kept,
+            "stirred": self._stirred,
             "over": self._over,
             "share": self._share,
             "borne": self._borne,

@@ -38,9 +38,10 @@ class ArrangementsTold(ToldArgument):
         asked = ahead if form == "ahead" else after
         return f" (at {found.offset_deg:.0f}° {line}; {asked})"
 
-    def _kept(self) -> str:
-        """What the segment's object touches at the start and at the end."""
-        found = arrangements.kept(self.clock, self.text)
+    def _stirred(self) -> str:
+        """What the segment's object touches at the start and at the end, and can be moved."""
+        movable = self.clock.measured.movable
+        found = [one for one in arrangements.kept(self.clock, self.text) if one in movable]
         return " and ".join(f"the {self.clock.called(other)}" for other in found) or UNBOUND
 
     def _over(self) -> str:
@@ -76,8 +77,10 @@ class ArrangementsTold(ToldArgument):
             return UNBOUND
         most = arrangements.steepest_deg()
         met = self._met_near(thing, other, frame)
-        at = f" at {self.clock.at(met[0])}" if met else ""
-        return f"{at} ({angle:.0f}° off straight up; {most:.0f}° or less bears)"
+        at = f", at {self.clock.at(met[0])}" if met else ""
+        return (
+            f" ({angle:.0f}° off straight up as their contact began{at}; {most:.0f}° or less bears)"
+        )
 
     def _palm(self) -> str:
         """From which side the segment's object pushes the end-effector that lies on it."""
@@ -114,7 +117,7 @@ class ArrangementsTold(ToldArgument):
         """What is known of the shapes of what the segment's object touches at both borders."""
         found = arrangements.kept(self.clock, self.text)
         unknown = any(body in self.clock.measured.shapeless for body in found)
-        return "whose shape is not known" if unknown else "which has a hollow"
+        return "of unknown shape" if unknown else "with a hollow"
 
     def _poised(self) -> str:
         """Where the segment's object is to this one at the start."""

@@ -19,7 +19,8 @@ class RestsTold(ToldArgument):
     def _floor(self) -> str:
         """From where on a body's motion counts, if it is known."""
         floor_m = self.clock.measured.floors.get(self.text)
-        return f" (more than {quantities.length(floor_m)} from where it rests)" if floor_m else ""
+        far = quantities.length(floor_m) if floor_m else ""
+        return f", less than the {far} from which on it counts as moved" * bool(far)
 
     def _not_at_rest(self) -> str:
         """Why the segment is no rest: it lasted too briefly, or its end-effector moved."""
