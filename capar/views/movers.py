@@ -92,7 +92,7 @@ def mover_stretches(
 def _words(how: str, who: str, *, moving: Collection[str]) -> str:
     """What a mover does at a time, to stand after the thing; some merely touch it."""
     moves = who in moving or how in WITHOUT_MOVER
-    return (WORDS[how] if moves else "touched by {0}").format(f"the {spoken(who)}")
+    return (WORDS[how] if moves else "in contact with {0}").format(f"the {spoken(who)}")
 
 
 def _moved(
@@ -136,7 +136,8 @@ def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
         for frame, found in frames.items()
     }
     who = [f"the {spoken(mover)}" for mover in sorted(touching)]
-    beside = f"; {_few(who)} touched {it} meanwhile" if who else ""
+    were = "were" if len(who) > 1 else "was"
+    beside = f"; {_few(who)} {were} in contact with {it} meanwhile" if who else ""
     ways = Counter(_together(found) for found in movers.values()).most_common(1)
     (together, count) = ways[0]
     if 100.0 * count >= ALL_BUT * len(movers):

@@ -122,6 +122,12 @@ def left(clock: Clock, segment: str) -> tuple[str, ...]:
     return tuple(other for other in met_at(clock, segment, "start") if other not in at_end)
 
 
+def reached(clock: Clock, segment: str) -> tuple[str, ...]:
+    """What the segment's thing touches at its end and did not touch at its start."""
+    at_start = met_at(clock, segment, "start")
+    return tuple(other for other in met_at(clock, segment, "end") if other not in at_start)
+
+
 def laid(clock: Clock, segment: str) -> str:
     """How a thing that came down was left there; empty where its hold is not known."""
     span = clock.span(segment)
@@ -151,7 +157,10 @@ def not_laid(clock: Clock, segment: str) -> str:
     moves = clock.measured.moving.get(thing, ())
     again = [first for first, last in moves if last > span[1] and first < held[1]]
     if not again:
-        return ""
+        new = [f"the {clock.called(other)}" for other in reached(clock, segment)]
+        *most, last = new or [""]
+        told = f"{', '.join(most)}{' and ' * bool(most)}{last}"
+        return f"came to touch {told}, as in a MoveObjTo" if new else ""
     let_go = _let_go(clock, segment, held[1])
     if min(again) > span[1]:
         return f"was moved again from {clock.at(min(again))} on, before {let_go}"

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from capar_rules.explain.arrangements import untracked
+from capar_rules.explain.arrangements import reached, untracked
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined_claims, resting_on
 from capar_rules.explain.clock import Clock
@@ -18,8 +18,9 @@ from capar_rules.explain.told_argument import UNBOUND
 CLEAR = "not sliding("
 """Prefix of atoms that say that a body was clear of others; told of what goes aside."""
 
-COURSES = ("rises", "comes_down", "travels", "stays_near")
-"""Predicates that tell how a body moved, so that its motion need not be told again."""
+COURSES = ("rises", "comes_down", "travels", "stays_near", "sliding")
+"""Predicates that tell how a body moved, so that its motion need not be told again, or that it was
+not slid."""
 
 NUMBERED = ("stays(", "met_gently(")
 """Prefixes of atoms of which a contrast tells the number that decided."""
@@ -32,7 +33,7 @@ AT_ONE_SIDE = {
 }
 """Clauses of contact at one border, and that border."""
 
-LEANING = {"tips": "begins to lean far over", "rights": "ceases to lean far over"}
+LEANING = {"tips": "begins", "rights": "ends"}
 """Kinds of events at which borders lie, of how far a thing leans."""
 
 MOST_GAPS = 3
@@ -130,8 +131,8 @@ class Briefs:
         """That the segment's borders are where its thing begins or ceases to lean far over."""
         thing, span = self.clock.objects.get(self.clock.own, ""), self.clock.span(self.clock.own)
         hand, since = self.clock.own.removeprefix("seg(").removesuffix(")").split(",")
-        ticks = {int(since): "begins"}
-        ticks[self.clock.ends.get((hand, int(since)), int(since))] = "ends"
+        ticks = {int(since): "start"}
+        ticks[self.clock.ends.get((hand, int(since)), int(since))] = "end"
         found: dict[str, str] = {}
         for node in top.walk():
             predicate, arguments = parsed(node.atom)
@@ -143,9 +144,27 @@ class Briefs:
             return []
         called = self.clock.called(thing)
         least = degrees(round(1000.0 * self.clock.measured.far_over_rad))
-        told = listed([f"{side} where the {called} {how}" for side, how in sorted(found.items())])
-        text = f"the segment {told} (far over is {least} or more)"
+        told = listed([f"{how} at the segment's {side}" for side, how in sorted(found.items(), reverse=True)])
+        text = f"the leaning of the {called} far over ({least} or more) {told}"
         return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="far_over"),))]
+
+    def also_reached(self, claims: Iterable[Claim]) -> list[Claim]:
+        """What else the segment's thing came to touch, where of one thing it is told."""
+        thing, span = self.clock.objects.get(self.clock.own, ""), self.clock.span(self.clock.own)
+        claims = list(claims)
+        told = {body for claim in claims for part in claim.quantities for body in part.bodies}
+        new = reached(self.clock, self.clock.own)
+        if span is None or thing not in told or not told & {*new}:
+            return []
+        called = self.clock.called(thing)
+        return [
+            Claim(
+                f"the {called} came into contact with the {self.clock.called(other)} too",
+                (Quantity(Measure.DISTANCE, (thing, other), *span),),
+            )
+            for other in new
+            if other not in told
+        ]
 
     def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:
         was = "were" if self.clock.called(body) in self.clock.several else "was"

@@ -151,9 +151,11 @@ def contrasts(
         for one in _of_neighbour(base, neighbour, atoms, clock, tell)
     ]
     own_found = [refused for refused in found if not refused.contrast.by_features]
-    own = list(_nearest(own_found)) or list(_nearest(own_found, least=LEAST_TOLD, most=1))
+    own = list(_nearest(own_found))
+    numbered = [refused for refused in own_found if refused.contrast.numbered]
+    own += [one for one in _nearest(numbered, least=LEAST_TOLD) if one not in own]
     features = [each for each in found if each.contrast.by_features]
-    indirect = list(_nearest([each for each in features if not each.direct], most=1))
+    indirect = list(_nearest([each for each in features if not each.direct], most=MOST_TOLD))
     direct = list(_nearest([each for each in features if each.direct], most=1))
     supported = list(_supported(base, derived, atoms, clock, tell))
     return tuple(_told_once(supported + own + direct + indirect))

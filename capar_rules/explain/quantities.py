@@ -235,8 +235,9 @@ def _little(aside_mm: float, z_mm: float, wanted_mm: float) -> Shortfall:
     height, least = _apart(abs(z_mm), known["height_mm"])
     aside, far = _apart(aside_mm, known["aside_mm"])
     rise = f"{height} {'higher' if z_mm > 0.0 else 'lower'}"
+    parts = [rise] * (abs(z_mm) >= 1.0) + [f"{aside} to the side"] * (aside_mm >= 1.0)
     text = (
-        f"ended only {rise} and {aside} to the side ({least} up or down, or {far} to the side, "
+        f"ended only {' and '.join(parts)} ({least} up or down, or {far} to the side, "
         "would count)"
     )
     share = max(abs(z_mm) / known["height_mm"], aside_mm / known["aside_mm"])
@@ -279,8 +280,14 @@ def not_leant(before_mrad: int, after_mrad: int, most_mrad: int, posture: str) -
 
 def _apart(one_mm: float, other_mm: float) -> tuple[str, str]:
     """Two lengths, in millimetres if they would else read as the same."""
-    told = length(one_mm / 1000.0), length(other_mm / 1000.0)
-    return told if told[0] != told[1] else (f"{one_mm:.0f} mm", f"{other_mm:.0f} mm")
+    for digits in (None, 0, 1):
+        one, other = (
+            length(far / 1000.0) if digits is None else f"{far:.{digits}f} mm"
+            for far in (one_mm, other_mm)
+        )
+        if one != other:
+            break
+    return one, other
 
 
 def change(before_mrad: int, after_mrad: int) -> str:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from capar_rules.explain.briefs import BOTH, Briefs, listed
+from capar_rules.explain.briefs import BOTH, COURSES, Briefs, listed
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Claim
 from capar_rules.explain.contrasts import MOST_NAMES, MOST_TOLD, Contrast
@@ -41,7 +41,7 @@ def summary(
     subjects = _subjects(nodes, briefs)
     beside, fresh = _told_contrasts(_against(against, clauses, briefs), clauses)
     more = [clause for clause in clauses if clause not in own]
-    kind = bool(generals and own and more)
+    kind = bool(generals and own and more) and all(one.by_features for one in fresh)
     told = f"{name}{f', and not {beside}' * bool(beside)}, because "
     told += _by_subject(own if kind else clauses, subjects)
     if kind:
@@ -55,9 +55,14 @@ def summary(
     mended = briefs.clauses(doubts)
     claims += [briefs.claims[clause] for clause in mended if clause in briefs.claims]
     told += f". {_sentence(listed(mended))}" * bool(mended)
-    extra = [*briefs.leaning(reason), *briefs.lost(claims)]
+    extra = briefs.also_reached(claims) * (not _REACHED.search(told)) + briefs.leaning(reason)
+    extra += briefs.lost([*claims, *extra])
     told += "".join(f". {_sentence(claim.text)}" for claim in extra)
     return Summary(f"{told}." + touching(claims, briefs.clock), (*claims, *extra))
+
+
+_REACHED = re.compile(r" came to touch ")
+"""What tells everything that a thing came to touch."""
 
 
 def _sentence(clause: str) -> str:
@@ -75,12 +80,12 @@ def _against(
     ]
     if any(_goes(claim) for claim in known):  # the same angle keeps it from going the other way
         found = [one for one in found if not _goes(briefs.claims.get(one.clause))]
-    return [one for one in found if not _is_clear(briefs.claims.get(one.clause))]
+    return [one for one in found if one.though or not _is_course(briefs.claims.get(one.clause), clauses)]
 
 
-def _is_clear(claim: Claim | None) -> bool:
-    """Whether a clause tells that a thing was slid on nothing, which denies no other name."""
-    return claim is not None and claim.of == "sliding"
+def _is_course(claim: Claim | None, clauses: Sequence[str]) -> bool:
+    """Whether a clause of the name's own tells but how a thing went, which denies no other name."""
+    return claim is not None and claim.text in clauses and claim.of in COURSES
 
 
 def _goes(claim: Claim | None) -> bool:
@@ -112,10 +117,10 @@ def _told_contrasts(
     order = [one for one in fresh if not one.by_features and not one.weak]
     order += [one for one in alike if not one.by_features]
     order += [one for one in fresh if one.by_features] + [one for one in alike if one.by_features]
-    order += [one for one in fresh if one not in order and one.numbered]
     beside, told, names = "", list[Contrast](), set[str]()
     for contrast in sorted(order, key=lambda one: not one.though):
-        left = tuple(name for name in contrast.names if name not in names)[:MOST_NAMES]
+        left = tuple(name for name in contrast.names if name not in names)
+        left = left[: 1 if contrast.by_features else MOST_NAMES]
         if left and len(told) + bool(beside) < MOST_TOLD:
             names |= {*left}
             if [*clauses] == [contrast.clause] and not contrast.though:

@@ -161,4 +161,4 @@ class ArrangementsTold(ToldArgument):
     def _unslid(self) -> str:
         """That the segment's object stayed on nothing, where it touches nothing at both borders."""
         kept = arrangements.kept(self.clock, self.text)
-        return UNBOUND if kept else "did not stay on one and the same tracked object"
+        return UNBOUND if kept else "was not slid on anything"

@@ -19,8 +19,12 @@ class RestsTold(ToldArgument):
     def _floor(self) -> str:
         """From where on a body's motion counts, if it is known."""
         floor_m = self.clock.measured.floors.get(self.text)
-        far = quantities.length(floor_m) if floor_m else ""
-        return f", less than the {far} from which on it counts as moved" * bool(far)
+        span = self._span_beside("spread")
+        moved = None if span is None else self._moved(self.text, span)
+        if not floor_m or moved is None or moved.spread_m >= floor_m:
+            return " and did not count as moving"
+        far = quantities.length(floor_m)
+        return f", less than the {far} from which on it counts as moved"
 
     def _not_at_rest(self) -> str:
         """Why the segment is no rest: it lasted too briefly, or its end-effector moved."""
