@@ -31,6 +31,9 @@ from extractors.motion.leaning import lean
 from extractors.motion.turning_points import most_turns
 from extractors.relations.arrangement import Pair
 
+AXES = ("along the x axis", "along the y axis", "up and down")
+"""The axes of the world, as sentences have them."""
+
 GAP_S = 0.1
 """Shorter gaps in a track are not told of [s]."""
 
@@ -258,7 +261,8 @@ def _turns(measurements: Measurements) -> TurnsBack:
 
     def turned(name: str, first: int, last: int) -> Turns:
         stream = measurements.bodies.named(name).poses.smooth
-        return Turns(len(most_turns(stream, (first, last), limits)[1]), limits.swing_m)
+        axis, turns = most_turns(stream, (first, last), limits)
+        return Turns(len(turns), limits.swing_m, AXES[axis])
 
     return turned
 

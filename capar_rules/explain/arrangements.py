@@ -137,9 +137,9 @@ def laid(clock: Clock, segment: str) -> str:
     alone = ""
     if not met_at(clock, segment, "end"):
         it = clock.it(clock.objects.get(segment, ""))
-        alone = f", where {it} counted as touching nothing else that is tracked"
+        alone = f", when {it} touched no other recorded or assumed object"
     let_go = _let_go(clock, segment, held[1])
-    return f"was not moved again before {let_go}{alone}"
+    return f"did not move again before {let_go}{alone}"
 
 
 def not_laid(clock: Clock, segment: str) -> str:

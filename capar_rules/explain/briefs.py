@@ -10,7 +10,6 @@ from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.leading import DOUBTED, nodes_below, parsed, rank
-from capar_rules.explain.quantities import degrees
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
 from capar_rules.explain.told_argument import UNBOUND
@@ -143,9 +142,8 @@ class Briefs:
         if not found or span is None:
             return []
         called = self.clock.called(thing)
-        least = degrees(round(1000.0 * self.clock.measured.far_over_rad))
         told = listed([f"{how} at the segment's {side}" for side, how in sorted(found.items(), reverse=True)])
-        text = f"the leaning of the {called} far over ({least} or more) {told}"
+        text = f"the leaning of the {called} far over {told}"
         return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="far_over"),))]
 
     def also_reached(self, claims: Iterable[Claim]) -> list[Claim]:
@@ -209,8 +207,7 @@ class Briefs:
             joined.setdefault(found[1] if found else clause, []).append(clause)
         out = []
         for begin, parts in joined.items():
-            text = " and ".join([parts[0], *(part.removeprefix(begin) for part in parts[1:])])
-            text = text.replace(" and  at ", " and at ")
+            text = _joined_sides(begin, parts)
             if len(parts) > 1:
                 claims = [self.claims[part] for part in parts if part in self.claims]
                 self.claims[text] = joined_claims(text, claims)
@@ -231,6 +228,16 @@ class Briefs:
         return (
             bool(arguments) and arguments[0].startswith("seg(") and arguments[0] != self.clock.own
         )
+
+
+def _joined_sides(begin: str, parts: Sequence[str]) -> str:
+    """Clauses that begin alike and differ in the side, and in numbers of it, as one."""
+    brackets = {part[part.rindex(" (") :] for part in parts} if len(parts) > 1 else set[str]()
+    if len(brackets) == 1:
+        (bracket,) = brackets
+        parts = [*(part.removesuffix(bracket) for part in parts[:-1]), parts[-1]]
+    text = " and ".join([parts[0], *(part.removeprefix(begin) for part in parts[1:])])
+    return text.replace(" and  at ", " and at ")
 
 
 _SIDED = re.compile(r"(.*) at the (?:start|end) \([^()]*\)")

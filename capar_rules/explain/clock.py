@@ -156,7 +156,9 @@ class Measured:
 
     def upright(self, body: str) -> str:
         """The posture from which a body's lean is measured, in words."""
-        return "how it was first seen" if body in self.unrested else "how it first rested"
+        several = is_plural(self.names.get(body, body.replace("_", " ")))
+        it, was = ("they", "were") if several else ("it", "was")
+        return f"how {it} {was} first seen" if body in self.unrested else f"how {it} first rested"
 
     def contact(self, one: str, other: str, frame: int, slack: float) -> Frames | None:
         """The contact of two bodies at a frame, or the nearest so few frames from it."""

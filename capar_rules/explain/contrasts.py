@@ -40,6 +40,9 @@ SEEN = ("leans_over", "spins")
 LEAST_TOLD = 0.01
 """Where no name is near, the nearest is told if it has a number, however small its share [1]."""
 
+LEAST_SEEN = 0.1
+"""Beside near names, others are told whose number has that share of what is asked for [1]."""
+
 MOST_TOLD = 2
 """So many conditions are told at most."""
 
@@ -153,7 +156,8 @@ def contrasts(
     own_found = [refused for refused in found if not refused.contrast.by_features]
     own = list(_nearest(own_found))
     numbered = [refused for refused in own_found if refused.contrast.numbered]
-    own += [one for one in _nearest(numbered, least=LEAST_TOLD) if one not in own]
+    least = LEAST_SEEN if own else LEAST_TOLD
+    own += [one for one in _nearest(numbered, least=least) if one not in own]
     features = [each for each in found if each.contrast.by_features]
     indirect = list(_nearest([each for each in features if not each.direct], most=MOST_TOLD))
     direct = list(_nearest([each for each in features if each.direct], most=1))

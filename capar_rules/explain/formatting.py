@@ -135,7 +135,7 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
             nearest = self._nearest_posture()
             return (nearest[1], span[1]) if nearest and span else None
         if form == "turns_back":
-            return self._swing(self.body, span) if span else None
+            return self._counted_turns(self.body, span) if span else None
         return self.clock.displacement(self.body, span) if span and form == "way" else span
 
     def nearness(self, form: str) -> float:

@@ -71,7 +71,7 @@ def spread(metres: float) -> str:
     """Within what a body stayed, to stand after ``within``: rounded up, so that it is so."""
     for unit, scale, digits in (("mm", 1000.0, 0), ("cm", 100.0, 0), ("m", 1.0, 1)):
         bound = upward(scale * metres, digits)
-        if unit == "m" or bound < (10 if unit == "mm" else 100):
+        if unit == "m" or bound < 100:
             return f"{max(bound, 1.0):.{digits}f} {unit}"
     raise AssertionError
 
@@ -87,7 +87,7 @@ def course(x_mm: int, y_mm: int, z_mm: int) -> str:
     aside = math.hypot(x_mm, y_mm)
     parts = []
     if abs(z_mm) < LEVEL_MM <= aside:
-        parts.append("at the same height")
+        parts.append("at nearly the same height")
     elif abs(z_mm) >= LEVEL_MM:
         parts.append(f"{length(abs(z_mm) / 1000.0)} {'higher' if z_mm > 0 else 'lower'}")
     if aside >= LEVEL_MM:
@@ -116,9 +116,13 @@ class Turns:
     least_m: float
     """The way before and after each [m]."""
 
+    sense: str = "on one axis"
+    """Along which line."""
+
     def __str__(self) -> str:
         """To stand after ``it``."""
-        return f"turned back {often(self.count)} after ways of {length(self.least_m)} or more"
+        least = length(self.least_m)
+        return f"turned back {often(self.count)} {self.sense}, each between ways of {least} or more"
 
 
 @dataclass(frozen=True, slots=True)

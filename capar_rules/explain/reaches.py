@@ -15,10 +15,10 @@ class Between(StrEnum):
 
     SURFACES = "between their surfaces"
     POINT = "between the surface of the one and the origin of the other, of which no shape is known"
-    ORIGINS = "between their origins, as not both shapes are known"
+    ORIGINS = "between their origins, as shapes are not known"
     POINTS = (
-        "between a point of each body, estimated from how the two moved together, as not both "
-        "shapes are known"
+        "between a point of each body, estimated from how the two moved together, as shapes "
+        "are not known"
     )
 
 

@@ -118,10 +118,11 @@ def _told_contrasts(
     order += [one for one in alike if not one.by_features]
     order += [one for one in fresh if one.by_features] + [one for one in alike if one.by_features]
     beside, told, names = "", list[Contrast](), set[str]()
+    most = MOST_TOLD + any(contrast.though for contrast in order)
     for contrast in sorted(order, key=lambda one: not one.though):
         left = tuple(name for name in contrast.names if name not in names)
         left = left[: 1 if contrast.by_features else MOST_NAMES]
-        if left and len(told) + bool(beside) < MOST_TOLD:
+        if left and len(told) + bool(beside) < most:
             names |= {*left}
             if [*clauses] == [contrast.clause] and not contrast.though:
                 beside = listed(left, "or")

@@ -154,7 +154,7 @@ class ArrangementsTold(ToldArgument):
         moves = self.clock.measured.moving.get(thing, ())
         if span and held and any(first < span[0] and last > held[0] for first, last in moves):
             since = self.clock.at(held[0])
-            contact = f"the same contact with the {self.clock.called(hand)} (since {since})"
+            contact = f"the contact with the {self.clock.called(hand)} that began at {since}"
             return f" and had moved before in {contact}"
         return ", so that it was lifted off none"
 

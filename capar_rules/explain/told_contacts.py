@@ -43,7 +43,8 @@ class ContactsTold(ToldArgument):
         near = [(abs(first - frame), first) for first in speeds] if frame is not None else []
         if not near or min(near)[0] > merge:
             return UNBOUND
-        blow = f"a blow has {constants()['blow_mm_s']} mm/s or more"
+        how = "the greatest of their middles just before they met, in any direction"
+        blow = f"{how}; a blow has {constants()['blow_mm_s']} mm/s or more"
         return f"at a relative speed of {speeds[min(near)[1]]} mm/s ({blow})"
 
     def _contact(self, side: str, end: int) -> str:
@@ -73,7 +74,7 @@ class ContactsTold(ToldArgument):
         """Where the border of the end of a contact stands, if not where that ends."""
         ended = type(self)(self.beside[5], self.beside, self.clock)._ended_at()
         told = self.clock.at(self.clock.frames[self.beside[0]][int(self.text)])
-        until = f"; the border is at {told}, from when on they came apart"
+        until = f"; the border for it is placed at {told}"
         return "" if told == ended else until
 
     def _throughout(self) -> str:
@@ -156,8 +157,10 @@ class ContactsTold(ToldArgument):
         """Until when another one touches the object of a segment, from before it was reached."""
         segment, other, thing, last = self.beside
         hand = self.clock.called(arrangements.hand_of(segment))
-        until = self.clock.at(int(last))
-        return f"{self._touched(other, thing)} before the {hand} did, and until {until}"
+        until, span = self.clock.at(int(last)), self.clock.span(segment)
+        own = self._met_near(arrangements.hand_of(segment), thing, span[1]) if span else None
+        kept = f", when the {hand} still did" * bool(own and own[1] > int(last))
+        return f"{self._touched(other, thing)} before the {hand} did, and until {until}{kept}"
 
     def _takes(self) -> str:
         """Since when another one touches the object of a segment, that is let go of there."""
@@ -167,7 +170,8 @@ class ContactsTold(ToldArgument):
         if left is None:
             return UNBOUND
         since, until = self.clock.at(int(first)), self.clock.at(left[1])
-        ended = f"when the {self.clock.called(hand)} ceased to (after {until})"
+        held = f"did from {self.clock.at(left[0])} on"
+        ended = f"when the {self.clock.called(hand)}, which {held}, ceased to (after {until})"
         return f"{self._touched(other, thing)} from {since} on, and still did {ended}"
 
     def _touched(self, one: str, other: str) -> str:

@@ -214,7 +214,7 @@ FORMS = (
     (
         rf"the {NAME} was not moved again before the {NAME} (?:let go of it|was last tracked at "
         rf"it,) at {TIME}"
-        r"(?:, where it counted as touching nothing else that is tracked)?",
+        r"(?:, where it counted as touching nothing else that is recorded or assumed)?",
         came_to_lie,
     ),
 )

@@ -412,7 +412,7 @@ FORMS = (
         came_to_place,
     ),
     (
-        rf"the {NAME} rested and touched none of the tracked objects from {TIME} to {TIME}",
+        rf"the {NAME} rested and touched no recorded or assumed object from {TIME} to {TIME}",
         rested_free,
     ),
     (rf"the {NAME} came to rest at {TIME}", came_to_rest),
