@@ -200,9 +200,10 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         Mark(known.at(frame), float(angle[frame]), label)
         for frame, label in zip((told.first, told.last), labels, strict=True)
     ]
-    if "far_over" in forms:
+    if forms & {"far_over", "leaning"}:
         far = math.degrees(thresholds_of(measurements.calibration).lean_rad)
-        limits.append(Limit(far, f"far over is {far:.0f}° or more"))
+        limits.append(Limit(far, f"far over begins at {far:.0f}°"))
+    if "far_over" in forms:
         most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
         bound = upward(float(angle[most]))
         marks.append(Mark(known.at(most), float(angle[most]), f"{bound:.0f}° at most"))

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from capar_rules.explain.arrangements import reached, untracked
+from capar_rules.explain.arrangements import kept, reached, untracked
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined_claims, resting_on
 from capar_rules.explain.clock import Clock
@@ -144,7 +144,7 @@ class Briefs:
         called = self.clock.called(thing)
         told = listed([f"{how} at the segment's {side}" for side, how in sorted(found.items(), reverse=True)])
         text = f"the leaning of the {called} far over {told}"
-        return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="far_over"),))]
+        return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="leaning"),))]
 
     def also_reached(self, claims: Iterable[Claim]) -> list[Claim]:
         """What else the segment's thing came to touch, where of one thing it is told."""
@@ -161,6 +161,14 @@ class Briefs:
                 (Quantity(Measure.DISTANCE, (thing, other), *span),),
             )
             for other in new
+            if other not in told
+        ] + [
+            Claim(
+                f"the {called} counted as in contact with the {self.clock.called(other)} both at "
+                "the start and at the end",
+                (Quantity(Measure.DISTANCE, (thing, other), *span),),
+            )
+            for other in kept(self.clock, self.clock.own)
             if other not in told
         ]
 

@@ -277,9 +277,15 @@ def not_leant(before_mrad: int, after_mrad: int, most_mrad: int, posture: str) -
     most = f" ({bound:.0f}° at most in between)" * beyond
     text = (
         f"leant {degrees(before_mrad)} at the start and {degrees(after_mrad)} at the end from "
-        f"{posture}{most}, a change of less than {degrees(least)}"
+        f"{posture}{most}, a change of {_short_of(before_mrad, after_mrad)}, less than {degrees(least)}"
     )
     return Shortfall(text, max(change / least, NEAR_BY * beyond))
+
+
+def _short_of(before_mrad: int, after_mrad: int) -> str:
+    """A change of lean that is too small, as it is told."""
+    told, least = change(before_mrad, after_mrad), degrees(constants()["turn_mrad"])
+    return told if told != least else f"{math.degrees(abs(after_mrad - before_mrad) / 1e3):.1f}°"
 
 
 def _apart(one_mm: float, other_mm: float) -> tuple[str, str]:

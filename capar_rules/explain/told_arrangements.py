@@ -105,12 +105,11 @@ class ArrangementsTold(ToldArgument):
             angle = arrangements.normal_deg(self.clock, thing, other, frame)
             if angle is None or angle <= most:
                 return UNBOUND
-            side = "from above" if angle >= 180.0 - most else "from the side"
             called = self.clock.called(other)
-            told.append(f"the {called} was met {side}, {angle:.0f}° off straight up")
+            told.append(f"the {called} pushed it {angle:.0f}° off straight up")
         return (
-            f"nothing bore the {self.clock.called(thing)} at the {self.text}: {', '.join(told)} "
-            f"({most:.0f}° or less bears)"
+            f"nothing bore the {self.clock.called(thing)} at the {self.text}: "
+            f"{' and '.join(told)} ({most:.0f}° or less bears)"
         )
 
     def _hollow(self) -> str:
