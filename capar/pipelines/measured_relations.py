@@ -47,7 +47,7 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
     highest = CLOSE * max([*limits, 20.0])
     at_borders = dict(zip(frames.tolist(), apart.tolist(), strict=True))
     marks = [
-        Mark(known.at(frame), min(at_borders[frame], highest), _gap(at_borders[frame]))
+        Mark(known.at(frame), min(at_borders[frame], highest), _gap(at_borders[frame], highest))
         for frame in (told.first, told.last)
         if math.isfinite(at_borders.get(frame, math.nan))
     ]
@@ -67,9 +67,10 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
     )
 
 
-def _gap(millimetres: float) -> str:
-    """A distance of two bodies, as a mark has it."""
-    return f"{millimetres:.0f} mm" if millimetres < 100.0 else length(millimetres / MILLI)
+def _gap(millimetres: float, highest: float) -> str:
+    """A distance of two bodies, as a mark has it; that it is cut off beyond the highest shown."""
+    told = f"{millimetres:.0f} mm" if millimetres < 100.0 else length(millimetres / MILLI)
+    return told + " (cut off)" * (millimetres > highest)
 
 
 def _between(pair: PairCalibration, *, shaped: bool) -> str:

@@ -43,11 +43,12 @@ def _way(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     moved = known.seen.explainer.measured.ways
     winding = moved is not None and "way" in forms and moved(name, told.first, told.last).winding
     end = float(away[told.last])
-    if forms & {"place", "not_near", "not_slid"}:
-        end = float(np.linalg.norm(np.diff(np.rint(MILLI * middles[[told.first, told.last]]), axis=0)))
-        end /= MILLI
-    short = end < LEAST_M and (winding or "way" not in forms)
-    label = f"less than {length(LEAST_M)}" if short else length(end)
+    placed = end
+    if forms & {"place", "not_near", "not_slid"}:  # told by places in whole millimetres
+        ends = np.rint(MILLI * middles[[told.first, told.last]])
+        placed = float(np.linalg.norm(ends[1] - ends[0])) / MILLI
+    short = placed < LEAST_M and (winding or "way" not in forms)
+    label = f"less than {length(LEAST_M)}" if short else length(placed)
     marks = [Mark(known.at(told.last), CENTI * end, label)]
     if winding:
         steps = np.nan_to_num(np.linalg.norm(np.diff(middles, axis=0), axis=1))

@@ -171,8 +171,8 @@ def _beside(
         if share:
             shares[share].append(f"the {spoken(mover)}")
     return "".join(
-        f"; {_few(who)} {'were' if len(who) > 1 else 'was'} in contact with {it} for {share} % of "
-        "that time"
+        f"; {_few(who)} {'were' if len(who) > 1 else 'was'} in contact with {it} "
+        + (f"for {share} % of that time" if share < ALL_BUT else "meanwhile")
         for share, who in sorted(shares.items(), reverse=True)
     )
 

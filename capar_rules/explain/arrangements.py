@@ -157,10 +157,9 @@ def not_laid(clock: Clock, segment: str) -> str:
     moves = clock.measured.moving.get(thing, ())
     again = [first for first, last in moves if last > span[1] and first < held[1]]
     if not again:
-        new = [f"the {clock.called(other)}" for other in reached(clock, segment)]
-        *most, last = new or [""]
-        told = f"{', '.join(most)}{' and ' * bool(most)}{last}"
-        return f"came to touch {told}, as in a MoveObjTo" if new else ""
+        objects = clock.listed.get(segment, ())
+        new = sorted(reached(clock, segment), key=lambda other: other not in objects)
+        return f"came to touch the {clock.called(new[0])}, as in a MoveObjTo" if new else ""
     let_go = _let_go(clock, segment, held[1])
     if min(again) > span[1]:
         return f"was moved again from {clock.at(min(again))} on, before {let_go}"

@@ -122,7 +122,7 @@ class Turns:
     def __str__(self) -> str:
         """To stand after ``it``."""
         least = length(self.least_m)
-        return f"turned back {often(self.count)} {self.sense}, each between ways of {least} or more"
+        return f"turned back at least {often(self.count)} {self.sense}, between ways of {least} or more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,9 +197,10 @@ def _not_steep(aside_mm: float, height_mm: float, verb: str, sense: str) -> Shor
     if _is_little(aside_mm, height_mm):
         return _little(aside_mm, height_mm if sense == "up" else -height_mm, height_mm)
     if height_mm < LEVEL_MM:
-        plain = "rise" if sense == "up" else "sink"
-        asked = length(least / 1000.0)
-        return Shortfall(f"did not {plain} as a whole ({asked} or more count)", FAR_OFF)
+        wanted, other = ("higher", "lower") if sense == "up" else ("lower", "higher")
+        rise = f"{length(abs(height_mm) / 1000.0)} {wanted if height_mm > 0.0 else other}"
+        told = rise if abs(height_mm) >= 1.0 else "at the same height"
+        return Shortfall(f"ended {told}, not {length(least / 1000.0)} or more {wanted}", FAR_OFF)
     if height_mm < least:
         far, wanted = _apart(height_mm, least)
         return Shortfall(f"{verb} by {far}, less than the {wanted} that count", height_mm / least)

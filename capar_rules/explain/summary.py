@@ -55,14 +55,10 @@ def summary(
     mended = briefs.clauses(doubts)
     claims += [briefs.claims[clause] for clause in mended if clause in briefs.claims]
     told += f". {_sentence(listed(mended))}" * bool(mended)
-    extra = briefs.also_reached(claims) * (not _REACHED.search(told)) + briefs.leaning(reason)
+    extra = briefs.also_reached(claims) + briefs.leaning(reason)
     extra += briefs.lost([*claims, *extra])
     told += "".join(f". {_sentence(claim.text)}" for claim in extra)
     return Summary(f"{told}." + touching(claims, briefs.clock), (*claims, *extra))
-
-
-_REACHED = re.compile(r" came to touch ")
-"""What tells everything that a thing came to touch."""
 
 
 def _sentence(clause: str) -> str:

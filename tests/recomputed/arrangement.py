@@ -194,8 +194,8 @@ FORMS = (
     (rf"leaning of the {NAME} far over was measured from {TIME} to {TIME}", measured_leaning),
     (rf"the {NAME} turned about the vertical", spun),
     (
-        rf"the {NAME} touched the {NAME} at the segment's (start|end), which met it from below"
-        rf"(?: at {TIME} \(\d+° off straight up; 45° or less bears\))?",
+        rf"the {NAME} touched the {NAME} at the segment's (start|end), which bore it from below"
+        rf"(?: \(\d+° off straight up as their contact began, at {TIME}; 45° or less bears\))?",
         borne,
     ),
     (rf"the {NAME} was above the {NAME} at the segment's (start|end)", was_above),
@@ -212,9 +212,9 @@ FORMS = (
         went_after,
     ),
     (
-        rf"the {NAME} was not moved again before the {NAME} (?:let go of it|was last tracked at "
+        rf"the {NAME} did not move again before the {NAME} (?:let go of it|was last tracked at "
         rf"it,) at {TIME}"
-        r"(?:, where it counted as touching nothing else that is recorded or assumed)?",
+        r"(?:, when it touched no other recorded or assumed object)?",
         came_to_lie,
     ),
 )

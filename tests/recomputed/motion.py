@@ -419,7 +419,7 @@ FORMS = (
     (rf"it ended where the {NAME} had rested before", came_back),
     (
         rf"the {NAME} ended (\d+(?:\.\d)?) (mm|cm|m) from where it (?:was|rested) at {TIME} "
-        r"\(of where it began and rested the nearest; within 10 cm it is back there\)",
+        r"\(within 10 cm counts as back there\)",
         came_elsewhere,
     ),
     (
