@@ -88,6 +88,12 @@ class Contrast:
     numbered: bool = False
     """Whether what is told has a number."""
 
+    direct: bool = False
+    """Whether the features differ in a row of the first name's own."""
+
+    nearness: float = HALF
+    """By how much what decided missed being otherwise: a share of what was asked for."""
+
     @property
     def weak(self) -> bool:
         """Whether it is too far off to be told where a more general name can be told instead."""
@@ -247,6 +253,8 @@ def _of_neighbour(
             though=though,
             below=other.below,
             numbered=bool(re.search(r"\d", "".join(clauses[place]))),
+            direct=direct,
+            nearness=near,
         )
         related = other.steps, *other.distance(form)
         seen_first = not though, not other.below

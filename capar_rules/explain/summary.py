@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from capar_rules.explain.briefs import BOTH, COURSES, Briefs, listed
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Claim
-from capar_rules.explain.contrasts import MOST_NAMES, MOST_TOLD, Contrast
+from capar_rules.explain.contrasts import LEAST_SEEN, MOST_NAMES, MOST_TOLD, Contrast
 from capar_rules.explain.leading import DOUBTED, OWN, leading, parsed, rank
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.touch_notes import touching
@@ -112,12 +112,15 @@ def _told_contrasts(
     alike = [one for one in against if one not in fresh and one.failing == 1]
     order = [one for one in fresh if not one.by_features and not one.weak]
     order += [one for one in alike if not one.by_features]
-    order += [one for one in fresh if one.by_features] + [one for one in alike if one.by_features]
+    features = [*(one for one in against if one.by_features and not one.direct)]
+    features += [one for one in (*fresh, *alike) if one.by_features and one.direct]
+    order = [*order, *features]
+    order.sort(key=lambda one: one.nearness < LEAST_SEEN)
     beside, told, names = "", list[Contrast](), set[str]()
     most = MOST_TOLD + any(contrast.though for contrast in order)
     for contrast in sorted(order, key=lambda one: not one.though):
         left = tuple(name for name in contrast.names if name not in names)
-        left = left[: 1 if contrast.by_features else MOST_NAMES]
+        left = left[: 1 if contrast.direct else MOST_NAMES]
         if left and len(told) + bool(beside) < most:
             names |= {*left}
             if [*clauses] == [contrast.clause] and not contrast.though:

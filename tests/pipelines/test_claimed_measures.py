@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from recomputed import STORIES, told
+from recomputed.summaries import VERBS
 
 from capar.pipelines.claimed_measures import (
     draw_claims,
@@ -182,14 +183,16 @@ def unclaimed(explanation: Explanation) -> str:
     """
     rest = explanation.summary
     for claim in sorted(explanation.claims, key=lambda claim: -len(claim.text)):
-        words, found = claim.text.split(" "), 0
+        words = claim.text.split(" ")
         for first in range(len(words)):
             part = " ".join(words[first:])
             shorter = re.sub(re.escape(part), ";", rest, flags=re.IGNORECASE)
             if shorter != rest:
-                rest, found = shorter, found + 1
-            if found == 2:  # once with its subject, and once after another clause about that
+                rest = shorter
                 break
+    for claim in explanation.claims:  # what stands behind its subject once, and once behind another
+        own = re.sub(rf"^the [\w ]+? (?=(?:{VERBS})\b)", "", claim.text)
+        rest = re.sub(re.escape(own), ";", rest, flags=re.IGNORECASE)
     return re.sub(r"\bthe(?: \w+)+?(?= ?;)", "", FURNITURE.sub(lambda part: ";", rest)).strip("; ")
 
 
