@@ -271,7 +271,14 @@ def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
     """Up to which distance, and of what, two bodies are counted as touching, in either order."""
     return {
         names: Reach(
-            max(pair.touch_m, pair.release_m), _measured_between(pair, measurements), pair.touch_m
+            max(pair.touch_m, pair.release_m),
+            _measured_between(pair, measurements),
+            pair.touch_m,
+            tuple(
+                name
+                for name in (pair.first, pair.second)
+                if measurements.bodies.named(name).shape is None
+            ),
         )
         for pair in measurements.calibration.pairs
         if pair.found is not Found.NEVER

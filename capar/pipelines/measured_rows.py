@@ -30,7 +30,7 @@ LABELS: Mapping[str, str] = {
 }
 """By the predicate of a fact: what a row of its stretches is called."""
 
-NOTHING = "{0} and any recorded or assumed object: count as in contact (at no time shown)"
+NOTHING = "{0}: at no time shown in contact with any recorded or assumed object"
 """The row of a body that touches nothing."""
 
 FEWEST = 4
@@ -95,7 +95,9 @@ def _about(fact: Fact, count: int) -> tuple[str, ...]:
 
 
 def _row(known: Recording, predicate: str, about: Sequence[str], bars: Sequence[Span]) -> Row:
-    called = ["any recorded or assumed object" if body == ANY else known.called(body) for body in about]
+    called = [
+        "any recorded or assumed object" if body == ANY else known.called(body) for body in about
+    ]
     label = LABELS.get(predicate, "{0}: " + predicate.replace("_", " "))
     return Row(label.format(*called), tuple(bars))
 

@@ -10,6 +10,7 @@ from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.leading import DOUBTED, nodes_below, parsed, rank
+from capar_rules.explain.quantities import degrees
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
 from capar_rules.explain.told_argument import UNBOUND
@@ -32,7 +33,7 @@ AT_ONE_SIDE = {
 }
 """Clauses of contact at one border, and that border."""
 
-LEANING = {"tips": "begins", "rights": "ends"}
+LEANING = {"tips": "begin", "rights": "cease"}
 """Kinds of events at which borders lie, of how far a thing leans."""
 
 MOST_GAPS = 3
@@ -141,9 +142,16 @@ class Briefs:
                     found[side] = LEANING[arguments[2]]
         if not found or span is None:
             return []
-        called = self.clock.called(thing)
-        told = listed([f"{how} at the segment's {side}" for side, how in sorted(found.items(), reverse=True)])
-        text = f"the leaning of the {called} far over {told}"
+        called, least = self.clock.called(thing), round(1000.0 * self.clock.measured.far_over_rad)
+        ends = "" if called in self.clock.several else "s"
+        borders = {"start": "begins", "end": "ends"}
+        told = listed(
+            [
+                f"{borders[side]} where the {called} {how}{ends} to lean far over"
+                for side, how in sorted(found.items(), reverse=True)
+            ]
+        )
+        text = f"the segment {told} (far over begins at {degrees(least)})"
         return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="leaning"),))]
 
     def also_reached(self, claims: Iterable[Claim]) -> list[Claim]:
@@ -198,7 +206,7 @@ class Briefs:
             pair = pairs.get(each.atom)
             if pair is not None and pair[0] in AT_ONE_SIDE:
                 side = AT_ONE_SIDE[pair[0]]
-                if (side, *pair[1][1:]) in borne:
+                if rank(each) and (side, *pair[1][1:]) in borne:
                     continue  # which of the two is below is told of the same contact
             if pair is not None:
                 told.append(self.tell(*pair, "brief"))

@@ -120,7 +120,9 @@ def claim(
         for kind, places in _rows(predicate, arguments)
         for bodies in _bodies(places, arguments, clock)
     ]
-    return Claim(text, tuple(dict.fromkeys(found)), tuple(frames), tuple(dict.fromkeys(stretches)), predicate)
+    return Claim(
+        text, tuple(dict.fromkeys(found)), tuple(frames), tuple(dict.fromkeys(stretches)), predicate
+    )
 
 
 def _since(clock: Clock, frame: int) -> list[int]:

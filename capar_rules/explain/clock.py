@@ -259,7 +259,13 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
             case _:
                 pass
     found = replace(known, contacts=contacts, normals=normals, presses=presses, lies=lies)
-    return replace(found, closing=closing, flickers=flickers, shapeless=frozenset(shapeless), movable=frozenset(movable))
+    return replace(
+        found,
+        closing=closing,
+        flickers=flickers,
+        shapeless=frozenset(shapeless),
+        movable=frozenset(movable),
+    )
 
 
 @dataclass(frozen=True)

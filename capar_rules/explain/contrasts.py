@@ -10,6 +10,7 @@ from capar_rules.engine.syntax import Literal, split_arguments
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.condition_matching import Atoms, Match, valued
 from capar_rules.explain.derivations import Derivations
+from capar_rules.explain.near_misses import more_specific
 from capar_rules.explain.neighbours import (
     FEATURE,
     Neighbour,
@@ -168,7 +169,17 @@ def contrasts(
     indirect = list(_nearest([each for each in features if not each.direct], most=MOST_TOLD))
     direct = list(_nearest([each for each in features if each.direct], most=1))
     supported = list(_supported(base, derived, atoms, clock, tell))
-    return tuple(_told_once(supported + own + direct + indirect))
+    found_once = _told_once(supported + own + direct + indirect)
+    return tuple(_of_its_kind(base, contrast) for contrast in found_once)
+
+
+def _of_its_kind(base: RuleBase, contrast: Contrast) -> Contrast:
+    """A contrast by a row of the first name's own, of it and of the names that are kinds of it."""
+    if not contrast.direct:
+        return contrast
+    kinds = more_specific(base.statements, contrast.names[0])
+    names = (name for name in contrast.names[1:] if name in kinds)
+    return replace(contrast, names=(contrast.names[0], *names))
 
 
 def _told_once(found: Sequence[Contrast]) -> Iterator[Contrast]:

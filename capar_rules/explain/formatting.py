@@ -85,6 +85,7 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
             "comes": self._comes,
             "no_longer": self._no_longer,
             "unseen": self._unseen,
+            "after_leaving": self._after_leaving,
             "lets_go": self._lets_go,
             "takes": self._takes,
             "until": lambda: self._contact("start", 1),

@@ -86,9 +86,9 @@ def course(x_mm: int, y_mm: int, z_mm: int) -> str:
     """A displacement by its rise and its way aside, to stand after ``ended``."""
     aside = math.hypot(x_mm, y_mm)
     parts = []
-    if abs(z_mm) < LEVEL_MM <= aside:
-        parts.append("at nearly the same height")
-    elif abs(z_mm) >= LEVEL_MM:
+    if abs(z_mm) < 1 <= aside:
+        parts.append("at the same height")
+    elif abs(z_mm) >= 1:
         parts.append(f"{length(abs(z_mm) / 1000.0)} {'higher' if z_mm > 0 else 'lower'}")
     if aside >= LEVEL_MM:
         parts.append(f"{length(aside / 1000.0)} to the side")
@@ -122,7 +122,8 @@ class Turns:
     def __str__(self) -> str:
         """To stand after ``it``."""
         least = length(self.least_m)
-        return f"turned back at least {often(self.count)} {self.sense}, between ways of {least} or more"
+        times = f"at least {often(self.count)} {self.sense}"
+        return f"turned back {times}, between ways of {least} or more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +150,7 @@ def over(at: Over, other: str) -> str:
     """How far a body is above another one of that name, in brackets."""
     top = f"the {'top' if at.shaped else 'origin'} of the {other}"
     aside = "over it" if at.aside_m < 0.0005 else f"{length(at.aside_m)} aside of it"
-    return f" ({length(at.rise_m)} above {top} and {aside})"
+    return f" (its middle {length(at.rise_m)} above {top} and {aside})"
 
 
 def percent(share: float) -> str:
@@ -184,15 +185,15 @@ FAR_OFF = 0.02
 
 def not_up(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     """Why a displacement is no rise."""
-    return _not_steep(math.hypot(x_mm, y_mm), z_mm, "rose", "up")
+    return _not_steep(math.hypot(x_mm, y_mm), z_mm, "up")
 
 
 def not_down(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     """Why a displacement is no lowering."""
-    return _not_steep(math.hypot(x_mm, y_mm), -z_mm, "sank", "down")
+    return _not_steep(math.hypot(x_mm, y_mm), -z_mm, "down")
 
 
-def _not_steep(aside_mm: float, height_mm: float, verb: str, sense: str) -> Shortfall:
+def _not_steep(aside_mm: float, height_mm: float, sense: str) -> Shortfall:
     least = constants()["height_mm"]
     if _is_little(aside_mm, height_mm):
         return _little(aside_mm, height_mm if sense == "up" else -height_mm, height_mm)
@@ -203,7 +204,9 @@ def _not_steep(aside_mm: float, height_mm: float, verb: str, sense: str) -> Shor
         return Shortfall(f"ended {told}, not {length(least / 1000.0)} or more {wanted}", FAR_OFF)
     if height_mm < least:
         far, wanted = _apart(height_mm, least)
-        return Shortfall(f"{verb} by {far}, less than the {wanted} that count", height_mm / least)
+        comparison = "higher" if sense == "up" else "lower"
+        text = f"ended {far} {comparison}, less than the {wanted} that count"
+        return Shortfall(text, height_mm / least)
     aside, height = _apart(aside_mm, height_mm)
     text = f"went further to the side ({aside}) than {sense} ({height})"
     return Shortfall(text, height_mm / max(aside_mm, height_mm))
@@ -218,7 +221,7 @@ def not_aside(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
         return _little(aside_mm, z_mm, aside_mm)
     if aside_mm < least:
         far, wanted = _apart(aside_mm, least)
-        text = f"went {far} to the side, less than the {wanted} that count"
+        text = f"ended {far} to the side, less than the {wanted} that count"
         return Shortfall(text, aside_mm / least)
     height, aside = _apart(abs(z_mm), aside_mm)
     text = f"went further {'up' if z_mm > 0 else 'down'} ({height}) than to the side ({aside})"
@@ -241,10 +244,8 @@ def _little(aside_mm: float, z_mm: float, wanted_mm: float) -> Shortfall:
     aside, far = _apart(aside_mm, known["aside_mm"])
     rise = f"{height} {'higher' if z_mm > 0.0 else 'lower'}"
     parts = [rise] * (abs(z_mm) >= 1.0) + [f"{aside} to the side"] * (aside_mm >= 1.0)
-    text = (
-        f"ended only {' and '.join(parts)} ({least} up or down, or {far} to the side, "
-        "would count)"
-    )
+    level = "at the same height and " * (abs(z_mm) < 1.0)
+    text = f"ended {level}only {' and '.join(parts)} ({least} up or down, or {far} to the side, would count)"
     share = max(abs(z_mm) / known["height_mm"], aside_mm / known["aside_mm"])
     return Shortfall(text, share if wanted_mm >= 0.0 else FAR_OFF)
 
@@ -260,7 +261,9 @@ def not_slid(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     """Why a displacement on a support is no sliding."""
     far_mm, least = math.hypot(x_mm, y_mm, z_mm), constants()["slide_mm"]
     far, wanted = _apart(far_mm, least)
-    return Shortfall(f"went only {far}, less than the {wanted} of a slide", far_mm / least)
+    return Shortfall(
+        f"ended only {far} from where it began, less than the {wanted} of a slide", far_mm / least
+    )
 
 
 def not_turned(turned_mrad: int) -> Shortfall:
@@ -278,7 +281,8 @@ def not_leant(before_mrad: int, after_mrad: int, most_mrad: int, posture: str) -
     most = f" ({bound:.0f}° at most in between)" * beyond
     text = (
         f"leant {degrees(before_mrad)} at the start and {degrees(after_mrad)} at the end from "
-        f"{posture}{most}, a change of {_short_of(before_mrad, after_mrad)}, less than {degrees(least)}"
+        f"{posture}{most}, a change of {_short_of(before_mrad, after_mrad)}, less than "
+        f"{degrees(least)}"
     )
     return Shortfall(text, max(change / least, NEAR_BY * beyond))
 

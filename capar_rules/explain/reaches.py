@@ -14,12 +14,9 @@ class Between(StrEnum):
     """What of two bodies a distance is between, as a sentence says it."""
 
     SURFACES = "between their surfaces"
-    POINT = "between the surface of the one and the origin of the other, of which no shape is known"
-    ORIGINS = "between their origins, as shapes are not known"
-    POINTS = (
-        "between a point of each body, estimated from how the two moved together, as shapes "
-        "are not known"
-    )
+    POINT = "from the surface of the one to the origin of the other"
+    ORIGINS = "between their origins"
+    POINTS = "between a point of each body, estimated from how the two moved together"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +27,9 @@ class Reach:
     between: Between = Between.SURFACES
     begin_m: float = math.inf
     """Up to which distance contact begins, where it lasts up to a greater one."""
+
+    unshaped: tuple[str, ...] = ()
+    """Which of the two have no known shape."""
 
     @property
     def told_mm(self) -> int:

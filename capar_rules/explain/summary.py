@@ -65,9 +65,7 @@ def _sentence(clause: str) -> str:
     return clause[:1].upper() + clause[1:]
 
 
-def _against(
-    against: Sequence[Contrast], clauses: Sequence[str], briefs: Briefs
-) -> list[Contrast]:
+def _against(against: Sequence[Contrast], clauses: Sequence[str], briefs: Briefs) -> list[Contrast]:
     """The contrasts, without what the summary says anyway."""
     known = [briefs.claims[clause] for clause in clauses if clause in briefs.claims]
     found = [
@@ -76,7 +74,9 @@ def _against(
     ]
     if any(_goes(claim) for claim in known):  # the same angle keeps it from going the other way
         found = [one for one in found if not _goes(briefs.claims.get(one.clause))]
-    return [one for one in found if one.though or not _is_course(briefs.claims.get(one.clause), clauses)]
+    return [
+        one for one in found if one.though or not _is_course(briefs.claims.get(one.clause), clauses)
+    ]
 
 
 def _is_course(claim: Claim | None, clauses: Sequence[str]) -> bool:
@@ -120,8 +120,13 @@ def _told_contrasts(
     most = MOST_TOLD + any(contrast.though for contrast in order)
     for contrast in sorted(order, key=lambda one: not one.though):
         left = tuple(name for name in contrast.names if name not in names)
-        left = left[: 1 if contrast.direct else MOST_NAMES]
-        if left and len(told) + bool(beside) < most:
+        left = left[:MOST_NAMES]
+        alike_at = [at for at, one in enumerate(told) if one.clause == contrast.clause]
+        if left and alike_at and not contrast.though and not told[alike_at[-1]].though:
+            both = (*told[alike_at[-1]].names, *left)[:MOST_NAMES]
+            names |= {*both}
+            told[alike_at[-1]] = replace(told[alike_at[-1]], names=both)
+        elif left and len(told) + bool(beside) < most:
             names |= {*left}
             if [*clauses] == [contrast.clause] and not contrast.though:
                 beside = listed(left, "or")

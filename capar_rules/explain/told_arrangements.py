@@ -14,7 +14,7 @@ class ArrangementsTold(ToldArgument):
         little = arrangements.little_way(self.clock, self.text)
         if little is not None:
             least = quantities.length(constants()["slide_mm"] / 1000.0)
-            told = f" only {quantities.length(little)} to the side"
+            told = f", from start to end, only {quantities.length(little)} to the side"
             return f"{told}, less than the {least} from which on a direction counts"
         found = arrangements.bearing(self.clock, self.text)
         if found is None:
@@ -23,13 +23,11 @@ class ArrangementsTold(ToldArgument):
         line = f"to the level line from the {hand} to the middle of the {thing}"
         ahead, after = f"{AHEAD_DEG:.0f}° or less is ahead", f"{AFTER_DEG:.0f}° or more is after"
         if form.startswith("not_"):
-            whither = (
-                f", from start to end as a whole, neither after the {hand} nor ahead of it, but"
-            )
+            whither = f", from start to end, neither after the {hand} nor ahead of it, but"
             if found.offset_deg >= AFTER_DEG:
-                whither = f", from start to end as a whole, after the {hand}, and not ahead of it,"
+                whither = f", from start to end, after the {hand}, and not ahead of it,"
             if found.offset_deg <= AHEAD_DEG:
-                whither = f", from start to end as a whole, ahead of the {hand}, and not after it,"
+                whither = f", from start to end, ahead of the {hand}, and not after it,"
             angle = f"{found.offset_deg:.0f}°"
             return f"{whither} at {angle} {line} ({after}, {ahead})"
         if form == "ahead" and found.by_press:
@@ -89,7 +87,7 @@ class ArrangementsTold(ToldArgument):
         if angle is None:
             return UNBOUND
         most = arrangements.steepest_deg()
-        return f" (which pushed it {angle:.0f}° off straight up; {most:.0f}° or less bears)"
+        return f" ({angle:.0f}° off straight up; {most:.0f}° or less bears)"
 
     def _unborne(self) -> str:
         """Why nothing bears the third argument at the side that this one names."""
@@ -143,7 +141,7 @@ class ArrangementsTold(ToldArgument):
         spans = self.clock.measured.level.get(self.beside[3], ())
         begins = any(first == frame for first, _ in spans)
         ends = any(last == frame for _, last in spans)
-        return "became level" if begins and not ends else "ceased to be level" * ends
+        return "began to count as level" if begins and not ends else "ceased to count so" * ends
 
     def _moved_in_hand(self) -> str:
         """That what a segment moves had moved before in the same hold, so that it began nowhere."""

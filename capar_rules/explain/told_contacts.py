@@ -101,6 +101,18 @@ class ContactsTold(ToldArgument):
             return ""
         return f" (at moments up to {quantities.spread(far)} apart)"
 
+    def _after_leaving(self) -> str:
+        """When the two bodies beside this parted before, if at the start or in the segment."""
+        one, other = self.beside[1:3]
+        span, known = self.clock.span(self.text), self.clock.measured.contacts
+        now = self._met_near(one, other, span[1]) if span else None
+        if span is None or now is None:
+            return ""
+        early = span[0] - in_frames(times().merge_ms, self.clock.rate_hz)
+        found = [*known.get((one, other), ()), *known.get((other, one), ())]
+        left = [last for _, last in found if early <= last < now[0]]
+        return f", after parting from it at {self.clock.at(max(left))}" if left else ""
+
     def _comes(self) -> str:
         """That the second argument comes to touch the third, or to count so."""
         one, other = self.beside[1:3]
@@ -177,4 +189,6 @@ class ContactsTold(ToldArgument):
     def _touched(self, one: str, other: str) -> str:
         """How contact of two is told."""
         near = self.clock.measured.near(one, other)
-        return f"{'counted as in contact with' if near else 'touched'} the {self.clock.called(other)}"
+        return (
+            f"{'counted as in contact with' if near else 'touched'} the {self.clock.called(other)}"
+        )

@@ -134,18 +134,14 @@ class MotionsTold(ToldArgument):
             return ""
         swing, counted = self._swing(body, span), self._counted_turns(body, span)
         when = f" from {self.clock.at(swing[0])} to {self.clock.at(swing[1])}"
-        part = "in this segment " * (swing not in (span, counted))
+        part = "in this segment " * (swing != span == counted)
         it = f"{part}{self.clock.it(body)}"
         return f"{when * (swing != span)} ({it} {turns(body, *counted)})"
 
     def _counted_turns(self, body: str, span: tuple[int, int]) -> tuple[int, int]:
-        """Between which frames turns are counted: of the motion to and fro, within the segment.
-
-        Where none is within it, of all of that motion.
-        """
+        """Between which frames turns are counted: of the segment, or else of all of that motion."""
         swing, turns = self._swing(body, span), self.clock.measured.turns
-        inside = max(swing[0], span[0]), min(swing[1], span[1])
-        return inside if turns is not None and turns(body, *inside).count else swing
+        return span if turns is not None and turns(body, *span).count else swing
 
     def _swing(self, body: str, span: tuple[int, int]) -> tuple[int, int]:
         """The motion to and fro of which a segment is a part, or else the segment itself."""

@@ -36,7 +36,7 @@ class RestsTold(ToldArgument):
                 return f"it lasted {lasted:.2f} s, and a rest lasts {self._rest_s()} or more"
             return f"the {self.clock.called(self._hand)} did not count as at rest"
         hand = self.clock.called(self._hand)
-        return f"the {hand} had no rest of {self._rest_s()} or more in the segment"
+        return f"the {hand} did not count as at rest for {self._rest_s()} or more at a time"
 
     def _long(self) -> str:
         """That a rest is longer than a rest has to be."""
@@ -80,7 +80,7 @@ class RestsTold(ToldArgument):
         """A place where the end-effector had been, touching nothing."""
         how = "was" if frame == self.clock.frames[self._hand][0] else "rested"
         near = quantities.length(near_m)
-        return f"where it {how} at {self.clock.at(frame)} (within {near} counts as back there)"
+        return f"where it {how} at {self.clock.at(frame)} (a return is within {near})"
 
     def _earlier_postures(self) -> list[int]:
         """The last frames of the rests before the segment in which it touched nothing.

@@ -6,7 +6,7 @@ from capar_rules.explain.briefs import listed
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.reaches import Between
+from capar_rules.explain.reaches import Reach
 
 OF_CONTACT = (Measure.DISTANCE, Measure.BORNE)
 """What is measured of two bodies where their contact is told."""
@@ -14,13 +14,14 @@ OF_CONTACT = (Measure.DISTANCE, Measure.BORNE)
 
 def touching(claims: Iterable[Claim], clock: Clock) -> str:
     """Up to which distance bodies are counted as touching whose contact is told."""
-    found: dict[Between, dict[str, list[str]]] = {}
+    found: dict[str, dict[str, list[str]]] = {}
     bodies: list[str] = []
     for one, other in _pairs(claims):
         reach = clock.measured.reaches.get((one, other))
         if reach:
             pair = f"{clock.called(one)} to {clock.called(other)}"
-            found.setdefault(reach.between, {}).setdefault(reach.told, []).append(pair)
+            between = _between(reach, clock)
+            found.setdefault(between, {}).setdefault(reach.told, []).append(pair)
         bodies += [one, other]
     several = sum(map(len, found.values())) > 1
     told = [
@@ -41,12 +42,17 @@ def _pairs(claims: Iterable[Claim]) -> list[tuple[str, str]]:
     return list(pairs.values())
 
 
-def _counted(reaches: Mapping[str, Sequence[str]], between: Between, *, several: bool) -> str:
-    """Within what contact is counted, of which pairs of bodies, and what of them is so far apart."""
-    told = [
-        within + f" ({', '.join(pairs)})" * several for within, pairs in reaches.items()
-    ]
-    return f"{listed(told)}, {between.value}"
+def _between(reach: Reach, clock: Clock) -> str:
+    """What of two bodies their distance is between, and which of them has no known shape."""
+    called = [f"the {clock.called(name)}" for name in reach.unshaped]
+    has = "has no known shape" if len(called) == 1 else "have no known shapes"
+    return reach.between.value + f", as {listed(called)} {has}" * bool(called)
+
+
+def _counted(reaches: Mapping[str, Sequence[str]], between: str, *, several: bool) -> str:
+    """Within what contact is counted, of which pairs of bodies, and between what of them."""
+    told = [within + f" ({', '.join(pairs)})" * several for within, pairs in reaches.items()]
+    return f"{listed(told)}, {between}"
 
 
 def _stand_ins(bodies: Iterable[str], clock: Clock) -> str:

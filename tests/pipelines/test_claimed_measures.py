@@ -153,7 +153,8 @@ FURNITURE = re.compile(
     r"It is a kind of [\w, ]+?, because |"
     r"[Nn]ot \w+(?:, \w+)*(?:,? or \w+)?|"
     r", though|, because |, and at the end|"
-    r"(?:A shape is|Shapes are) assumed for [^.]*(?:\.\d+[^.]*)*, so contact is known only roughly\.|"
+    r"(?:A shape is|Shapes are) assumed for [^.]*(?:\.\d+[^.]*)*, so contact is known only "
+    r"roughly\.|"
     r"Contact is counted (?:within|from) \d+ mm[^.]*\.|\band\b|\bor\b|[,;. ]"
 )
 """What a summary says beside its clauses: names, and what joins clauses; and up to which distance

@@ -202,19 +202,19 @@ FORMS = (
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),
     (rf"the {NAME} dipped into the {NAME} at the segment's (start|end)", dipped),
     (
-        rf"the {NAME} went, from start to end as a whole, ahead of the {NAME} "
+        rf"the {NAME} went, from start to end, ahead of the {NAME} "
         r"\([^)]*; 45° or less is ahead\)",
         went_ahead,
     ),
     (
-        rf"the {NAME} went, from start to end as a whole, after the {NAME} "
+        rf"the {NAME} went, from start to end, after the {NAME} "
         r"\([^)]*; 135° or more is after\)",
         went_after,
     ),
     (
-        rf"the {NAME} did not move again before the {NAME} (?:let go of it|was last tracked at "
-        rf"it,) at {TIME}"
-        r"(?:, when it touched no other recorded or assumed object)?",
+        rf"the {NAME} (?:did not move again before|came down to where) the {NAME} (?:let go of it|"
+        rf"was last tracked at it,) at {TIME}(?: \(taken for letting go\))?"
+        r"(?:, with no other recorded or assumed object in contact with it)?",
         came_to_lie,
     ),
 )

@@ -198,9 +198,9 @@ def counts_from(known: Known, body: str, far: str) -> bool:
     return _is(floor, far, slack_m=0.0)
 
 
-def too_low(known: Known, body: str, verb: str, far: str, asked: str) -> bool:
+def too_low(known: Known, body: str, far: str, sense: str, asked: str) -> bool:
     """It went so far up or down, which is less than the rules ask for."""
-    height = float(_shifted(known, body)[2]) * (1.0 if verb == "rose" else -1.0)
+    height = float(_shifted(known, body)[2]) * (1.0 if sense == "higher" else -1.0)
     return _is(height, far) and 0.0 < height < 0.05 + SMOOTHED_M and _asked("height_mm", asked)
 
 
@@ -214,9 +214,7 @@ def too_little(
     return short and asked and ended(known, body, rise, sense, aside)
 
 
-def not_steep(
-    known: Known, body: str, far: str, sense: str, asked: str, wanted: str
-) -> bool:
+def not_steep(known: Known, body: str, far: str, sense: str, asked: str, wanted: str) -> bool:
     """It ended no higher, or no lower, than can be seen, and so far from that height."""
     height = float(_shifted(known, body)[2]) * (1.0 if wanted == "higher" else -1.0)
     is_so = _is(height * (1.0 if sense == wanted else -1.0), far) if far else abs(height) < 0.01
@@ -617,11 +615,12 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         too_little,
     ),
     (
-        rf"ended only ()(){LENGTH} to the side \({LENGTH} up or down, or {LENGTH} to the side, "
+        rf"ended at the same height and only ()(){LENGTH} to the side \({LENGTH} up or down, or "
+        rf"{LENGTH} to the side, "
         r"would count\)",
         too_little,
     ),
-    (rf"(rose|sank) by {LENGTH}, less than the {LENGTH} that count", too_low),
+    (rf"ended {LENGTH} (higher|lower), less than the {LENGTH} that count", too_low),
     (
         rf"ended (?:{LENGTH} (higher|lower)|at the same height), not {LENGTH} or more "
         r"(higher|lower)",
@@ -630,12 +629,15 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"went further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
     (rf"went further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
     (
-        rf"went only {LENGTH} to the side, less than the {LENGTH} from which on a direction counts",
+        rf"only {LENGTH} to the side, less than the {LENGTH} from which on a direction counts",
         too_short_for_a_direction,
     ),
-    (rf"went {LENGTH} to the side, less than the {LENGTH} that count", too_little_aside),
+    (rf"ended {LENGTH} to the side, less than the {LENGTH} that count", too_little_aside),
     (rf"ended {LENGTH} from where it began, not within {LENGTH}", too_far),
-    (rf"went only {LENGTH}, less than the {LENGTH} of a slide", too_short_to_slide),
+    (
+        rf"ended only {LENGTH} from where it began, less than the {LENGTH} of a slide",
+        too_short_to_slide,
+    ),
     (rf"turned by {DEGREES} about the vertical, less than {DEGREES}", turned_too_little),
     (
         rf"leant {DEGREES} at the start and {DEGREES} at the end {POSTURE}(?: \({DEGREES} at most "
@@ -647,8 +649,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         met_gently,
     ),
     (
-        rf"reached the {NAME} at a relative speed of (\d+) mm/s \(the greatest of their middles just before "
-        r"they met, in any direction; a blow has 1000 mm/s or more\)",
+        rf"reached the {NAME} at a relative speed of (\d+) mm/s \(the greatest of their middles "
+        r"just before they met, in any direction; a blow has 1000 mm/s or more\)",
         met_hard,
     ),
     (
@@ -678,20 +680,27 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"ended less than {LENGTH} from where it began", ended_there),
     (rf"moved {LENGTH}", moved),
     (
-        rf"ended {LENGTH} from where it (?:was|rested) at {TIME} \(within "
-        rf"{LENGTH} counts as back there\)",
+        rf"ended {LENGTH} from where it (?:was|rested) at {TIME} \(a "
+        rf"return is within {LENGTH}\)",
         rested_near,
     ),
     (
-        rf"ended less than {LENGTH} from where it (?:was|rested) at {TIME} \(within "
-        rf"{LENGTH} counts as back there\)",
+        rf"ended less than {LENGTH} from where it (?:was|rested) at {TIME} \(a "
+        rf"return is within {LENGTH}\)",
         rested_there,
     ),
     (rf"no rest of {TIME} or more, touching nothing, before {TIME}", never_rested),
     (rf"came to rest at {TIME}", rests_from),
+    (
+        rf"after parting from it at {TIME}",
+        lambda known, body, at: any(
+            near(each.last, known.at(at)) for each in known.of(Touching) if each.body == body
+        ),
+    ),
     (rf"\({LENGTH} or more down count\)", came_down),
     (
-        rf"(?:before|when) the {NAME} (?:let go of|was last tracked at) (?:it|them),? at {TIME}",
+        rf"(?:before|when|where) the {NAME} (?:let go of|was last tracked at) (?:it|them),? "
+        rf"at {TIME}",
         lambda known, _, hand, at: held_until(known, known.segment.objects[0], hand, at),
     ),
     (rf"was moved again from {TIME} on", moved_on),
@@ -709,13 +718,17 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         lambda known, body, angle, at, asked: pushed_at(known, body, angle, asked)
         and any(near(each.first, known.at(at)) for each in known.of(Touching)),
     ),
-    (rf"\({LENGTH} above the top of the {NAME} and (?:{LENGTH} aside of it|over it)\)", above),
+    (
+        rf"\(its middle {LENGTH} above the top of the {NAME} and (?:{LENGTH} aside of it|over it)"
+        r"\)",
+        above,
+    ),
     (r"\((\d+) % of it(?: at \d+\.\d\d s)?\)", shared),
     (rf"ended {LENGTH} from where it began", ended_away),
     (rf"\((?:(up) to {LENGTH} higher|(down) to {LENGTH} lower)(?: and down to {LENGTH} lower)? in "
      r"between\)", been_beyond),
     (rf"ended {LENGTH} (higher|lower)(?: and {LENGTH} to the side)?", ended),
-    (rf"ended (at nearly the same height)() and {LENGTH} to the side",
+    (rf"ended (at the same height)() and {LENGTH} to the side",
      lambda known, body, _, sense, aside: ended(known, body, "", sense, aside)),
     (rf"ended ()(){LENGTH} to the side", ended),
     (rf"until {TIME}", until),
@@ -747,6 +760,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         lambda known, _, __, told: rest_lasts(known, _, told),
     ),
     (rf"up to {LENGTH} apart", apart_at_most),
+    (rf"far over begins at {DEGREES}", lambda _, __, told: told == "30"),
     (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
     (rf"was held by the {NAME} already \(since {TIME}\)", held_since),
     (
@@ -768,7 +782,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         lambda known, body, first, last, far: kept_within(known, body, far, first, last),
     ),
     (r"longer than the (\d\.\d\d) s of a rest", rests_longer),
-    (rf"had no rest of {TIME} or more", rest_lasts),
+    (rf"(?:had no rest of|at rest for) {TIME} or more", rest_lasts),
     (rf"touched the {NAME} at {TIME}", touched_at),
     (rf"stayed within {LENGTH} of its median place", kept_within),
     (rf"less than the {LENGTH} from which on it counts as moved", counts_from),
