@@ -181,13 +181,16 @@ def _inside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         for first, last in spans
         if first <= border + merge and last >= border
     ]
+    dips = "dips" in forms
     at = dict.fromkeys([told.first, told.last, *starts])
     known_at = [frame for frame in at if frame < len(share)]
     return Panel(
         f"{known.called(name)}: share of it inside the {known.called(other)}",
         "%",
         (known.curve(share), known.curve(deep, "share of its ends well inside")),
-        (
+        ()
+        if dips
+        else (
             Limit(
                 CENTI * limits.inside_share,
                 f"inside from {percent(limits.inside_share)} on, while no less than "
@@ -195,8 +198,8 @@ def _inside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
             ),
         ),
         tuple(Mark(known.at(one), float(share[one]), f"{share[one]:.0f} %") for one in known_at),
-        known.bars(Lies, body=name, how="inside", other=other),
-        "counts as inside",
+        known.bars(Lies, body=name, how="dips" if dips else "inside", other=other),
+        "dips in, as some of an end is well inside" if dips else "counts as inside",
     )
 
 

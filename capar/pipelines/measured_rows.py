@@ -21,7 +21,7 @@ LABELS: Mapping[str, str] = {
     "rolls": "{0}: turns as it goes, without slipping",
     "lengthwise": "{0}: goes along its own length",
     "swings": "{0}: goes to and fro",
-    "leans": "{0}: leans far over",
+    "leans": "{0}: counts as a far lean",
     "lies": "{0}: {1} the {2}",
     "bears": "{0}: bears of the weight of the body: {1}",
     "moves_with": "{0}: moves with the {1}",

@@ -203,7 +203,7 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     ]
     if forms & {"far_over", "leaning"}:
         far = math.degrees(thresholds_of(measurements.calibration).lean_rad)
-        limits.append(Limit(far, f"far over begins at {far:.0f}°"))
+        limits.append(Limit(far, f"far over from {far:.0f}° on"))
     if "far_over" in forms:
         most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
         bound = upward(float(angle[most]))
@@ -232,7 +232,7 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         tuple(limits),
         tuple(marks),
         known.bars(Leans, object=name),
-        "leans far over",
+        "counts as a far lean",
     )
 
 

@@ -33,7 +33,7 @@ AT_ONE_SIDE = {
 }
 """Clauses of contact at one border, and that border."""
 
-LEANING = {"tips": "begin", "rights": "cease"}
+LEANING = {"tips": "begun", "rights": "over"}
 """Kinds of events at which borders lie, of how far a thing leans."""
 
 MOST_GAPS = 3
@@ -143,15 +143,14 @@ class Briefs:
         if not found or span is None:
             return []
         called, least = self.clock.called(thing), round(1000.0 * self.clock.measured.far_over_rad)
-        ends = "" if called in self.clock.several else "s"
         borders = {"start": "begins", "end": "ends"}
         told = listed(
             [
-                f"{borders[side]} where the {called} {how}{ends} to lean far over"
+                f"{borders[side]} where a far lean of the {called} counts as {how}"
                 for side, how in sorted(found.items(), reverse=True)
             ]
         )
-        text = f"the segment {told} (far over begins at {degrees(least)})"
+        text = f"the segment {told} (such a lean reaches {degrees(least)})"
         return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="leaning"),))]
 
     def also_reached(self, claims: Iterable[Claim]) -> list[Claim]:

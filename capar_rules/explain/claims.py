@@ -97,7 +97,8 @@ def claim(
     for measure, places in () if found else _measures(predicate, arguments):
         for bodies in _bodies(places, arguments, clock):
             halts = tuple(clock.strokes.get(clock.own, ())) if predicate in COUNTED else ()
-            found.append(Quantity(measure, bodies, *own, halts=halts))
+            how = "dips" if measure is Measure.INSIDE and "dips" in arguments else ""
+            found.append(Quantity(measure, bodies, *own, form=how, halts=halts))
     for text_of, form in sentences.formats(predicate, arguments, mood=mood):
         argument = Argument(text_of, arguments, clock)
         span = argument.measured_between(form)

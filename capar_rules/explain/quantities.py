@@ -245,7 +245,10 @@ def _little(aside_mm: float, z_mm: float, wanted_mm: float) -> Shortfall:
     rise = f"{height} {'higher' if z_mm > 0.0 else 'lower'}"
     parts = [rise] * (abs(z_mm) >= 1.0) + [f"{aside} to the side"] * (aside_mm >= 1.0)
     level = "at the same height and " * (abs(z_mm) < 1.0)
-    text = f"ended {level}only {' and '.join(parts)} ({least} up or down, or {far} to the side, would count)"
+    text = (
+        f"ended {level}only {' and '.join(parts)} ({least} up or down, or {far} to the side, "
+        "would count)"
+    )
     share = max(abs(z_mm) / known["height_mm"], aside_mm / known["aside_mm"])
     return Shortfall(text, share if wanted_mm >= 0.0 else FAR_OFF)
 

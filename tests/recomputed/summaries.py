@@ -760,7 +760,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         lambda known, _, __, told: rest_lasts(known, _, told),
     ),
     (rf"up to {LENGTH} apart", apart_at_most),
-    (rf"far over begins at {DEGREES}", lambda _, __, told: told == "30"),
+    (rf"such a lean reaches {DEGREES}", lambda _, __, told: told == "30"),
     (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
     (rf"was held by the {NAME} already \(since {TIME}\)", held_since),
     (
