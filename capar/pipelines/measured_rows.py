@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 
-from capar.model.facts import Fact, Link, Tag
+from capar.model.facts import Fact, Link, Solid, Tag
 from capar.pipelines.shown_recording import Recording
 from capar.views.lettering import Span
 from capar.views.movers import MoverStretches
@@ -104,10 +104,12 @@ def _row(known: Recording, predicate: str, about: Sequence[str], bars: Sequence[
 
 def _thing(known: Recording, name: str) -> Row:
     """What is known of a thing, all the time."""
-    tags = [fact for fact in known.seen.observation.facts if isinstance(fact, Tag)]
+    facts = known.seen.observation.facts
+    tags = [fact for fact in facts if isinstance(fact, Tag)]
     kinds = [fact.type for fact in tags if fact.object == name]
     shapeless = name in known.seen.explainer.measured.shapeless
-    shape = "its shape is not known" if shapeless else "its shape is known"
+    solid = any(isinstance(fact, Solid) and fact.object == name for fact in facts)
+    shape = "its shape is not known" if shapeless else "no hollow" if solid else "has a hollow"
     whole = Span(known.at(known.span[0]), known.at(known.span[1]), "")
     return Row(f"{known.called(name)}: {', '.join(kinds)}; {shape}", (whole,))
 
