@@ -15,10 +15,11 @@ from capar.model.capture import Capture
 from capar.model.facts import Moving
 from capar.model.observation import Observation, Segment
 from capar.model.segment_address import SegmentAddress, find_segment
+from capar.pipelines.distances import distances, frames_between
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.explain.clock import Heights, Leans, Measured, Places, TurnsBack, Ways
+from capar_rules.explain.clock import Apart, Heights, Leans, Measured, Places, TurnsBack, Ways
 from capar_rules.explain.explanation import Explainer, Explanation
 from capar_rules.explain.quantities import Over, Turns, Way
 from capar_rules.explain.reaches import Between, Reach
@@ -29,6 +30,9 @@ from extractors.measure import Measurements, measure
 from extractors.motion.leaning import lean
 from extractors.motion.turning_points import most_turns
 from extractors.relations.arrangement import Pair
+
+AXES = ("along the x axis", "along the y axis", "up and down")
+"""The axes of the world, as sentences have them."""
 
 GAP_S = 0.1
 """Shorter gaps in a track are not told of [s]."""
@@ -151,6 +155,7 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
         },
         heights=_heights(measurements),
         over=_over(measurements),
+        apart=_apart_at_most(measurements),
         lost=_lost(observation, measurements),
         unrested=_unrested(observation),
     )
@@ -184,6 +189,21 @@ def _over(measurements: Measurements) -> Places:
         return Over(float(rise), aside, float(share[frame]), float(deep[frame]), shaped)
 
     return at
+
+
+def _apart_at_most(measurements: Measurements) -> Apart:
+    """How far bodies were apart, at the frames at which pictures show it."""
+
+    @cache
+    def most(one: str, other: str, first: int, last: int) -> float | None:
+        pair = measurements.calibration.sought(one, other)
+        pair = pair or measurements.calibration.sought(other, one)
+        if pair is None:
+            return None
+        found = distances(measurements, pair, frames_between(first, last))
+        return float(np.nanmax(found)) if np.isfinite(found).any() else None
+
+    return most
 
 
 def _lost(observation: Observation, measurements: Measurements) -> dict[str, list[tuple[int, int]]]:
@@ -241,7 +261,8 @@ def _turns(measurements: Measurements) -> TurnsBack:
 
     def turned(name: str, first: int, last: int) -> Turns:
         stream = measurements.bodies.named(name).poses.smooth
-        return Turns(len(most_turns(stream, (first, last), limits)[1]), limits.swing_m)
+        axis, turns = most_turns(stream, (first, last), limits)
+        return Turns(len(turns), limits.swing_m, AXES[axis])
 
     return turned
 
@@ -249,7 +270,16 @@ def _turns(measurements: Measurements) -> TurnsBack:
 def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
     """Up to which distance, and of what, two bodies are counted as touching, in either order."""
     return {
-        names: Reach(max(pair.touch_m, pair.release_m), _measured_between(pair, measurements))
+        names: Reach(
+            max(pair.touch_m, pair.release_m),
+            _measured_between(pair, measurements),
+            pair.touch_m,
+            tuple(
+                name
+                for name in (pair.first, pair.second)
+                if measurements.bodies.named(name).shape is None
+            ),
+        )
         for pair in measurements.calibration.pairs
         if pair.found is not Found.NEVER
         for names in ((pair.first, pair.second), (pair.second, pair.first))

@@ -1,13 +1,13 @@
 """What is measured of two bodies as a panel over time: how far apart, above, inside, which way."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
-from jaxtyping import Float, Int
 
 from capar.model.calibration import Found, PairCalibration
 from capar.model.facts import ClosingSpeed, Lies, Touching
+from capar.pipelines.distances import distances, frames_between
 from capar.pipelines.shown_recording import CENTI, MILLI, Recording
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
@@ -16,14 +16,8 @@ from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import LEAST_M, length, percent, upward
 from extractors.calibration import thresholds_of
-from extractors.contact.contacts import points_apart
-from extractors.contact.proximity import separation
-from extractors.contact.touch_distances import touchable
 from extractors.motion.impacts import APPROACH_S, closing_speed
 from extractors.relations.arrangement import Pair
-
-SAMPLES = 240
-"""At so many frames at most distances of surfaces are measured [1]."""
 
 CLOSE = 5.0
 """A distance is shown up to so many times what counts as contact: beyond, it only is far [1]."""
@@ -40,9 +34,10 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
         return None
     touching = known.bars(Touching, body=one, other=other)
     every = known.frames
-    some = every[:: max(1, math.ceil(len(every) / SAMPLES))]
-    frames = np.unique([*some, every[-1], *(at for at in (told.first, told.last) if at in every)])
-    apart = MILLI * np.min(list(_apart(known, pair, frames)), axis=0)
+    spans = (every[0], told.first), (told.first, told.last), (told.last, every[-1])
+    some = [frames_between(int(first), int(last)) for first, last in spans if first <= last]
+    frames = np.unique(np.clip(np.concatenate(some), every[0], every[-1]))
+    apart = MILLI * distances(known.seen.measurements, pair, frames)
     limits = {MILLI * pair.touch_m: "contact begins within {:.0f} mm"}
     limits[MILLI * pair.release_m] = "contact ends beyond {:.0f} mm"
     if pair.touch_m >= pair.release_m:
@@ -52,7 +47,7 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
     highest = CLOSE * max([*limits, 20.0])
     at_borders = dict(zip(frames.tolist(), apart.tolist(), strict=True))
     marks = [
-        Mark(known.at(frame), min(at_borders[frame], highest), _gap(at_borders[frame]))
+        Mark(known.at(frame), min(at_borders[frame], highest), _gap(at_borders[frame], highest))
         for frame in (told.first, told.last)
         if math.isfinite(at_borders.get(frame, math.nan))
     ]
@@ -72,34 +67,16 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
     )
 
 
-def _gap(millimetres: float) -> str:
-    """A distance of two bodies, as a mark has it."""
-    return f"{millimetres:.0f} mm" if millimetres < 100.0 else length(millimetres / MILLI)
+def _gap(millimetres: float, highest: float) -> str:
+    """A distance of two bodies, as a mark has it; that it is cut off beyond the highest shown."""
+    told = f"{millimetres:.0f} mm" if millimetres < 100.0 else length(millimetres / MILLI)
+    return told + " (cut off)" * (millimetres > highest)
 
 
 def _between(pair: PairCalibration, *, shaped: bool) -> str:
     if not pair.pivots:
         return "their surfaces" if shaped else "the surface of one and the origin of the other"
     return "their origins" if pair.found is Found.STATED else "a point of each"
-
-
-def _apart(
-    known: Recording, pair: PairCalibration, frames: Int[np.ndarray, "some"]
-) -> Iterator[Float[np.ndarray, "some"]]:
-    """How far each part of an end-effector, or a thing, is from a thing [m]."""
-    bodies, calibration = known.seen.measurements.bodies, known.seen.measurements.calibration
-    other = bodies.objects[pair.second]
-    hand = pair.first in bodies.sensors
-    parts = bodies.on_end_effector(pair.first) if hand else (bodies.objects[pair.first],)
-    nowhere = np.full(len(frames), np.inf)
-    for part in parts:
-        own = calibration.sought(part.name, other.name)
-        if own is None or own.found is Found.NEVER:
-            yield nowhere
-        elif own.pivots:
-            yield points_apart(own, part, other)[frames]
-        else:
-            yield separation(touchable(part), touchable(other), frames)
 
 
 def _closing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
@@ -204,13 +181,16 @@ def _inside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         for first, last in spans
         if first <= border + merge and last >= border
     ]
+    dips = "dips" in forms
     at = dict.fromkeys([told.first, told.last, *starts])
     known_at = [frame for frame in at if frame < len(share)]
     return Panel(
         f"{known.called(name)}: share of it inside the {known.called(other)}",
         "%",
         (known.curve(share), known.curve(deep, "share of its ends well inside")),
-        (
+        ()
+        if dips
+        else (
             Limit(
                 CENTI * limits.inside_share,
                 f"inside from {percent(limits.inside_share)} on, while no less than "
@@ -218,8 +198,8 @@ def _inside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
             ),
         ),
         tuple(Mark(known.at(one), float(share[one]), f"{share[one]:.0f} %") for one in known_at),
-        known.bars(Lies, body=name, how="inside", other=other),
-        "counts as inside",
+        known.bars(Lies, body=name, how="dips" if dips else "inside", other=other),
+        "dips in, as some of an end is well inside" if dips else "counts as inside",
     )
 
 

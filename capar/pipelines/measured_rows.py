@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 
-from capar.model.facts import Fact, Link, Tag
+from capar.model.facts import Fact, Link, Solid, Tag
 from capar.pipelines.shown_recording import Recording
 from capar.views.lettering import Span
 from capar.views.movers import MoverStretches
@@ -21,7 +21,7 @@ LABELS: Mapping[str, str] = {
     "rolls": "{0}: turns as it goes, without slipping",
     "lengthwise": "{0}: goes along its own length",
     "swings": "{0}: goes to and fro",
-    "leans": "{0}: leans far over",
+    "leans": "{0}: counts as a far lean",
     "lies": "{0}: {1} the {2}",
     "bears": "{0}: bears of the weight of the body: {1}",
     "moves_with": "{0}: moves with the {1}",
@@ -30,7 +30,7 @@ LABELS: Mapping[str, str] = {
 }
 """By the predicate of a fact: what a row of its stretches is called."""
 
-NOTHING = "{0} and any tracked object: count as in contact (at no time shown)"
+NOTHING = "{0}: at no time shown in contact with any recorded or assumed object"
 """The row of a body that touches nothing."""
 
 FEWEST = 4
@@ -95,17 +95,21 @@ def _about(fact: Fact, count: int) -> tuple[str, ...]:
 
 
 def _row(known: Recording, predicate: str, about: Sequence[str], bars: Sequence[Span]) -> Row:
-    called = ["any tracked object" if body == ANY else known.called(body) for body in about]
+    called = [
+        "any recorded or assumed object" if body == ANY else known.called(body) for body in about
+    ]
     label = LABELS.get(predicate, "{0}: " + predicate.replace("_", " "))
     return Row(label.format(*called), tuple(bars))
 
 
 def _thing(known: Recording, name: str) -> Row:
     """What is known of a thing, all the time."""
-    tags = [fact for fact in known.seen.observation.facts if isinstance(fact, Tag)]
+    facts = known.seen.observation.facts
+    tags = [fact for fact in facts if isinstance(fact, Tag)]
     kinds = [fact.type for fact in tags if fact.object == name]
     shapeless = name in known.seen.explainer.measured.shapeless
-    shape = "its shape is not known" if shapeless else "its shape is known"
+    solid = any(isinstance(fact, Solid) and fact.object == name for fact in facts)
+    shape = "its shape is not known" if shapeless else "no hollow" if solid else "has a hollow"
     whole = Span(known.at(known.span[0]), known.at(known.span[1]), "")
     return Row(f"{known.called(name)}: {', '.join(kinds)}; {shape}", (whole,))
 

@@ -14,6 +14,7 @@ from capar.model.facts import (
     Swings,
     Touching,
 )
+from capar.pipelines.explanation import AXES
 from capar.pipelines.measured_relations import RELATIONS, Series
 from capar.pipelines.shown_recording import CENTI, MILLI, Recording
 from capar.views.lettering import Span
@@ -42,8 +43,12 @@ def _way(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     moved = known.seen.explainer.measured.ways
     winding = moved is not None and "way" in forms and moved(name, told.first, told.last).winding
     end = float(away[told.last])
-    short = end < LEAST_M and (winding or "way" not in forms)
-    label = f"less than {length(LEAST_M)}" if short else length(end)
+    placed = end
+    if forms & {"place", "not_near", "not_slid"}:  # told by places in whole millimetres
+        ends = np.rint(MILLI * middles[[told.first, told.last]])
+        placed = float(np.linalg.norm(ends[1] - ends[0])) / MILLI
+    short = placed < LEAST_M and (winding or "way" not in forms)
+    label = f"less than {length(LEAST_M)}" if short else length(placed)
     marks = [Mark(known.at(told.last), CENTI * end, label)]
     if winding:
         steps = np.nan_to_num(np.linalg.norm(np.diff(middles, axis=0), axis=1))
@@ -90,11 +95,12 @@ def _spread(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     away = np.linalg.norm(middles - np.nanmedian(inside, axis=0), axis=1)
     far = told.first + int(np.nanargmax(away[told.first : told.last + 1]))
     thing = known.is_object(name)
+    limits = (known.floor(name),) if thing else ()
     return Panel(
         f"{known.called(name)}: distance from its median place",
         "cm",
         (known.curve(CENTI * away),),
-        (known.floor(name),) if thing else (),
+        tuple(limit for limit in limits if limit.value > CENTI * away[far]),
         (Mark(known.at(far), CENTI * away[far], f"at most {spread(away[far])}"),),
         known.bars(Moving, object=name) if thing else known.bars(Resting, ee=name),
         "counts as moving" if thing else "counts as at rest",
@@ -195,9 +201,10 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         Mark(known.at(frame), float(angle[frame]), label)
         for frame, label in zip((told.first, told.last), labels, strict=True)
     ]
-    if "far_over" in forms:
+    if forms & {"far_over", "leaning"}:
         far = math.degrees(thresholds_of(measurements.calibration).lean_rad)
-        limits.append(Limit(far, f"far over is {far:.0f}° or more"))
+        limits.append(Limit(far, f"far over from {far:.0f}° on"))
+    if "far_over" in forms:
         most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
         bound = upward(float(angle[most]))
         marks.append(Mark(known.at(most), float(angle[most]), f"{bound:.0f}° at most"))
@@ -225,7 +232,7 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         tuple(limits),
         tuple(marks),
         known.bars(Leans, object=name),
-        "leans far over",
+        "counts as a far lean",
     )
 
 
@@ -289,11 +296,11 @@ def _to_and_fro(known: Recording, told: Quantity, forms: frozenset[str]) -> Pane
     axis, turns = most_turns(stream, (told.first, told.last), limits)
     places = stream.positions[:, axis]
     places = CENTI * (places - np.nanmean(places[told.first : told.last + 1]))
-    sense = ("along the x axis", "along the y axis", "up and down")[axis]
     least = length(limits.swing_m)
     halts = "; halt: turns back where the hand halts" * bool(told.halts)
     return Panel(
-        f"{known.called(name)}: place {sense}; red: turns back after {least} or more{halts}",
+        f"{known.called(name)}: place {AXES[axis]}; red: turns back between ways of {least} or "
+        f"more{halts}",
         "cm",
         (known.curve(places),),
         marks=(

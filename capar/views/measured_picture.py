@@ -16,6 +16,7 @@ from capar.views.picture import save
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.patheffects import AbstractPathEffect
 
 WIDTH_IN = 10.0
 LEFT_IN, RIGHT_IN, EDGE_IN = 0.75, 0.3, 0.25
@@ -291,6 +292,7 @@ def _limits(axes: "Axes", panel: Panel, low: float, high: float) -> None:
             color=LIMIT,
             ha="right",
             va="bottom" if above else "top",
+            path_effects=_halo(),
             zorder=5,
         )
 
@@ -317,8 +319,16 @@ def _mark(
         color=MARK,
         ha="right" if right else "left",
         va="bottom" if upper else "top",
+        path_effects=_halo(),
         zorder=6,
     )
+
+
+def _halo() -> "list[AbstractPathEffect]":
+    """A white edge of letters, so that they can be read over curves."""
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=2.5, foreground="white")]
 
 
 def _bars(axes: "Axes", panel: Panel, low: float, high: float) -> None:

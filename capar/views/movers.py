@@ -92,7 +92,7 @@ def mover_stretches(
 def _words(how: str, who: str, *, moving: Collection[str]) -> str:
     """What a mover does at a time, to stand after the thing; some merely touch it."""
     moves = who in moving or how in WITHOUT_MOVER
-    return (WORDS[how] if moves else "touched by {0}").format(f"the {spoken(who)}")
+    return (WORDS[how] if moves else "in contact with {0}").format(f"the {spoken(who)}")
 
 
 def _moved(
@@ -135,8 +135,7 @@ def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
         frame: [(how, mover) for how, mover in found if mover not in touching]
         for frame, found in frames.items()
     }
-    who = [f"the {spoken(mover)}" for mover in sorted(touching)]
-    beside = f"; {_few(who)} touched {it} meanwhile" if who else ""
+    beside = _beside(frames, touching, it)
     ways = Counter(_together(found) for found in movers.values()).most_common(1)
     (together, count) = ways[0]
     if 100.0 * count >= ALL_BUT * len(movers):
@@ -159,6 +158,23 @@ def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
     both = both if len(shares) > 1 and " throughout" not in " ".join(told) else ""
     remainder = _remainder(movers.values(), it="they were" if is_plural(thing) else "it was")
     return f"The {thing} {was} moved {joined(told)}{both}{remainder}{beside}."
+
+
+def _beside(
+    frames: Mapping[int, Collection[tuple[str, str]]], touching: Collection[str], it: str
+) -> str:
+    """Who touched a thing while another one moved it, and in how much of its motion."""
+    shares: dict[int, list[str]] = defaultdict(list)
+    for mover in sorted(touching):
+        count = sum(any(who == mover for _, who in found) for found in frames.values())
+        share = round(100.0 * count / len(frames))
+        if share:
+            shares[share].append(f"the {spoken(mover)}")
+    return "".join(
+        f"; {_few(who)} {'were' if len(who) > 1 else 'was'} in contact with {it} "
+        + (f"for {share} % of that time" if share < ALL_BUT else "meanwhile")
+        for share, who in sorted(shares.items(), reverse=True)
+    )
 
 
 def _movers(found: Collection[tuple[str, str]]) -> set[str]:

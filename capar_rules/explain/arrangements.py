@@ -122,6 +122,12 @@ def left(clock: Clock, segment: str) -> tuple[str, ...]:
     return tuple(other for other in met_at(clock, segment, "start") if other not in at_end)
 
 
+def reached(clock: Clock, segment: str) -> tuple[str, ...]:
+    """What the segment's thing touches at its end and did not touch at its start."""
+    at_start = met_at(clock, segment, "start")
+    return tuple(other for other in met_at(clock, segment, "end") if other not in at_start)
+
+
 def laid(clock: Clock, segment: str) -> str:
     """How a thing that came down was left there; empty where its hold is not known."""
     span = clock.span(segment)
@@ -130,10 +136,11 @@ def laid(clock: Clock, segment: str) -> str:
         return ""
     alone = ""
     if not met_at(clock, segment, "end"):
-        it = clock.it(clock.objects.get(segment, ""))
-        alone = f", where {it} counted as touching nothing else that is tracked"
+        it = clock.it(clock.objects.get(segment, ""), object_=True)
+        alone = f", with no other recorded or assumed object in contact with {it}"
     let_go = _let_go(clock, segment, held[1])
-    return f"was not moved again before {let_go}{alone}"
+    later = held[1] - span[1] > in_frames(times().merge_ms, clock.rate_hz)
+    return f"{'did not move again before' if later else 'came down to where'} {let_go}{alone}"
 
 
 def not_laid(clock: Clock, segment: str) -> str:
@@ -151,7 +158,13 @@ def not_laid(clock: Clock, segment: str) -> str:
     moves = clock.measured.moving.get(thing, ())
     again = [first for first, last in moves if last > span[1] and first < held[1]]
     if not again:
-        return ""
+        objects = clock.listed.get(segment, ())
+        new = sorted(reached(clock, segment), key=lambda other: other not in objects)
+        return (
+            f"came to touch the {clock.called(new[0])}, and a PutDown brings no new contact"
+            if new
+            else ""
+        )
     let_go = _let_go(clock, segment, held[1])
     if min(again) > span[1]:
         return f"was moved again from {clock.at(min(again))} on, before {let_go}"
@@ -166,7 +179,7 @@ def _let_go(clock: Clock, segment: str, frame: int) -> str:
     called, at, it = clock.called(hand), clock.at(frame), clock.it(thing, object_=True)
     gaps = clock.measured.lost.get(hand, ())
     if any(first <= frame + 1 <= last for first, last in gaps):
-        return f"the {called} was last tracked at {it}, at {at}"
+        return f"the {called} was last tracked at {it}, at {at} (taken for letting go)"
     return f"the {called} let go of {it} at {at}"
 
 

@@ -4,12 +4,13 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from capar_rules.explain.arrangements import untracked
-from capar_rules.explain.claimed_measures import ANY
-from capar_rules.explain.claims import Claim, Stretches, claim, joined_claims, resting_on
+from capar_rules.explain.arrangements import kept, reached, untracked
+from capar_rules.explain.claimed_measures import ANY, Measure
+from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined_claims, resting_on
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.leading import DOUBTED, nodes_below, parsed, rank
+from capar_rules.explain.quantities import degrees
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
 from capar_rules.explain.told_argument import UNBOUND
@@ -17,8 +18,9 @@ from capar_rules.explain.told_argument import UNBOUND
 CLEAR = "not sliding("
 """Prefix of atoms that say that a body was clear of others; told of what goes aside."""
 
-COURSES = ("rises", "comes_down", "travels", "stays_near")
-"""Predicates that tell how a body moved, so that its motion need not be told again."""
+COURSES = ("rises", "comes_down", "travels", "stays_near", "sliding")
+"""Predicates that tell how a body moved, so that its motion need not be told again, or that it was
+not slid."""
 
 NUMBERED = ("stays(", "met_gently(")
 """Prefixes of atoms of which a contrast tells the number that decided."""
@@ -30,6 +32,9 @@ AT_ONE_SIDE = {
     "near_at_end": "end",
 }
 """Clauses of contact at one border, and that border."""
+
+LEANING = {"tips": "begun", "rights": "over"}
+"""Kinds of events at which borders lie, of how far a thing leans."""
 
 MOST_GAPS = 3
 """So many gaps of a track are told one by one."""
@@ -122,6 +127,58 @@ class Briefs:
             for body, gaps in untracked(self.clock, bodies)
         ]
 
+    def leaning(self, top: Reason) -> list[Claim]:
+        """That the segment's borders are where its thing begins or ceases to lean far over."""
+        thing, span = self.clock.objects.get(self.clock.own, ""), self.clock.span(self.clock.own)
+        hand, since = self.clock.own.removeprefix("seg(").removesuffix(")").split(",")
+        ticks = {int(since): "start"}
+        ticks[self.clock.ends.get((hand, int(since)), int(since))] = "end"
+        found: dict[str, str] = {}
+        for node in top.walk():
+            predicate, arguments = parsed(node.atom)
+            if predicate == "event" and arguments[2] in LEANING and arguments[3] == thing:
+                side = ticks.get(int(arguments[1])) if arguments[0] == hand else None
+                if side is not None:
+                    found[side] = LEANING[arguments[2]]
+        if not found or span is None:
+            return []
+        called, least = self.clock.called(thing), round(1000.0 * self.clock.measured.far_over_rad)
+        borders = {"start": "begins", "end": "ends"}
+        told = listed(
+            [
+                f"{borders[side]} where a far lean of the {called} counts as {how}"
+                for side, how in sorted(found.items(), reverse=True)
+            ]
+        )
+        text = f"the segment {told} (such a lean reaches {degrees(least)})"
+        return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="leaning"),))]
+
+    def also_reached(self, claims: Iterable[Claim]) -> list[Claim]:
+        """What else the segment's thing came to touch, where of one thing it is told."""
+        thing, span = self.clock.objects.get(self.clock.own, ""), self.clock.span(self.clock.own)
+        claims = list(claims)
+        told = {body for claim in claims for part in claim.quantities for body in part.bodies}
+        new = reached(self.clock, self.clock.own)
+        if span is None or thing not in told or not told & {*new}:
+            return []
+        called = self.clock.called(thing)
+        return [
+            Claim(
+                f"the {called} came into contact with the {self.clock.called(other)} too",
+                (Quantity(Measure.DISTANCE, (thing, other), *span),),
+            )
+            for other in new
+            if other not in told
+        ] + [
+            Claim(
+                f"the {called} counted as in contact with the {self.clock.called(other)} both at "
+                "the start and at the end",
+                (Quantity(Measure.DISTANCE, (thing, other), *span),),
+            )
+            for other in kept(self.clock, self.clock.own)
+            if other not in told
+        ]
+
     def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:
         was = "were" if self.clock.called(body) in self.clock.several else "was"
         spans = [f"from {self.clock.at(first)} to {self.clock.at(last)}" for first, last in gaps]
@@ -148,7 +205,7 @@ class Briefs:
             pair = pairs.get(each.atom)
             if pair is not None and pair[0] in AT_ONE_SIDE:
                 side = AT_ONE_SIDE[pair[0]]
-                if (side, *pair[1][1:]) in borne:
+                if rank(each) and (side, *pair[1][1:]) in borne:
                     continue  # which of the two is below is told of the same contact
             if pair is not None:
                 told.append(self.tell(*pair, "brief"))
@@ -165,8 +222,7 @@ class Briefs:
             joined.setdefault(found[1] if found else clause, []).append(clause)
         out = []
         for begin, parts in joined.items():
-            text = " and ".join([parts[0], *(part.removeprefix(begin) for part in parts[1:])])
-            text = text.replace(" and  at ", " and at ")
+            text = _joined_sides(begin, parts)
             if len(parts) > 1:
                 claims = [self.claims[part] for part in parts if part in self.claims]
                 self.claims[text] = joined_claims(text, claims)
@@ -187,6 +243,16 @@ class Briefs:
         return (
             bool(arguments) and arguments[0].startswith("seg(") and arguments[0] != self.clock.own
         )
+
+
+def _joined_sides(begin: str, parts: Sequence[str]) -> str:
+    """Clauses that begin alike and differ in the side, and in numbers of it, as one."""
+    brackets = {part[part.rindex(" (") :] for part in parts} if len(parts) > 1 else set[str]()
+    if len(brackets) == 1:
+        (bracket,) = brackets
+        parts = [*(part.removesuffix(bracket) for part in parts[:-1]), parts[-1]]
+    text = " and ".join([parts[0], *(part.removeprefix(begin) for part in parts[1:])])
+    return text.replace(" and  at ", " and at ")
 
 
 _SIDED = re.compile(r"(.*) at the (?:start|end) \([^()]*\)")

@@ -67,6 +67,9 @@ class Claim:
     stretches: tuple[Stretches, ...] = ()
     """What held when, of what it says."""
 
+    of: str = ""
+    """The predicate that it tells."""
+
     @property
     def shown(self) -> bool:
         """Whether anything of it can be drawn."""
@@ -94,7 +97,8 @@ def claim(
     for measure, places in () if found else _measures(predicate, arguments):
         for bodies in _bodies(places, arguments, clock):
             halts = tuple(clock.strokes.get(clock.own, ())) if predicate in COUNTED else ()
-            found.append(Quantity(measure, bodies, *own, halts=halts))
+            how = "dips" if measure is Measure.INSIDE and "dips" in arguments else ""
+            found.append(Quantity(measure, bodies, *own, form=how, halts=halts))
     for text_of, form in sentences.formats(predicate, arguments, mood=mood):
         argument = Argument(text_of, arguments, clock)
         span = argument.measured_between(form)
@@ -117,7 +121,9 @@ def claim(
         for kind, places in _rows(predicate, arguments)
         for bodies in _bodies(places, arguments, clock)
     ]
-    return Claim(text, tuple(dict.fromkeys(found)), tuple(frames), tuple(dict.fromkeys(stretches)))
+    return Claim(
+        text, tuple(dict.fromkeys(found)), tuple(frames), tuple(dict.fromkeys(stretches)), predicate
+    )
 
 
 def _since(clock: Clock, frame: int) -> list[int]:

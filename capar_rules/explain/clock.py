@@ -44,6 +44,9 @@ TurnsBack = Callable[[str, int, int], Turns]
 Heights = Callable[[str, int, int], tuple[float, float]]
 """How low and how high a body was between two frames, from where it was at the first [m]."""
 
+Apart = Callable[[str, str, int, int], float | None]
+"""How far two bodies were apart at most between two frames [m]; None if that is not measured."""
+
 Places = Callable[[str, str, int], Over]
 """Where a body is to another one at a frame."""
 
@@ -136,6 +139,12 @@ class Measured:
     over: Places | None = None
     """Where a body is to another one; None where that is not known."""
 
+    apart: Apart | None = None
+    """How far bodies were apart; None where that is not known."""
+
+    movable: frozenset[str] = frozenset()
+    """Objects that can be moved."""
+
     lost: Mapping[str, Sequence[Frames]] = field(default_factory=dict)
     """First and last frames of the gaps in the tracks of bodies that are long enough to matter."""
 
@@ -147,7 +156,9 @@ class Measured:
 
     def upright(self, body: str) -> str:
         """The posture from which a body's lean is measured, in words."""
-        return "how it was first seen" if body in self.unrested else "how it first rested"
+        several = is_plural(self.names.get(body, body.replace("_", " ")))
+        it, was = ("they", "were") if several else ("it", "was")
+        return f"how {it} {was} first seen" if body in self.unrested else f"how {it} first rested"
 
     def contact(self, one: str, other: str, frame: int, slack: float) -> Frames | None:
         """The contact of two bodies at a frame, or the nearest so few frames from it."""
@@ -226,6 +237,7 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
     lies: dict[tuple[str, str, str], list[Frames]] = defaultdict(list)
     flickers: dict[Pair, list[Frames]] = defaultdict(list)
     shapeless: set[str] = set()
+    movable: set[str] = set()
     for fact in facts:
         match fact:
             case Touching():
@@ -242,10 +254,18 @@ def _of_pairs(facts: Iterable[Fact], known: Measured) -> Measured:
                 lies[fact.how, fact.body, fact.other].append((fact.first, fact.last))
             case Shapeless():
                 shapeless.add(fact.object)
+            case Tag(type="mobile"):
+                movable.add(fact.object)
             case _:
                 pass
     found = replace(known, contacts=contacts, normals=normals, presses=presses, lies=lies)
-    return replace(found, closing=closing, flickers=flickers, shapeless=frozenset(shapeless))
+    return replace(
+        found,
+        closing=closing,
+        flickers=flickers,
+        shapeless=frozenset(shapeless),
+        movable=frozenset(movable),
+    )
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from capar_rules.engine.syntax import Literal, split_arguments
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.condition_matching import Atoms, Match, valued
 from capar_rules.explain.derivations import Derivations
+from capar_rules.explain.near_misses import more_specific
 from capar_rules.explain.neighbours import (
     FEATURE,
     Neighbour,
@@ -39,6 +40,9 @@ SEEN = ("leans_over", "spins")
 
 LEAST_TOLD = 0.01
 """Where no name is near, the nearest is told if it has a number, however small its share [1]."""
+
+LEAST_SEEN = 0.1
+"""Beside near names, others are told whose number has that share of what is asked for [1]."""
 
 MOST_TOLD = 2
 """So many conditions are told at most."""
@@ -84,6 +88,12 @@ class Contrast:
 
     numbered: bool = False
     """Whether what is told has a number."""
+
+    direct: bool = False
+    """Whether the features differ in a row of the first name's own."""
+
+    nearness: float = HALF
+    """By how much what decided missed being otherwise: a share of what was asked for."""
 
     @property
     def weak(self) -> bool:
@@ -151,12 +161,25 @@ def contrasts(
         for one in _of_neighbour(base, neighbour, atoms, clock, tell)
     ]
     own_found = [refused for refused in found if not refused.contrast.by_features]
-    own = list(_nearest(own_found)) or list(_nearest(own_found, least=LEAST_TOLD, most=1))
+    own = list(_nearest(own_found))
+    numbered = [refused for refused in own_found if refused.contrast.numbered]
+    least = LEAST_SEEN if own else LEAST_TOLD
+    own += [one for one in _nearest(numbered, least=least) if one not in own]
     features = [each for each in found if each.contrast.by_features]
-    indirect = list(_nearest([each for each in features if not each.direct], most=1))
+    indirect = list(_nearest([each for each in features if not each.direct], most=MOST_TOLD))
     direct = list(_nearest([each for each in features if each.direct], most=1))
     supported = list(_supported(base, derived, atoms, clock, tell))
-    return tuple(_told_once(supported + own + direct + indirect))
+    found_once = _told_once(supported + own + direct + indirect)
+    return tuple(_of_its_kind(base, contrast) for contrast in found_once)
+
+
+def _of_its_kind(base: RuleBase, contrast: Contrast) -> Contrast:
+    """A contrast by a row of the first name's own, of it and of the names that are kinds of it."""
+    if not contrast.direct:
+        return contrast
+    kinds = more_specific(base.statements, contrast.names[0])
+    names = (name for name in contrast.names[1:] if name in kinds)
+    return replace(contrast, names=(contrast.names[0], *names))
 
 
 def _told_once(found: Sequence[Contrast]) -> Iterator[Contrast]:
@@ -241,6 +264,8 @@ def _of_neighbour(
             though=though,
             below=other.below,
             numbered=bool(re.search(r"\d", "".join(clauses[place]))),
+            direct=direct,
+            nearness=near,
         )
         related = other.steps, *other.distance(form)
         seen_first = not though, not other.below

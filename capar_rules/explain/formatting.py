@@ -57,7 +57,6 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
         of_itself = {
             "listed": self._listed,
             "placed": self._placed,
-            "reach": self._reach,
             "hand": lambda: self.clock.called(self._hand),
             "as_foot": self._as_foot,
             "floor": self._floor,
@@ -68,7 +67,7 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
             "back": self._back,
             "keeper": self._keeper,
             "laid": lambda: arrangements.laid(self.clock, self.text) or UNBOUND,
-            "kept": self._kept,
+            "stirred": self._stirred,
             "over": self._over,
             "share": self._share,
             "borne": self._borne,
@@ -86,6 +85,7 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
             "comes": self._comes,
             "no_longer": self._no_longer,
             "unseen": self._unseen,
+            "after_leaving": self._after_leaving,
             "lets_go": self._lets_go,
             "takes": self._takes,
             "until": lambda: self._contact("start", 1),
@@ -136,7 +136,7 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
             nearest = self._nearest_posture()
             return (nearest[1], span[1]) if nearest and span else None
         if form == "turns_back":
-            return self._swing(self.body, span) if span else None
+            return self._counted_turns(self.body, span) if span else None
         return self.clock.displacement(self.body, span) if span and form == "way" else span
 
     def nearness(self, form: str) -> float:

@@ -71,7 +71,7 @@ def spread(metres: float) -> str:
     """Within what a body stayed, to stand after ``within``: rounded up, so that it is so."""
     for unit, scale, digits in (("mm", 1000.0, 0), ("cm", 100.0, 0), ("m", 1.0, 1)):
         bound = upward(scale * metres, digits)
-        if unit == "m" or bound < (10 if unit == "mm" else 100):
+        if unit == "m" or bound < 100:
             return f"{max(bound, 1.0):.{digits}f} {unit}"
     raise AssertionError
 
@@ -86,9 +86,9 @@ def course(x_mm: int, y_mm: int, z_mm: int) -> str:
     """A displacement by its rise and its way aside, to stand after ``ended``."""
     aside = math.hypot(x_mm, y_mm)
     parts = []
-    if abs(z_mm) < LEVEL_MM <= aside:
+    if abs(z_mm) < 1 <= aside:
         parts.append("at the same height")
-    elif abs(z_mm) >= LEVEL_MM:
+    elif abs(z_mm) >= 1:
         parts.append(f"{length(abs(z_mm) / 1000.0)} {'higher' if z_mm > 0 else 'lower'}")
     if aside >= LEVEL_MM:
         parts.append(f"{length(aside / 1000.0)} to the side")
@@ -116,9 +116,14 @@ class Turns:
     least_m: float
     """The way before and after each [m]."""
 
+    sense: str = "on one axis"
+    """Along which line."""
+
     def __str__(self) -> str:
         """To stand after ``it``."""
-        return f"turned back {often(self.count)} after ways of {length(self.least_m)} or more"
+        least = length(self.least_m)
+        times = f"at least {often(self.count)} {self.sense}"
+        return f"turned back {times}, between ways of {least} or more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +150,7 @@ def over(at: Over, other: str) -> str:
     """How far a body is above another one of that name, in brackets."""
     top = f"the {'top' if at.shaped else 'origin'} of the {other}"
     aside = "over it" if at.aside_m < 0.0005 else f"{length(at.aside_m)} aside of it"
-    return f" ({length(at.rise_m)} above {top} and {aside})"
+    return f" (its middle {length(at.rise_m)} above {top} and {aside})"
 
 
 def percent(share: float) -> str:
@@ -180,25 +185,28 @@ FAR_OFF = 0.02
 
 def not_up(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     """Why a displacement is no rise."""
-    return _not_steep(math.hypot(x_mm, y_mm), z_mm, "rose", "up")
+    return _not_steep(math.hypot(x_mm, y_mm), z_mm, "up")
 
 
 def not_down(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     """Why a displacement is no lowering."""
-    return _not_steep(math.hypot(x_mm, y_mm), -z_mm, "sank", "down")
+    return _not_steep(math.hypot(x_mm, y_mm), -z_mm, "down")
 
 
-def _not_steep(aside_mm: float, height_mm: float, verb: str, sense: str) -> Shortfall:
+def _not_steep(aside_mm: float, height_mm: float, sense: str) -> Shortfall:
     least = constants()["height_mm"]
     if _is_little(aside_mm, height_mm):
         return _little(aside_mm, height_mm if sense == "up" else -height_mm, height_mm)
     if height_mm < LEVEL_MM:
-        plain = "rise" if sense == "up" else "sink"
-        asked = length(least / 1000.0)
-        return Shortfall(f"did not {plain} as a whole ({asked} or more count)", FAR_OFF)
+        wanted, other = ("higher", "lower") if sense == "up" else ("lower", "higher")
+        rise = f"{length(abs(height_mm) / 1000.0)} {wanted if height_mm > 0.0 else other}"
+        told = rise if abs(height_mm) >= 1.0 else "at the same height"
+        return Shortfall(f"ended {told}, not {length(least / 1000.0)} or more {wanted}", FAR_OFF)
     if height_mm < least:
         far, wanted = _apart(height_mm, least)
-        return Shortfall(f"{verb} by {far}, less than the {wanted} that count", height_mm / least)
+        comparison = "higher" if sense == "up" else "lower"
+        text = f"ended {far} {comparison}, less than the {wanted} that count"
+        return Shortfall(text, height_mm / least)
     aside, height = _apart(aside_mm, height_mm)
     text = f"went further to the side ({aside}) than {sense} ({height})"
     return Shortfall(text, height_mm / max(aside_mm, height_mm))
@@ -213,7 +221,7 @@ def not_aside(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
         return _little(aside_mm, z_mm, aside_mm)
     if aside_mm < least:
         far, wanted = _apart(aside_mm, least)
-        text = f"went {far} to the side, less than the {wanted} that count"
+        text = f"ended {far} to the side, less than the {wanted} that count"
         return Shortfall(text, aside_mm / least)
     height, aside = _apart(abs(z_mm), aside_mm)
     text = f"went further {'up' if z_mm > 0 else 'down'} ({height}) than to the side ({aside})"
@@ -235,8 +243,10 @@ def _little(aside_mm: float, z_mm: float, wanted_mm: float) -> Shortfall:
     height, least = _apart(abs(z_mm), known["height_mm"])
     aside, far = _apart(aside_mm, known["aside_mm"])
     rise = f"{height} {'higher' if z_mm > 0.0 else 'lower'}"
+    parts = [rise] * (abs(z_mm) >= 1.0) + [f"{aside} to the side"] * (aside_mm >= 1.0)
+    level = "at the same height and " * (abs(z_mm) < 1.0)
     text = (
-        f"ended only {rise} and {aside} to the side ({least} up or down, or {far} to the side, "
+        f"ended {level}only {' and '.join(parts)} ({least} up or down, or {far} to the side, "
         "would count)"
     )
     share = max(abs(z_mm) / known["height_mm"], aside_mm / known["aside_mm"])
@@ -254,7 +264,9 @@ def not_slid(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     """Why a displacement on a support is no sliding."""
     far_mm, least = math.hypot(x_mm, y_mm, z_mm), constants()["slide_mm"]
     far, wanted = _apart(far_mm, least)
-    return Shortfall(f"went only {far}, less than the {wanted} of a slide", far_mm / least)
+    return Shortfall(
+        f"ended only {far} from where it began, less than the {wanted} of a slide", far_mm / least
+    )
 
 
 def not_turned(turned_mrad: int) -> Shortfall:
@@ -272,15 +284,28 @@ def not_leant(before_mrad: int, after_mrad: int, most_mrad: int, posture: str) -
     most = f" ({bound:.0f}° at most in between)" * beyond
     text = (
         f"leant {degrees(before_mrad)} at the start and {degrees(after_mrad)} at the end from "
-        f"{posture}{most}, a change of less than {degrees(least)}"
+        f"{posture}{most}, a change of {_short_of(before_mrad, after_mrad)}, less than "
+        f"{degrees(least)}"
     )
     return Shortfall(text, max(change / least, NEAR_BY * beyond))
 
 
+def _short_of(before_mrad: int, after_mrad: int) -> str:
+    """A change of lean that is too small, as it is told."""
+    told, least = change(before_mrad, after_mrad), degrees(constants()["turn_mrad"])
+    return told if told != least else f"{math.degrees(abs(after_mrad - before_mrad) / 1e3):.1f}°"
+
+
 def _apart(one_mm: float, other_mm: float) -> tuple[str, str]:
     """Two lengths, in millimetres if they would else read as the same."""
-    told = length(one_mm / 1000.0), length(other_mm / 1000.0)
-    return told if told[0] != told[1] else (f"{one_mm:.0f} mm", f"{other_mm:.0f} mm")
+    for digits in (None, 0, 1):
+        one, other = (
+            length(far / 1000.0) if digits is None else f"{far:.{digits}f} mm"
+            for far in (one_mm, other_mm)
+        )
+        if one != other:
+            break
+    return one, other
 
 
 def change(before_mrad: int, after_mrad: int) -> str:

@@ -1,5 +1,6 @@
 """Of which distance explanations speak where two bodies touch."""
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -13,12 +14,9 @@ class Between(StrEnum):
     """What of two bodies a distance is between, as a sentence says it."""
 
     SURFACES = "between their surfaces"
-    POINT = "between the surface of the one and the origin of the other, of which no shape is known"
-    ORIGINS = "between their origins, as not both shapes are known"
-    POINTS = (
-        "between a point of each body, estimated from how the two moved together, as not both "
-        "shapes are known"
-    )
+    POINT = "from the surface of the one to the origin of the other"
+    ORIGINS = "between their origins"
+    POINTS = "between a point of each body, estimated from how the two moved together"
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,11 +25,23 @@ class Reach:
 
     distance_m: float
     between: Between = Between.SURFACES
+    begin_m: float = math.inf
+    """Up to which distance contact begins, where it lasts up to a greater one."""
+
+    unshaped: tuple[str, ...] = ()
+    """Which of the two have no known shape."""
 
     @property
     def told_mm(self) -> int:
         """The distance in whole millimetres, as it is told: rounded up, so that it bounds."""
         return round(upward(1000.0 * self.distance_m))
+
+    @property
+    def told(self) -> str:
+        """Within what contact is counted, and up to what it lasts where that is more."""
+        begin = round(upward(1000.0 * min(self.begin_m, self.distance_m)))
+        lasts = f" until beyond {self.told_mm} mm" * (begin < self.told_mm)
+        return f"{'from' if lasts else 'within'} {begin} mm{' on' * bool(lasts)}{lasts}"
 
     @property
     def is_touch(self) -> bool:

@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from capar_rules.explain.briefs import BOTH, Briefs, listed
+from capar_rules.explain.briefs import BOTH, COURSES, Briefs, listed
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Claim
-from capar_rules.explain.contrasts import MOST_NAMES, MOST_TOLD, Contrast
+from capar_rules.explain.contrasts import LEAST_SEEN, MOST_NAMES, MOST_TOLD, Contrast
 from capar_rules.explain.leading import DOUBTED, OWN, leading, parsed, rank
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.touch_notes import touching
@@ -34,42 +34,54 @@ def summary(
     Where none is near, what is said apart is why it has no more general name.
     """
     nodes = leading(reason)
-    doubts = [each for each in nodes if each.atom.startswith(DOUBTED)]
-    nodes = [each for each in nodes if each not in doubts]
+    doubts = [node for node in nodes if node.atom.startswith(DOUBTED)]
+    nodes = [node for node in nodes if node not in doubts]
     clauses = briefs.clauses(nodes)
-    own = briefs.clauses([each for each in nodes if rank(each) == OWN])
+    own = briefs.clauses([node for node in nodes if rank(node) == OWN])
     subjects = _subjects(nodes, briefs)
-    against = [
-        replace(each, though=tuple(clause for clause in each.though if clause not in clauses))
-        for each in against
-    ]
-    known = [briefs.claims[each] for each in clauses if each in briefs.claims]
-    if any(_goes(claim) for claim in known):  # the same angle keeps it from going the other way
-        against = [each for each in against if not _goes(briefs.claims.get(each.clause))]
-    fresh, alike = _told_contrasts(against, clauses, MOST_TOLD + (not own))
-    apart = bool(generals and own) and not alike and all(each.weak for each in fresh)
-    fresh = [] if apart else fresh
-    beside = [f"just {listed(generals, 'or')}"] if apart else _names(alike)
-    other = f", and not {listed(beside, 'or')}" * bool(beside)
-    told = f"{name}{other}, because "
-    if apart:
-        more = [each for each in clauses if each not in own]
-        told += _by_subject(own, subjects) + f". Also, {_by_subject(more, subjects)}" * bool(more)
-    else:
-        told += _by_subject(clauses, subjects)
-    fresh = [_shortened(each, clauses, briefs) for each in fresh]
-    for number, contrast in enumerate(fresh):
-        told += f"{';' if number else '.'} {'n' if number else 'N'}ot {contrast.sentence}"
-    said = [*clauses, *(clause for each in fresh for clause in each.clauses)]
-    said += [clause for each in fresh for clause in each.though]
-    every = (briefs.claims.get(each.removesuffix(BOTH)) for each in dict.fromkeys(said))
-    claims = [each for each in every if each is not None]
+    beside, fresh = _told_contrasts(_against(against, clauses, briefs), clauses)
+    more = [clause for clause in clauses if clause not in own]
+    kind = bool(generals and own and more) and all(one.by_features for one in fresh)
+    told = f"{name}{f', and not {beside}' * bool(beside)}, because "
+    told += _by_subject(own if kind else clauses, subjects)
+    if kind:
+        told += f". It is a kind of {listed(generals)}, because {_by_subject(more, subjects)}"
+    fresh = [_shortened(contrast, clauses, briefs) for contrast in fresh]
+    told += "".join(f". Not {contrast.sentence}" for contrast in fresh)
+    said = [*clauses, *(clause for contrast in fresh for clause in contrast.clauses)]
+    said += [clause for contrast in fresh for clause in contrast.though]
+    every = (briefs.claims.get(clause.removesuffix(BOTH)) for clause in dict.fromkeys(said))
+    claims = [known for known in every if known is not None]
     mended = briefs.clauses(doubts)
-    claims += [briefs.claims[each] for each in mended if each in briefs.claims]
-    told += f". For this, {listed(mended)}" * bool(mended)
-    lost = briefs.lost(claims)
-    told += "".join(f". {each.text[0].upper()}{each.text[1:]}" for each in lost)
-    return Summary(f"{told}." + touching(nodes, briefs.clock), (*claims, *lost))
+    claims += [briefs.claims[clause] for clause in mended if clause in briefs.claims]
+    told += f". {_sentence(listed(mended))}" * bool(mended)
+    extra = briefs.also_reached(claims) + briefs.leaning(reason)
+    extra += briefs.lost([*claims, *extra])
+    told += "".join(f". {_sentence(claim.text)}" for claim in extra)
+    return Summary(f"{told}." + touching(claims, briefs.clock), (*claims, *extra))
+
+
+def _sentence(clause: str) -> str:
+    return clause[:1].upper() + clause[1:]
+
+
+def _against(against: Sequence[Contrast], clauses: Sequence[str], briefs: Briefs) -> list[Contrast]:
+    """The contrasts, without what the summary says anyway."""
+    known = [briefs.claims[clause] for clause in clauses if clause in briefs.claims]
+    found = [
+        replace(one, though=tuple(clause for clause in one.though if clause not in clauses))
+        for one in against
+    ]
+    if any(_goes(claim) for claim in known):  # the same angle keeps it from going the other way
+        found = [one for one in found if not _goes(briefs.claims.get(one.clause))]
+    return [
+        one for one in found if one.though or not _is_course(briefs.claims.get(one.clause), clauses)
+    ]
+
+
+def _is_course(claim: Claim | None, clauses: Sequence[str]) -> bool:
+    """Whether a clause of the name's own tells but how a thing went, which denies no other name."""
+    return claim is not None and claim.text in clauses and claim.of in COURSES
 
 
 def _goes(claim: Claim | None) -> bool:
@@ -89,30 +101,38 @@ def _shortened(contrast: Contrast, clauses: Sequence[str], briefs: Briefs) -> Co
 
 
 def _told_contrasts(
-    against: Sequence[Contrast], clauses: Sequence[str], most: int
-) -> tuple[list[Contrast], list[Contrast]]:
-    """The contrasts that are told with reasons of their own, and those that need none.
+    against: Sequence[Contrast], clauses: Sequence[str]
+) -> tuple[str, list[Contrast]]:
+    """The names that the whole of what is said denies, and the contrasts that are told.
 
-    Names of the latter are denied by what the summary says of its own. Names of other features are
-    told only where too few others are; so many are told at most.
+    Those with reasons of their own precede those whose reason is among the name's own. Names of
+    other features are told only where too few others are; each name is told once.
     """
-    fresh = [each for each in against if each.though or each.clause not in clauses]
-    same = [each for each in against if each not in fresh and each.failing == 1]
-    alike = [each for each in same if not each.by_features]
-    near = [each for each in fresh if not each.by_features and not each.weak]
-    fresh = near or [each for each in fresh if each.by_features]
-    count = min(MOST_NAMES, sum(len(each.names) for each in alike))
-    least = max(not alike, sum(bool(each.though) for each in fresh), bool(near))
-    fresh = fresh[: max(most - count, least)]
-    if count + len(fresh) < MOST_TOLD:
-        others = [each for each in same if each not in alike]
-        alike += others[: MOST_TOLD - count - len(fresh)]
-    return fresh, alike
-
-
-def _names(alike: Sequence[Contrast]) -> list[str]:
-    """The names of contrasts that need no reason, and what was so though they are denied."""
-    return [name for each in alike for name in each.names][:MOST_NAMES]
+    fresh = [one for one in against if one.though or one.clause not in clauses]
+    alike = [one for one in against if one not in fresh and one.failing == 1]
+    order = [one for one in fresh if not one.by_features and not one.weak]
+    order += [one for one in alike if not one.by_features]
+    features = [*(one for one in against if one.by_features and not one.direct)]
+    features += [one for one in (*fresh, *alike) if one.by_features and one.direct]
+    order = [*order, *features]
+    order.sort(key=lambda one: one.nearness < LEAST_SEEN)
+    beside, told, names = "", list[Contrast](), set[str]()
+    most = MOST_TOLD + any(contrast.though for contrast in order)
+    for contrast in sorted(order, key=lambda one: not one.though):
+        left = tuple(name for name in contrast.names if name not in names)
+        left = left[:MOST_NAMES]
+        alike_at = [at for at, one in enumerate(told) if one.clause == contrast.clause]
+        if left and alike_at and not contrast.though and not told[alike_at[-1]].though:
+            both = (*told[alike_at[-1]].names, *left)[:MOST_NAMES]
+            names |= {*both}
+            told[alike_at[-1]] = replace(told[alike_at[-1]], names=both)
+        elif left and len(told) + bool(beside) < most:
+            names |= {*left}
+            if [*clauses] == [contrast.clause] and not contrast.though:
+                beside = listed(left, "or")
+            else:
+                told.append(replace(contrast, names=left))
+    return beside, told
 
 
 def _subjects(nodes: Iterable[Reason], briefs: Briefs) -> list[str]:

@@ -36,8 +36,8 @@ class ToldArgument:
     def _nothing(self) -> str:
         """That none of what is tracked was touched."""
         if self.clock.measured.tracked:
-            return "none of the tracked objects"
-        return "no tracked object (the recording has none)"
+            return "no recorded or assumed object"
+        return "no object (the recording has none)"
 
     def _rest_s(self) -> str:
         return f"{constants()['rest_ms'] / 1000.0:.2f} s"

@@ -14,7 +14,7 @@ class ArrangementsTold(ToldArgument):
         little = arrangements.little_way(self.clock, self.text)
         if little is not None:
             least = quantities.length(constants()["slide_mm"] / 1000.0)
-            told = f" only {quantities.length(little)} to the side"
+            told = f", from start to end, only {quantities.length(little)} to the side"
             return f"{told}, less than the {least} from which on a direction counts"
         found = arrangements.bearing(self.clock, self.text)
         if found is None:
@@ -23,13 +23,11 @@ class ArrangementsTold(ToldArgument):
         line = f"to the level line from the {hand} to the middle of the {thing}"
         ahead, after = f"{AHEAD_DEG:.0f}° or less is ahead", f"{AFTER_DEG:.0f}° or more is after"
         if form.startswith("not_"):
-            whither = (
-                f", from start to end as a whole, neither after the {hand} nor ahead of it, but"
-            )
+            whither = f", from start to end, neither after the {hand} nor ahead of it, but"
             if found.offset_deg >= AFTER_DEG:
-                whither = f", from start to end as a whole, after the {hand}, and not ahead of it,"
+                whither = f", from start to end, after the {hand}, and not ahead of it,"
             if found.offset_deg <= AHEAD_DEG:
-                whither = f", from start to end as a whole, ahead of the {hand}, and not after it,"
+                whither = f", from start to end, ahead of the {hand}, and not after it,"
             angle = f"{found.offset_deg:.0f}°"
             return f"{whither} at {angle} {line} ({after}, {ahead})"
         if form == "ahead" and found.by_press:
@@ -38,9 +36,10 @@ class ArrangementsTold(ToldArgument):
         asked = ahead if form == "ahead" else after
         return f" (at {found.offset_deg:.0f}° {line}; {asked})"
 
-    def _kept(self) -> str:
-        """What the segment's object touches at the start and at the end."""
-        found = arrangements.kept(self.clock, self.text)
+    def _stirred(self) -> str:
+        """What the segment's object touches at the start and at the end, and can be moved."""
+        movable = self.clock.measured.movable
+        found = [one for one in arrangements.kept(self.clock, self.text) if one in movable]
         return " and ".join(f"the {self.clock.called(other)}" for other in found) or UNBOUND
 
     def _over(self) -> str:
@@ -76,8 +75,10 @@ class ArrangementsTold(ToldArgument):
             return UNBOUND
         most = arrangements.steepest_deg()
         met = self._met_near(thing, other, frame)
-        at = f" at {self.clock.at(met[0])}" if met else ""
-        return f"{at} ({angle:.0f}° off straight up; {most:.0f}° or less bears)"
+        at = f", at {self.clock.at(met[0])}" if met else ""
+        return (
+            f" ({angle:.0f}° off straight up as their contact began{at}; {most:.0f}° or less bears)"
+        )
 
     def _palm(self) -> str:
         """From which side the segment's object pushes the end-effector that lies on it."""
@@ -86,7 +87,7 @@ class ArrangementsTold(ToldArgument):
         if angle is None:
             return UNBOUND
         most = arrangements.steepest_deg()
-        return f" (which pushed it {angle:.0f}° off straight up; {most:.0f}° or less bears)"
+        return f" ({angle:.0f}° off straight up; {most:.0f}° or less bears)"
 
     def _unborne(self) -> str:
         """Why nothing bears the third argument at the side that this one names."""
@@ -102,19 +103,18 @@ class ArrangementsTold(ToldArgument):
             angle = arrangements.normal_deg(self.clock, thing, other, frame)
             if angle is None or angle <= most:
                 return UNBOUND
-            side = "from above" if angle >= 180.0 - most else "from the side"
             called = self.clock.called(other)
-            told.append(f"the {called} was met {side}, {angle:.0f}° off straight up")
+            told.append(f"the {called} pushed it {angle:.0f}° off straight up")
         return (
-            f"nothing bore the {self.clock.called(thing)} at the {self.text}: {', '.join(told)} "
-            f"({most:.0f}° or less bears)"
+            f"nothing bore the {self.clock.called(thing)} at the {self.text}: "
+            f"{' and '.join(told)} ({most:.0f}° or less bears)"
         )
 
     def _hollow(self) -> str:
         """What is known of the shapes of what the segment's object touches at both borders."""
         found = arrangements.kept(self.clock, self.text)
         unknown = any(body in self.clock.measured.shapeless for body in found)
-        return "whose shape is not known" if unknown else "which has a hollow"
+        return "of unknown shape" if unknown else "with a hollow"
 
     def _poised(self) -> str:
         """Where the segment's object is to this one at the start."""
@@ -141,7 +141,7 @@ class ArrangementsTold(ToldArgument):
         spans = self.clock.measured.level.get(self.beside[3], ())
         begins = any(first == frame for first, _ in spans)
         ends = any(last == frame for _, last in spans)
-        return "became level" if begins and not ends else "ceased to be level" * ends
+        return "began to count as level" if begins and not ends else "ceased to count so" * ends
 
     def _moved_in_hand(self) -> str:
         """That what a segment moves had moved before in the same hold, so that it began nowhere."""
@@ -151,11 +151,11 @@ class ArrangementsTold(ToldArgument):
         moves = self.clock.measured.moving.get(thing, ())
         if span and held and any(first < span[0] and last > held[0] for first, last in moves):
             since = self.clock.at(held[0])
-            contact = f"the same contact with the {self.clock.called(hand)} (since {since})"
+            contact = f"the contact with the {self.clock.called(hand)} that began at {since}"
             return f" and had moved before in {contact}"
         return ", so that it was lifted off none"
 
     def _unslid(self) -> str:
         """That the segment's object stayed on nothing, where it touches nothing at both borders."""
         kept = arrangements.kept(self.clock, self.text)
-        return UNBOUND if kept else "did not stay on one and the same tracked object"
+        return UNBOUND if kept else "was not slid on anything"

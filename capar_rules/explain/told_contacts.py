@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from capar_rules.borders.times import constants, in_frames, times
-from capar_rules.explain import arrangements
+from capar_rules.explain import arrangements, quantities
 from capar_rules.explain.told_argument import UNBOUND, ToldArgument
 
 
@@ -16,11 +16,6 @@ class ContactsTold(ToldArgument):
         told = self.clock.at(frame)
         began = self.clock.at(int(self.beside[5]))
         return "" if told == began else f", and settled there by {told}"
-
-    def _reach(self) -> str:
-        """Up to which distance the second and the third argument count as touching."""
-        reach = self.clock.measured.reaches.get((self.beside[1], self.beside[2]))
-        return UNBOUND if reach is None else f"{reach.told_mm} mm"
 
     def _keeper(self) -> str:
         """Which other end-effector has the segment's object since before this one touched it."""
@@ -48,7 +43,8 @@ class ContactsTold(ToldArgument):
         near = [(abs(first - frame), first) for first in speeds] if frame is not None else []
         if not near or min(near)[0] > merge:
             return UNBOUND
-        blow = f"a blow has {constants()['blow_mm_s']} mm/s or more"
+        how = "the greatest of their middles just before they met, in any direction"
+        blow = f"{how}; a blow has {constants()['blow_mm_s']} mm/s or more"
         return f"at a relative speed of {speeds[min(near)[1]]} mm/s ({blow})"
 
     def _contact(self, side: str, end: int) -> str:
@@ -78,7 +74,7 @@ class ContactsTold(ToldArgument):
         """Where the border of the end of a contact stands, if not where that ends."""
         ended = type(self)(self.beside[5], self.beside, self.clock)._ended_at()
         told = self.clock.at(self.clock.frames[self.beside[0]][int(self.text)])
-        until = f"; the border is at {told}, from when on they came apart"
+        until = f"; the border for it is placed at {told}"
         return "" if told == ended else until
 
     def _throughout(self) -> str:
@@ -94,20 +90,40 @@ class ContactsTold(ToldArgument):
             if first <= span[1] and last >= span[0]
         ]
         gaps = f" but for {' and '.join(spans)}" if spans else ""
-        return f"throughout{gaps}" + ", as far as tracked" * lost
+        return f"throughout{gaps}{self._beyond(span)}" + ", as far as tracked" * lost
+
+    def _beyond(self, span: tuple[int, int]) -> str:
+        """How far apart the two bodies beside this are at moments, if beyond their contact."""
+        one, other = self.beside[1:3]
+        known, reach = self.clock.measured, self.clock.measured.reaches.get((one, other))
+        far = known.apart(one, other, *span) if known.apart and reach else None
+        if far is None or reach is None or 1000.0 * far <= reach.told_mm:
+            return ""
+        return f" (at moments up to {quantities.spread(far)} apart)"
+
+    def _after_leaving(self) -> str:
+        """When the two bodies beside this parted before, if at the start or in the segment."""
+        one, other = self.beside[1:3]
+        span, known = self.clock.span(self.text), self.clock.measured.contacts
+        now = self._met_near(one, other, span[1]) if span else None
+        if span is None or now is None:
+            return ""
+        early = span[0] - in_frames(times().merge_ms, self.clock.rate_hz)
+        found = [*known.get((one, other), ()), *known.get((other, one), ())]
+        left = [last for _, last in found if early <= last < now[0]]
+        return f", after parting from it at {self.clock.at(max(left))}" if left else ""
 
     def _comes(self) -> str:
-        """That the second argument comes to touch the third, or to be within their reach."""
+        """That the second argument comes to touch the third, or to count so."""
         one, other = self.beside[1:3]
         called = self.clock.called(other)
         start, end = (self.clock.border(self.text, side) for side in ("start", "end"))
         near = self.clock.measured.near(one, other)
-        first = f"was not within {self._reach()} of" if near else "did not touch"
-        then = "was" if near else "did"
         if self._lost_at("start"):
-            met = f"was within {self._reach()} of" if near else "touched"
+            met = "counted as in contact with" if near else "touched"
             return f"{met} the {called} at the end ({end}) and was not tracked at the start"
-        return f"{first} the {called} at the start ({start}) but {then} at the end ({end})"
+        touch = "count as in contact with" if near else "touch"
+        return f"did not {touch} the {called} at the start ({start}) but did at the end ({end})"
 
     def _no_longer(self) -> str:
         """That the two bodies beside this touch no longer at the end, or when they are seen again.
@@ -153,10 +169,10 @@ class ContactsTold(ToldArgument):
         """Until when another one touches the object of a segment, from before it was reached."""
         segment, other, thing, last = self.beside
         hand = self.clock.called(arrangements.hand_of(segment))
-        touched, did = self._touched(other, thing)
-        came = "to be so near" if did == "was" else "to touch it"
-        until = self._when_of(int(last))
-        return f"{touched} already when the {hand} came {came}, and until {until}"
+        until, span = self.clock.at(int(last)), self.clock.span(segment)
+        own = self._met_near(arrangements.hand_of(segment), thing, span[1]) if span else None
+        kept = f", when the {hand} still did" * bool(own and own[1] > int(last))
+        return f"{self._touched(other, thing)} before the {hand} did, and until {until}{kept}"
 
     def _takes(self) -> str:
         """Since when another one touches the object of a segment, that is let go of there."""
@@ -165,17 +181,14 @@ class ContactsTold(ToldArgument):
         left = self._met_near(hand, thing, span[0]) if span else None
         if left is None:
             return UNBOUND
-        touched, did = self._touched(other, thing)
-        ended = f"when the {self.clock.called(hand)} no longer {did}"
-        since = self.clock.at(int(first))
-        return (
-            f"{touched} from {since} on, and still {did} {ended} (after {self.clock.at(left[1])})"
-        )
+        since, until = self.clock.at(int(first)), self.clock.at(left[1])
+        held = f"did from {self.clock.at(left[0])} on"
+        ended = f"when the {self.clock.called(hand)}, which {held}, ceased to (after {until})"
+        return f"{self._touched(other, thing)} from {since} on, and still did {ended}"
 
-    def _touched(self, one: str, other: str) -> tuple[str, str]:
-        """How contact of two is told, and the verb that stands for it again."""
-        called = self.clock.called(other)
-        if self.clock.measured.near(one, other):
-            reach = self.clock.measured.reaches[one, other].told_mm
-            return f"was within {reach} mm of the {called}", "was"
-        return f"touched the {called}", "did"
+    def _touched(self, one: str, other: str) -> str:
+        """How contact of two is told."""
+        near = self.clock.measured.near(one, other)
+        return (
+            f"{'counted as in contact with' if near else 'touched'} the {self.clock.called(other)}"
+        )

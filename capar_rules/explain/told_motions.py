@@ -132,9 +132,16 @@ class MotionsTold(ToldArgument):
         turns = self.clock.measured.turns
         if turns is None:
             return ""
-        swing = self._swing(body, span)
+        swing, counted = self._swing(body, span), self._counted_turns(body, span)
         when = f" from {self.clock.at(swing[0])} to {self.clock.at(swing[1])}"
-        return f"{when * (swing != span)} ({self.clock.it(body)} {turns(body, *swing)})"
+        part = "in this segment " * (swing != span == counted)
+        it = f"{part}{self.clock.it(body)}"
+        return f"{when * (swing != span)} ({it} {turns(body, *counted)})"
+
+    def _counted_turns(self, body: str, span: tuple[int, int]) -> tuple[int, int]:
+        """Between which frames turns are counted: of the segment, or else of all of that motion."""
+        swing, turns = self._swing(body, span), self.clock.measured.turns
+        return span if turns is not None and turns(body, *span).count else swing
 
     def _swing(self, body: str, span: tuple[int, int]) -> tuple[int, int]:
         """The motion to and fro of which a segment is a part, or else the segment itself."""

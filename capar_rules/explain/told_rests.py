@@ -19,16 +19,24 @@ class RestsTold(ToldArgument):
     def _floor(self) -> str:
         """From where on a body's motion counts, if it is known."""
         floor_m = self.clock.measured.floors.get(self.text)
-        return f" (more than {quantities.length(floor_m)} from where it rests)" if floor_m else ""
+        span = self._span_beside("spread")
+        moved = None if span is None else self._moved(self.text, span)
+        if not floor_m or moved is None or moved.spread_m >= floor_m:
+            return " and did not count as moving"
+        far = quantities.length(floor_m)
+        return f", less than the {far} from which on it counts as moved"
 
     def _not_at_rest(self) -> str:
         """Why the segment is no rest: it lasted too briefly, or its end-effector moved."""
         span = self.clock.span(self.text)
         lasted = (span[1] - span[0]) / self.clock.rate_hz if span else float("inf")
         if 1000.0 * lasted < constants()["rest_ms"]:
-            return f"it lasted {lasted:.2f} s, and a rest lasts {self._rest_s()} or more"
+            rests = self.clock.measured.rests.get(self._hand, ())
+            if span and any(first < span[1] and last > span[0] for first, last in rests):
+                return f"it lasted {lasted:.2f} s, and a rest lasts {self._rest_s()} or more"
+            return f"the {self.clock.called(self._hand)} did not count as at rest"
         hand = self.clock.called(self._hand)
-        return f"the {hand} had no rest of {self._rest_s()} or more in it"
+        return f"the {hand} did not count as at rest for {self._rest_s()} or more at a time"
 
     def _long(self) -> str:
         """That a rest is longer than a rest has to be."""
@@ -71,10 +79,8 @@ class RestsTold(ToldArgument):
     def _posture(self, frame: int, near_m: float) -> str:
         """A place where the end-effector had been, touching nothing."""
         how = "was" if frame == self.clock.frames[self._hand][0] else "rested"
-        return (
-            f"where it {how} at {self.clock.at(frame)} (of where it began and rested the nearest; "
-            f"within {quantities.length(near_m)} it is back there)"
-        )
+        near = quantities.length(near_m)
+        return f"where it {how} at {self.clock.at(frame)} (a return is within {near})"
 
     def _earlier_postures(self) -> list[int]:
         """The last frames of the rests before the segment in which it touched nothing.

@@ -78,7 +78,7 @@ TRUE_OF_ANY_SEGMENT = {
     r"the ([\w ]+?) was not borne along by the ([\w ]+?)": "no story has a load",
     r"the ([\w ]+?) stayed with the ([\w ]+?)": "it is said of a whole contact",
     (
-        r"the ([\w ]+?) touched none of the tracked objects when the segment began, nor when it "
+        r"the ([\w ]+?) touched no recorded or assumed object when the segment began, nor when it "
         r"ended"
     ): (
         "who moves and touches nothing in a story never does; test_circumstances.py finds it false"

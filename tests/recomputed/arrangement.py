@@ -194,27 +194,27 @@ FORMS = (
     (rf"leaning of the {NAME} far over was measured from {TIME} to {TIME}", measured_leaning),
     (rf"the {NAME} turned about the vertical", spun),
     (
-        rf"the {NAME} touched the {NAME} at the segment's (start|end), which met it from below"
-        rf"(?: at {TIME} \(\d+° off straight up; 45° or less bears\))?",
+        rf"the {NAME} touched the {NAME} at the segment's (start|end), which bore it from below"
+        rf"(?: \(\d+° off straight up as their contact began, at {TIME}; 45° or less bears\))?",
         borne,
     ),
     (rf"the {NAME} was above the {NAME} at the segment's (start|end)", was_above),
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),
     (rf"the {NAME} dipped into the {NAME} at the segment's (start|end)", dipped),
     (
-        rf"the {NAME} went, from start to end as a whole, ahead of the {NAME} "
+        rf"the {NAME} went, from start to end, ahead of the {NAME} "
         r"\([^)]*; 45° or less is ahead\)",
         went_ahead,
     ),
     (
-        rf"the {NAME} went, from start to end as a whole, after the {NAME} "
+        rf"the {NAME} went, from start to end, after the {NAME} "
         r"\([^)]*; 135° or more is after\)",
         went_after,
     ),
     (
-        rf"the {NAME} was not moved again before the {NAME} (?:let go of it|was last tracked at "
-        rf"it,) at {TIME}"
-        r"(?:, where it counted as touching nothing else that is tracked)?",
+        rf"the {NAME} (?:did not move again before|came down to where) the {NAME} (?:let go of it|"
+        rf"was last tracked at it,) at {TIME}(?: \(taken for letting go\))?"
+        r"(?:, with no other recorded or assumed object in contact with it)?",
         came_to_lie,
     ),
 )

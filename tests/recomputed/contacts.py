@@ -146,13 +146,13 @@ FORMS = (
     ),
     (rf"the {NAME} began to touch the {NAME} at {TIME}", begins),
     (
-        rf"the {NAME} moves at some time while the {NAME} touches it, from {TIME} on, and so "
-        "counts as held",
+        rf"the {NAME} moved at some time in the contact with the {NAME} that began at {TIME}, "
+        "which so counts as a hold",
         lambda known, thing, hand, at: possessed(known, hand, thing, at),
     ),
     (
-        rf"the contact of the {NAME} with the {NAME} ended at {TIME}(?:; the border is "
-        rf"at {TIME}, from when on they came apart)?",
+        rf"the contact of the {NAME} with the {NAME} ended at {TIME}(?:; the border "
+        rf"for it is placed at {TIME})?",
         ended,
     ),
     (
@@ -166,11 +166,13 @@ FORMS = (
         rested_on,
     ),
     (
-        rf"the {NAME} had not simply borne the {NAME} since before the {NAME} touched it",
-        no_support,
+        rf"the {NAME} counts as a further object of the segment",
+        lambda known, other: no_support(
+            known, other, known.segment.objects[0], known.segment.ee.replace("_", " ")
+        ),
     ),
     (
-        rf"the {NAME} had moved before this, while the {NAME} touched it, from {TIME} on",
+        rf"the {NAME} had moved before this in the contact with the {NAME} that began at {TIME}",
         moved_before,
     ),
     (
@@ -179,13 +181,13 @@ FORMS = (
         newly_met,
     ),
     (
-        rf"the {NAME} (?:touched|was within \d+ mm of) the {NAME} already when the "
-        rf"{NAME} came to (?:be so near|touch it), and until (?:after this, )?at {TIME}",
+        rf"the {NAME} (?:touched|counted as in contact with) the {NAME} before the {NAME} did, "
+        rf"and until {TIME}(?:, when the [\w ]+ still did)?",
         let_go,
     ),
     (
-        rf"the {NAME} (?:touched|was within \d+ mm of) the {NAME} from {TIME} on, and still "
-        rf"(?:was|did) when the {NAME} no longer (?:was|did) \(after {TIME}\)",
+        rf"the {NAME} (?:touched|counted as in contact with) the {NAME} from {TIME} on, and still "
+        rf"did when the {NAME}, which did from \d+\.\d\d s on, ceased to \(after {TIME}\)",
         took,
     ),
 )

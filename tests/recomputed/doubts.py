@@ -114,7 +114,7 @@ FORMS = (
     (rf"motion of the {NAME} was taken to last {SPAN}", taken_motion),
     (rf"rest of the {NAME} was taken to last {SPAN}", taken_rest),
     (
-        rf"the {NAME} was taken to rest, touching none of the tracked objects, {SPAN}",
+        rf"the {NAME} was taken to rest, touching no recorded or assumed object, {SPAN}",
         taken_to_rest,
     ),
     (rf"the {NAME} was taken to touch the {NAME} at {TIME}", taken_to_touch),

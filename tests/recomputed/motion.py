@@ -101,7 +101,7 @@ def levelled(known: Known, what: str, how: str, at: str) -> bool:
         for begin, end in ((frame - aside, frame), (frame, frame + aside))
     ]
     steep = [abs(float(way[2])) - float(np.linalg.norm(way[:2])) for way in ways]
-    before, after = steep if how == "became level" else reversed(steep)
+    before, after = steep if how == "began to count as level" else reversed(steep)
     return after < 0.0 < before
 
 
@@ -375,7 +375,7 @@ FORMS = (
     ),
     (rf"the {NAME} (began|ceased) to be moved to and fro at {TIME}", swing_border),
     (rf"the {NAME} was gone at once", gone_at_once),
-    (rf"the path of the {NAME} (became level|ceased to be level) at {TIME}", levelled),
+    (rf"the path of the {NAME} (began to count as level|ceased to count so) at {TIME}", levelled),
     (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),
     (
         rf"the {NAME} moved along (\d+\.\d\d) m of path between {TIME} and {TIME}, and ended "
@@ -412,14 +412,14 @@ FORMS = (
         came_to_place,
     ),
     (
-        rf"the {NAME} rested and touched none of the tracked objects from {TIME} to {TIME}",
+        rf"the {NAME} rested and touched no recorded or assumed object from {TIME} to {TIME}",
         rested_free,
     ),
     (rf"the {NAME} came to rest at {TIME}", came_to_rest),
     (rf"it ended where the {NAME} had rested before", came_back),
     (
         rf"the {NAME} ended (\d+(?:\.\d)?) (mm|cm|m) from where it (?:was|rested) at {TIME} "
-        r"\(of where it began and rested the nearest; within 10 cm it is back there\)",
+        r"\(a return is within 10 cm\)",
         came_elsewhere,
     ),
     (

@@ -298,10 +298,10 @@ FORMS = (
         rf"the {NAME} (?:started from rest|left the [\w ]+)",
         lambda known, what: name(what) == known.segment.objects[0] and started_from_rest(known),
     ),
-    (rf"the {NAME} was not slid on any tracked object", not_slid),
+    (rf"the {NAME} was not slid on anything", not_slid),
     (rf"the {NAME} did not come down to where it was then let go", not_put_down),
     (
-        rf"the {NAME} touched none of the tracked objects when the segment began, nor when it "
+        rf"the {NAME} touched no recorded or assumed object when the segment began, nor when it "
         r"ended",
         touched_nothing,
     ),

@@ -24,7 +24,7 @@ from recomputed.doors import NUMBER, slid, swung
 from recomputed.known import NAME, TIME, Known, covers, name, near
 from recomputed.motion import lasted, stroked
 
-LENGTH = r"(\d+ mm|\d+ cm|\d+\.\d m)"
+LENGTH = r"(\d+(?:\.\d)? mm|\d+ cm|\d+\.\d m)"
 POSTURE = r"from how it (?:first rested|was first seen)"
 DEGREES = r"(\d+)°"
 UNITS = {"mm": (0.001, 0.0005), "cm": (0.01, 0.005), "m": (1.0, 0.05)}
@@ -37,7 +37,7 @@ SHORT_M = 0.01
 """A body that ends nearer than this to where it began is told to end there [m]."""
 
 VERBS = (
-    "met|reached|rose|sank|took|counts|bore|touched|moved|ended|leant|turned|stayed|kept|did|was|had|came|went|"
+    "bore|counted|met|reached|rose|sank|took|counts|bore|touched|moved|ended|leant|turned|stayed|kept|did|was|had|came|went|"
     "then|lay|dipped|started|slid|left|rested|were|pressed"
 )
 
@@ -198,9 +198,9 @@ def counts_from(known: Known, body: str, far: str) -> bool:
     return _is(floor, far, slack_m=0.0)
 
 
-def too_low(known: Known, body: str, verb: str, far: str, asked: str) -> bool:
+def too_low(known: Known, body: str, far: str, sense: str, asked: str) -> bool:
     """It went so far up or down, which is less than the rules ask for."""
-    height = float(_shifted(known, body)[2]) * (1.0 if verb == "rose" else -1.0)
+    height = float(_shifted(known, body)[2]) * (1.0 if sense == "higher" else -1.0)
     return _is(height, far) and 0.0 < height < 0.05 + SMOOTHED_M and _asked("height_mm", asked)
 
 
@@ -214,10 +214,11 @@ def too_little(
     return short and asked and ended(known, body, rise, sense, aside)
 
 
-def not_steep(known: Known, body: str, verb: str, asked: str) -> bool:
-    """It ended no higher, or no lower, than can be seen."""
-    height = float(_shifted(known, body)[2]) * (1.0 if verb == "rise" else -1.0)
-    return height < 0.005 + SMOOTHED_M and _asked("height_mm", asked)
+def not_steep(known: Known, body: str, far: str, sense: str, asked: str, wanted: str) -> bool:
+    """It ended no higher, or no lower, than can be seen, and so far from that height."""
+    height = float(_shifted(known, body)[2]) * (1.0 if wanted == "higher" else -1.0)
+    is_so = _is(height * (1.0 if sense == wanted else -1.0), far) if far else abs(height) < 0.01
+    return is_so and height < 0.005 + SMOOTHED_M and _asked("height_mm", asked)
 
 
 def too_far_aside(known: Known, body: str, aside: str, sense: str, rise: str) -> bool:
@@ -380,6 +381,16 @@ def counts_within(known: Known, _: str, told: str) -> bool:
         for pair in calibration.pairs
         if about & {pair.first, pair.second}
     )
+
+
+def apart_at_most(known: Known, body: str, far: str) -> bool:
+    """Some other body that the segment is about is at most so far from it while they touch."""
+    measured = known.seen.explainer.measured
+    about = {known.segment.ee, *known.segment.objects}
+    pairs = [(one, other) for one in about for other in about if one != other]
+    assert measured.apart is not None
+    found = (measured.apart(*pair, known.segment.first, known.segment.last) for pair in pairs)
+    return any(one is not None and _is(one, far, slack_m=0.001) for one in found)
 
 
 def far_over(known: Known, body: str, before: str, after: str, most: str, least: str) -> bool:
@@ -604,25 +615,33 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         too_little,
     ),
     (
-        rf"ended only ()(){LENGTH} to the side \({LENGTH} up or down, or {LENGTH} to the side, "
+        rf"ended at the same height and only ()(){LENGTH} to the side \({LENGTH} up or down, or "
+        rf"{LENGTH} to the side, "
         r"would count\)",
         too_little,
     ),
-    (rf"(rose|sank) by {LENGTH}, less than the {LENGTH} that count", too_low),
-    (rf"did not (rise|sink) as a whole \({LENGTH} or more count\)", not_steep),
+    (rf"ended {LENGTH} (higher|lower), less than the {LENGTH} that count", too_low),
+    (
+        rf"ended (?:{LENGTH} (higher|lower)|at the same height), not {LENGTH} or more "
+        r"(higher|lower)",
+        not_steep,
+    ),
     (rf"went further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
     (rf"went further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
     (
-        rf"went only {LENGTH} to the side, less than the {LENGTH} from which on a direction counts",
+        rf"only {LENGTH} to the side, less than the {LENGTH} from which on a direction counts",
         too_short_for_a_direction,
     ),
-    (rf"went {LENGTH} to the side, less than the {LENGTH} that count", too_little_aside),
+    (rf"ended {LENGTH} to the side, less than the {LENGTH} that count", too_little_aside),
     (rf"ended {LENGTH} from where it began, not within {LENGTH}", too_far),
-    (rf"went only {LENGTH}, less than the {LENGTH} of a slide", too_short_to_slide),
+    (
+        rf"ended only {LENGTH} from where it began, less than the {LENGTH} of a slide",
+        too_short_to_slide,
+    ),
     (rf"turned by {DEGREES} about the vertical, less than {DEGREES}", turned_too_little),
     (
         rf"leant {DEGREES} at the start and {DEGREES} at the end {POSTURE}(?: \({DEGREES} at most "
-        rf"in between\))?, a change of less than {DEGREES}",
+        rf"in between\))?, a change of (?:\d+(?:\.\d)?)°, less than {DEGREES}",
         leant_too_little,
     ),
     (
@@ -630,26 +649,27 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         met_gently,
     ),
     (
-        rf"reached the {NAME} at a relative speed of (\d+) mm/s \(a blow has 1000 mm/s or more\)",
+        rf"reached the {NAME} at a relative speed of (\d+) mm/s \(the greatest of their middles "
+        r"just before they met, in any direction; a blow has 1000 mm/s or more\)",
         met_hard,
     ),
     (
-        rf"had moved before this, while the {NAME} touched it, from {TIME} on",
+        rf"had moved before this in the contact with the {NAME} that began at {TIME}",
         moved_before,
     ),
     (
-        rf"had moved before in the same contact with the {NAME} \(since {TIME}\)",
+        rf"had moved before in the contact with the {NAME} that began at {TIME}",
         moved_before,
     ),
     (rf"had come to touch the {NAME} (?:before this, )?at {TIME}", met_first),
     (
-        rf"(?:touched|was within \d+ mm of) the {NAME} already when the {NAME} came to "
-        rf"(?:be so near|touch it), and until (?:after this, )?at {TIME}",
+        rf"(?:touched|counted as in contact with) the {NAME} before the {NAME} did, and until "
+        rf"{TIME}",
         let_go,
     ),
     (
-        rf"(?:touched|was within \d+ mm of) the {NAME} from {TIME} on, and still (?:was|did) when "
-        rf"the {NAME} no longer (?:was|did) \(after {TIME}\)",
+        rf"(?:touched|counted as in contact with) the {NAME} from {TIME} on, and still did when "
+        rf"the {NAME}, which did from \d+\.\d\d s on, ceased to \(after {TIME}\)",
         took,
     ),
     (
@@ -660,20 +680,27 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"ended less than {LENGTH} from where it began", ended_there),
     (rf"moved {LENGTH}", moved),
     (
-        rf"ended {LENGTH} from where it (?:was|rested) at {TIME} \(of where it began and rested "
-        rf"the nearest; within {LENGTH} it is back there\)",
+        rf"ended {LENGTH} from where it (?:was|rested) at {TIME} \(a "
+        rf"return is within {LENGTH}\)",
         rested_near,
     ),
     (
-        rf"ended less than {LENGTH} from where it (?:was|rested) at {TIME} \(of where it began "
-        rf"and rested the nearest; within {LENGTH} it is back there\)",
+        rf"ended less than {LENGTH} from where it (?:was|rested) at {TIME} \(a "
+        rf"return is within {LENGTH}\)",
         rested_there,
     ),
     (rf"no rest of {TIME} or more, touching nothing, before {TIME}", never_rested),
-    (rf"rested from {TIME} on", rests_from),
+    (rf"came to rest at {TIME}", rests_from),
+    (
+        rf"after parting from it at {TIME}",
+        lambda known, body, at: any(
+            near(each.last, known.at(at)) for each in known.of(Touching) if each.body == body
+        ),
+    ),
     (rf"\({LENGTH} or more down count\)", came_down),
     (
-        rf"(?:before|when) the {NAME} (?:let go of|was last tracked at) (?:it|them),? at {TIME}",
+        rf"(?:before|when|where) the {NAME} (?:let go of|was last tracked at) (?:it|them),? "
+        rf"at {TIME}",
         lambda known, _, hand, at: held_until(known, known.segment.objects[0], hand, at),
     ),
     (rf"was moved again from {TIME} on", moved_on),
@@ -685,11 +712,17 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"the {NAME} at the start \({TIME}\) and until {TIME}", touched_until),
     (rf"{DEGREES} off straight up \({DEGREES} or less bears\)", pushed_at),
-    (rf"met the {NAME} from (?:below|the side) at {TIME}", lambda known, body, other, at: any(
-        near(each.first, known.at(at))
-        for each in (*known.touching(other, body), *known.touching(body, other)))),
     (rf"{DEGREES} off straight up; {DEGREES} or less bears", pushed_at),
-    (rf"\({LENGTH} above the top of the {NAME} and (?:{LENGTH} aside of it|over it)\)", above),
+    (
+        rf"{DEGREES} off straight up as their contact began, at {TIME}; {DEGREES} or less bears",
+        lambda known, body, angle, at, asked: pushed_at(known, body, angle, asked)
+        and any(near(each.first, known.at(at)) for each in known.of(Touching)),
+    ),
+    (
+        rf"\(its middle {LENGTH} above the top of the {NAME} and (?:{LENGTH} aside of it|over it)"
+        r"\)",
+        above,
+    ),
     (r"\((\d+) % of it(?: at \d+\.\d\d s)?\)", shared),
     (rf"ended {LENGTH} from where it began", ended_away),
     (rf"\((?:(up) to {LENGTH} higher|(down) to {LENGTH} lower)(?: and down to {LENGTH} lower)? in "
@@ -703,8 +736,9 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"turned on its hinge from {NUMBER} rad to {NUMBER} rad open", swung),
     (r"turned back (\d+) times, in strokes of a finger's width and more", turned_back_so_often),
     (
-        rf"moved to and fro(?: from {TIME} to {TIME})? \((?:it|they) turned back "
-        rf"(never|once|twice|\d+ times) after ways of {LENGTH} or more\)",
+        rf"moved to and fro(?: from {TIME} to {TIME})? \((?:in this segment )?(?:it|they) turned "
+        rf"back at least (never|once|twice|\d+ times) (?:along the [xy] axis|up and down), between "
+        rf"ways of {LENGTH} or more\)",
         turned_to_and_fro,
     ),
     (
@@ -721,7 +755,12 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         rf"at {DEGREES} to the direction in which the {NAME} pressed it; 45° or less is ahead",
         pressed_at,
     ),
-    (rf"no rest of the {NAME} of {TIME}", lambda known, _, __, told: rest_lasts(known, _, told)),
+    (
+        rf"no rest of the {NAME} of {TIME}(?: or more)?",
+        lambda known, _, __, told: rest_lasts(known, _, told),
+    ),
+    (rf"up to {LENGTH} apart", apart_at_most),
+    (rf"such a lean reaches {DEGREES}", lambda _, __, told: told == "30"),
     (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
     (rf"was held by the {NAME} already \(since {TIME}\)", held_since),
     (
@@ -738,19 +777,20 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"turned by {DEGREES} about the vertical \({DEGREES} or more count\)", spun_enough),
     (rf"stayed in place \(within {LENGTH} of its median place\)", kept_within),
     (
-        rf"stayed within {LENGTH} of its median place and touched [\w ()]+? from {TIME} to {TIME}",
-        kept_within,
+        rf"was at rest from {TIME} to {TIME}(?:, longer than the 0\.40 s of a rest)? \(it stayed "
+        rf"within {LENGTH} of its median place\)",
+        lambda known, body, first, last, far: kept_within(known, body, far, first, last),
     ),
     (r"longer than the (\d\.\d\d) s of a rest", rests_longer),
-    (rf"had no rest of {TIME} or more", rest_lasts),
+    (rf"(?:had no rest of|at rest for) {TIME} or more", rest_lasts),
     (rf"touched the {NAME} at {TIME}", touched_at),
     (rf"stayed within {LENGTH} of its median place", kept_within),
-    (rf"too little to count as motion \(more than {LENGTH} from where it rests\)", counts_from),
+    (rf"less than the {LENGTH} from which on it counts as moved", counts_from),
     (rf"no longer when last tracked \({TIME}\)", earlier),
     (rf"throughout but for {TIME} to {TIME}", parted),
     (rf"at the start \({TIME}\)", starts),
     (rf"at the end \({TIME}\)", ends),
     (rf"until just before \({TIME}\)", precedes),
-    (r"(\d+ mm)(?= \(|\.|, | and | of the | are between)", counts_within),
+    (r"(\d+ mm)(?= \(|\.|, | and | until beyond| on)", counts_within),
 )  # fmt: skip
 """Each form in which a summary tells numbers, and how it is recomputed; the first precede."""

@@ -1,0 +1,52 @@
+"""How far bodies are apart over time, as their contact is told."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from capar.model.calibration import Found, PairCalibration
+from extractors.contact.contacts import points_apart
+from extractors.contact.proximity import separation
+from extractors.contact.touch_distances import touchable
+from extractors.measure import Measurements
+
+SAMPLES = 120
+"""At so many frames of a span at most distances of surfaces are measured [1]."""
+
+
+def frames_between(first: int, last: int) -> Int[np.ndarray, "some"]:
+    """The frames of a span at which distances are measured, evenly, with the first and last."""
+    step = max(1, math.ceil((last - first + 1) / SAMPLES))
+    return np.unique([*range(first, last + 1, step), last])
+
+
+def distances(
+    measurements: Measurements, pair: PairCalibration, frames: Int[np.ndarray, "some"]
+) -> Float[np.ndarray, "some"]:
+    """How far the first of a pair, or the nearest of its parts, is from the second [m].
+
+    Args:
+        measurements: What was measured of a capture.
+        pair: Two of its bodies, and how their contact is counted.
+        frames: Where to measure; NaN where either is lost, infinity where no part can touch.
+    """
+    return np.asarray(np.min(list(_of_parts(measurements, pair, frames)), axis=0))
+
+
+def _of_parts(
+    measurements: Measurements, pair: PairCalibration, frames: Int[np.ndarray, "some"]
+) -> Iterator[Float[np.ndarray, "some"]]:
+    bodies, calibration = measurements.bodies, measurements.calibration
+    other = bodies.objects[pair.second]
+    hand = pair.first in bodies.sensors
+    parts = bodies.on_end_effector(pair.first) if hand else (bodies.objects[pair.first],)
+    for part in parts:
+        own = calibration.sought(part.name, other.name)
+        if own is None or own.found is Found.NEVER:
+            yield np.full(len(frames), np.inf)
+        elif own.pivots:
+            yield points_apart(own, part, other)[frames]
+        else:
+            yield separation(touchable(part), touchable(other), frames)
