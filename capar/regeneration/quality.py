@@ -97,6 +97,7 @@ def quality(motion: Motion) -> Quality:
         _still_gate(motion),
         _profile_gate(motion, hands),
         *_borne_gates(motion.plan),
+        *_together_gates(motion, hands),
     )
     return Quality(gates, (thumb,))
 
@@ -327,6 +328,21 @@ def _borne_gates(plan: Plan) -> Iterator[Gate]:
         "borne: not to fall", 1e3 * narrow.inside_m, 0.0, "mm", True,
         other.first + narrow.inside_frame, f"{other.thing} on {other.bearer}",
     )  # fmt: skip
+
+
+def _together_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
+    """What one hand holds together does not slide in it; none where there is nothing."""
+    worst = (-1.0, -1, "")
+    for companion in motion.plan.source.companions:
+        ride, hand = companion.ride, hands[companion.hold.side]
+        part = slice(ride.first, ride.last + 1)
+        for name in (ride.thing, ride.bearer):
+            local = hand[part].inv() * motion.plan.things[name][part]
+            off = np.linalg.norm(local.translation - local.translation[0], axis=1)
+            found = (float(off.max()), ride.first + int(off.argmax()), name)
+            worst = max(worst, found)
+    if worst[1] >= 0:
+        yield Gate("in one hand: not to slide", 1e3 * worst[0], 2.0, "mm", False, *worst[1:])
 
 
 def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
