@@ -152,6 +152,22 @@ def reachable(
     raise PlanError(f"{why}; {_remedy(source, scene, human)}")
 
 
+def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) -> str | None:
+    """Why a body does not come to every goal from just there; None where it does.
+
+    Args:
+        source: The recorded performance.
+        scene: Where it is performed.
+        human: Who performs.
+        style: How it is done.
+    """
+    try:
+        found = _draft(source, scene, human, style, frozenset())
+    except PlanError as error:
+        return str(error)
+    return found.pressed[0] if found.pressed else None
+
+
 def led(draft: Draft, care: Care) -> Plan:
     """A plan with the ways of free hands, so careful.
 

@@ -210,7 +210,7 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
                 thumb = min(thumb, (pair, frame))
                 continue
             deepest = min(deepest, (pair, frame))
-            if side in plan.hands and _is_hand(pair.part) and _is_free(motion, pair, frame):
+            if side in plan.hands and is_hand(pair.part) and _is_free(motion, pair, frame):
                 nearest = min(nearest, (pair, frame))
         for pair in around.things_near():
             if frozenset((pair.part, pair.thing)) not in inner:
@@ -241,7 +241,8 @@ def _distance_gate(name: str, limit_mm: float, pair: Pair, frame: int) -> Gate:
     return Gate(name, 1e3 * pair.distance_m, limit_mm, "mm", True, frame, bodies)
 
 
-def _is_hand(part: str) -> bool:
+def is_hand(part: str) -> bool:
+    """Whether a part of the body is of a hand, the thumb left out."""
     return part.endswith(("_hand", "_fingers", "_fingertips"))
 
 
