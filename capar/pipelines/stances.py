@@ -25,7 +25,7 @@ from capar_rules.engine.solver import Answer, best, rule_file
 PROGRAM = "planning/stepping.lp"
 
 GRID_M = 0.1
-AHEAD, ASIDE = range(-3, 8), range(-5, 6)
+AHEAD, ASIDE = range(-3, 11), range(-5, 6)
 """The places that are considered, from the given one ahead and to the left [grid steps]."""
 
 FARTHEST_M = GRID_M * AHEAD[-1]
@@ -38,7 +38,7 @@ REACH = 0.62
 HIGHEST = 1.3
 """Nor higher above the floor [share of stature] (estimate)."""
 
-MOST_STEPS, MOST_TRIES = 4, 6
+MOST_STEPS, MOST_TRIES = 6, 6
 """So many places are gone to one after the other at most, and so many are tried of those that are
 as many steps away [1]."""
 
@@ -90,7 +90,7 @@ def approached(
         PlanError: The performer stands in something, or it is out of reach and no step helps.
     """
     check_stance(scene, human)
-    why = why_unreachable(source, scene, human, style)
+    why = _beyond(source, human, scene) or why_unreachable(source, scene, human, style)
     if why is None:
         return None, *act(replace(scene, stays=True))
     spots = {spot: beside(scene, *_metres(spot)) for spot in _free_spots(scene, human)}
@@ -170,21 +170,34 @@ def _free_spots(scene: Scene, human: Human) -> Iterator[Spot]:
 def _facts(source: Source, human: Human, scene: Scene, spots: dict[Spot, Scene]) -> Iterator[str]:
     names = {_name(spot): spot for spot in spots}
     wish = _wish(source, human, scene)
-    tall = human.measures["stature"]
-    handled = [np.asarray(scene.thing(hold.thing).place) for hold in source.holds]
-    low = all(thing[2] - scene.floor_m <= HIGHEST * tall for thing in handled)
     yield f"at_first({_name((0, 0))})."
     for name, spot in names.items():
         place = np.asarray(spots[spot].place)
         yield f"stance({name})."
         yield f"amiss({name},{round(1e3 * float(np.linalg.norm(place - wish)))})."
-        most = max((float(np.linalg.norm(place - thing[:2])) for thing in handled), default=0.0)
-        if low and most <= REACH * tall:
+        if not _beyond(source, human, spots[spot]):
             yield f"useful({name})."
         for other, there in names.items():
             apart = GRID_M * float(np.hypot(there[0] - spot[0], there[1] - spot[1]))
-            if other != name and apart <= STRIDE * tall:
+            if other != name and apart <= STRIDE * human.measures["stature"]:
                 yield f"within_step({name},{other})."
+
+
+def _beyond(source: Source, human: Human, scene: Scene) -> str:
+    """What is handled farther away or higher than any posture reaches, in words; empty if none."""
+    tall = human.measures["stature"]
+    for name in dict.fromkeys(hold.thing for hold in source.holds):
+        place = np.asarray(scene.thing(name).place)
+        far_m = float(np.linalg.norm(place[:2] - scene.place))
+        high_m = float(place[2]) - scene.floor_m
+        if far_m > REACH * tall:
+            more_m = far_m - REACH * tall
+            return (
+                f"{name!r} is {far_m:.1f} m away, {more_m:.1f} m farther than any posture reaches"
+            )
+        if high_m > HIGHEST * tall:
+            return f"{name!r} is {high_m:.1f} m above the floor, higher than any posture reaches"
+    return ""
 
 
 def _wish(source: Source, human: Human, scene: Scene) -> Float[np.ndarray, "2"]:
