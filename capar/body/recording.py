@@ -116,7 +116,8 @@ def _holds(made: Performance, side: str) -> dict[str, Bool[np.ndarray, "frames"]
         hand = phase.hand(side)
         if hand.does == "holds":
             now = (made.times >= start - 1e-9) & (made.times < end - 1e-9)
-            out.setdefault(hand.thing, np.zeros(len(made.times), dtype=bool))[now] = True
+            for thing in (hand.thing, *hand.beside):
+                out.setdefault(thing, np.zeros(len(made.times), dtype=bool))[now] = True
     return out
 
 

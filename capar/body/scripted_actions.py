@@ -16,6 +16,7 @@ from capar.body.scripts import (
     Move,
     Phase,
     Script,
+    carry_together,
     drink,
     lift_with_both_hands,
     pour,
@@ -79,6 +80,7 @@ ACTIONS: dict[str, Script] = {
     "turn": turn("mug", float(np.radians(40.0))),
     "push": push("crate", (0.15 * np.cos(ASKEW), 0.15 * np.sin(ASKEW), 0.0)),
     "carry_tray": CARRY_TRAY,
+    "carry_two": carry_together("tin", ("carton",), (0.0, 0.2, 0.2)),
     "pour": pour("mug", lift=0.18, over=(0.0, 0.25, 0.0), angle=float(np.radians(80.0))),
     "door": push_open("door", float(np.radians(32.0)), hinge=(0.0, HINGE_M, 0.0)),
     "drawer": pull_open("drawer", 0.15),
@@ -101,11 +103,15 @@ def action_scene(human: Human, action: str) -> Scene:
     stand = Thing("stand", box(0.40, 0.14, 0.10), (0.34 * tall, 0.0, top), tag=TagType.FIXED)
     tray = Thing("tray", box(0.24, 0.30, 0.03), (0.34 * tall, 0.0, top + 0.10))
     borne = Thing("mug", cup(0.035, 0.09), (0.34 * tall, 0.0, top + 0.13), round=True)
+    ahead, aside = 0.24 * tall, -0.10 * tall
+    tin = Thing("tin", box(0.035, 0.05, 0.12), (ahead, aside, top))
+    carton = Thing("carton", box(0.035, 0.05, 0.14), (ahead - 0.043, aside, top))
     sponge = Thing("sponge", box(0.12, 0.08, 0.05), (0.24 * tall, -0.09 * tall, top))
     needed = {
         "wipe": (sponge,),
         "touch": (crate,), "touch_from_rest": (crate,), "pick_up": (crate,),
         "push": (askew,), "pour": (mug, bowl), "carry_tray": (stand, tray, borne),
+        "carry_two": (tin, carton),
     }  # fmt: skip
     return scene(table(top, near_m=0.13 * tall), *needed.get(action, (mug,)))
 

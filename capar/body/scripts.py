@@ -20,6 +20,9 @@ class Hand:
     grip: str = "side"
     """``side``, ``top`` or ``back``, which is the side that faces the performer."""
 
+    beside: tuple[str, ...] = ()
+    """Other things that lie in the same palm."""
+
 
 RESTS = Hand("rests")
 
@@ -107,6 +110,36 @@ def slide(thing: str, by: tuple[float, float, float], *, side: str = "right") ->
         Phase("grasp", 0.3, held, look=thing),
         Phase("slide", 0.9, held, {thing: Move(by)}, look=thing),
         Phase("hold", 0.3, held, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def carry_together(
+    thing: str, beside: tuple[str, ...], by: tuple[float, float, float], *, side: str = "right"
+) -> Script:
+    """Take several things in one palm, lift them, carry them aside and put them down together.
+
+    Args:
+        thing: On which the middle of the palm lies.
+        beside: The others.
+        by: How far they are carried, the height being that of the lift [m].
+        side: Which hand.
+    """
+    hand = Hand("holds", thing, beside=beside)
+    held, (x, y, up) = {side: hand}, by
+
+    def all_move(*way: float) -> dict[str, Move]:
+        return {name: Move((way[0], way[1], way[2])) for name in (thing, *beside)}
+
+    return (
+        STAND,
+        Phase("reach", 1.0, {side: replace(hand, does="reaches")}, look=thing),
+        Phase("grasp", 0.4, held, look=thing),
+        Phase("lift", 0.9, held, all_move(0.0, 0.0, up), look=thing),
+        Phase("carry", 0.9, held, all_move(x, y, 0.0), look=thing),
+        Phase("lower", 0.9, held, all_move(0.0, 0.0, -up), look=thing),
+        Phase("release", 0.4, held, look=thing),
         Phase("return", 1.0, look="ahead"),
         Phase("stand", 0.6, look="ahead"),
     )

@@ -14,9 +14,12 @@ if TYPE_CHECKING:
     from capar.pipelines.preparations import Performed, Prepared
     from capar.pipelines.preparing import World
     from capar.pipelines.recordings import Recording
+    from capar.pipelines.stances import Approach
     from capar.regeneration.bindings import Role
     from capar.regeneration.forces.force_kinds import ForceKind
-    from capar.regeneration.manner import Effort
+    from capar.regeneration.manner import Effort, EffortReport
+    from capar.regeneration.motions import Motion
+    from capar.regeneration.quality import Quality
     from capar.regeneration.scenes import Scene
     from capar.regeneration.sources import Source
     from capar.regeneration.style_kinds import Kind
@@ -59,12 +62,14 @@ def perform_instance(
     output: Path | None,
     assume: Path | None,
     json: bool,
+    step: bool = True,
 ) -> None:
     """Perform an action or a capture's on things of a scene, and tell how good it is.
 
     Raises:
         CaparError: Something does not exist, or the action cannot be done.
     """
+    from capar.cli._approaches import approach_answer
     from capar.cli._output import print_json
     from capar.pipelines.instantiation import Knowledge, instantiate
     from capar.pipelines.preparations import prepare
@@ -80,25 +85,26 @@ def perform_instance(
             from capar.pipelines.round_trips import by_hand
 
             source = by_hand(source, manner.hand)
-        asked, world = _asked(what, agent, words, source, scene, parts)
+        asked, world = _asked(what, agent, words, source, scene, parts, step=step)
         instance = instantiate(asked, recording, source, known, _asker())
         prepared = prepare(
             instance, world, known.kinds, lambda: ways_of(recordings, open_recording)
         )
-    main = _performed(instance, prepared.world.scene, manner)
+    stepped, main = _performed(instance, prepared.world.scene, manner, step=step)
     stages = [(done.stage.way.recording.name, done) for done in prepared.done]
     made = [*stages, (recording.name, main)]
     if output:
-        _write(made, agent, output)
+        _write(made, agent, output, stepped)
     told = (*notes, *instance.notes)
     if json:
         bound = [asdict(binding) for binding in instance.bindings]
         head = {"action": what, "recording": recording.name, "objects": bound}
-        print_json({**head, **_answer(prepared, main, told)})
+        answer = _answer(prepared, main, told)
+        print_json({**head, **answer, **approach_answer(stepped, answer["passed"])})
         return
     for note in told:
         typer.echo(note)
-    _tell(prepared, main)
+    _tell(prepared, main, stepped)
     if output:
         typer.echo(f"wrote {output}", err=True)
 
@@ -169,11 +175,14 @@ def _asked(
     source: "Source",
     scene: Path | None,
     parts: dict[str, str],
+    *,
+    step: bool,
 ) -> "tuple[Asked, World]":
     """What is asked for, and the world in which it is, as measured."""
     from capar.pipelines.instantiation import Asked
     from capar.pipelines.preparations import captured_world, measured_world
     from capar.pipelines.round_trips import SAME, body
+    from capar.pipelines.stances import FARTHEST_M
     from capar.regeneration.scene_files import read_scene
 
     who = source.capture.agent.name if agent == SAME else agent
@@ -184,7 +193,8 @@ def _asked(
     if scene is not None and own:
         world = replace(world, scene=read_scene(scene, source.scene))
     named = tuple(dict.fromkeys((who, *kinds)))
-    return Asked(what, named, body(shape, source), parts, world.scene, own), world
+    steps_m = FARTHEST_M if step else 0.0
+    return Asked(what, named, body(shape, source), parts, world.scene, own, steps_m), world
 
 
 def _asker() -> Any:
@@ -203,8 +213,14 @@ def _asker() -> Any:
     return ask if can_ask() else None
 
 
-def _performed(instance: "Instance", scene: "Scene", manner: Manner) -> "Performed":
-    """The action itself; that contacts are as its PARs assert is a gate."""
+def _performed(
+    instance: "Instance", scene: "Scene", manner: Manner, *, step: bool
+) -> "tuple[Approach | None, Performed]":
+    """The action itself, after steps to where it can be done if these are allowed and needed.
+
+    That contacts are as its PARs assert is a gate.
+    """
+    from capar.cli._approaches import performed_near
     from capar.pipelines.preparations import Performed
     from capar.pipelines.round_trips import by_hand, observed_source
     from capar.pipelines.ways import asserted
@@ -220,23 +236,35 @@ def _performed(instance: "Instance", scene: "Scene", manner: Manner) -> "Perform
         other = by_hand(other, manner.hand) if manner.hand else other
         style = borrowed_style(source, other, manner.kind)
     style = replace(style, force=manner.force)
-    motion, quality, report = regenerate_in_manner(
-        source, instance.asked.human, where, style,
-        effort=manner.effort, duration_s=manner.duration_s,
-    )  # fmt: skip
-    gate = contact_gate(motion, asserted(source))
-    return Performed(motion, Quality((*quality.gates, gate), quality.told), names, effort=report)
+    human, assertions = instance.asked.human, asserted(source)
+
+    def act(there: "Scene") -> "tuple[Motion, Quality, EffortReport | None]":
+        motion, quality, report = regenerate_in_manner(
+            source, human, there, style, effort=manner.effort, duration_s=manner.duration_s
+        )
+        gate = contact_gate(motion, assertions)
+        return motion, Quality((*quality.gates, gate), quality.told), report
+
+    stepped, (motion, quality, report) = performed_near(source, human, where, style, act, step)
+    return stepped, Performed(motion, quality, names, effort=report)
 
 
-def _write(made: "Sequence[tuple[str, Performed]]", agent: str, output: Path) -> None:
+def _write(
+    made: "Sequence[tuple[str, Performed]]", agent: str, output: Path, stepped: "Approach | None"
+) -> None:
     """One bundle, or one in a folder each, numbered, where something was prepared."""
+    from capar.cli._approaches import write_approach
     from capar.regeneration.captures import capture_of, renamed, write_motion
 
     for number, (name, done) in enumerate(made, start=1):
         source = done.motion.plan.source
         who = agent if agent != "same" else source.capture.agent.name
         bundle = renamed(capture_of(done.motion, name=name, agent=who), done.names)
-        folder = output if len(made) == 1 else output / f"{number}_{name}"
+        alone = len(made) == 1 and stepped is None
+        last = stepped is not None and number == len(made)
+        if stepped is not None and last:
+            write_approach(stepped, output / f"{number}_steps", who)
+        folder = output if alone else output / f"{number + last}_{name}"
         write_motion(done.motion, bundle, folder)
 
 
@@ -262,11 +290,12 @@ def _answer(prepared: "Prepared", main: "Performed", told: Sequence[str]) -> dic
     return {**answer, "passed": passed, "plan": plan, "notes": [*told, *answer["notes"]]}
 
 
-def _tell(prepared: "Prepared", main: "Performed") -> None:
+def _tell(prepared: "Prepared", main: "Performed", stepped: "Approach | None") -> None:
+    from capar.cli._approaches import tell_approach
     from capar.cli._gates import tell_quality
     from capar.pipelines.preparing import told
 
-    if not prepared.done:
+    if not prepared.done and stepped is None:
         typer.echo("plan: nothing has to be prepared")
     for condition in prepared.lacking:
         typer.echo(f"plan: {told(condition)} does not hold yet")
@@ -287,7 +316,8 @@ def _tell(prepared: "Prepared", main: "Performed") -> None:
         as_part = f", {thing!r} in the part of {part!r}" if part != thing else ""
         typer.echo(f"prepared as in {done.stage.way.recording.name}{as_part}:")
         tell_quality(done.motion, done.quality)
-    if prepared.done:
+    tell_approach(stepped)
+    if prepared.done or stepped:
         typer.echo("the action itself:")
     tell_quality(main.motion, main.quality)
     if main.effort:

@@ -13,8 +13,8 @@ def perform(
     action: Annotated[
         str,
         typer.Argument(
-            help="drink, sip, touch, touch_from_rest, slide, carry, carry_tray, pick_up, turn, "
-            "push, pour, door, drawer or wipe; of two bodies hand_over."
+            help="drink, sip, touch, touch_from_rest, slide, carry, carry_tray, carry_two, "
+            "pick_up, turn, push, pour, door, drawer or wipe; of two bodies hand_over."
         ),
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="A new folder for the capture.")],

@@ -11,6 +11,10 @@ from capar.cli._options import Assume, NewBundle, Place, Rules
 if TYPE_CHECKING:
     from capar.cli._instantiation import Manner
     from capar.model.capture import Capture
+    from capar.regeneration.manner import EffortReport
+    from capar.regeneration.motions import Motion
+    from capar.regeneration.quality import Quality
+    from capar.regeneration.scenes import Scene
 
 app = typer.Typer()
 
@@ -99,6 +103,16 @@ def regenerate(
             "speed) or same (the thing's motion; the hand strikes as fast as that takes)."
         ),
     ] = "similar",
+    step: Annotated[
+        bool | None,
+        typer.Option(
+            "--step/--no-step",
+            help="Where it is out of reach from the given place, step to where it can be done; "
+            "as usual for an ACTION or with --object, not as usual for a CAPTURE alone. Not with "
+            "--say.",
+            show_default=False,
+        ),
+    ] = None,
     recordings: Annotated[
         Path | None,
         typer.Option(
@@ -134,8 +148,8 @@ def regenerate(
     agents = agent or ["same"]
     manner = read_effort(effort) if effort is not None else None
     if say is not None:
-        if style_of or things:
-            option = "--style-of" if style_of else "--object"
+        if style_of or things or step:
+            option = "--style-of" if style_of else "--object" if things else "--step"
             raise CaparError(f"{option} is of one recorded action; leave it out, or --say")
         perform_request(
             say, one_body(agents), Where(capture, recordings, actionary, rules), scene=scene,
@@ -150,18 +164,26 @@ def regenerate(
         perform_instance(
             capture, one_body(agents), Where(None, recordings, actionary, rules),
             how, stated=things or [], scene=scene, output=output, assume=assume, json=json,
+            step=step is not False,
         )  # fmt: skip
         return
     trial = trial_of(capture)
     if trial.others:
         check_no_others(
             {"--style-of": style_of, "--duration": duration, "--hand": hand, "--assume": assume,
-             "--effort": effort, "--force": "" if force == "similar" else force}
+             "--effort": effort, "--step": step, "--force": "" if force == "similar" else force}
         )  # fmt: skip
         perform_jointly(trial, agents, scene=scene, output=output, style=style, json=json)
         return
     _perform_alone(
-        trial, one_body(agents), how, scene=scene, output=output, assume=assume, json=json
+        trial,
+        one_body(agents),
+        how,
+        scene=scene,
+        output=output,
+        assume=assume,
+        json=json,
+        step=bool(step),
     )
 
 
@@ -174,8 +196,15 @@ def _perform_alone(
     output: Path | None,
     assume: Path | None,
     json: bool,
+    step: bool,
 ) -> None:
     """Perform what one performer was recorded to do."""
+    from capar.cli._approaches import (
+        approach_answer,
+        performed_near,
+        tell_approach,
+        write_approach,
+    )
     from capar.cli._gates import effort_answer, quality_answer, tell_quality
     from capar.cli._output import print_json
     from capar.pipelines.round_trips import body, by_hand, observed_source
@@ -193,16 +222,27 @@ def _perform_alone(
         other = observed_source(how.style_of)
         chosen = borrowed_style(source, by_hand(other, how.hand) if how.hand else other, how.kind)
     chosen = replace(chosen, force=how.force)
-    motion, quality, report = regenerate_in_manner(
-        source, body(who, recorded), place, chosen, effort=how.effort, duration_s=how.duration_s
-    )
+    human = body(who, recorded)
+
+    def act(where: "Scene") -> "tuple[Motion, Quality, EffortReport | None]":
+        return regenerate_in_manner(
+            source, human, where, chosen, effort=how.effort, duration_s=how.duration_s
+        )
+
+    stepped, (motion, quality, report) = performed_near(source, human, place, chosen, act, step)
     if output:
         name = who if who != "same" else source.capture.agent.name
         made = capture_of(motion, name=source.capture.name, agent=name)
-        write_motion(motion, made, output)
+        if stepped:
+            write_approach(stepped, output / "1_steps", name)
+        write_motion(motion, made, output / f"2_{source.capture.name}" if stepped else output)
     if json:
-        print_json({**quality_answer(motion, quality), **effort_answer(report)})
+        answer = {**quality_answer(motion, quality), **effort_answer(report)}
+        print_json({**answer, **approach_answer(stepped, answer["passed"])})
         return
+    tell_approach(stepped)
+    if stepped:
+        typer.echo("the action itself:")
     tell_quality(motion, quality)
     if report:
         typer.echo(report)

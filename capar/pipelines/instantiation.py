@@ -47,6 +47,9 @@ class Asked:
     own: bool
     """Whether it is the recorded scene, with other places and sizes at most."""
 
+    steps_m: float = 0.0
+    """How far the performer may step before it [m]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Instance:
@@ -127,23 +130,26 @@ def instantiate(
     notes = check_applicable(applied, known.abilities)
     check_movable(source, scene, parts)
     for name in {hold.thing for hold in source.holds if hold.thing in parts}:
-        _check_near(scene.thing(parts[name]), scene, asked.human)
+        _check_near(scene.thing(parts[name]), scene, asked)
     told = tuple(_told(binding) for binding in bindings if binding.role != binding.thing)
     source = with_only(source, parts)
     return Instance(asked, recording, source, roles, bindings, (*told, *notes))
 
 
-def _check_near(thing: Thing, scene: Scene, human: Human) -> None:
-    """Nothing that is taken is further than any posture reaches."""
+def _check_near(thing: Thing, scene: Scene, asked: Asked) -> None:
+    """Nothing that is taken is further than any posture reaches, after steps if these may be."""
+    human = asked.human
     far_m = float(np.hypot(*(np.asarray(thing.place)[:2] - scene.place)))
     far_m -= 0.5 * float(np.linalg.norm(thing.size[:2]))
-    most_m = BEYOND * human.measures["stature"] + (0.0 if scene.stays else BESIDE_M)
+    beside_m = 0.0 if scene.stays else BESIDE_M
+    most_m = BEYOND * human.measures["stature"] + max(beside_m, asked.steps_m)
+    after = " after steps" if asked.steps_m > beside_m else ""
     if far_m > most_m:
         raise PlanError(
             f"reach does not hold: {thing.name!r} is {far_m:.1f} m from where the performer "
             f"stands, and no posture of a body {human.measures['stature']:.2f} m tall reaches "
-            f"{most_m:.1f} m; standing {far_m - most_m:.1f} m nearer to it at least, or the thing "
-            "so much nearer, is needed"
+            f"{most_m:.1f} m{after}; standing {far_m - most_m:.1f} m nearer to it at least, or the "
+            "thing so much nearer, is needed"
         )
 
 

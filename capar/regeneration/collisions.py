@@ -175,6 +175,20 @@ class Surroundings:
         return np.asarray((tree.data[near] - middle) @ (thing.T @ turn))
 
 
+def things_apart(scene: Scene, names: tuple[str, str], human: Human) -> float:
+    """The distance between two things as they stand; larger ones than ``NEAR_M`` count as that [m].
+
+    Args:
+        scene: Of the things.
+        names: Which two.
+        human: Whoever is in it.
+    """
+    around = Surroundings(human, scene)
+    around.pose(human.posture(), {name: thing.pose for name, thing in scene.things.items()})
+    found = (pair for pair in around.things_near() if {pair.part, pair.thing} == set(names))
+    return min((pair.distance_m for pair in found), default=NEAR_M)
+
+
 def inner_gap(hollow: Shape, thing: Shape, seat: RigidTransform) -> float | None:
     """How far a thing is from the surface of a hollow one, negative where they cut [m].
 

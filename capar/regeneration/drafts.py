@@ -11,7 +11,8 @@ from capar.body.recording import HAND_SEGMENTS
 from capar.regeneration import attending
 from capar.regeneration.body_frames import body_frames, head_path
 from capar.regeneration.clearing import ClearTask
-from capar.regeneration.collisions import Pair, Surroundings
+from capar.regeneration.collisions import NEAR_M, Pair, Surroundings, things_apart
+from capar.regeneration.companions import led_holds
 from capar.regeneration.errors import PlanError
 from capar.regeneration.forces.flights import first_guess
 from capar.regeneration.grips import OUT_M, Grip, Gripping, Turn, drawn_turns, turns
@@ -30,6 +31,9 @@ CUT_M = 0.001
 PRESSED_M = 0.025
 """An arm that is no deeper inside what it holds presses against it: flesh gives way and the
 mannequin does not. It is a last resort, told, and fails the gate of penetration [m]."""
+
+APART_M = 0.02
+"""Things that a hand takes together are no more than this farther apart than they were [m]."""
 
 KEYS = 6
 """Key postures in a hold, besides those at goals."""
@@ -100,7 +104,7 @@ class Draft:
         Where an arm presses against what it holds whatever the grip, that is in ``pressed``.
         """
         chosen: list[Grip] = []
-        for group in _groups(self.source.holds):
+        for group in _groups(led_holds(self.source.holds, self.source.companions)):
             usual = list(turns(self.scene.thing(group[0].thing)))[:most]
             miss, grips = self._best_grips(chosen, group, usual)
             if miss.ratio > 1.0 and miss.cuts and most == MOST_TURNS:
@@ -123,7 +127,7 @@ class Draft:
         """The first of some turns that reaches, or else the one that misses least."""
         best: tuple[Miss, list[Grip]] | None = None
         for turn in options:
-            grips = [self.gripping.grip(hold, turn) for hold in group]
+            grips = self._gripped(group, turn)
             enough = np.inf if best is None else max(best[0].ratio, 1.0)
             miss = self._missed(chosen + grips, group, enough)
             if best is None or miss.ratio < best[0].ratio:
@@ -138,7 +142,7 @@ class Draft:
     ) -> tuple[Miss, list[Grip]]:
         """Grips turned as the body itself would take the thing; the best ones that were tried."""
         best = miss, grips
-        for start in ([self.gripping.grip(hold, Turn()) for hold in group], grips):
+        for start in (self._gripped(group, Turn()), grips):
             eased = start
             for _ in range(ROUNDS):
                 eased = self._as_turned(chosen, group, eased)
@@ -147,6 +151,10 @@ class Draft:
                 if best[0].ratio <= 1.0:
                     return best
         return best
+
+    def _gripped(self, group: list[Hold], turn: Turn) -> list[Grip]:
+        """Grips of some holds, and of what these hands hold besides."""
+        return self.gripping.with_companions([self.gripping.grip(hold, turn) for hold in group])
 
     def _as_turned(self, chosen: list[Grip], group: list[Hold], grips: list[Grip]) -> list[Grip]:
         """Grips turned as palms are, in the mean, that have to be somewhere and may turn freely."""
@@ -162,13 +170,13 @@ class Draft:
                     wanted = (thing * grip.pose).rotation
                     turns[side].append(wanted.inv() * hand.rotation)
         out = []
-        for grip in grips:
+        for grip in (one for one in grips if not one.beside):
             by = Rotation.concatenate(turns[grip.hold.side]).mean()
             eased = (Rotation.from_rotvec(grip.turn.eased) * by).as_rotvec()
             eased *= min(1.0, MOST_EASED_RAD / max(float(np.linalg.norm(eased)), 1e-9))
             x, y, z = (float(angle) for angle in eased)
             out.append(self.gripping.grip(grip.hold, replace(grip.turn, eased=(x, y, z))))
-        return out
+        return self.gripping.with_companions(out)
 
     def _missed(self, grips: list[Grip], group: list[Hold], enough: float) -> Miss:
         """How far the key postures of some holds are missed, in units of what is allowed.
@@ -176,9 +184,9 @@ class Draft:
         No further than is enough to be worse than another grip. A hand that does not come to the
         surface of the thing has no grip.
         """
-        loose = max(grips, key=lambda grip: abs(grip.gap_m))
+        loose = max(grips, key=lambda grip: grip.missed_m)
         if not loose.touches:
-            return Miss(1.0 + abs(loose.gap_m) / REACH_M, _beside(loose))
+            return Miss(1.0 + loose.missed_m / REACH_M, _beside(loose))
         solver, worst = self._solver(), Miss()
         for frame in self.key_frames(group):
             goal = self._follow(solver, grips, frame)
@@ -270,6 +278,18 @@ class Draft:
 
 
 def _beside(grip: Grip) -> str:
+    if grip.beside:
+        both = f"{grip.hold.thing!r} together with {grip.beside!r}"
+        if grip.beyond_m > 0.0:
+            return (
+                f"the {grip.hold.side} hand is too small to hold {both}: the middle of one of "
+                f"them is {1e3 * grip.beyond_m:.0f} mm past its edge"
+            )
+        where = "off" if grip.gap_m > 0.0 else "inside"
+        return (
+            f"the {grip.hold.side} hand cannot hold {both}: where it touches {grip.beside!r} it is "
+            f"{1e3 * abs(grip.gap_m):.0f} mm {where} {grip.hold.thing!r}"
+        )
     where = "beside" if grip.gap_m > 0.0 else "inside"
     return (
         f"the {grip.hold.side} hand would be {where} {grip.hold.thing!r} and not on its surface, "
@@ -298,6 +318,28 @@ def check_stance(scene: Scene, human: Human) -> None:
                 f"standing at ({scene.place[0]:.2f}, {scene.place[1]:.2f}) m the performer's "
                 f"{pair.part} is {-pair.distance_m * 1000:.0f} mm inside {pair.thing!r}; stand "
                 "further back, or put it elsewhere"
+            )
+
+
+def check_companions(source: Source, scene: Scene, human: Human) -> None:
+    """What a hand takes together stands beside each other, about as near as it did.
+
+    Raises:
+        PlanError: It stands farther apart, or inside each other.
+    """
+    for companion in source.companions:
+        names = companion.hold.thing, companion.lead.thing
+        before, now = (things_apart(where, names, human) for where in (source.scene, scene))
+        said = f"{names[0]!r} stands {{}} {names[1]!r}, with which the {companion.hold.side} hand "
+        larger = [where.thing(names[1]).size.max() for where in (scene, source.scene)]
+        if now > before * max(larger[0] / larger[1], 1.0) + APART_M:
+            told = said.format(f"{1e3 * now:.0f} mm from")
+            if now >= NEAR_M:
+                told = said.format(f"{1e3 * NEAR_M:.0f} mm or more from")
+            raise PlanError(f"{told}takes it; it stood {1e3 * before:.0f} mm from it: put it so")
+        if now < -CUT_M:
+            raise PlanError(
+                said.format(f"{-1e3 * now:.0f} mm inside") + "takes it: put it farther away"
             )
 
 

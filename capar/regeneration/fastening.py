@@ -1,12 +1,12 @@
-"""Doors and drawers go along with what bears them."""
+"""Doors and drawers go along with what bears them, and what a hand takes with another thing."""
 
 from dataclasses import replace
 
-from capar.regeneration.scenes import Scene, moved, resized
+from capar.regeneration.scenes import Scene, moved, resized, taken_with
 
 
 def moved_with(scene: Scene, name: str, place: tuple[float, float, float], heading: float) -> Scene:
-    """The scene with a thing elsewhere, and what is fastened to it as it was on it."""
+    """The scene with a thing elsewhere, and what goes with it as it was beside it."""
     old = scene.thing(name)
     changed = moved(scene, name, place, heading)
     by = changed.thing(name).pose * old.pose.inv()
@@ -18,7 +18,7 @@ def moved_with(scene: Scene, name: str, place: tuple[float, float, float], headi
 
 
 def resized_with(scene: Scene, name: str, factor: float) -> Scene:
-    """The scene with a thing of another size, and what is fastened to it likewise."""
+    """The scene with a thing of another size, and what goes with it likewise."""
     old = scene.thing(name)
     changed = resized(scene, name, factor)
     for rider in _riders(scene, name):
@@ -36,4 +36,5 @@ def bases(scene: Scene) -> list[str]:
 
 
 def _riders(scene: Scene, name: str) -> list[str]:
-    return [rider for rider, base in scene.fastened.items() if base == name]
+    fastened = [rider for rider, base in scene.fastened.items() if base == name]
+    return [*fastened, *taken_with(scene, name)]

@@ -1,7 +1,7 @@
 """How the new hand lies on the new thing: the same points touch, turned as little as may be."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import trimesh
@@ -14,6 +14,7 @@ from capar.body.things import Thing
 from capar.model.capture import Sensor, Shape
 from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.collisions import Surroundings
+from capar.regeneration.companions import led_holds
 from capar.regeneration.contact_points import contact_points
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
@@ -96,10 +97,22 @@ class Grip:
     gap_m: float = 0.0
     """How far the hand is from the thing then, negative inside: none where it touches [m]."""
 
+    beside: str = ""
+    """By which other thing the hand is led that it holds besides; empty where it is this one."""
+
+    beyond_m: float = 0.0
+    """How far the middle of either of two things that are held together is past the edge of the
+    hand [m]."""
+
+    @property
+    def missed_m(self) -> float:
+        """How much too far the hand is from where it would hold the thing [m]."""
+        return max(abs(self.gap_m), LOOSE_M + self.beyond_m if self.beyond_m > 0.0 else 0.0)
+
     @property
     def touches(self) -> bool:
         """Whether the hand came to the surface of the thing, or was too far from it or inside."""
-        return abs(self.gap_m) <= LOOSE_M
+        return self.missed_m <= LOOSE_M
 
 
 def turns(thing: Thing) -> Iterator[Turn]:
@@ -130,7 +143,8 @@ class Gripping:
         self.source, self.scene, self.old, self.new = source, scene, old, new
         self.around = Surroundings(new.human, scene)
         self.posture = Solver(new.human, (*scene.place, scene.floor_m), scene.heading).rest
-        self.recorded = {hold: self._recorded(hold) for hold in source.holds}
+        holds = led_holds(source.holds, source.companions)
+        self.recorded = {hold: self._recorded(hold) for hold in holds}
 
     def grip(self, hold: Hold, turn: Turn) -> Grip:
         """The recorded grip in the new measures, turned, touching, and clear of the support."""
@@ -152,6 +166,39 @@ class Gripping:
         out, gap = self._out(hold, pose)
         pose = pose * RigidTransform.from_translation([0.0, 0.0, -out])
         return Grip(hold, pose, turn, raised, out, gap)
+
+    def with_companions(self, grips: list[Grip]) -> list[Grip]:
+        """The same, with how these hands lie on what they hold besides."""
+        return [*grips, *(one for grip in grips for one in self._companions(grip))]
+
+    def _companions(self, grip: Grip) -> Iterator[Grip]:
+        for companion in self.source.companions:
+            if companion.lead == grip.hold:
+                hold = companion.hold
+                seat = self._seat(hold.thing, grip.hold.thing)
+                pose = seat.inv() * grip.pose
+                gap = self._gap(hold, pose, 0.0) - TOUCH_M
+                beyond = self._beyond(grip, seat, hold.thing)
+                yield replace(
+                    grip, hold=hold, pose=pose, gap_m=gap, beside=grip.hold.thing, beyond_m=beyond
+                )
+
+    def _seat(self, name: str, lead: str) -> RigidTransform:
+        """``T_lead_thing`` as they stand."""
+        return self.scene.thing(lead).pose.inv() * self.scene.thing(name).pose
+
+    def _beyond(self, grip: Grip, seat: RigidTransform, name: str) -> float:
+        """How far the middle of either thing is past the edge of the hand [m].
+
+        Along the line on which they lie beside each other, in the plane of the palm.
+        """
+        local, lead = grip.pose.inv(), self.scene.thing(grip.hold.thing)
+        middle = local.apply(seat.apply(self.scene.thing(name).shape.bounds.mean(axis=0)))
+        first = local.apply(lead.shape.bounds.mean(axis=0))
+        along = (middle - first) * [1.0, 1.0, 0.0]
+        along /= max(float(np.linalg.norm(along)), 1e-9)
+        own = np.array(self._hand(grip.hold.side).vertices) @ along
+        return float(max(middle @ along - own.max(), own.min() - first @ along))
 
     def _recorded(
         self, hold: Hold
@@ -185,11 +232,15 @@ class Gripping:
         sensor = self.source.capture.sensor(track.sensor)
         shape = _hand_shape(sensor, track.frame.pose)
         before = self._above(self.source.scene, hold, self.recorded[hold][0], shape)
-        names = tuple(f"{hold.side}_{each}" for each in HAND_SEGMENTS)
-        surface = segment_surface(self.new.human.measures, names, f"{hold.side}_hand")
-        local = self.new.hands[hold.side].pose.inv().apply(np.array(surface.vertices))
-        own = Shape(local, np.array(surface.faces))
+        own = self._hand(hold.side)
         return max(0.0, min(CLEAR_M, before) - self._above(self.scene, hold, pose, own))
+
+    def _hand(self, side: str) -> Shape:
+        """The new hand's surface in the frame on it."""
+        names = tuple(f"{side}_{each}" for each in HAND_SEGMENTS)
+        surface = segment_surface(self.new.human.measures, names, f"{side}_hand")
+        local = self.new.hands[side].pose.inv().apply(np.array(surface.vertices))
+        return Shape(local, np.array(surface.faces))
 
     def _above(self, scene: Scene, hold: Hold, pose: RigidTransform, hand: Shape) -> float:
         low = scene.thing(hold.thing).shape.bounds[0, 2]
@@ -197,17 +248,23 @@ class Gripping:
 
     def _out(self, hold: Hold, pose: RigidTransform) -> tuple[float, float]:
         """How far against its palm a hand is moved until it touches, and what gap is left [m]."""
-        rest, side = self.new.rest[hold.side], hold.side
-        names = [f"{side}_{each}" for each in HAND_SEGMENTS]
+        beside = [one.hold for one in self.source.companions if one.lead == hold]
+        along = [(hold, RigidTransform.identity())]
+        along += [(one, self._seat(one.thing, hold.thing).inv()) for one in beside]
 
         def apart(by_m: float) -> float:
-            away = pose * RigidTransform.from_translation([0.0, 0.0, -by_m])
-            self.around.pose(self.posture, {hold.thing: rest * away.inv()})
-            found = (p.distance_m for p in self.around.near(names) if p.thing == hold.thing)
-            return min(found, default=1.0)
+            return min(self._gap(one, seat * pose, by_m) for one, seat in along)
 
         out = touching_shift(apart, OUT_M)
-        return out, apart(out) - TOUCH_M
+        return out, self._gap(hold, pose, out) - TOUCH_M
+
+    def _gap(self, hold: Hold, pose: RigidTransform, by_m: float) -> float:
+        """How far a hand is from a thing when it is moved so far against its palm [m]."""
+        names = [f"{hold.side}_{each}" for each in HAND_SEGMENTS]
+        away = pose * RigidTransform.from_translation([0.0, 0.0, -by_m])
+        self.around.pose(self.posture, {hold.thing: self.new.rest[hold.side] * away.inv()})
+        found = (p.distance_m for p in self.around.near(names) if p.thing == hold.thing)
+        return min(found, default=1.0)
 
 
 def _hand_shape(sensor: Sensor, frame: RigidTransform) -> Shape:

@@ -10,6 +10,7 @@ from scipy.spatial.transform import RigidTransform
 from capar.body.recording import HAND_SEGMENTS
 from capar.regeneration.body_frames import BodyFrames, free_pose, rest_pose
 from capar.regeneration.collisions import Surroundings
+from capar.regeneration.companions import hand_spans
 from capar.regeneration.path_mapping import STRAIGHT, Detour, mapped
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, vectors
@@ -83,7 +84,8 @@ def hand_paths(
         for hold in holds:
             for frame in range(hold.first, hold.last + 1):
                 poses[frame] = things[hold.thing][frame] * grips[hold]
-        for before, after in zip([None, *holds], [*holds, None], strict=True):
+        spans = dict(hand_spans(holds, source.companions))
+        for before, after in zip([None, *spans], [*spans, None], strict=True):
             first = before.last if before else 0
             last = after.first if after else len(source.times) - 1
             if last <= first:
@@ -93,7 +95,7 @@ def hand_paths(
                 start = _free(source, old, new, side, (first, last), goal if after else None)
             if not after:
                 goal = _free(source, old, new, side, (last, first), start if before else None)
-            touched = {each.thing for each in (before, after) if each}
+            touched = {thing for each in (before, after) if each for thing in spans[each]}
             part = style.hands[side][first : last + 1]
             away = _away(start, before), _away(goal, after)
 

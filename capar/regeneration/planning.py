@@ -12,13 +12,14 @@ from capar.body.human import Human
 from capar.model.capture import TagType
 from capar.regeneration import attending
 from capar.regeneration.body_frames import BodyFrames
-from capar.regeneration.drafts import MOST_TURNS, Draft, check_stance
+from capar.regeneration.drafts import MOST_TURNS, Draft, check_companions, check_stance
 from capar.regeneration.errors import PlanError
+from capar.regeneration.fastening import resized_with
 from capar.regeneration.forces.flights import flight_notes, flights
 from capar.regeneration.grips import Grip
 from capar.regeneration.hand_paths import Care, hand_paths
 from capar.regeneration.path_mapping import Detour
-from capar.regeneration.scenes import Scene, mobile, moved, raised, resized
+from capar.regeneration.scenes import Scene, mobile, moved, raised, resized, taken_with
 from capar.regeneration.solving import Targets, vectors
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Style, own_style
@@ -129,6 +130,7 @@ def reachable(
         PlanError: As ``plan`` says.
     """
     style = style or own_style(source)
+    check_companions(source, scene, human)
     pressed: Draft | None = None
     try:
         found = _draft(source, scene, human, style, watched)
@@ -148,6 +150,22 @@ def reachable(
         pressed.told += [f"whatever the grip, {told}" for told in pressed.pressed]
         return pressed
     raise PlanError(f"{why}; {_remedy(source, scene, human)}")
+
+
+def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) -> str | None:
+    """Why a body does not come to every goal from just there; None where it does.
+
+    Args:
+        source: The recorded performance.
+        scene: Where it is performed.
+        human: Who performs.
+        style: How it is done.
+    """
+    try:
+        found = _draft(source, scene, human, style, frozenset())
+    except PlanError as error:
+        return str(error)
+    return found.pressed[0] if found.pressed else None
 
 
 def led(draft: Draft, care: Care) -> Plan:
@@ -214,7 +232,9 @@ def _remedies(source: Source, scene: Scene, human: Human) -> Iterator[tuple[str,
         words = f"what can be moved {by_m:.1f} m nearer to the performer"
         yield words, _drawn_nearer(scene, by_m), human
     for name in mobile(scene):
-        yield f"{name!r} of {SMALLER:.1f} times the size", resized(scene, name, SMALLER), human
+        smaller = resized_with(scene, name, SMALLER)
+        words = " and ".join(repr(one) for one in (name, *taken_with(scene, name)))
+        yield f"{words} of {SMALLER:.1f} times the size", smaller, human
     for name, by_m in levels:
         words = f"what can be moved {BOTH_M:.1f} m nearer to the performer"
         nearer = _drawn_nearer(raised(scene, name, by_m), BOTH_M)
@@ -262,7 +282,7 @@ def _notes(
     source: Source, grips: tuple[Grip, ...], goals: Mapping[str, list[Goal]]
 ) -> tuple[str, ...]:
     out = list(source.notes)
-    for grip in grips:
+    for grip in (one for one in grips if not one.beside):
         if grip.turn.drawn_m > 0.0:
             out.append(
                 f"the {grip.hold.side} hand takes {grip.hold.thing!r} drawn back by "

@@ -97,6 +97,7 @@ def quality(motion: Motion) -> Quality:
         _still_gate(motion),
         _profile_gate(motion, hands),
         *_borne_gates(motion.plan),
+        *_together_gates(motion, hands),
     )
     return Quality(gates, (thumb,))
 
@@ -209,7 +210,7 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
                 thumb = min(thumb, (pair, frame))
                 continue
             deepest = min(deepest, (pair, frame))
-            if side in plan.hands and _is_hand(pair.part) and _is_free(motion, pair, frame):
+            if side in plan.hands and is_hand(pair.part) and _is_free(motion, pair, frame):
                 nearest = min(nearest, (pair, frame))
         for pair in around.things_near():
             if frozenset((pair.part, pair.thing)) not in inner:
@@ -240,7 +241,8 @@ def _distance_gate(name: str, limit_mm: float, pair: Pair, frame: int) -> Gate:
     return Gate(name, 1e3 * pair.distance_m, limit_mm, "mm", True, frame, bodies)
 
 
-def _is_hand(part: str) -> bool:
+def is_hand(part: str) -> bool:
+    """Whether a part of the body is of a hand, the thumb left out."""
     return part.endswith(("_hand", "_fingers", "_fingertips"))
 
 
@@ -327,6 +329,21 @@ def _borne_gates(plan: Plan) -> Iterator[Gate]:
         "borne: not to fall", 1e3 * narrow.inside_m, 0.0, "mm", True,
         other.first + narrow.inside_frame, f"{other.thing} on {other.bearer}",
     )  # fmt: skip
+
+
+def _together_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
+    """What one hand holds together does not slide in it; none where there is nothing."""
+    worst = (-1.0, -1, "")
+    for companion in motion.plan.source.companions:
+        ride, hand = companion.ride, hands[companion.hold.side]
+        part = slice(ride.first, ride.last + 1)
+        for name in (ride.thing, ride.bearer):
+            local = hand[part].inv() * motion.plan.things[name][part]
+            off = np.linalg.norm(local.translation - local.translation[0], axis=1)
+            found = (float(off.max()), ride.first + int(off.argmax()), name)
+            worst = max(worst, found)
+    if worst[1] >= 0:
+        yield Gate("in one hand: not to slide", 1e3 * worst[0], 2.0, "mm", False, *worst[1:])
 
 
 def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:

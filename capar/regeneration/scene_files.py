@@ -11,7 +11,7 @@ import numpy as np
 from capar.model.capture import TagType
 from capar.model.errors import FileError
 from capar.regeneration.fastening import bases, moved_with, resized_with
-from capar.regeneration.scenes import Scene, mobile, moved, raised, resized, stack
+from capar.regeneration.scenes import Scene, mobile, moved, raised, stack, taken_with
 
 
 @dataclass(frozen=True)
@@ -117,10 +117,12 @@ def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> S
         rng: What draws.
         draw: The ranges from which it draws.
 
-    What bears a door or a drawer is drawn with it, in size and place, and as much higher or lower.
+    What bears a door or a drawer is drawn with it, in size and place, and as much higher or lower;
+    things that a hand takes together are drawn as one.
     """
     for name in mobile(scene):
-        scene = resized(scene, name, float(rng.uniform(*draw.sizes)))
+        if name not in scene.together:
+            scene = resized_with(scene, name, float(rng.uniform(*draw.sizes)))
     for name in bases(scene):
         scene = _drawn_base(scene, name, rng, draw)
     fixed = [
@@ -136,9 +138,10 @@ def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> S
         found = scene
         for name in mobile(scene):
             dx, dy = rng.uniform(-draw.aside_m, draw.aside_m, 2)
-            if scene.support(name) in mobile(scene):
-                continue  # it goes along with what bears it
-            for shifted in (name, *stack(scene, name)):
+            if scene.support(name) in mobile(scene) or name in scene.together:
+                continue  # it goes along with what bears it, or with what is taken together
+            beside = [o for n in taken_with(scene, name) for o in (n, *stack(scene, n))]
+            for shifted in (name, *stack(scene, name), *beside):
                 x, y, z = scene.thing(shifted).place
                 heading = scene.thing(shifted).heading
                 found = moved(found, shifted, (x + dx, y + dy, z), heading)
@@ -166,6 +169,8 @@ def _sound(before: Scene, after: Scene) -> bool:
             return False
         for second in names[number + 1 :]:
             if second in stack(after, first) or first in stack(after, second):
+                continue
+            if after.together.get(second) == first or after.together.get(first) == second:
                 continue
             one, two = boxes[first], boxes[second]
             gaps = np.maximum(one.min(axis=0) - two.max(axis=0), two.min(axis=0) - one.max(axis=0))

@@ -45,6 +45,9 @@ class Scene(Things):
     fastened: Mapping[str, str] = field(default_factory=dict)
     """By the name of what is on a hinge or a rail, the fixed thing that bears that."""
 
+    together: Mapping[str, str] = field(default_factory=dict)
+    """By the name of what lies in a hand beside another thing, that thing."""
+
     def stops(self, part: str, name: str) -> bool:
         """Whether a thing stops a part of the body: no ground stops the feet that stand on it."""
         if part.endswith(FEET):
@@ -86,6 +89,11 @@ def resized(scene: Scene, name: str, factor: float) -> Scene:
     for rider in riders:
         scene = _lifted(scene, rider, higher)
     return scene
+
+
+def taken_with(scene: Scene, name: str) -> list[str]:
+    """What a hand takes together with a thing by which it is led."""
+    return [other for other, lead in scene.together.items() if lead == name]
 
 
 def raised(scene: Scene, name: str, by_m: float) -> Scene:

@@ -17,6 +17,7 @@ from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
 from capar.regeneration.bearing import Ride, rides_of
+from capar.regeneration.companions import Companion, companions_of
 from capar.regeneration.contact_points import surface_samples
 from capar.regeneration.errors import PlanError
 from capar.regeneration.hand_frames import HandAxes, HandFrame, hand_frame, stated_hand_frame
@@ -101,6 +102,9 @@ class Source:
 
     rides: tuple[Ride, ...] = ()
     """What held things bear."""
+
+    companions: tuple[Companion, ...] = ()
+    """What lies in a hand beside another thing."""
 
     pace: float = 1.0
     """How many times as long everything takes as it did [1]."""
@@ -190,11 +194,15 @@ def source_of(
     sensors = {side: hand.sensor for side, hand in hands.items()}
     poises = poises_of(observation, sensors, things, holds)
     fastened = {guide.object: guide.base for guide in observation.guides if guide.object in things}
-    scene = Scene(things, place, heading, floor_m, entered=entered, fastened=fastened)
+    companions = companions_of(holds, paths)
+    together = {each.hold.thing: each.lead.thing for each in companions}
+    scene = Scene(
+        things, place, heading, floor_m, entered=entered, fastened=fastened, together=together
+    )
     made = Source(
         capture, observation, human, scene,
         hands, paths, eyes, holds, meetings, poises, tuple(told), launches,
-        rides=rides_of(paths, holds, touching),
+        rides=rides_of(paths, holds, touching), companions=companions,
     )  # fmt: skip
     if checked:
         check_source(made)

@@ -14,6 +14,7 @@ from capar.regeneration.bearing import Ride, Steadiness, steadiness, with_riders
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
 from capar.regeneration.carrying import Carrying
 from capar.regeneration.collisions import Surroundings
+from capar.regeneration.companions import Companion
 from capar.regeneration.constrained_ways import (
     HINGE,
     PLANE,
@@ -78,10 +79,13 @@ def thing_goals(
     """
     out: dict[str, list[Goal]] = {}
     constraints = scene_constraints(source, scene)
+    beside = {companion.hold.thing for companion in source.companions}
     for name in source.paths:
         kind = constraints[name].kind if name in constraints else ""
         if kind in {HINGE, RAIL}:
             out[name] = list(_guided_goals(source, scene, name, kind))
+            continue
+        if name in beside:
             continue
         for first, last in _handled(source, name):
             goals = out.setdefault(name, [])
@@ -102,6 +106,28 @@ def thing_goals(
             goals.append(replace(down, frame=_stopped(source, name, goals[-1].frame, last)))
             if goals[-1].frame < last:
                 goals.append(replace(down, reason="stays there"))
+    for companion in source.companions:
+        out.setdefault(companion.hold.thing, []).extend(_beside_goals(scene, companion, out))
+    return out
+
+
+def _beside_goals(
+    scene: Scene, companion: Companion, known: Mapping[str, list[Goal]]
+) -> list[Goal]:
+    """The goals of what lies in a hand beside another thing, as that one has them."""
+    ride, name = companion.ride, companion.hold.thing
+    seat = scene.thing(ride.bearer).pose.inv() * scene.thing(name).pose
+    led = [goal for goal in known[ride.bearer] if ride.first <= goal.frame <= ride.last]
+    out = [Goal(name, companion.hold.first, led[0].pose * seat, "stays where it is")]
+    reason = f"beside {ride.bearer!r} in the hand"
+    out += [Goal(name, goal.frame, goal.pose * seat, reason) for goal in led[1:]]
+    there = led[-1].pose * seat
+    if support_at(scene, name, scene.thing(name).pose) and not support_at(scene, name, there):
+        x, y, z = there.translation
+        raise PlanError(
+            f"{name!r} would be put down at ({x:.2f}, {y:.2f}, {z:.2f}) m beside {ride.bearer!r}, "
+            "where nothing supports it; a larger support, or both nearer its middle, would do"
+        )
     return out
 
 
@@ -149,6 +175,7 @@ def thing_paths(
     carrying = Carrying(human, scene, style.kind)
     still = {name: thing.pose for name, thing in scene.things.items()}
     out, constraints = {}, scene_constraints(source, scene)
+    beside = {companion.hold.thing: companion for companion in source.companions}
     told = told_of_constraints(constraints)
     for name, recorded in source.paths.items():
         kind = constraints[name].kind if name in constraints else ""
@@ -157,6 +184,9 @@ def thing_paths(
             out[name] = guided_poses(source, scene, name, style.things[name], spans)
             continue
         poses = [scene.thing(name).pose] * count
+        if name in beside:
+            out[name] = RigidTransform.concatenate(poses)
+            continue
         for start, goal in zip(goals.get(name, []), goals.get(name, [])[1:], strict=False):
             part = style.things[name][start.frame : goal.frame + 1]
             if goal.frame > start.frame:
@@ -179,15 +209,24 @@ def thing_paths(
         f"{source.times[ride.last]:.2f} s"
         for ride in source.rides
     ]
-    return Ways(goals, with_riders(out, source.rides), tuple(told))
+    told += [
+        f"{name!r} lies in the {one.hold.side} hand beside {one.lead.thing!r} from "
+        f"{source.times[one.ride.first]:.2f} to {source.times[one.ride.last]:.2f} s"
+        for name, one in beside.items()
+    ]
+    rides = (*(companion.ride for companion in source.companions), *source.rides)
+    return Ways(goals, with_riders(out, rides), tuple(told))
 
 
 def _borne(
     source: Source, scene: Scene, name: str, first: int, last: int
 ) -> dict[str, RigidTransform]:
-    """``T_bearer_thing`` of what a thing bears, also on what it bears, between two frames."""
+    """``T_thing_other`` of what goes along with a thing between two frames, from frame to frame.
+
+    That is what it bears, and what lies in the hand beside it, with what these bear.
+    """
     out: dict[str, RigidTransform] = {}
-    for ride in source.rides:
+    for ride in (*(companion.ride for companion in source.companions), *source.rides):
         if ride.first < last and first < ride.last and (ride.bearer == name or ride.bearer in out):
             below, own = scene.thing(name).pose, scene.thing(ride.thing).pose
             out[ride.thing] = below.inv() * own

@@ -1,0 +1,206 @@
+"""Steps from one standing place to another, one foot after the other, the weight over the other."""
+
+import itertools
+from dataclasses import dataclass, replace
+
+import mink
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.balance import support
+from capar.body.human import Human
+from capar.body.scripts import SIDES, minimum_jerk
+from capar.body.solving import Solver as Steps
+from capar.regeneration.scenes import Scene
+from capar.regeneration.solving import DAMPING_COST, FrameLimit
+from capar.regeneration.solving import Solver as Standing
+
+STRIDE = 0.16
+"""How far a foot goes in a step at most [share of stature] (estimate: half a usual step)."""
+
+RISE_M = 0.05
+"""How high a foot is lifted [m]."""
+
+SHIFT_S, SWING_S, STAND_S = 0.7, 0.7, 0.5
+"""How long the weight is shifted to a foot, the other one is moved, and both stand before and
+after [s]."""
+
+FOOT_COST, MASS_COST, UPRIGHT_COST = 240.0, 60.0, 4.0
+"""Weights of a metre and a radian at the feet, of a metre of the centre of mass, and of a radian
+of the pelvis."""
+
+EASE_COSTS = (0.1, 5.0)
+"""Weights of a radian from standing at ease: of the legs, and of all else [1/rad]."""
+
+LEGS = ("hip", "knee", "ankle", "toe")
+"""What the names of the legs' joints hold."""
+
+ITERATIONS = 12
+"""Steps of inverse kinematics a frame at most [1]."""
+
+
+Place = tuple[float, float]
+"""Where somebody stands [m]."""
+
+
+@dataclass(frozen=True)
+class Stride:
+    """A step of one foot."""
+
+    side: str
+    by: tuple[float, float]
+    """How far it goes in the world [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stepping:
+    """A body that steps from one place to another."""
+
+    human: Human
+    scene: Scene
+    """Where it stands at first, and the things."""
+
+    goal: Place
+    """Where it stands in the end [m]."""
+
+    strides: tuple[Stride, ...]
+    times: Float[np.ndarray, "frames"]
+    """[s]."""
+
+    postures: Float[np.ndarray, "frames posture"]
+    bears: dict[str, Bool[np.ndarray, "frames"]]
+    """By side, whether a foot bears weight."""
+
+    @property
+    def after(self) -> Scene:
+        """The scene with the performer standing there, to stay."""
+        return replace(self.scene, place=self.goal, stays=True)
+
+
+def strides_to(human: Human, scene: Scene, goal: Place) -> tuple[Stride, ...]:
+    """The fewest steps of at most ``STRIDE`` straight there; each foot comes beside the other.
+
+    The foot on the side to which it goes steps first, else the right one.
+
+    Args:
+        human: Who.
+        scene: Where it stands at first.
+        goal: Where it is to stand [m].
+    """
+    x, y = np.asarray(goal) - scene.place
+    far = float(np.hypot(x, y))
+    count = max(int(np.ceil(far / (STRIDE * human.measures["stature"]) - 1e-9)), 1)
+    left = -np.sin(scene.heading) * x + np.cos(scene.heading) * y
+    order = ("left", "right") if left > 1e-6 else ("right", "left")
+    return tuple(Stride(side, (x / count, y / count)) for _ in range(count) for side in order)
+
+
+def step_to(human: Human, scene: Scene, *places: Place, rate_hz: float = 30.0) -> Stepping:
+    """Step to other places, facing the same way.
+
+    Args:
+        human: Who.
+        scene: Where it stands at first.
+        places: Where it is to stand, one after the other [m]; one at least.
+        rate_hz: Frames a second.
+    """
+    stations = [scene.place, *places]
+    strides = tuple(
+        stride
+        for before, after in itertools.pairwise(stations)
+        for stride in strides_to(human, replace(scene, place=before), after)
+    )
+    goal = stations[-1]
+    body = _Stepper(human, scene, 1.0 / rate_hz)
+    for _ in range(round(STAND_S * rate_hz)):
+        body.frame()
+    for stride in strides:
+        other = SIDES[1 - SIDES.index(stride.side)]
+        body.shift(body.over(other), SHIFT_S)
+        body.swing(stride, SWING_S)
+    body.shift(np.asarray(goal) + body.ahead, SHIFT_S)
+    for _ in range(round(STAND_S * rate_hz)):
+        body.frame()
+    times = np.arange(len(body.postures)) / rate_hz
+    bears = {side: np.array(rows) for side, rows in body.bears.items()}
+    return Stepping(human, scene, goal, strides, times, np.array(body.postures), bears)
+
+
+class _Stepper:
+    """Inverse kinematics of feet, the centre of mass and an upright pelvis, frame by frame."""
+
+    def __init__(self, human: Human, scene: Scene, step_s: float) -> None:
+        self.human, self.step_s = human, step_s
+        standing = Standing(human, (*scene.place, scene.floor_m), scene.heading)
+        self.configuration = standing.configuration
+        self.feet = {s: mink.FrameTask(f"{s}_foot", "body", FOOT_COST, FOOT_COST) for s in SIDES}
+        self.mass = mink.ComTask(cost=[MASS_COST, MASS_COST, 0.0])
+        pelvis = mink.FrameTask("pelvis", "body", 0.0, UPRIGHT_COST)
+        ease = mink.PostureTask(human.model, cost=_ease_costs(human))
+        ease.set_target(standing.rest)
+        for frame in (*self.feet.values(), pelvis):
+            frame.set_target_from_configuration(self.configuration)
+        self.mass.set_target_from_configuration(self.configuration)
+        self.poses = {side: self._foot(side) for side in SIDES}
+        self.spot = np.array(self.configuration.data.subtree_com[1, :2])
+        self.ahead = self.spot - scene.place
+        """Where the centre of mass is from the middle of a standing place [m]."""
+
+        self.limit = FrameLimit(len(human.joints))
+        slow = mink.DampingTask(human.model, cost=DAMPING_COST)
+        tasks = [*self.feet.values(), self.mass, pelvis, ease, slow]
+        self.steps = Steps(human, tasks, longest_rad=0.15, limits=[self.limit])
+        self.limit.bound(step_s)
+        self.postures: list[np.ndarray] = []
+        self.bears: dict[str, list[bool]] = {side: [] for side in SIDES}
+
+    def over(self, side: str) -> Float[np.ndarray, "2"]:
+        """Above the middle of a foot's sole [m]."""
+        return support(self.human, {side: self.poses[side]}).middle
+
+    def shift(self, spot: Float[np.ndarray, "2"], seconds: float) -> None:
+        """Bring the centre of mass above a spot, both feet bearing."""
+        start, count = self.spot, round(seconds / self.step_s)
+        for number in range(count):
+            self.spot = start + minimum_jerk((number + 1) / count) * (spot - start)
+            self.frame()
+
+    def swing(self, stride: Stride, seconds: float) -> None:
+        """Lift a foot, move it and set it down."""
+        start, count = self.poses[stride.side], round(seconds / self.step_s)
+        for number in range(count):
+            share = (number + 1) / count
+            way, rise = minimum_jerk(share), RISE_M * np.sin(np.pi * share) ** 2
+            by = [way * stride.by[0], way * stride.by[1], rise]
+            self.poses[stride.side] = RigidTransform.from_translation(by) * start
+            self.frame("" if number + 1 == count else stride.side)
+
+    def frame(self, swings: str = "") -> None:
+        """Go on to one frame, a foot being in the air."""
+        for side, task in self.feet.items():
+            pose = self.poses[side]
+            turn = pose.rotation.as_quat(scalar_first=True)
+            task.set_target(mink.SE3(np.concatenate([turn, pose.translation])))
+        self.mass.set_target(np.array([*self.spot, 0.0]))
+        self.limit.begin()
+        self.steps.restart()
+        for _ in range(ITERATIONS):
+            self.limit.gone += self.steps.step(self.configuration)
+            if self.steps.settled:
+                break
+        self.postures.append(np.array(self.configuration.q))
+        for side in SIDES:
+            self.bears[side].append(side != swings)
+
+    def _foot(self, side: str) -> RigidTransform:
+        pose = self.configuration.get_transform_frame_to_world(f"{side}_foot", "body")
+        turn = Rotation.from_quat(pose.rotation().wxyz, scalar_first=True)
+        return RigidTransform.from_components(pose.translation(), turn)
+
+
+def _ease_costs(human: Human) -> Float[np.ndarray, "dofs"]:
+    """The legs step, and all above them stays as it is at ease."""
+    legs, others = EASE_COSTS
+    own = [legs if any(part in joint for part in LEGS) else others for joint in human.joints]
+    return np.array([*np.zeros(6), *own])

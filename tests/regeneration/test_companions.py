@@ -1,0 +1,108 @@
+"""Several things in one hand: they go together, and a hand that is too small is told."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from capar.body.scripted_actions import action_capture
+from capar.pipelines.round_trips import body, observed_source, round_trip
+from capar.regeneration import PlanError, Source
+from capar.regeneration.companions import Companion, companions_of, hand_spans
+from capar.regeneration.fastening import resized_with
+from capar.regeneration.holding import Hold
+from capar.regeneration.planning import reachable
+from capar.regeneration.scene_files import drawn_scene
+from capar.regeneration.scenes import moved, raised
+
+
+@cache
+def _source() -> Source:
+    return observed_source(action_capture("carry_two", rate_hz=30.0))
+
+
+def _way(*heights: float) -> RigidTransform:
+    return RigidTransform.from_translation([[0.0, 0.0, height] for height in heights])
+
+
+def test_two_things_in_one_palm_are_observed_as_held_by_one_hand() -> None:
+    steps = [s for s in _source().observation.segments if s.ee == "right_hand"]
+    both = {step.name for step in steps if set(step.objects) >= {"carton", "tin"}}
+    assert {"Reach", "Lift", "Carry", "Lower", "Withdraw"} <= both
+    (companion,) = _source().companions
+    assert (companion.hold.thing, companion.lead.thing) == ("tin", "carton")
+
+
+@pytest.mark.parametrize("agent", ["woman", "child"])
+def test_another_body_carries_both_and_neither_slides_in_its_hand(agent: str) -> None:
+    source = _source()
+    scene = resized_with(raised(source.scene, "table", -0.1), "carton", 1.2)
+    trip = round_trip(source, agent, body(agent, source), 1, scene)
+    assert trip.passed, (trip.refused, trip.names, trip.quality and trip.quality.failed)
+    assert trip.motion is not None
+    assert trip.quality is not None
+    things = trip.motion.plan.things
+    seat = things["carton"].inv() * things["tin"]
+    assert np.ptp(seat.translation, axis=0).max() < 1e-9
+    assert things["tin"].translation[-1][1] > things["tin"].translation[0][1] + 0.15
+    assert trip.quality.gate("in one hand: not to slide").value < 2.0
+    assert {grip.hold.thing for grip in trip.motion.plan.grips} == {"carton", "tin"}
+
+
+def test_a_hand_that_is_too_small_for_both_is_refused_with_what_would_do() -> None:
+    source = _source()
+    large = resized_with(source.scene, "carton", 3.0)
+    with pytest.raises(PlanError, match=r"too small to hold 'tin' .* of 0.7 times the size would"):
+        reachable(source, large, body("child", source))
+
+
+def test_what_does_not_stand_together_is_not_taken_together() -> None:
+    source = _source()
+    tin = source.scene.thing("tin")
+    x, y, z = tin.place
+    apart = moved(source.scene, "tin", (x + 0.05, y, z), tin.heading)
+    with pytest.raises(PlanError, match="stands 58 mm from 'carton'"):
+        reachable(source, apart, body("man", source))
+    inside = moved(source.scene, "tin", (x - 0.02, y, z), tin.heading)
+    with pytest.raises(PlanError, match="12 mm inside 'carton'"):
+        reachable(source, inside, body("man", source))
+
+
+def test_a_drawn_scene_draws_both_as_one() -> None:
+    scene = _source().scene
+    drawn = drawn_scene(scene, np.random.default_rng(5))
+    factor = drawn.thing("tin").size / scene.thing("tin").size
+    np.testing.assert_allclose(drawn.thing("carton").size, factor * scene.thing("carton").size)
+    was, now = (
+        np.subtract(one.thing("tin").place, one.thing("carton").place) for one in (scene, drawn)
+    )
+    np.testing.assert_allclose(now[:2], factor[:2] * was[:2], atol=1e-9)
+
+
+def test_a_hand_that_moves_one_of_two_alone_is_refused() -> None:
+    holds = Hold("right", "cup", 0, 5), Hold("right", "spoon", 2, 5)
+    paths = {"cup": _way(0.0, 0.1, 0.1, 0.2, 0.3, 0.3), "spoon": _way(0.1, 0.1, 0.1, 0.2, 0.3, 0.3)}
+    with pytest.raises(PlanError, match="'cup' by 100 mm without the other"):
+        companions_of(holds, paths)
+
+
+def test_what_another_hand_moves_or_nobody_moves_is_no_companion() -> None:
+    way = _way(0.0, 0.1, 0.2)
+    two_hands = Hold("right", "cup", 0, 2), Hold("left", "spoon", 0, 2)
+    assert companions_of(two_hands, {"cup": way, "spoon": way}) == ()
+    still = _way(0.0, 0.0, 0.0)
+    one_hand = Hold("right", "cup", 0, 2), Hold("right", "table", 0, 2)
+    assert companions_of(one_hand, {"cup": still, "table": still}) == ()
+
+
+def test_a_hand_has_its_things_from_the_first_that_it_takes_to_the_last_that_it_lets_go() -> None:
+    cup, spoon, lid = (
+        Hold("right", name, *span)
+        for name, span in (("cup", (0, 8)), ("spoon", (1, 9)), ("lid", (20, 30)))
+    )
+    spans = list(hand_spans([cup, spoon, lid], (Companion(spoon, cup),)))
+    assert spans == [
+        (Hold("right", "cup", 0, 9), frozenset({"cup", "spoon"})),
+        (lid, frozenset({"lid"})),
+    ]
