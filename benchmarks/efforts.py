@@ -64,7 +64,7 @@ def _row(source: Source, agent: str, name: str, value: float) -> dict[str, objec
         return {**case, "refused": str(error)}
     again = observe(capture_of(motion, name=source.capture.name, agent=agent))
     names = "; ".join(
-        f"{link.ee}: {' '.join(each.name for each in link.segments)}" for link in again.links
+        f"{link.ee}: {' '.join(segment.name for segment in link.segments)}" for link in again.links
     )
     same = again.complex_par.signature == source.observation.complex_par.signature
     return {

@@ -21,6 +21,9 @@ REPEATS = 5
 LONGEST_S = 20.0
 """A question that takes longer is asked once."""
 
+LONGEST_RENAMED = 300
+"""Texts of as many characters or more, such as files and curves, keep the name that is in them."""
+
 OF_CAPTURE = (
     "abilities:performer",
     "ambiguous",
@@ -87,15 +90,18 @@ def copies(source: Path, target: Path, count: int) -> None:
 
 
 def _renamed(quad: Quad, name: str, other: str) -> Quad:
-    def term(given: object) -> object:
-        if isinstance(given, NamedNode) and name in given.value:
-            return NamedNode(given.value.replace(name, other))
-        if isinstance(given, Literal) and name in given.value and len(given.value) < 300:
-            return Literal(given.value.replace(name, other), datatype=given.datatype)
-        return given
+    def node(given: NamedNode) -> NamedNode:
+        return NamedNode(given.value.replace(name, other))
 
-    terms = (quad.subject, quad.predicate, quad.object, quad.graph_name)
-    return Quad(*map(term, terms))  # type: ignore[arg-type]
+    subject, about, graph = quad.subject, quad.object, quad.graph_name
+    if isinstance(about, Literal) and name in about.value and len(about.value) < LONGEST_RENAMED:
+        about = Literal(about.value.replace(name, other), datatype=about.datatype)
+    return Quad(
+        node(subject) if isinstance(subject, NamedNode) else subject,
+        quad.predicate,
+        node(about) if isinstance(about, NamedNode) else about,
+        node(graph) if isinstance(graph, NamedNode) else graph,
+    )
 
 
 def asked(actionary: Actionary, line: str, given: dict[str, str], scope: dict[str, str]) -> None:

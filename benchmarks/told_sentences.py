@@ -101,7 +101,9 @@ def main() -> None:
     for take in given.takes or TAKES:
         observation, capture = observed(take, given.kept)
         called = nouns(observation.objects)
-        things = {noun(called.get(each.name, each.name)): each.name for each in observation.objects}
+        things = {
+            noun(called.get(thing.name, thing.name)): thing.name for thing in observation.objects
+        }
         things |= in_order(alike(observation.objects), Numbers(capture))
         text = describe(observation, timed=True, words=words)
         for found in checked(text, capture, things):

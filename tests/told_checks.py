@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 from told_claims import Claim, claims
 
-from capar.model.capture import Capture
+from capar.model.capture import Capture, Sensor, TagObject
 from capar.model.geometry import rotations
 
 SLACK_S = 0.3
@@ -51,11 +51,11 @@ class Numbers:
         """Take the times."""
         self.times = self.capture.times
 
-    def streams(self) -> Mapping[str, object]:
+    def streams(self) -> Mapping[str, Sensor | TagObject]:
         """Every body by its name; a hand also by what it is called."""
-        found: dict[str, object] = {}
-        for body in (*self.capture.objects, *self.capture.sensors):
-            found[body.name] = body
+        found: dict[str, Sensor | TagObject] = {}
+        found.update((thing.name, thing) for thing in self.capture.objects)
+        found.update((sensor.name, sensor) for sensor in self.capture.sensors)
         for sensor in self.capture.sensors:
             if sensor.end_effector == "hand":
                 found[f"{sensor.side} hand"] = sensor
@@ -66,7 +66,7 @@ class Numbers:
         """World places of some vertices of a body, or of its origin [m]."""
         if name not in self._surfaces:
             body = self.streams()[name]
-            stream, shape = body.stream, body.shape  # type: ignore[attr-defined]
+            stream, shape = body.stream, body.shape
             corners = np.zeros((1, 3))
             if shape is not None:
                 step = max(len(shape.vertices) // 150, 1)
@@ -86,7 +86,7 @@ class Numbers:
 
     def origin(self, name: str) -> Float[np.ndarray, "frames 3"]:
         """Where the origin of a body is [m]."""
-        return np.asarray(self.streams()[name].stream.positions)  # type: ignore[attr-defined]
+        return np.asarray(self.streams()[name].stream.positions)
 
     def lowest(self, name: str) -> Float[np.ndarray, "frames"]:
         """How high its lowest part is [m]."""
@@ -94,7 +94,7 @@ class Numbers:
 
     def spin(self, name: str) -> Float[np.ndarray, "frames"]:
         """How far it has turned about the vertical [rad]."""
-        orientations = self.streams()[name].stream.orientations  # type: ignore[attr-defined]
+        orientations = self.streams()[name].stream.orientations
         known = np.flatnonzero(~np.isnan(orientations).any(axis=1))
         turned = rotations(orientations[known])
         steps = (turned[1:] * turned[:-1].inv()).as_rotvec()[:, 2]
@@ -102,7 +102,7 @@ class Numbers:
 
     def turned(self, name: str) -> Float[np.ndarray, "frames"]:
         """How far it has turned along its way, about any axis [rad]."""
-        orientations = self.streams()[name].stream.orientations  # type: ignore[attr-defined]
+        orientations = self.streams()[name].stream.orientations
         known = np.flatnonzero(~np.isnan(orientations).any(axis=1))
         turned = rotations(orientations[known])
         steps = (turned[1:] * turned[:-1].inv()).magnitude()
@@ -110,7 +110,7 @@ class Numbers:
 
     def up(self, name: str) -> Float[np.ndarray, "frames"]:
         """How far it leans from how it stood at first [rad]."""
-        orientations = self.streams()[name].stream.orientations  # type: ignore[attr-defined]
+        orientations = self.streams()[name].stream.orientations
         known = ~np.isnan(orientations).any(axis=1)
         out = np.full(len(orientations), np.nan)
         turned = rotations(orientations[known])

@@ -76,7 +76,7 @@ class Actor:
         self.configuration = mink.Configuration(human.model)
         self.configuration.update(self.rest)
         self.base = standing_support(human, self.rest)
-        self.things = {name: each.pose for name, each in scene.things.items()}
+        self.things = {name: thing.pose for name, thing in scene.things.items()}
         self.grips: dict[tuple[str, str, str], RigidTransform] = {}
         self.palms = {s: mink.FrameTask(f"{s}_palm", "site", *PALM_COST) for s in SIDES}
         self.looks = look_tasks()

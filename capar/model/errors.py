@@ -33,7 +33,7 @@ class UnknownNameError(CaparError):
         self.name = name
         self.known = sorted(known)
         self.where = where
-        close = get_close_matches(name, self.known, n=1)
+        close = _nearest(name, self.known, n=1)
         hint = f" Did you mean {close[0]!r}?" if close else ""
         place = f"{where}: " if where else ""
         super().__init__(
@@ -45,8 +45,14 @@ def _listed(name: str, known: list[str], *, whole: bool) -> str:
     """The names that exist: all of a few, of many the nearest five and how many there are."""
     if whole or len(known) <= MOST_LISTED:
         return f"there are: {', '.join(known) or 'none'}"
-    nearest = get_close_matches(name, known, n=NEAREST, cutoff=0.0)
+    nearest = _nearest(name, known, n=NEAREST, cutoff=0.0)
     return f"there are {len(known)}, the nearest: {', '.join(nearest)}"
+
+
+def _nearest(name: str, known: list[str], *, n: int, cutoff: float = 0.6) -> list[str]:
+    """The names that are most like a given one, in capitals or not."""
+    spelt = {one.lower(): one for one in reversed(known)}
+    return [spelt[one] for one in get_close_matches(name.lower(), spelt, n=n, cutoff=cutoff)]
 
 
 class FileError(CaparError):

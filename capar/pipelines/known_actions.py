@@ -47,5 +47,5 @@ def find_action(
 def _names(recordings: Sequence[Recording]) -> set[str]:
     """Every action that can be performed: recordings, their steps, and what these are cases of."""
     steps = {step.action for one in recordings for step in one.steps}
-    general = {each for one in recordings for step in steps for each in one.general.get(step, ())}
+    general = {name for one in recordings for step in steps for name in one.general.get(step, ())}
     return steps | general | {one.par.name for one in recordings}

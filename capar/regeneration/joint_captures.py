@@ -28,8 +28,8 @@ def joint_capture_of(made: JointMotion, *, name: str) -> Capture:
 def _names(source: Source) -> dict[str, str]:
     """What a performer's sensors were called in the recording."""
     names = {f"{side}_hand": hand.sensor for side, hand in source.hands.items()}
-    heads = [each.name for each in source.capture.sensors if each.end_effector == "head"]
-    eyes = [each.name for each in source.capture.sensors if each.end_effector == "eyes"]
+    heads = [sensor.name for sensor in source.capture.sensors if sensor.end_effector == "head"]
+    eyes = [sensor.name for sensor in source.capture.sensors if sensor.end_effector == "eyes"]
     names |= {"head": heads[0]}
     return names | {"eyes": eyes[0] if eyes else f"{heads[0]}_eyes"}
 

@@ -8,7 +8,7 @@ from capar.model.facts import Touching
 from capar.model.observation import Observation
 from capar.regeneration.bearing import rides_of
 from capar.regeneration.errors import PlanError
-from capar.regeneration.sources import Hold, Source, check_source, unchecked_source
+from capar.regeneration.sources import Hold, Source, check_source, source_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +52,8 @@ def joint_source(capture: Capture, observation: Observation) -> JointSource:
             or two things do at once.
     """
     alone = {
-        agent.name: unchecked_source(
-            _of(capture, agent.name), _done_by(capture, observation, agent.name)
+        agent.name: source_of(
+            _of(capture, agent.name), _done_by(capture, observation, agent.name), checked=False
         )
         for agent in capture.agents
     }

@@ -90,7 +90,7 @@ def resized(scene: Scene, name: str, factor: float) -> Scene:
 
 def raised(scene: Scene, name: str, by_m: float) -> Scene:
     """The scene with a thing, and all that stands or is fastened on it, higher by so much [m]."""
-    fastened = [each for each in scene.things if scene.fastened.get(each) == name]
+    fastened = [thing for thing in scene.things if scene.fastened.get(thing) == name]
     for raised_one in dict.fromkeys((name, *stack(scene, name), *fastened)):
         scene = _lifted(scene, raised_one, by_m)
     return scene
@@ -125,9 +125,9 @@ def scaled(shape: Shape, factor: float) -> Shape:
 def mobile(scene: Scene) -> list[str]:
     """Names of what can be moved and is not fastened to something, sorted."""
     return sorted(
-        each.name
-        for each in scene.things.values()
-        if each.tag is TagType.MOBILE and each.name not in scene.fastened
+        thing.name
+        for thing in scene.things.values()
+        if thing.tag is TagType.MOBILE and thing.name not in scene.fastened
     )
 
 

@@ -135,6 +135,7 @@ def source_of(
     axes: Mapping[str, HandAxes] | None = None,
     notes: tuple[str, ...] = (),
     cutoff_hz: float | None = CUTOFF_HZ,
+    checked: bool = True,
 ) -> Source:
     """What a capture and its observation say of the performance of one.
 
@@ -147,42 +148,12 @@ def source_of(
             unless stated.
         notes: What is to be told of it.
         cutoff_hz: Of the filter that takes noise from paths [Hz]; None leaves them as recorded.
+        checked: Whether it is refused if the performer walks, or something moves that no hand holds
+            or set going; what several performers do is checked when all of it is known.
 
     Raises:
-        PlanError: It is not known where the performer stands, a hand or thing has no shape, the
-            performer walks, or something moves that no hand holds or set going.
-    """
-    made = unchecked_source(
-        capture, observation, stance=stance, floor_m=floor_m, axes=axes, notes=notes,
-        cutoff_hz=cutoff_hz,
-    )  # fmt: skip
-    check_source(made)
-    return made
-
-
-def unchecked_source(
-    capture: Capture,
-    observation: Observation,
-    *,
-    stance: tuple[tuple[float, float], float] | None = None,
-    floor_m: float = 0.0,
-    axes: Mapping[str, HandAxes] | None = None,
-    notes: tuple[str, ...] = (),
-    cutoff_hz: float | None = CUTOFF_HZ,
-) -> Source:
-    """Likewise, whoever moves the things and wherever the performer goes.
-
-    Args:
-        capture: As for ``source_of``, likewise all others.
-        observation: What was done in it.
-        stance: Where the performer stands and faces.
-        floor_m: Height of the floor [m].
-        axes: Which way hands point and face, by side.
-        notes: What is to be told of it.
-        cutoff_hz: Of the filter that takes noise from paths [Hz].
-
-    Raises:
-        PlanError: It is not known where the performer stands, or a hand or thing has no shape.
+        PlanError: It is not known where the performer stands, a hand or thing has no shape, or it
+            is refused when checked.
     """
     human = Human.of(measures_of(capture.agent))
     eyes = _eyes(capture, cutoff_hz)
@@ -220,11 +191,14 @@ def unchecked_source(
     poises = poises_of(observation, sensors, things, holds)
     fastened = {guide.object: guide.base for guide in observation.guides if guide.object in things}
     scene = Scene(things, place, heading, floor_m, entered=entered, fastened=fastened)
-    return Source(
+    made = Source(
         capture, observation, human, scene,
         hands, paths, eyes, holds, meetings, poises, tuple(told), launches,
         rides=rides_of(paths, holds, touching),
     )  # fmt: skip
+    if checked:
+        check_source(made)
+    return made
 
 
 def check_source(source: Source) -> None:

@@ -5,6 +5,7 @@ order of the query; filters are left out one at a time. All tries are one query 
 """
 
 from collections.abc import Iterator, Sequence
+from decimal import Decimal
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -130,7 +131,7 @@ def _broken(store: "Store", triple: Triple) -> str:
     if all(holding):
         values = _found(store, f"?x {path.n3()} ?found")
         near = f"; {_written(path)} is {', '.join(values)}" if values else ""
-        return f"nothing fits  {_written(triple)}{near}"
+        return f"nothing fits  {_written(triple)}{near}{_otherwise_typed(store, triple)}"
     at = holding.index(False)
     (((_, way, _),), lacking) = begun[at - 1], steps[at]
     own = _found(store, f"?x {way.n3()} ?thing . ?thing ?found ?y")
@@ -139,6 +140,19 @@ def _broken(store: "Store", triple: Triple) -> str:
         f"what {_written(way)} leads to has no {_written(lacking)}; "
         f"it has {', '.join(has) or 'no property of ours'}"
     )
+
+
+def _otherwise_typed(store: "Store", triple: Triple) -> str:
+    """That a number is there, but written as one of another type: 0 is not 0e0."""
+    _, path, value = triple
+    if not isinstance(value, Text) or not isinstance(value.value, int | float | Decimal):
+        return ""
+    query = f"SELECT ?y {{ ?x {path.n3()} ?y FILTER(isNumeric(?y) && ?y = {value.n3()}) }} LIMIT 1"
+    for (term,) in store.ask_within(query, seconds=LIMIT_S).rows:
+        if isinstance(term, Literal):
+            kind = term.datatype.value.rpartition("#")[2]
+            return f"; it is an xsd:{kind}: write FILTER(?value = {value}) instead"
+    return ""
 
 
 def _found(store: "Store", pattern: str) -> list[str]:

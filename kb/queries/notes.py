@@ -22,6 +22,12 @@ _OF_SEGMENTS = frozenset(
 )
 """Words of a query that leave segments alone."""
 
+LOSS = "long-gap"
+"""The notice of a body that was lost for a while."""
+
+MOST_TOLD = 5
+"""How many captures a note names."""
+
 _ALWAYS = re.compile(r"^# Note: (?P<text>.+)$", re.MULTILINE)
 _QUOTED = re.compile(r"""^(?:"([^"]*)"|'([^']*)')$""")
 
@@ -69,9 +75,11 @@ def notes_of_sparql(store: "Store", query: str, answer: "Answer") -> Iterator[st
     """
     pieces = [piece for piece in sparql.tokens(query) if piece.kind != "space"]
     words = {piece.text for piece in pieces}
+    texts = (_QUOTED.match(piece.text) for piece in pieces if piece.kind == "string")
+    named = [text[1] or text[2] or "" for text in texts if text]
+    if "capar:fact" in words:
+        yield from _lost(store, named)
     if "capar:kindOf" in words:
-        texts = (_QUOTED.match(piece.text) for piece in pieces if piece.kind == "string")
-        named = [text[1] or text[2] or "" for text in texts if text]
         yield from uncounted(store, named)
         yield from _counted(store, named)
     if "capar:action" in words and not words & _OF_SEGMENTS:
@@ -85,6 +93,25 @@ def notes_of_sparql(store: "Store", query: str, answer: "Answer") -> Iterator[st
         if without:
             rows = "any row" if without == len(answer.rows) else f"{without} of the rows"
             yield f"?{column} has no value in {rows} ({len(answer.rows)} in all)"
+
+
+def _lost(store: "Store", named: Iterable[str]) -> Iterator[str]:
+    """Bodies that a query names and that were lost: facts about them end and begin anew."""
+    for name in dict.fromkeys(named):
+        query = f"""
+SELECT DISTINCT ?capture {{
+  ?seen a capar:Observation ; rdfs:label ?capture ; capar:notice ?notice .
+  ?notice capar:noticeCode {Literal(LOSS)} ; capar:message ?message .
+  FILTER(STRSTARTS(?message, {Literal(f"{name!r} was lost ")}))
+}} ORDER BY ?capture"""
+        rows = store.ask(sparql.complete(query)).rows
+        where = [term.value for (term,) in rows if isinstance(term, Literal)]
+        if where:
+            more = f" and {len(where) - MOST_TOLD} others" if len(where) > MOST_TOLD else ""
+            yield (
+                f"{name!r} was lost for a while in {', '.join(where[:MOST_TOLD])}{more}: "
+                "facts about it end, and begin anew, where it was lost (capar query notices)"
+            )
 
 
 def uncounted(store: "Store", named: Iterable[str]) -> Iterator[str]:

@@ -14,6 +14,7 @@ from observations import drink_from_mug, with_unknown
 
 from capar.cli import main
 from capar.model.facts import Shapeless
+from capar.model.notices import notice
 from kb.actionary import Actionary
 
 
@@ -34,7 +35,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with Actionary.open(place) as actionary:
         drunk = drink_from_mug()
         actionary.add(replace(drunk, facts=(*drunk.facts, Shapeless("mug"))))
-        actionary.add(with_unknown())
+        unknown = with_unknown()
+        lost = notice("long-gap", "mug", start_s=0.5, end_s=0.75, times=1, fixed=False)
+        actionary.add(replace(unknown, notices=(*unknown.notices, lost)))
     return place
 
 
@@ -221,6 +224,8 @@ EMPTYING = {
     "?s a capar:Segment ; capar:start ?a FILTER(?a < -1) FILTER(?a < -2)": [
         "without its FILTERs there would be an answer",
     ],
+    # a duration is a double, and 1 an integer
+    "?s capar:index 0.0": ["it is an xsd:integer", "write FILTER(?value = 0.0)"],
     "?k a capar:ObjectKind ; rdfs:label 'mug'@en": ["another language tag, or with none"],
 }  # fmt: skip
 
@@ -311,3 +316,11 @@ def test_a_segment_is_asked_for_by_its_address(ask: Ask) -> None:
     assert [row.split()[0] for row in found.stdout.splitlines()[1:]] == [address]
     bare = ask("query", "rule", address)
     assert bare.returncode == 2 and "NAME=VALUE: action, address, ee" in bare.stderr
+
+
+def test_facts_about_what_was_lost_are_told_to_begin_anew(ask: Ask) -> None:
+    facts = "SELECT ?f { ?o capar:fact ?f . ?f capar:body/capar:name '%s' }"
+    note = "was lost for a while in "
+    assert f"'mug' {note}" in ask("query", facts % "mug").stderr
+    assert note not in ask("query", facts % "right_hand").stderr
+    assert note not in ask("query", "SELECT ?o { ?o capar:name 'mug' }").stderr

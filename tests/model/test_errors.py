@@ -13,6 +13,12 @@ def test_a_few_names_are_all_listed() -> None:
     assert str(error) == "capture.toml:3: no body 'mgu'; there are: mug, table. Did you mean 'mug'?"
 
 
+def test_a_name_in_other_capitals_is_the_nearest() -> None:
+    names = ["Lift", "MoveObj", "Rest", *(f"Step{number}" for number in range(30))]
+    assert str(UnknownNameError("action", "LIFT", names)).endswith("Did you mean 'Lift'?")
+    assert "the nearest: Rest, " in str(UnknownNameError("action", "rest", names))
+
+
 def test_without_any_name_it_says_none() -> None:
     assert str(UnknownNameError("take", "one", [])) == "no take 'one'; there are: none."
 

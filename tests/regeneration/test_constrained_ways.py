@@ -151,4 +151,5 @@ def test_a_door_is_opened_by_another_body_as_it_was_on_its_hinge() -> None:
     way = trip.quality.gate("constraint way")
     assert way.limit == 2.0
     assert 0.0 < way.value < 2.0
-    assert any("hinge on 'frame'" in note for note in trip.motion.plan.notes)  # type: ignore[union-attr]
+    assert trip.motion is not None
+    assert any("hinge on 'frame'" in note for note in trip.motion.plan.notes)

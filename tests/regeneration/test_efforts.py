@@ -237,7 +237,9 @@ def test_styles_without_a_shape_or_speeds_of_their_own_have_no_effort() -> None:
 
 def test_adverbs_ask_for_efforts_together_and_no_further_than_to_a_pole() -> None:
     assert effort_of_words(["slowly"]) == Effort(time=-0.5)
-    assert effort_of_words(["slowly", "leisurely"]).time == -1.0  # type: ignore[union-attr]
+    both = effort_of_words(["slowly", "leisurely"])
+    assert both is not None
+    assert both.time == -1.0
     assert effort_of_words(["blue"]) is None
     assert all(any(effort.values.values()) for effort in adverbs().values())
     told = told_of_words(["slowly", "again"], stated=False)
