@@ -29,7 +29,7 @@ def contact_gaps(observation: Observation) -> tuple[Notice, ...]:
     Returns:
         Notices ``contact-gap`` of the thing and the hand, from when to when [s].
     """
-    things = [each.name for each in observation.objects if each.tag == "mobile"]
+    things = [thing.name for thing in observation.objects if thing.tag == "mobile"]
     return tuple(found for thing in things for found in _gaps(observation, thing))
 
 
@@ -37,14 +37,14 @@ def _gaps(observation: Observation, thing: str) -> Iterator[Notice]:
     step_s = observation.duration_s / max(observation.frames - 1, 1)
     acting = {link.ee for link in observation.links}
     touches = [
-        (each.first, each.last)
-        for each in observation.facts
-        if isinstance(each, Touching) and each.other == thing and each.body in acting
+        (fact.first, fact.last)
+        for fact in observation.facts
+        if isinstance(fact, Touching) and fact.other == thing and fact.body in acting
     ]
     moves = [
-        (each.first, each.last)
-        for each in observation.facts
-        if isinstance(each, Moving) and each.object == thing
+        (fact.first, fact.last)
+        for fact in observation.facts
+        if isinstance(fact, Moving) and fact.object == thing
     ]
     for gap in _between(touches):
         hand = _holder(observation, thing, gap)
