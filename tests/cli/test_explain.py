@@ -51,7 +51,7 @@ def test_a_summary_leads_with_the_name_s_own_conditions_and_tells_no_mere_border
     assert "rested" not in told[1]
     own = "because the mug touched the head throughout, leant "
     assert told[3].startswith(f"Drink, {own}")
-    assert " Not Tilt, because the mug touched the head throughout." in told[3]
+    assert " Not Tilt, Raise or Lift, because the mug touched the head throughout." in told[3]
     assert told[3].index(" leant ") < told[3].index(" moved ")
 
 
