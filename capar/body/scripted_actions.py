@@ -31,6 +31,7 @@ from capar.body.scripts import (
 )
 from capar.body.sensing import PERFECT, Tracker
 from capar.body.things import Scene, Thing, box, cup, scene, table
+from capar.body.toss_actions import toss
 from capar.model.capture import Capture, TagType
 from capar.model.errors import UnknownNameError
 
@@ -83,6 +84,7 @@ ACTIONS: dict[str, Script] = {
     "door": push_open("door", float(np.radians(32.0)), hinge=(0.0, HINGE_M, 0.0)),
     "drawer": pull_open("drawer", 0.15),
     "wipe": wipe("sponge", 0.14),
+    "toss": toss("mug"),
 }
 """Each has the things of its own scene. Those of thesis 5.2 are ``sip`` (DrinkFromMug), ``touch``
 (TouchCycle), ``touch_from_rest``, ``slide`` (SlideObject) and ``pick_up`` (PickUpWithBothHands)."""
