@@ -51,7 +51,7 @@ RISE_M = 0.13
 RELEASE_S = 0.48
 """How long it takes after a drink until the head is free again, in the next phase [s]."""
 
-SWINGS_S = 0.08
+SWINGS_S = 0.12
 """How long a hand swings on that let go of what it throws [s]."""
 
 ITERATIONS = 3
@@ -232,17 +232,16 @@ class Actor:
 
     def _hand_goal(self, side: str, phase: Phase, share: float) -> RigidTransform:
         """Where a palm is to be: first up, then forward; on the way back the other way round."""
-        hand = phase.hand(side)
+        hand, start = phase.hand(side), self.starts[side]
+        if hand.does == "lets_go":
+            by = slowed(hand.velocity, share * phase.seconds, SWINGS_S)
+            return RigidTransform.from_translation(by) * start
         if hand.does == "rests":
-            start, goal = self.starts[side], self.home[side]
+            goal = self.home[side]
             outside = -start.rotation.apply([0.0, 0.0, 1.0])
             over, way = minimum_jerk(share / OVER), minimum_jerk((share - 1.0 + UP) / UP)
             back = 1.0 - over
-        elif hand.does == "lets_go":
-            by = slowed(hand.velocity, share * phase.seconds, SWINGS_S)
-            return RigidTransform.from_translation(by) * self.starts[side]
         else:
-            start = self.starts[side]
             thing = self.things[hand.thing]
             if hand.does == "awaits":
                 spot = np.array(self.scene.thing(hand.thing).place) + hand.awaited

@@ -11,7 +11,7 @@ VELOCITY: Vector = (0.0, 1.1, 1.4)
 SWINGS_S, FLIES_S, STOPS_S = 0.3, 0.3, 0.25
 """How long the throw, the flight and the stop take [s]."""
 
-LIFT: Vector = (0.0, -0.08, 0.12)
+LIFT: Vector = (0.0, -0.08, 0.16)
 """From where the thing stands to where the throw begins [m]."""
 
 BESIDE = np.array([0.0, 0.04, -0.02])
@@ -33,10 +33,8 @@ def toss(thing: str) -> Script:
     down = -float((meets + stop)[2])
     right, left = {"right": Hand("holds", thing)}, {"left": Hand("holds", thing)}
     waits = {**right, "left": Hand("awaits", thing, awaited=_vector(meets + BESIDE))}
-    flies = {
-        "right": Hand("lets_go", thing, velocity=VELOCITY),
-        "left": Hand("reaches", thing),
-    }
+    swings_on = {"right": Hand("lets_go", thing, velocity=VELOCITY)}
+    flies = {**swings_on, "left": Hand("reaches", thing)}
     catches = {"right": Hand("lets_go", thing), **left}
     throws = Move(_vector(swing), toss=Toss(end=VELOCITY))
     falls = Move(_vector(flight), toss=Toss(VELOCITY, falls=True))
@@ -46,7 +44,7 @@ def toss(thing: str) -> Script:
         Phase("reach", 1.0, {"right": Hand("reaches", thing)}, look=thing),
         Phase("grasp", 0.3, right, look=thing),
         Phase("lift", 0.9, waits, {thing: Move(LIFT)}, look=thing),
-        Phase("poise", 0.3, waits, look=thing),
+        Phase("poise", 0.5, waits, look=thing),
         Phase("throw", SWINGS_S, waits, {thing: throws}, look=thing),
         Phase("fly", FLIES_S, flies, {thing: falls}, look=thing),
         Phase("catch", STOPS_S, catches, {thing: stops}, look=thing),

@@ -79,7 +79,7 @@ class Draft:
         self.old = body_frames(source.human, source.scene)
         self.new = body_frames(human, scene)
         if ways is None:
-            goals = thing_goals(source, scene, self.old, self.new)
+            goals = thing_goals(source, scene, self.old, self.new, style.force)
             ways = thing_paths(source, scene, goals, human, style)
         self.goals, self.things, self.told = ways.goals, ways.paths, list(ways.told)
         self.things = first_guess(source, scene, self.things)

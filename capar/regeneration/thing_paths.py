@@ -25,6 +25,9 @@ from capar.regeneration.constrained_ways import (
 )
 from capar.regeneration.contact_points import contact_points
 from capar.regeneration.errors import PlanError
+from capar.regeneration.forces.force_kinds import ForceKind
+from capar.regeneration.forces.tosses import caught_pose, toss_notes, with_tosses
+from capar.regeneration.launches import Toss
 from capar.regeneration.path_mapping import STRAIGHT, Detour
 from capar.regeneration.scenes import Scene, moved
 from capar.regeneration.solving import Solver
@@ -69,9 +72,21 @@ class Ways:
 
 
 def thing_goals(
-    source: Source, scene: Scene, old: BodyFrames, new: BodyFrames
+    source: Source,
+    scene: Scene,
+    old: BodyFrames,
+    new: BodyFrames,
+    force: ForceKind = ForceKind.SIMILAR,
 ) -> dict[str, list[Goal]]:
     """The goals of every thing that is held, in order of time.
+
+    Args:
+        source: The recorded performance.
+        scene: Where it is performed.
+        old: Of the recorded body.
+        new: Of the one that performs.
+        force: What is kept of a throw to a hand: how far it flies level in proportion to the
+            statures, or in metres.
 
     Raises:
         PlanError: A thing would be put down where nothing supports it.
@@ -83,22 +98,39 @@ def thing_goals(
         if kind in {HINGE, RAIL}:
             out[name] = list(_guided_goals(source, scene, name, kind))
             continue
+        start = 0, scene.thing(name).pose
         for first, last in _handled(source, name):
             goals = out.setdefault(name, [])
             pose = goals[-1].pose if goals else scene.thing(name).pose
-            goals.append(Goal(name, first, pose, "stays where it is"))
+            came, thrown = _toss(source, name, last=first), _toss(source, name, first=last)
+            if came:
+                ratio = _flight_ratio(old, new, force)
+                as_far = caught_pose(source, scene, came, pose, 1.0)
+                pose = caught_pose(source, scene, came, pose, ratio)
+                nearer = RigidTransform.from_translation(pose.translation - as_far.translation)
+                start = start[0], nearer * start[1]
+                goals.append(Goal(name, first, pose, "caught there"))
+            else:
+                start = first, pose
+                goals.append(Goal(name, first, pose, "stays where it is"))
             for meeting in source.meetings:
                 if meeting.thing == name and first <= meeting.first <= last:
                     at = _at_head(source, scene, old, new, meeting)
                     reason = f"at the {meeting.part}, in its own measures"
                     frames = dict.fromkeys((meeting.first, min(meeting.last, last)))
                     goals += [Goal(name, frame, at, reason) for frame in frames]
-            down = _put_down(source, scene, name, (first, last), pose)
+            if thrown:
+                down = _let_go(source, scene, name, (first, last), pose)
+            else:
+                down = _put_down(source, scene, name, (start[0], last), start[1])
             if kind == PLANE:
                 flat = flattened(RigidTransform.concatenate([pose, down.pose]))[1]
                 down = replace(down, pose=flat)
             goals += _poised(source, scene, name, (first, last), (pose, down.pose))
             goals.sort(key=lambda goal: goal.frame)
+            if thrown:
+                goals.append(down)
+                continue
             goals.append(replace(down, frame=_stopped(source, name, goals[-1].frame, last)))
             if goals[-1].frame < last:
                 goals.append(replace(down, reason="stays there"))
@@ -108,15 +140,42 @@ def thing_goals(
 def put_down_poses(source: Source, scene: Scene) -> dict[str, RigidTransform]:
     """Where everything that is moved is put in the end; that does not depend on the body.
 
+    What is thrown from hand to hand is put down where a body as tall as the recorded one would.
+
     Raises:
         PlanError: Something would be put down where nothing supports it.
     """
     out: dict[str, RigidTransform] = {}
     for name in source.paths:
-        for span in _handled(source, name):
-            pose = out.get(name, scene.thing(name).pose)
-            out[name] = _put_down(source, scene, name, span, pose).pose
+        start = 0
+        for first, last in _handled(source, name):
+            if not _toss(source, name, last=first):
+                start = first
+            if not _toss(source, name, first=last):
+                pose = out.get(name, scene.thing(name).pose)
+                out[name] = _put_down(source, scene, name, (start, last), pose).pose
     return out
+
+
+def _toss(source: Source, name: str, *, first: int = -1, last: int = -1) -> Toss | None:
+    """The flight of a thing that begins, or ends, in a frame; None where none does."""
+    own = (toss for toss in source.tosses if toss.thing == name)
+    return next((toss for toss in own if first == toss.first or last == toss.last), None)
+
+
+def _flight_ratio(old: BodyFrames, new: BodyFrames, force: ForceKind) -> float:
+    """How many times as far as recorded a thing flies level from hand to hand [1]."""
+    statures = [body.human.measures["stature"] for body in (new, old)]
+    return float(statures[0] / statures[1]) if force is ForceKind.SIMILAR else 1.0
+
+
+def _let_go(
+    source: Source, scene: Scene, name: str, span: tuple[int, int], pose: RigidTransform
+) -> Goal:
+    """Where a thing is thrown from: as far in metres from where the hand took it as it was."""
+    turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
+    there = _displaced(source.paths[name], span, pose, turn)
+    return Goal(name, span[1], there, "thrown there")
 
 
 def _guided_goals(source: Source, scene: Scene, name: str, kind: str) -> Iterator[Goal]:
@@ -159,7 +218,7 @@ def thing_paths(
         poses = [scene.thing(name).pose] * count
         for start, goal in zip(goals.get(name, []), goals.get(name, [])[1:], strict=False):
             part = style.things[name][start.frame : goal.frame + 1]
-            if goal.frame > start.frame:
+            if goal.frame > start.frame and not _toss(source, name, first=start.frame):
                 if _rests(recorded[start.frame : goal.frame + 1], start.pose, goal.pose):
                     poses[start.frame : goal.frame + 1] = [start.pose] * len(part)
                 else:
@@ -173,7 +232,8 @@ def thing_paths(
                     if detour != STRAIGHT:
                         told.append(_lifted(name, source.times[start.frame], detour))
             poses[goal.frame :] = [goal.pose] * (count - goal.frame)
-        out[name] = RigidTransform.concatenate(poses)
+        out[name] = with_tosses(source, scene, name, RigidTransform.concatenate(poses))
+        told += toss_notes(source, scene, out[name], name)
     told += [
         f"{ride.thing!r} goes along on {ride.bearer!r} from {source.times[ride.first]:.2f} to "
         f"{source.times[ride.last]:.2f} s"
