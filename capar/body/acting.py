@@ -13,7 +13,6 @@ from capar.body.grips import PITCHES, ROLLS, YAWS, back_grip, side_grip, top_gri
 from capar.body.human import Human
 from capar.body.scripts import (
     SIDES,
-    Hand,
     Move,
     Phase,
     Script,
@@ -22,6 +21,7 @@ from capar.body.scripts import (
     turned_about,
 )
 from capar.body.things import Scene, Thing
+from capar.body.tosses import slowed, tossed
 
 PALM_COST = (20.0, 4.0)
 """Weights of a metre and of a radian at the palms."""
@@ -50,6 +50,9 @@ RISE_M = 0.13
 
 RELEASE_S = 0.48
 """How long it takes after a drink until the head is free again, in the next phase [s]."""
+
+SWINGS_S = 0.12
+"""How long a hand swings on that let go of what it throws [s]."""
 
 ITERATIONS = 3
 
@@ -179,10 +182,13 @@ class Actor:
         way = minimum_jerk(share)
         for name, move in phase.moves.items():
             self.things[name] = self._moved(name, move, way)
+            if move.toss is not None:
+                by = tossed(move.toss, move.by, phase.seconds, share)
+                self.things[name] = RigidTransform.from_translation(by) * self.thing_starts[name]
         drinks = any(move.to_mouth for move in phase.moves.values())
         held = way if drinks else minimum_jerk(share * max(phase.seconds / RELEASE_S, 1.0))
         self.drinks = self.drank + held * (float(drinks) - self.drank)
-        goals = {side: self._hand_goal(side, phase.hand(side), share) for side in SIDES}
+        goals = {side: self._hand_goal(side, phase, share) for side in SIDES}
         self._gaze(looks, step_s)
         for side, goal in goals.items():
             self._aim(side, goal)
@@ -224,16 +230,23 @@ class Actor:
         spot = self.mouth_at - turn.apply(local.apply(rim))
         return RigidTransform.from_components(spot, turn)
 
-    def _hand_goal(self, side: str, hand: Hand, share: float) -> RigidTransform:
+    def _hand_goal(self, side: str, phase: Phase, share: float) -> RigidTransform:
         """Where a palm is to be: first up, then forward; on the way back the other way round."""
+        hand, start = phase.hand(side), self.starts[side]
+        if hand.does == "lets_go":
+            by = slowed(hand.velocity, share * phase.seconds, SWINGS_S)
+            return RigidTransform.from_translation(by) * start
         if hand.does == "rests":
-            start, goal = self.starts[side], self.home[side]
+            goal = self.home[side]
             outside = -start.rotation.apply([0.0, 0.0, 1.0])
             over, way = minimum_jerk(share / OVER), minimum_jerk((share - 1.0 + UP) / UP)
             back = 1.0 - over
         else:
-            start = self.starts[side]
-            goal = self.things[hand.thing] * self.grips[side, hand.thing, hand.grip]
+            thing = self.things[hand.thing]
+            if hand.does == "awaits":
+                spot = np.array(self.scene.thing(hand.thing).place) + hand.awaited
+                thing = RigidTransform.from_components(spot, thing.rotation)
+            goal = thing * self.grips[side, hand.thing, hand.grip]
             if hand.does == "holds":
                 return goal
             outside = -goal.rotation.apply([0.0, 0.0, 1.0])

@@ -32,11 +32,15 @@ from capar.body.scripts import (
 )
 from capar.body.sensing import PERFECT, Tracker
 from capar.body.things import Scene, Thing, box, cup, scene, table
+from capar.body.toss_actions import toss
 from capar.model.capture import Capture, TagType
 from capar.model.errors import UnknownNameError
 
 ASKEW = 0.8
 """How far the crate that is pushed is turned [rad]: straight ahead is at the wrist's limit."""
+
+TOSS_TABLE_M = 0.8073
+"""Height of the table above which is thrown, unless hips are lower [m]."""
 
 HELD = {"right": Hand("holds", "mug")}
 CARRY: Script = (
@@ -85,15 +89,16 @@ ACTIONS: dict[str, Script] = {
     "door": push_open("door", float(np.radians(32.0)), hinge=(0.0, HINGE_M, 0.0)),
     "drawer": pull_open("drawer", 0.15),
     "wipe": wipe("sponge", 0.14),
+    "toss": toss("mug"),
 }
 """Each has the things of its own scene. Those of thesis 5.2 are ``sip`` (DrinkFromMug), ``touch``
 (TouchCycle), ``touch_from_rest``, ``slide`` (SlideObject) and ``pick_up`` (PickUpWithBothHands)."""
 
 
 def action_scene(human: Human, action: str) -> Scene:
-    """A table at hip height with what the action needs, or what stands on a hinge or a rail."""
+    """A table with what the action needs, or what stands on a hinge or a rail."""
     tall = human.measures["stature"]
-    top = 0.52 * tall
+    top = min(TOSS_TABLE_M, 0.52 * tall) if action == "toss" else 0.52 * tall
     mug = Thing("mug", cup(0.035, 0.09), (0.22 * tall, -0.10 * tall, top), round=True)
     crate = Thing("crate", box(0.15, 0.20, 0.15), (0.24 * tall, 0.02 * tall, top))
     askew = Thing("crate", box(0.15, 0.20, 0.22), (0.29 * tall, -0.08 * tall, top), ASKEW)

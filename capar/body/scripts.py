@@ -6,6 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.body.tosses import Toss, Vector
+
 SIDES = ("right", "left")
 
 
@@ -14,7 +16,8 @@ class Hand:
     """What one hand does in a phase."""
 
     does: str
-    """``rests`` at the side, ``reaches`` for a thing, or ``holds`` on to it."""
+    """``rests`` at the side, ``reaches`` for a thing, ``holds`` on to it, ``awaits`` it where it
+    will be, or ``lets_go`` of it and swings on a little."""
 
     thing: str = ""
     grip: str = "side"
@@ -22,6 +25,12 @@ class Hand:
 
     beside: tuple[str, ...] = ()
     """Other things that lie in the same palm."""
+
+    awaited: Vector = (0.0, 0.0, 0.0)
+    """Where the thing is awaited, from where it stands at first [m]."""
+
+    velocity: Vector = (0.0, 0.0, 0.0)
+    """With which a thing is let go [m/s]."""
 
 
 RESTS = Hand("rests")
@@ -49,6 +58,9 @@ class Move:
 
     home: bool = False
     """Whether it goes back to where it stood at the beginning."""
+
+    toss: Toss | None = None
+    """How it is thrown, flies or is caught; a thing that is moved otherwise begins at rest."""
 
 
 @dataclass(frozen=True)

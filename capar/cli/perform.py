@@ -14,7 +14,7 @@ def perform(
         str,
         typer.Argument(
             help="drink, sip, touch, touch_from_rest, slide, carry, carry_tray, carry_two, "
-            "pick_up, turn, push, pour, door, drawer or wipe; of two bodies hand_over."
+            "pick_up, turn, push, pour, door, drawer, wipe or toss; of two bodies hand_over."
         ),
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="A new folder for the capture.")],

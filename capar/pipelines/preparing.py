@@ -11,7 +11,7 @@ from capar.pipelines.ways import steps_of
 from capar.regeneration.bindings import Kinds
 from capar.regeneration.free_places import Room
 from capar.regeneration.scenes import Scene
-from capar.regeneration.thing_paths import put_down_poses
+from capar.regeneration.thing_goals import put_down_poses
 
 Condition = tuple[str, ...]
 """``touch`` with a hand and a thing, ``free`` with a hand, ``stand`` with a thing and its support,

@@ -105,7 +105,8 @@ def _way(recording: Recording, open_source: Open) -> list[Way]:
         plan = steps_of(source.observation)
     except (PlanError, PlanExportError):
         return []
-    if source.poises or source.meetings or source.launches or not source.holds:
+    alone = source.launches or source.tosses
+    if source.poises or source.meetings or alone or not source.holds:
         return []
     side = source.holds[0].side
     steps = tuple(step for step in plan.links[source.hands[side].sensor] if step.ipar.objects)

@@ -13,4 +13,4 @@ from capar.regeneration.regenerating import regenerate as regenerate
 from capar.regeneration.scenes import Scene as Scene
 from capar.regeneration.sources import Source as Source
 from capar.regeneration.sources import source_of as source_of
-from capar.regeneration.thing_paths import Goal as Goal
+from capar.regeneration.thing_goals import Goal as Goal

@@ -29,7 +29,7 @@ from capar.regeneration.planning import Plan
 from capar.regeneration.quality import Quality, quality
 from capar.regeneration.sources import Hold, Meeting, Source
 from capar.regeneration.styles import own_style
-from capar.regeneration.thing_paths import Goal
+from capar.regeneration.thing_goals import Goal
 
 HEAD_SHARE = 0.1
 """How firmly the head is kept on its way where nothing meets it [1]."""

@@ -20,7 +20,8 @@ from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, Targets, vectors
 from capar.regeneration.sources import Hold, Source
 from capar.regeneration.styles import Style
-from capar.regeneration.thing_paths import Ways, thing_goals, thing_paths
+from capar.regeneration.thing_goals import thing_goals
+from capar.regeneration.thing_paths import Ways, thing_paths
 
 REACH_M, REACH_RAD = 0.0009, float(np.radians(0.9))
 """A hand that misses a goal by more cannot reach it: a little less than the gates allow."""
@@ -83,7 +84,7 @@ class Draft:
         self.old = body_frames(source.human, source.scene)
         self.new = body_frames(human, scene)
         if ways is None:
-            goals = thing_goals(source, scene, self.old, self.new)
+            goals = thing_goals(source, scene, self.old, self.new, style.force)
             ways = thing_paths(source, scene, goals, human, style)
         self.goals, self.things, self.told = ways.goals, ways.paths, list(ways.told)
         self.things = first_guess(source, scene, self.things)

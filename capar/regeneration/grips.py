@@ -19,7 +19,7 @@ from capar.regeneration.contact_points import contact_points
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Hold, Source
-from capar.regeneration.thing_paths import TOUCH_M, touching_shift
+from capar.regeneration.thing_goals import TOUCH_M, touching_shift
 
 YAWS = (0.0, 0.2, -0.2, 0.4, -0.4, 0.6, -0.6, 0.8, -0.8, 1.05, -1.05)
 """Turns about the axis of a round thing that are tried, outwards positive [rad]."""

@@ -15,7 +15,8 @@ from capar.regeneration.joint_sources import HandOver, JointSource, all_holds
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source, moves
 from capar.regeneration.styles import Style
-from capar.regeneration.thing_paths import Goal, Ways, support_at, thing_goals, thing_paths
+from capar.regeneration.thing_goals import Goal, support_at, thing_goals
+from capar.regeneration.thing_paths import Ways, thing_paths
 
 SHIFTS = (
     (0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1), (0.1, 0.1), (-0.1, 0.1),

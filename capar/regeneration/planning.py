@@ -23,7 +23,7 @@ from capar.regeneration.scenes import Scene, mobile, moved, raised, resized, tak
 from capar.regeneration.solving import Targets, vectors
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Style, own_style
-from capar.regeneration.thing_paths import Goal
+from capar.regeneration.thing_goals import Goal
 
 FEW_TURNS = 6
 """Turns of a grip that are tried where another place or a remedy is sought."""

@@ -13,6 +13,7 @@ from capar.regeneration.bearing import FRICTION, Ride
 from capar.regeneration.collisions import Pair, Surroundings, inner_gap
 from capar.regeneration.constrained_ways import scene_constraints
 from capar.regeneration.forces.force_kinds import ForceKind
+from capar.regeneration.forces.tosses import end_velocity, flight_faults
 from capar.regeneration.holding import SETTLED_M, Hold
 from capar.regeneration.motions import Motion
 from capar.regeneration.path_mapping import way
@@ -92,6 +93,7 @@ def quality(motion: Motion) -> Quality:
     gates = (
         *_constraint_gates(motion, errors),
         *_way_gates(motion, hands),
+        *_toss_gates(motion, hands),
         *contacts,
         *_body_gates(motion),
         _still_gate(motion),
@@ -174,6 +176,38 @@ def _way_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gat
             worst = max(worst, (float(off.max()), first + int(off.argmax()), bodies))
     if found:
         yield Gate("constraint way", 1e3 * worst[0], 2.0, "mm", False, *worst[1:])
+
+
+def _toss_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
+    """Things fly by gravity alone, with the velocities of the hands that throw and catch them."""
+    plan, times = motion.plan, motion.plan.source.times
+    off, gain, jump = (0.0, -1, ""), (0.0, -1, ""), (0.0, -1, "")
+    for toss in plan.source.tosses:
+        name, part = toss.thing, slice(toss.first, toss.last + 1)
+        middle = plan.scene.thing(name).shape.bounds.mean(axis=0)
+        spots = plan.things[name].apply(middle)
+        faults = flight_faults(times[part], spots[part])
+        off = max(off, (faults.off_m[0], toss.first + faults.off_m[1], name))
+        gain = max(gain, (faults.gain[0], toss.first + faults.gain[1], name))
+        for grip in plan.grips:
+            hold = grip.hold
+            held = hands[hold.side] * grip.pose.inv()
+            for frame, sign in ((toss.first, 1), (toss.last, -1)):
+                if hold.thing == name and (hold.last, hold.first)[sign < 0] == frame:
+                    within, free = _around(times, frame, sign), _around(times, frame, -sign)
+                    hand_mps = end_velocity(sign * times[within], held[within].apply(middle))
+                    thing_mps = end_velocity(-sign * times[free], spots[free])
+                    apart = float(np.linalg.norm(hand_mps + thing_mps))
+                    jump = max(jump, (apart, frame, f"{hold.side} hand, {name}"))
+    if plan.source.tosses:
+        yield Gate("flight by gravity", 1e3 * off[0], 1.0, "mm", False, *off[1:])
+        yield Gate("flight energy", gain[0], 0.01, "J/kg", False, *gain[1:])
+        yield Gate("flight speed", jump[0], 0.3, "m/s", False, *jump[1:])
+
+
+def _around(times: Float[np.ndarray, "frames"], frame: int, sign: int) -> list[int]:
+    """Three frames that come to one, from before it, or from after it backwards."""
+    return [f for f in (frame - 2 * sign, frame - sign, frame) if 0 <= f < len(times)]
 
 
 def _head_error(motion: Motion) -> tuple[float, int, str]:

@@ -33,7 +33,7 @@ from capar.regeneration.holding import (
 )
 from capar.regeneration.holding import Hold as Hold
 from capar.regeneration.holding import Meeting as Meeting
-from capar.regeneration.launches import Launch, launches_of, with_blows
+from capar.regeneration.launches import Launch, Toss, launches_of, with_blows
 from capar.regeneration.poises import Poise as Poise
 from capar.regeneration.poises import poises_of
 from capar.regeneration.scenes import Scene
@@ -97,6 +97,9 @@ class Source:
     launches: tuple[Launch, ...] = ()
     """Things that a hand set going, after which they moved on alone."""
 
+    tosses: tuple[Toss, ...] = ()
+    """Things that fly from one hold to the next."""
+
     others: tuple[Hold, ...] = ()
     """When other performers hold things."""
 
@@ -115,9 +118,9 @@ class Source:
         return np.asarray(self.capture.times * self.pace)
 
     @property
-    def carried(self) -> tuple[Hold | Ride, ...]:
-        """When things may move, since somebody holds them or something bears them."""
-        return (*self.holds, *self.others, *self.rides)
+    def carried(self) -> tuple[Hold | Ride | Toss, ...]:
+        """When things may move: somebody holds them, something bears them, or they fly."""
+        return (*self.holds, *self.others, *self.rides, *self.tosses)
 
     @property
     def met(self) -> frozenset[str]:
@@ -182,7 +185,7 @@ def source_of(
     displaced = [fact for fact in observation.facts if isinstance(fact, Displaced)]
     holds = with_touches(holds, tracks_of_hands, touching, displaced, capture.times)
     sides = {hand.sensor: side for side, hand in hands.items()}
-    launches = launches_of(observation.forces, sides, holds, capture.times)
+    launches, tosses = launches_of(observation.forces, sides, holds, capture.times, paths)
     holds = with_blows(holds, launches)
     told += wanderings(tracks_of_hands, paths, holds)
     meetings = meetings_of(capture, eyes, paths, touching)
@@ -201,7 +204,7 @@ def source_of(
     )
     made = Source(
         capture, observation, human, scene,
-        hands, paths, eyes, holds, meetings, poises, tuple(told), launches,
+        hands, paths, eyes, holds, meetings, poises, tuple(told), launches, tosses,
         rides=rides_of(paths, holds, touching), companions=companions,
     )  # fmt: skip
     if checked:

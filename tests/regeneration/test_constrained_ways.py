@@ -27,7 +27,8 @@ from capar.regeneration.constrained_ways import (
 from capar.regeneration.scene_files import read_scene
 from capar.regeneration.scenes import Scene, mobile, raised
 from capar.regeneration.styles import own_style
-from capar.regeneration.thing_paths import thing_goals, thing_paths
+from capar.regeneration.thing_goals import thing_goals
+from capar.regeneration.thing_paths import thing_paths
 
 LENGTHS = st.floats(-1.0, 1.0)
 

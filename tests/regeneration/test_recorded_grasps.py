@@ -33,7 +33,7 @@ from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Source, source_of
 from capar.regeneration.styles import own_style
-from capar.regeneration.thing_paths import TOUCH_M, touching_shift
+from capar.regeneration.thing_goals import TOUCH_M, touching_shift
 
 RATE_HZ = 30.0
 

@@ -131,11 +131,13 @@ def check_effort(source: Source, style: Style, effort: Effort) -> None:
     Raises:
         PlanError: It cannot; the message says what would do.
     """
-    if source.launches:
-        launch = source.launches[0]
+    set_going = [(launch.frame, launch.thing) for launch in source.launches]
+    set_going += [(toss.first, toss.thing) for toss in source.tosses]
+    if set_going:
+        frame, thing = min(set_going)
         raise PlanError(
-            f"an effort would change the speed at which {launch.thing!r} is struck or let go at "
-            f"{source.times[launch.frame]:.2f} s; --force says what is kept of that: leave out "
+            f"an effort would change the speed at which {thing!r} is struck or let go at "
+            f"{source.times[frame]:.2f} s; --force says what is kept of that: leave out "
             "--effort, or the adverb"
         )
     if style.kind is Kind.EVEN:

@@ -14,7 +14,7 @@ from capar.regeneration.manner.profiles import overshot, paused, shaped, timed
 from capar.regeneration.path_mapping import SHORT_M, arc_shares, retimed
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Style
-from capar.regeneration.thing_paths import thing_goals
+from capar.regeneration.thing_goals import thing_goals
 
 ARM_M = 0.1
 """A turn of one radian counts as so long a way [m]."""

@@ -1,0 +1,433 @@
+"""Where things have to be at events, and what decides that."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.things import Thing
+from capar.model.facts import Displaced
+from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
+from capar.regeneration.collisions import Surroundings
+from capar.regeneration.companions import Companion
+from capar.regeneration.constrained_ways import (
+    HINGE,
+    PLANE,
+    RAIL,
+    flattened,
+    guided_poses,
+    scene_constraints,
+)
+from capar.regeneration.contact_points import contact_points
+from capar.regeneration.errors import PlanError
+from capar.regeneration.forces.force_kinds import ForceKind
+from capar.regeneration.forces.tosses import caught_pose
+from capar.regeneration.launches import Toss
+from capar.regeneration.scenes import Scene, moved
+from capar.regeneration.solving import Solver
+from capar.regeneration.sources import MOVES_M, Meeting, Poise, Source, moves
+
+STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
+"""A stretch in which a thing stays so near where it was is one of rest [m, rad]."""
+
+TOUCH_M = 0.0005
+"""What is left between surfaces that touch [m]."""
+
+STEP_M = 0.005
+"""Steps in which the nearest place is sought where it touches [m]."""
+
+SEARCH_M = 0.03
+"""How far a thing is moved at most so that it touches [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Goal:
+    """Where a thing has to be at an event, and what decides that."""
+
+    thing: str
+    frame: int
+    pose: RigidTransform
+    reason: str
+
+
+def thing_goals(
+    source: Source,
+    scene: Scene,
+    old: BodyFrames,
+    new: BodyFrames,
+    force: ForceKind = ForceKind.SIMILAR,
+) -> dict[str, list[Goal]]:
+    """The goals of every thing that is held, in order of time.
+
+    Args:
+        source: The recorded performance.
+        scene: Where it is performed.
+        old: Of the recorded body.
+        new: Of the one that performs.
+        force: What is kept of a throw to a hand: how far it flies level in proportion to the
+            statures, or in metres.
+
+    Raises:
+        PlanError: A thing would be put down where nothing supports it.
+    """
+    out: dict[str, list[Goal]] = {}
+    constraints = scene_constraints(source, scene)
+    beside = {companion.hold.thing for companion in source.companions}
+    for name in source.paths:
+        kind = constraints[name].kind if name in constraints else ""
+        if kind in {HINGE, RAIL}:
+            out[name] = list(_guided_goals(source, scene, name, kind))
+            continue
+        if name in beside:
+            continue
+        start = 0, scene.thing(name).pose
+        for first, last in handled(source, name):
+            goals = out.setdefault(name, [])
+            pose = goals[-1].pose if goals else scene.thing(name).pose
+            came, thrown = toss_of(source, name, last=first), toss_of(source, name, first=last)
+            if came:
+                ratio = _flight_ratio(old, new, force)
+                as_far = caught_pose(source, scene, came, pose, 1.0)
+                pose = caught_pose(source, scene, came, pose, ratio)
+                nearer = RigidTransform.from_translation(pose.translation - as_far.translation)
+                start = start[0], nearer * start[1]
+                goals.append(Goal(name, first, pose, "caught there"))
+            else:
+                start = first, pose
+                goals.append(Goal(name, first, pose, "stays where it is"))
+            goals += _head_goals(source, scene, old, new, (name, first, last))
+            if thrown:
+                down = _let_go(source, scene, name, (first, last), pose)
+            else:
+                down = _put_down(source, scene, name, (start[0], last), start[1])
+            if kind == PLANE:
+                flat = flattened(RigidTransform.concatenate([pose, down.pose]))[1]
+                down = replace(down, pose=flat)
+            goals += _poised(source, scene, name, (first, last), (pose, down.pose))
+            goals.sort(key=lambda goal: goal.frame)
+            if thrown:
+                goals.append(down)
+                continue
+            goals.append(replace(down, frame=_stopped(source, name, goals[-1].frame, last)))
+            if goals[-1].frame < last:
+                goals.append(replace(down, reason="stays there"))
+    for companion in source.companions:
+        out.setdefault(companion.hold.thing, []).extend(_beside_goals(scene, companion, out))
+    return out
+
+
+def _head_goals(
+    source: Source, scene: Scene, old: BodyFrames, new: BodyFrames, held: tuple[str, int, int]
+) -> Iterator[Goal]:
+    """Where a thing is at the head while it is held, which is stated from frame to frame."""
+    name, first, last = held
+    for meeting in source.meetings:
+        if meeting.thing == name and first <= meeting.first <= last:
+            at = _at_head(source, scene, old, new, meeting)
+            for frame in dict.fromkeys((meeting.first, min(meeting.last, last))):
+                yield Goal(name, frame, at, f"at the {meeting.part}, in its own measures")
+
+
+def _beside_goals(
+    scene: Scene, companion: Companion, known: Mapping[str, list[Goal]]
+) -> list[Goal]:
+    """The goals of what lies in a hand beside another thing, as that one has them."""
+    ride, name = companion.ride, companion.hold.thing
+    seat = scene.thing(ride.bearer).pose.inv() * scene.thing(name).pose
+    led = [goal for goal in known[ride.bearer] if ride.first <= goal.frame <= ride.last]
+    out = [Goal(name, companion.hold.first, led[0].pose * seat, "stays where it is")]
+    reason = f"beside {ride.bearer!r} in the hand"
+    out += [Goal(name, goal.frame, goal.pose * seat, reason) for goal in led[1:]]
+    there = led[-1].pose * seat
+    if support_at(scene, name, scene.thing(name).pose) and not support_at(scene, name, there):
+        x, y, z = there.translation
+        raise PlanError(
+            f"{name!r} would be put down at ({x:.2f}, {y:.2f}, {z:.2f}) m beside {ride.bearer!r}, "
+            "where nothing supports it; a larger support, or both nearer its middle, would do"
+        )
+    return out
+
+
+def put_down_poses(source: Source, scene: Scene) -> dict[str, RigidTransform]:
+    """Where everything that is moved is put in the end; that does not depend on the body.
+
+    What is thrown from hand to hand is put down where a body as tall as the recorded one would.
+
+    Raises:
+        PlanError: Something would be put down where nothing supports it.
+    """
+    out: dict[str, RigidTransform] = {}
+    for name in source.paths:
+        start = 0
+        for first, last in handled(source, name):
+            if not toss_of(source, name, last=first):
+                start = first
+            if not toss_of(source, name, first=last):
+                pose = out.get(name, scene.thing(name).pose)
+                out[name] = _put_down(source, scene, name, (start, last), pose).pose
+    return out
+
+
+def toss_of(source: Source, name: str, *, first: int = -1, last: int = -1) -> Toss | None:
+    """The flight of a thing that begins, or ends, in a frame; None where none does."""
+    own = (toss for toss in source.tosses if toss.thing == name)
+    return next((toss for toss in own if first == toss.first or last == toss.last), None)
+
+
+def _flight_ratio(old: BodyFrames, new: BodyFrames, force: ForceKind) -> float:
+    """How many times as far as recorded a thing flies level from hand to hand [1]."""
+    statures = [body.human.measures["stature"] for body in (new, old)]
+    return float(statures[0] / statures[1]) if force is ForceKind.SIMILAR else 1.0
+
+
+def _let_go(
+    source: Source, scene: Scene, name: str, span: tuple[int, int], pose: RigidTransform
+) -> Goal:
+    """Where a thing is thrown from: as far in metres from where the hand took it as it was."""
+    turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
+    there = _displaced(source.paths[name], span, pose, turn)
+    return Goal(name, span[1], there, "thrown there")
+
+
+def _guided_goals(source: Source, scene: Scene, name: str, kind: str) -> Iterator[Goal]:
+    """Where a thing on a hinge or a rail is when a hand takes it, stops it, and lets it go."""
+    spans = handled(source, name)
+    poses = guided_poses(source, scene, name, source.paths[name], spans)
+    for first, last in spans:
+        yield Goal(name, first, poses[first], "stays where it is")
+        stopped = _stopped(source, name, first, last)
+        how = "by as much on its hinge" if kind == HINGE else "as far on its rail, in its measures,"
+        yield Goal(name, stopped, poses[stopped], f"moved {how} as it was")
+        if stopped < last:
+            yield Goal(name, last, poses[last], "stays there")
+
+
+def _stopped(source: Source, name: str, after: int, last: int) -> int:
+    """The frame at which a thing was seen to stop, after one and not later than another one."""
+    own = (fact for fact in source.observation.facts if isinstance(fact, Displaced))
+    return max((f.last for f in own if f.object == name and after < f.last <= last), default=last)
+
+
+def rests(part: RigidTransform, start: RigidTransform, goal: RigidTransform) -> bool:
+    """Whether a thing is to stay where it rested."""
+    apart = np.linalg.norm(part.translation - part.translation[0], axis=1)
+    turned = (part.rotation * part.rotation[0].inv()).magnitude()
+    near = np.linalg.norm(goal.translation - start.translation) < 1e-9
+    return bool(apart.max() < STILL_M and turned.max() < STILL_RAD and near)
+
+
+def handled(source: Source, name: str) -> list[tuple[int, int]]:
+    """From when to when a thing is held without a break, if it moves at all."""
+    if not moves(source.paths[name]):
+        return []
+    out: list[tuple[int, int]] = []
+    for hold in source.holds:
+        if hold.thing == name:
+            if out and hold.first <= out[-1][1]:
+                out[-1] = (out[-1][0], max(out[-1][1], hold.last))
+            else:
+                out.append((hold.first, hold.last))
+    return out
+
+
+def _put_down(
+    source: Source, scene: Scene, name: str, span: tuple[int, int], pose: RigidTransform
+) -> Goal:
+    """As far in metres from where it came from as it was; on another thing in that one's size."""
+    before, after = (source.paths[name][each] for each in span)
+    turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
+    by = turn.apply(after.translation - before.translation)
+    spun = _turned(source.paths[name], *span, turn) * pose.rotation
+    came, support = (support_at(source.scene, name, each) for each in (before, after))
+    spot, reason = pose.translation + by, "as far from where it came from as it was [m]"
+    onto = scene.goals.get(name, support if support != came else "")
+    if support and onto:
+        spot = _on(source, scene, name, (support, onto), after)
+        reason = f"at the same place on {onto!r}, in its own measures"
+    if name in scene.spots:
+        spot, reason = np.asarray(scene.spots[name]), "where it is stated to be put"
+    goal = RigidTransform.from_components(spot, spun)
+    if support and not support_at(scene, name, goal):
+        x, y, z = spot
+        raise PlanError(
+            f"{name!r} would be put down at ({x:.2f}, {y:.2f}, {z:.2f}) m, where {support!r} does "
+            f"not reach; a larger {support!r}, or {name!r} nearer its middle, would do"
+        )
+    return Goal(name, span[1], goal, reason)
+
+
+def _poised(
+    source: Source,
+    scene: Scene,
+    name: str,
+    span: tuple[int, int],
+    ends: tuple[RigidTransform, RigidTransform],
+) -> list[Goal]:
+    """Where it leans over another thing, and how it comes there and away.
+
+    While it leans, its edge next to the other thing is as high above that one as it was, and
+    sideways in that one's measures. Meanwhile it moves as far in metres as it did.
+    """
+    turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
+    recorded, reason = source.paths[name], "over {!r}, in its own measures"
+    out: list[Goal] = []
+    for poise in source.poises:
+        if poise.thing != name or not span[0] <= poise.frames[0] <= span[1]:
+            continue
+        spun = _turned(recorded, span[0], poise.lowest, turn) * ends[0].rotation
+        lowest = RigidTransform.from_components(_leant(source, scene, poise, spun, turn), spun)
+        over: list[RigidTransform] = []
+        for number, frame in enumerate(poise.frames):
+            pose = _displaced(recorded, (poise.lowest, frame), lowest, turn)
+            part = recorded[poise.frames[max(number - 1, 0)] : frame + 1]
+            over.append(over[-1] if over and rests(part, pose, pose) else pose)
+        goals = zip(poise.frames, over, strict=True)
+        out += [Goal(name, f, pose, reason.format(poise.other)) for f, pose in goals]
+        out += _beside(source, name, span, poise, ends, over, turn)
+    return out
+
+
+def _leant(
+    source: Source, scene: Scene, poise: Poise, spun: Rotation, turn: Rotation
+) -> Float[np.ndarray, "3"]:
+    """Where a thing is when it leans over another one, turned like this."""
+    before, after = (each.thing(poise.thing) for each in (source.scene, scene))
+    old, new = (_top(each.thing(poise.other)) for each in (source.scene, scene))
+    corners = np.array(before.shape.vertices)
+    leant = source.paths[poise.thing][poise.lowest].apply(corners) - old
+    nearest = int(np.argmin(np.linalg.norm(leant, axis=1)))
+    sizes = [each.thing(poise.other).size[:2] for each in (source.scene, scene)]
+    by = turn.apply(leant[nearest])
+    by[:2] *= float(np.mean(sizes[1] / np.maximum(sizes[0], 1e-9)))
+    edge = corners[nearest] * after.size / np.maximum(before.size, 1e-9)
+    return np.asarray(new + by - spun.apply(edge))
+
+
+def _top(thing: Thing) -> Float[np.ndarray, "3"]:
+    low, high = thing.shape.bounds
+    return np.asarray(thing.pose.apply([*(0.5 * (low + high))[:2], high[2]]))
+
+
+def _beside(
+    source: Source,
+    name: str,
+    span: tuple[int, int],
+    poise: Poise,
+    ends: tuple[RigidTransform, RigidTransform],
+    over: list[RigidTransform],
+    turn: Rotation,
+) -> list[Goal]:
+    """Goals at the nearest borders of steps before and after, if it is on its way there.
+
+    Sideways as far from where it came from or is put down as it was, and as high as it was beside
+    where it leans over.
+    """
+    sensors = {source.hands[hold.side].sensor for hold in source.holds if hold.thing == name}
+    borders = sorted({e.last for e in source.observation.segments if e.ee in sensors})
+    recorded, frames = source.paths[name], poise.frames
+    path = recorded.translation
+    away = [np.linalg.norm(path - path[frame], axis=1) > MOVES_M for frame in span]
+    before = [b for b in borders if span[0] < b < frames[0] and away[0][b]][-1:]
+    after = [b for b in borders if frames[-1] < b < span[1] and away[1][b]][:1]
+    reason = "as far from where it came from or is put down as it was [m]"
+    out = []
+    for border, side in [(frame, 0) for frame in before] + [(frame, -1) for frame in after]:
+        pose = _displaced(recorded, (span[side], border), ends[side], turn)
+        spot = np.array(pose.translation)
+        spot[2] = over[side].translation[2] + path[border, 2] - path[frames[side], 2]
+        goal = RigidTransform.from_components(spot, pose.rotation)
+        out.append(Goal(name, border, goal, reason))
+    return out
+
+
+def _displaced(
+    path: RigidTransform, frames: tuple[int, int], pose: RigidTransform, turn: Rotation
+) -> RigidTransform:
+    """Where a thing is at the second frame, when it has a pose at the first."""
+    first, frame = frames
+    gone = turn.apply(path[frame].translation - path[first].translation)
+    spun = _turned(path, first, frame, turn) * pose.rotation
+    return RigidTransform.from_components(pose.translation + gone, spun)
+
+
+def _turned(path: RigidTransform, first: int, frame: int, turn: Rotation) -> Rotation:
+    """How a recorded thing has turned, in a scene that is turned itself."""
+    return turn * path[frame].rotation * path[first].rotation.inv() * turn.inv()
+
+
+def _on(
+    source: Source, scene: Scene, name: str, supports: tuple[str, str], after: RigidTransform
+) -> Float[np.ndarray, "3"]:
+    old, new = source.scene.thing(supports[0]), scene.thing(supports[1])
+    local = old.pose.inv().apply(after.translation)
+    low_old, low_new = (s.thing(name).shape.bounds[0, 2] for s in (source.scene, scene))
+    share = (local - old.shape.bounds[0]) / np.maximum(old.size, 1e-9)
+    spot = new.pose.apply(new.shape.bounds[0] + share * new.size)
+    above = local[2] + low_old - old.shape.bounds[1, 2]
+    spot[2] = new.place[2] + new.shape.bounds[1, 2] + above - low_new
+    return np.asarray(spot)
+
+
+def support_at(scene: Scene, name: str, pose: RigidTransform) -> str:
+    """What a thing would stand on at some pose; empty where nothing is beneath it."""
+    x, y, z = (float(each) for each in pose.translation)
+    return moved(scene, name, (x, y, z), scene.thing(name).heading).support(name)
+
+
+def _at_head(
+    source: Source, scene: Scene, old: BodyFrames, new: BodyFrames, meeting: Meeting
+) -> RigidTransform:
+    """Where a thing meets the new head: the same points touch, in the measures of both."""
+    frame = (meeting.first + meeting.last) // 2
+    eyes, thing = source.eyes[frame], source.paths[meeting.thing][frame]
+    part = source.capture.tag_object(meeting.part)
+    before, after = source.scene.thing(meeting.thing), scene.thing(meeting.thing)
+    seat = eyes.inv() * part.stream.pose(frame)
+    if part.shape is None:
+        raise PlanError(f"{meeting.part!r} has no shape; give it a mesh")
+    on_head, on_thing = contact_points(
+        part.shape, before.shape, part.stream.pose(frame).inv() * thing
+    )
+    spot = seat.apply(on_head)
+    relative = eyes.inv() * thing
+    gap = relative.apply(on_thing) - spot
+    scale = after.size / np.maximum(before.size, 1e-9)
+    middle = spot * head_ratio(old, new) + gap - relative.rotation.apply(on_thing * scale)
+    local = RigidTransform.from_components(middle, relative.rotation)
+    local = _touching(scene, new, meeting.thing, local)
+    return head_path(source, old, new)[frame] * local
+
+
+def _touching(scene: Scene, new: BodyFrames, name: str, local: RigidTransform) -> RigidTransform:
+    """The pose in the eyes' frame moved ahead or back until the surfaces touch."""
+    around = Surroundings(new.human, scene)
+    solver = Solver(new.human, (*scene.place, scene.floor_m), scene.heading)
+    eyes = solver.site("between_eyes")
+
+    def apart(by_m: float) -> float:
+        pose = eyes * RigidTransform.from_translation([by_m, 0.0, 0.0]) * local
+        around.pose(solver.posture, {name: pose})
+        return min((p.distance_m for p in around.near(["head"]) if p.thing == name), default=1.0)
+
+    return RigidTransform.from_translation([touching_shift(apart), 0.0, 0.0]) * local
+
+
+def touching_shift(apart: Callable[[float], float], most_m: float = SEARCH_M) -> float:
+    """The least way to move so that a distance becomes ``TOUCH_M`` [m].
+
+    Args:
+        apart: The distance after a move; moving on, away from the surface next to it.
+        most_m: How far it is moved at most [m].
+    """
+    inside = apart(0.0) <= TOUCH_M
+    step = STEP_M if inside else -STEP_M
+    near = far = 0.0
+    while abs(far) < most_m and (apart(far) <= TOUCH_M) == inside:
+        near, far = far, far + step
+    low, high = sorted((near, far))
+    for _ in range(16):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if apart(middle) > TOUCH_M else (middle, high)
+    return 0.5 * (low + high)

@@ -1,0 +1,140 @@
+"""What one hand throws and the other catches flies to other bodies' hands by gravity alone."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from capar.body.scripted_actions import action_capture
+from capar.pipelines.round_trips import Trip, body, observed_source, round_trips
+from capar.regeneration import Motion, PlanError, Source
+from capar.regeneration.body_frames import body_frames
+from capar.regeneration.forces.force_kinds import ForceKind
+from capar.regeneration.forces.tosses import end_velocity, flight_faults
+from capar.regeneration.launches import launches_of
+from capar.regeneration.manner import read_effort
+from capar.regeneration.manner.limits import regenerate_with_effort
+from capar.regeneration.planning import is_possible
+from capar.regeneration.quality import quality
+from capar.regeneration.scenes import raised
+from capar.regeneration.thing_goals import thing_goals
+from extractors.forces.free_motion import GRAVITY_MPS2
+
+RATE_HZ = 30.0
+
+
+@cache
+def _source() -> Source:
+    return observed_source(action_capture("toss", rate_hz=RATE_HZ))
+
+
+@cache
+def _trip(agent: str) -> Trip:
+    (trip,) = round_trips(_source(), (agent,))
+    return trip
+
+
+def _flown(motion: Motion) -> np.ndarray:
+    """Where the mug is from the frame in which it is let go to the one in which it is caught."""
+    (toss,) = motion.plan.source.tosses
+    return np.asarray(motion.plan.things["mug"].translation[toss.first : toss.last + 1])
+
+
+def test_a_recording_says_from_which_hand_to_which_it_flies() -> None:
+    (toss,) = _source().tosses
+    assert (toss.thing, toss.side, toss.catcher) == ("mug", "right", "left")
+    assert not _source().launches
+    throwing, catching = _source().holds
+    assert (throwing.last, catching.first) == (toss.first, toss.last)
+
+
+@pytest.mark.parametrize("agent", ["man", "woman", "child"])
+def test_other_bodies_throw_and_catch_it_with_every_gate_and_the_same_is_observed(
+    agent: str,
+) -> None:
+    trip = _trip(agent)
+    assert trip.passed, trip
+
+
+def test_only_gravity_moves_it_between_the_hands_of_a_child() -> None:
+    motion = _trip("child").motion
+    assert motion is not None
+    bent = np.diff(_flown(motion), n=2, axis=0) * RATE_HZ**2
+    np.testing.assert_allclose(bent, np.tile([0.0, 0.0, -GRAVITY_MPS2], (len(bent), 1)), atol=1e-3)
+
+
+def test_a_child_throws_less_far_in_proportion_or_as_far_with_the_same_motion() -> None:
+    source, child = _source(), body("child", _source())
+    old, new = body_frames(source.human, source.scene), body_frames(child, source.scene)
+    (toss,) = source.tosses
+    spots = source.paths["mug"].translation
+    gone = spots[toss.last] - spots[toss.first]
+    ways, ends = {}, {}
+    for kind in ForceKind:
+        goals = thing_goals(source, source.scene, old, new, kind)["mug"]
+        places = {goal.frame: goal.pose.translation for goal in goals}
+        ways[kind] = places[toss.last] - places[toss.first]
+        ends[kind] = places[goals[-1].frame] - places[toss.last]
+    ratio = child.measures["stature"] / source.human.measures["stature"]
+    np.testing.assert_allclose(ways[ForceKind.SIMILAR], gone * [ratio, ratio, 1.0], atol=1e-6)
+    np.testing.assert_allclose(ways[ForceKind.SAME], gone, atol=1e-6)
+    np.testing.assert_allclose(ends[ForceKind.SIMILAR], ends[ForceKind.SAME], atol=1e-6)
+
+
+def test_a_hand_that_is_at_rest_does_not_throw() -> None:
+    motion = _trip("man").motion
+    assert motion is not None
+    (toss,) = motion.plan.source.tosses
+    stiff = motion.postures.copy()
+    stiff[toss.first - 6 : toss.first + 1] = stiff[toss.first]
+    gate = quality(replace(motion, postures=stiff)).gate("flight speed")
+    assert not gate.passed
+    assert gate.value > 1.0
+
+
+def test_what_floats_or_is_pushed_in_flight_fails_the_gates() -> None:
+    times = np.arange(10) / RATE_HZ
+    spots = np.outer(times, [0.0, 1.0, 2.0]) + np.outer(times**2, [0.0, 0.0, -0.5 * GRAVITY_MPS2])
+    sound = flight_faults(times, spots)
+    assert max(sound.off_m[0], sound.gain[0]) < 1e-9
+    floats = flight_faults(times, np.outer(times, [0.0, 1.0, 0.0]))
+    assert floats.off_m[0] == pytest.approx(GRAVITY_MPS2 * times[-1] ** 2 / 8.0, rel=0.02)
+    pushed = spots + np.outer(times**2, [0.0, 2.0, 0.0])
+    assert flight_faults(times, pushed).gain[0] > 0.5
+
+
+def test_the_velocity_at_the_end_of_a_parabola_is_exact() -> None:
+    times = np.array([0.0, 0.1, 0.15, 0.3])
+    spots = np.outer(times, [1.0, 0.0, 0.0]) + np.outer(times**2, [0.0, 2.0, 0.0])
+    np.testing.assert_allclose(end_velocity(times, spots), [1.0, 1.2, 0.0])
+
+
+def test_what_does_not_fly_freely_to_a_hand_is_refused() -> None:
+    source = _source()
+    sides = {hand.sensor: side for side, hand in source.hands.items()}
+    (toss,) = source.tosses
+    spots = source.paths["mug"].translation.copy()
+    spots[toss.first : toss.last + 1] = np.linspace(
+        spots[toss.first], spots[toss.last], toss.last - toss.first + 1
+    )
+    path = RigidTransform.from_components(spots, source.paths["mug"].rotation)
+    forces, holds = source.observation.forces, source.holds
+    with pytest.raises(PlanError, match="otherwise than in free flight"):
+        launches_of(forces, sides, holds, source.times, {"mug": path})
+    alone = tuple(hold for hold in holds if hold.side == "right")
+    launches, tosses = launches_of(forces, sides, alone, source.times, source.paths)
+    assert [launch.thing for launch in launches] == ["mug"]
+    assert tosses == ()
+
+
+def test_a_throw_above_the_reach_of_a_child_is_not_possible() -> None:
+    scene = raised(_source().scene, "table", 0.5)
+    assert not is_possible(_source(), scene, body("child", _source()), most=1)
+
+
+def test_an_effort_is_refused_since_it_would_change_the_throw() -> None:
+    human = _source().human
+    with pytest.raises(PlanError, match=r"let go at 3\.\d+ s"):
+        regenerate_with_effort(_source(), human, effort=read_effort("sudden=0.5"))
