@@ -2,11 +2,14 @@
 
 import math
 from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from capar.model.calibration import Found, PairCalibration
+from capar_rules.explain.clock import Apart
+from capar_rules.explain.reaches import Between, Reach
 from extractors.contact.contacts import points_apart
 from extractors.contact.proximity import separation
 from extractors.contact.touch_distances import touchable
@@ -50,3 +53,46 @@ def _of_parts(
             yield points_apart(own, part, other)[frames]
         else:
             yield separation(touchable(part), touchable(other), frames)
+
+
+def apart_at_most(measurements: Measurements) -> Apart:
+    """How far bodies were apart, at the frames at which pictures show it."""
+
+    @cache
+    def most(one: str, other: str, first: int, last: int) -> float | None:
+        pair = measurements.calibration.sought(one, other)
+        pair = pair or measurements.calibration.sought(other, one)
+        if pair is None:
+            return None
+        found = distances(measurements, pair, frames_between(first, last))
+        return float(np.nanmax(found)) if np.isfinite(found).any() else None
+
+    return most
+
+
+def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
+    """Up to which distance, and of what, two bodies are counted as touching, in either order."""
+    return {
+        names: Reach(
+            max(pair.touch_m, pair.release_m),
+            _measured_between(pair, measurements),
+            pair.touch_m,
+            tuple(
+                name
+                for name in (pair.first, pair.second)
+                if measurements.bodies.named(name).shape is None
+            ),
+        )
+        for pair in measurements.calibration.pairs
+        if pair.found is not Found.NEVER
+        for names in ((pair.first, pair.second), (pair.second, pair.first))
+    }
+
+
+def _measured_between(pair: PairCalibration, measurements: Measurements) -> Between:
+    if not pair.pivots:
+        bodies = (measurements.bodies.named(name) for name in (pair.first, pair.second))
+        shaped = all(body.shape is not None for body in bodies)
+        return Between.SURFACES if shaped else Between.POINT
+    stated = pair.found in (Found.STATED, Found.TOLERANCE)
+    return Between.ORIGINS if stated else Between.POINTS

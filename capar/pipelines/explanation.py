@@ -10,19 +10,17 @@ import numpy as np
 
 from capar.model import geometry
 from capar.model.body_names import body_names
-from capar.model.calibration import Found, PairCalibration
 from capar.model.capture import Capture
 from capar.model.facts import Moving
 from capar.model.observation import Observation, Segment
 from capar.model.segment_address import SegmentAddress, find_segment
-from capar.pipelines.distances import distances, frames_between
+from capar.pipelines.distances import apart_at_most, reaches
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.explain.clock import Apart, Heights, Leans, Measured, Places, TurnsBack, Ways
+from capar_rules.explain.clock import Heights, Leans, Measured, Places, TurnsBack, Ways
 from capar_rules.explain.explanation import Explainer, Explanation
 from capar_rules.explain.quantities import Over, Turns, Way
-from capar_rules.explain.reaches import Between, Reach
 from capar_rules.explain.why_not import Alternative
 from capar_rules.explain.why_not import why_not as alternatives
 from extractors.calibration import thresholds_of
@@ -155,7 +153,7 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
         },
         heights=_heights(measurements),
         over=_over(measurements),
-        apart=_apart_at_most(measurements),
+        apart=apart_at_most(measurements),
         lost=_lost(observation, measurements),
         unrested=_unrested(observation),
     )
@@ -189,21 +187,6 @@ def _over(measurements: Measurements) -> Places:
         return Over(float(rise), aside, float(share[frame]), float(deep[frame]), shaped)
 
     return at
-
-
-def _apart_at_most(measurements: Measurements) -> Apart:
-    """How far bodies were apart, at the frames at which pictures show it."""
-
-    @cache
-    def most(one: str, other: str, first: int, last: int) -> float | None:
-        pair = measurements.calibration.sought(one, other)
-        pair = pair or measurements.calibration.sought(other, one)
-        if pair is None:
-            return None
-        found = distances(measurements, pair, frames_between(first, last))
-        return float(np.nanmax(found)) if np.isfinite(found).any() else None
-
-    return most
 
 
 def _lost(observation: Observation, measurements: Measurements) -> dict[str, list[tuple[int, int]]]:
@@ -265,34 +248,6 @@ def _turns(measurements: Measurements) -> TurnsBack:
         return Turns(len(turns), limits.swing_m, AXES[axis])
 
     return turned
-
-
-def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
-    """Up to which distance, and of what, two bodies are counted as touching, in either order."""
-    return {
-        names: Reach(
-            max(pair.touch_m, pair.release_m),
-            _measured_between(pair, measurements),
-            pair.touch_m,
-            tuple(
-                name
-                for name in (pair.first, pair.second)
-                if measurements.bodies.named(name).shape is None
-            ),
-        )
-        for pair in measurements.calibration.pairs
-        if pair.found is not Found.NEVER
-        for names in ((pair.first, pair.second), (pair.second, pair.first))
-    }
-
-
-def _measured_between(pair: PairCalibration, measurements: Measurements) -> Between:
-    if not pair.pivots:
-        bodies = (measurements.bodies.named(name) for name in (pair.first, pair.second))
-        shaped = all(body.shape is not None for body in bodies)
-        return Between.SURFACES if shaped else Between.POINT
-    stated = pair.found in (Found.STATED, Found.TOLERANCE)
-    return Between.ORIGINS if stated else Between.POINTS
 
 
 def segment_named(observation: Observation, text: str) -> Segment:

@@ -68,7 +68,7 @@ class Claim:
     """What held when, of what it says."""
 
     of: str = ""
-    """The predicate that it tells."""
+    """The predicate that it tells to hold, in the short clause for it."""
 
     @property
     def shown(self) -> bool:
@@ -121,9 +121,9 @@ def claim(
         for kind, places in _rows(predicate, arguments)
         for bodies in _bodies(places, arguments, clock)
     ]
-    return Claim(
-        text, tuple(dict.fromkeys(found)), tuple(frames), tuple(dict.fromkeys(stretches)), predicate
-    )
+    held = tuple(dict.fromkeys(stretches))
+    of = predicate * mood.startswith("brief")
+    return Claim(text, tuple(dict.fromkeys(found)), tuple(frames), held, of)
 
 
 def _since(clock: Clock, frame: int) -> list[int]:

@@ -74,14 +74,12 @@ def _against(against: Sequence[Contrast], clauses: Sequence[str], briefs: Briefs
     ]
     if any(_goes(claim) for claim in known):  # the same angle keeps it from going the other way
         found = [one for one in found if not _goes(briefs.claims.get(one.clause))]
-    return [
-        one for one in found if one.though or not _is_course(briefs.claims.get(one.clause), clauses)
-    ]
+    return [one for one in found if one.though or not _is_course(briefs.claims.get(one.clause))]
 
 
-def _is_course(claim: Claim | None, clauses: Sequence[str]) -> bool:
-    """Whether a clause of the name's own tells but how a thing went, which denies no other name."""
-    return claim is not None and claim.text in clauses and claim.of in COURSES
+def _is_course(claim: Claim | None) -> bool:
+    """Whether a clause tells but how a thing went, which by itself denies no other name."""
+    return claim is not None and claim.of in COURSES
 
 
 def _goes(claim: Claim | None) -> bool:
