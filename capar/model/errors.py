@@ -50,9 +50,11 @@ def _listed(name: str, known: list[str], *, whole: bool) -> str:
 
 
 def _nearest(name: str, known: list[str], *, n: int, cutoff: float = 0.6) -> list[str]:
-    """The names that are most like a given one, in capitals or not."""
-    spelt = {one.lower(): one for one in reversed(known)}
-    return [spelt[one] for one in get_close_matches(name.lower(), spelt, n=n, cutoff=cutoff)]
+    """The names that are most like a given one: as it is spelt, then in capitals or not."""
+    spelt = get_close_matches(name, known, n=n, cutoff=cutoff)
+    names = {one.lower(): one for one in reversed(known)}
+    folded = [names[one] for one in get_close_matches(name.lower(), names, n=n, cutoff=cutoff)]
+    return list(dict.fromkeys([*spelt, *folded]))[:n]
 
 
 class FileError(CaparError):

@@ -202,8 +202,7 @@ def _faced(
 ) -> Float[np.ndarray, "3"]:
     """The sum of a patch's normals by area, as far as each faces the nearest of the others.
 
-    Of an open sheet nobody knows which side is out: there what faces it looks towards it, and of
-    two sheets each looks towards the other.
+    Of an open sheet nobody knows which side is out: there what faces it looks towards it.
 
     Args:
         own: Places of a surface.
@@ -211,15 +210,13 @@ def _faced(
         some: Which of its own are near the other surface.
         nearest: To which of the others each of those is nearest.
     """
+    if not own.outward:
+        return np.zeros(3)
     normals = own.normals[some]
     faces = -np.einsum("ij,ij->i", normals, others.normals[nearest])
-    ahead = np.einsum("ij,ij->i", normals, others.points[nearest] - own.points[some])
-    if own.outward and others.outward:
+    if others.outward:
         faces = np.maximum(faces, 0.0)
-    elif own.outward:
-        faces = np.where(ahead >= -SPACING_M, np.abs(faces), 0.0)
-    elif others.outward:
-        return np.zeros(3)
     else:
-        faces = np.sign(ahead) * np.abs(faces)
+        ahead = np.einsum("ij,ij->i", normals, others.points[nearest] - own.points[some])
+        faces = np.where(ahead >= -SPACING_M, np.abs(faces), 0.0)
     return np.asarray((own.areas[some] * faces) @ normals)
