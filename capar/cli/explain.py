@@ -154,7 +154,14 @@ def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bo
         for line in mover_lines(seen.observation, each.ee, each.index, staying=_staying(each)):
             typer.echo(line)
         if tree:
+            for name, definition in _definitions(each, seen).items():
+                typer.echo(f"{name}: {definition}")
             _branch(each.reason.with_sentences(), 0)
+
+
+def _definitions(told: "Explanation", seen: "Explained") -> dict[str, str]:
+    """What the names are of which a summary speaks, as the heads of their rule files say it."""
+    return {name: seen.definitions[name] for name in told.names if name in seen.definitions}
 
 
 def _staying(told: "Explanation") -> set[str]:
@@ -223,7 +230,8 @@ def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
     segments = [e for e in seen.observation.segments if (e.ee, e.index) == (told.ee, told.index)]
     notices = [note.document() for note in _notices(segments, seen, [told])]
     whole = replace(told, reason=told.reason.expanded_once())
-    return _placed(asdict(whole), seen) | {"notices": notices}
+    placed = _placed(asdict(whole), seen)
+    return placed | {"definitions": _definitions(told, seen), "notices": notices}
 
 
 def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:

@@ -3,7 +3,7 @@
 import re
 from collections import defaultdict
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +17,7 @@ from capar.model.segment_address import SegmentAddress, find_segment
 from capar.pipelines.distances import apart_at_most, reaches
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
+from capar_rules.authoring.catalogue import rules_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.explain.clock import Heights, Leans, Measured, Places, TurnsBack, Ways
 from capar_rules.explain.explanation import Explainer, Explanation
@@ -45,6 +46,11 @@ class Explained:
     observation: Observation
     explainer: Explainer
     measurements: Measurements
+
+    @cached_property
+    def definitions(self) -> dict[str, str]:
+        """What each name is, in words, as the head of its rule file says it."""
+        return {rule.name: rule.definition for rule in rules_of(self.explainer.profile)}
 
 
 def explained(capture: Capture, *, rules: Profile) -> Explained:
@@ -245,7 +251,7 @@ def _turns(measurements: Measurements) -> TurnsBack:
     def turned(name: str, first: int, last: int) -> Turns:
         stream = measurements.bodies.named(name).poses.smooth
         axis, turns = most_turns(stream, (first, last), limits)
-        return Turns(len(turns), limits.swing_m, AXES[axis])
+        return Turns(len(turns), AXES[axis])
 
     return turned
 

@@ -299,7 +299,7 @@ def _to_and_fro(known: Recording, told: Quantity, forms: frozenset[str]) -> Pane
     least = length(limits.swing_m)
     halts = "; halt: turns back where the hand halts" * bool(told.halts)
     return Panel(
-        f"{known.called(name)}: place {AXES[axis]}; red: turns back between ways of {least} or "
+        f"{known.called(name)}: place of its origin {AXES[axis]}; red: turns back between ways of {least} or "
         f"more{halts}",
         "cm",
         (known.curve(places),),

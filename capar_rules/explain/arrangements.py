@@ -161,7 +161,7 @@ def not_laid(clock: Clock, segment: str) -> str:
         objects = clock.listed.get(segment, ())
         new = sorted(reached(clock, segment), key=lambda other: other not in objects)
         return (
-            f"came to touch the {clock.called(new[0])}, and a PutDown brings no new contact"
+            f"came to touch the {clock.called(new[0])} (a PutDown makes no new contact, see below)"
             if new
             else ""
         )

@@ -33,8 +33,8 @@ AT_ONE_SIDE = {
 }
 """Clauses of contact at one border, and that border."""
 
-LEANING = {"tips": "begun", "rights": "over"}
-"""Kinds of events at which borders lie, of how far a thing leans."""
+LEANING = {"tips": "begins, tipping over included", "rights": "ends, righting included"}
+"""Kinds of events at which borders lie, of a far lean, as the summary says it."""
 
 MOST_GAPS = 3
 """So many gaps of a track are told one by one."""
@@ -57,6 +57,7 @@ class Briefs:
         Of the atom of a node, what was measured below it counts too.
         """
         text = self.sentences.tell(predicate, arguments, self.clock, mood=mood)
+        text = text.replace(") (", "; ")
         return self._kept(text, (predicate, arguments, mood), reason)
 
     def _kept(self, text: str, told: tuple[str, Sequence[str], str], reason: Reason | None) -> str:
@@ -144,13 +145,14 @@ class Briefs:
             return []
         called, least = self.clock.called(thing), round(1000.0 * self.clock.measured.far_over_rad)
         borders = {"start": "begins", "end": "ends"}
+        lean = f"a lean of the {called} of {degrees(least)} or more"
         told = listed(
             [
-                f"{borders[side]} where a far lean of the {called} counts as {how}"
+                f"{borders[side]} where {lean} {how}"
                 for side, how in sorted(found.items(), reverse=True)
             ]
         )
-        text = f"the segment {told} (such a lean reaches {degrees(least)})"
+        text = f"the segment {told}"
         return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="leaning"),))]
 
     def also_reached(self, claims: Iterable[Claim]) -> list[Claim]:
@@ -199,6 +201,7 @@ class Briefs:
         courses = any(each.atom.startswith(COURSES) for each in nodes)
         aside = any(node.atom.startswith("travels(") for node in nodes)
         nodes = [node for node in nodes if aside or not node.atom.startswith(CLEAR)]
+        nodes.sort(key=lambda node: node.atom.startswith(CLEAR))
         courses = courses or any(each.atom.startswith("wrung(") for each in nodes)
         borne = {tuple(parsed(node.atom)[1][1:]) for node in nodes if node.atom.startswith("on(")}
         for each in nodes:

@@ -77,6 +77,7 @@ FORMS: Mapping[str, tuple[Measure, ...]] = {
     "not_down": (Measure.HEIGHT, Measure.ASIDE),
     "not_aside": (Measure.HEIGHT, Measure.ASIDE),
     "lean": (Measure.LEAN,),
+    "lean_change": (Measure.LEAN,),
     "far_over": (Measure.LEAN,),
     "not_leant": (Measure.LEAN,),
     "turn": (Measure.TURN,),

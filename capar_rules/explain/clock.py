@@ -154,6 +154,14 @@ class Measured:
     shapeless: frozenset[str] = frozenset()
     """Objects of which no shape is known."""
 
+    feet: frozenset[str] = frozenset()
+    """End-effectors that are feet or parts of them."""
+
+    def stands_uncounted(self, body: str) -> bool:
+        """Whether it is a foot of which no contact with anything fixed is looked for."""
+        pairs = (pair for pair in self.reaches if body in pair)
+        return body in self.feet and all({*pair} & self.movable for pair in pairs)
+
     def upright(self, body: str) -> str:
         """The posture from which a body's lean is measured, in words."""
         several = is_plural(self.names.get(body, body.replace("_", " ")))
@@ -193,7 +201,8 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
     held: dict[str, list[tuple[str, int, int]]] = defaultdict(list)
     places, postures, travelled, touched = {}, {}, {}, False
     every = list(facts)
-    acting = {fact.ee for fact in every if isinstance(fact, Link)}
+    links = [fact for fact in every if isinstance(fact, Link)]
+    acting = {link.ee for link in links}
     for fact in every:
         match fact:
             case Moving():
@@ -224,7 +233,13 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
     )
     found = _of_pairs(every, found)
     return replace(
-        found, displaced=displaced, swings=swings, travelled=travelled, held=held, tracked=touched
+        found,
+        displaced=displaced,
+        swings=swings,
+        travelled=travelled,
+        held=held,
+        tracked=touched,
+        feet=frozenset(link.ee for link in links if link.kind == "foot"),
     )
 
 

@@ -26,7 +26,7 @@ from capar_rules.explain.told_argument import UNBOUND
 MOST_FAILING = 2
 """A name whose rules all lack more conditions than that is not near."""
 
-MOST_NAMES = 3
+MOST_NAMES = 4
 """So many names are told at most of which the same condition decided."""
 
 LEAST_NEARNESS = 0.25
@@ -34,6 +34,9 @@ LEAST_NEARNESS = 0.25
 
 HALF = 0.5
 """How near a condition that has no number is taken to come to being otherwise [1]."""
+
+BUT_FOR = 0.95
+"""How near that comes which only what was done besides keeps from a name [1]."""
 
 SEEN = ("leans_over", "spins")
 """Predicates of how a thing was turned: one sees it of a segment also where it does not decide."""
@@ -315,9 +318,14 @@ def _known_clauses(told: Sequence[str]) -> tuple[str, ...]:
 
 
 def _nearness(base: RuleBase, literal: Literal, match: Match, clock: Clock) -> float:
-    """How near a condition that decided came to being otherwise; of those without numbers, half."""
-    if literal.kind != "atom" or literal.sign:
+    """How near a condition that decided came to being otherwise; of those without numbers, half.
+
+    What would have the name but for one thing that it did besides comes nearest.
+    """
+    if literal.kind != "atom":
         return HALF
+    if literal.sign:
+        return BUT_FOR
     name = literal.atoms[0].signature[0]
     return base.sentences.nearness(name, _known(literal, match), clock) or HALF
 

@@ -52,6 +52,8 @@ class Explanation:
     """The clauses of the summary, with what was measured for each."""
 
     reason: Reason
+    names: tuple[str, ...] = ()
+    """The names of which the summary speaks, the segment's own first."""
 
 
 @lru_cache(maxsize=KEPT)
@@ -110,6 +112,7 @@ class Explainer:
             profile: The rules to explain by.
             measured: What else was measured of bodies; by default what the facts say.
         """
+        self.profile = profile
         self.base = rule_base(profile)
         self.windows = Windows(facts, number_borders(facts, crossings_only=profile.crossings_only))
         self.measured = measured_by(facts, measured or Measured())
@@ -305,6 +308,7 @@ def _explanation(
         told.text,
         told.claims,
         top,
+        told.names,
     )
 
 

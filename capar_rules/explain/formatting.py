@@ -24,6 +24,7 @@ OF_BODIES = (
     "little",
     "still",
     "turns_back",
+    "lean_change",
     "turned_in_all",
 )
 """Formats of a body, that tell of the segment beside it, or else of the one that is explained."""

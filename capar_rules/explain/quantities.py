@@ -113,17 +113,8 @@ class Turns:
     """How often a body turns back on the axis of the world on which it does so most."""
 
     count: int
-    least_m: float
-    """The way before and after each [m]."""
-
-    sense: str = "on one axis"
+    sense: str
     """Along which line."""
-
-    def __str__(self) -> str:
-        """To stand after ``it``."""
-        least = length(self.least_m)
-        times = f"at least {often(self.count)} {self.sense}"
-        return f"turned back {times}, between ways of {least} or more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,11 +147,6 @@ def over(at: Over, other: str) -> str:
 def percent(share: float) -> str:
     """A share, to stand alone."""
     return f"{100.0 * share:.0f} %"
-
-
-def often(count: int) -> str:
-    """A number of times."""
-    return {0: "never", 1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
 @dataclass(frozen=True, slots=True)

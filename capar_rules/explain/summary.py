@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from capar_rules.explain.briefs import BOTH, COURSES, Briefs, listed
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Claim
-from capar_rules.explain.contrasts import LEAST_SEEN, MOST_NAMES, MOST_TOLD, Contrast
+from capar_rules.explain.contrasts import BUT_FOR, LEAST_SEEN, MOST_NAMES, MOST_TOLD, Contrast
 from capar_rules.explain.leading import DOUBTED, OWN, leading, parsed, rank
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.touch_notes import touching
@@ -20,6 +20,9 @@ class Summary:
     text: str
     claims: tuple[Claim, ...]
     """Its clauses, with what was measured for each."""
+
+    names: tuple[str, ...]
+    """The names of which it speaks, the segment's own first."""
 
 
 def summary(
@@ -42,7 +45,7 @@ def summary(
     beside, fresh = _told_contrasts(_against(against, clauses, briefs), clauses)
     more = [clause for clause in clauses if clause not in own]
     kind = bool(generals and own and more) and all(one.by_features for one in fresh)
-    told = f"{name}{f', and not {beside}' * bool(beside)}, because "
+    told = f"{name}, and not {listed(beside, 'or')}, because " if beside else f"{name}, because "
     told += _by_subject(own if kind else clauses, subjects)
     if kind:
         told += f". It is a kind of {listed(generals)}, because {_by_subject(more, subjects)}"
@@ -58,7 +61,9 @@ def summary(
     extra = briefs.also_reached(claims) + briefs.leaning(reason)
     extra += briefs.lost([*claims, *extra])
     told += "".join(f". {_sentence(claim.text)}" for claim in extra)
-    return Summary(f"{told}." + touching(claims, briefs.clock), (*claims, *extra))
+    names = [name, *generals * kind, *beside, *(n for one in fresh for n in one.names)]
+    text = f"{told}." + touching(claims, briefs.clock)
+    return Summary(text, (*claims, *extra), tuple(dict.fromkeys(names)))
 
 
 def _sentence(clause: str) -> str:
@@ -100,7 +105,7 @@ def _shortened(contrast: Contrast, clauses: Sequence[str], briefs: Briefs) -> Co
 
 def _told_contrasts(
     against: Sequence[Contrast], clauses: Sequence[str]
-) -> tuple[str, list[Contrast]]:
+) -> tuple[tuple[str, ...], list[Contrast]]:
     """The names that the whole of what is said denies, and the contrasts that are told.
 
     Those with reasons of their own precede those whose reason is among the name's own. Names of
@@ -113,8 +118,8 @@ def _told_contrasts(
     features = [*(one for one in against if one.by_features and not one.direct)]
     features += [one for one in (*fresh, *alike) if one.by_features and one.direct]
     order = [*order, *features]
-    order.sort(key=lambda one: one.nearness < LEAST_SEEN)
-    beside, told, names = "", list[Contrast](), set[str]()
+    order.sort(key=lambda one: (one.nearness < LEAST_SEEN) + (one.nearness < BUT_FOR))
+    beside, told, names = tuple[str, ...](), list[Contrast](), set[str]()
     most = MOST_TOLD + any(contrast.though for contrast in order)
     for contrast in sorted(order, key=lambda one: not one.though):
         left = tuple(name for name in contrast.names if name not in names)
@@ -124,13 +129,18 @@ def _told_contrasts(
             both = (*told[alike_at[-1]].names, *left)[:MOST_NAMES]
             names |= {*both}
             told[alike_at[-1]] = replace(told[alike_at[-1]], names=both)
-        elif left and len(told) + bool(beside) < most:
+        elif left and len(told) + bool(beside) < most and not (_idle(contrast) and told):
             names |= {*left}
             if [*clauses] == [contrast.clause] and not contrast.though:
-                beside = listed(left, "or")
+                beside = left
             else:
                 told.append(replace(contrast, names=left))
     return beside, told
+
+
+def _idle(contrast: Contrast) -> bool:
+    """Whether nobody would ask for the names, where others are told."""
+    return contrast.nearness < LEAST_SEEN and not contrast.though
 
 
 def _subjects(nodes: Iterable[Reason], briefs: Briefs) -> list[str]:

@@ -35,6 +35,8 @@ class ToldArgument:
 
     def _nothing(self) -> str:
         """That none of what is tracked was touched."""
+        if self.clock.measured.stands_uncounted(self.body):
+            return "no recorded or assumed object (contact with the floor is not looked for)"
         if self.clock.measured.tracked:
             return "no recorded or assumed object"
         return "no object (the recording has none)"

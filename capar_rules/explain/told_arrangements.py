@@ -5,6 +5,9 @@ from capar_rules.explain import arrangements, quantities
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG
 from capar_rules.explain.told_argument import UNBOUND, ToldArgument
 
+LEAST_ASIDE_M = 0.001
+"""A shorter way aside is told as less than that [m]."""
+
 
 class ArrangementsTold(ToldArgument):
     """How bodies lie to each other, and whither they go."""
@@ -14,7 +17,8 @@ class ArrangementsTold(ToldArgument):
         little = arrangements.little_way(self.clock, self.text)
         if little is not None:
             least = quantities.length(constants()["slide_mm"] / 1000.0)
-            told = f", from start to end, only {quantities.length(little)} to the side"
+            aside = quantities.length(little) if little >= LEAST_ASIDE_M else "less than 1 mm"
+            told = f", from start to end, only {aside} to the side"
             return f"{told}, less than the {least} from which on a direction counts"
         found = arrangements.bearing(self.clock, self.text)
         if found is None:
@@ -104,10 +108,10 @@ class ArrangementsTold(ToldArgument):
             if angle is None or angle <= most:
                 return UNBOUND
             called = self.clock.called(other)
-            told.append(f"the {called} pushed it {angle:.0f}° off straight up")
+            told.append(f"the {called} met it {angle:.0f}° off straight up")
         return (
-            f"nothing bore the {self.clock.called(thing)} at the {self.text}: "
-            f"{' and '.join(told)} ({most:.0f}° or less bears)"
+            f"nothing bore the {self.clock.called(thing)} from below at the {self.text}: "
+            f"{' and '.join(told)} (what bears meets it within {most:.0f}° of straight up)"
         )
 
     def _hollow(self) -> str:

@@ -32,7 +32,9 @@ class ContactsTold(ToldArgument):
         if not before:
             return UNBOUND
         since, keeper = min(before)
-        return f"was held by the {keeper} already (since {self.clock.at(since)})"
+        met = self.clock.at(max(own))
+        had = f"had been in contact with the {keeper} since {self.clock.at(since)}"
+        return f"{had}, before the {self.clock.called(self._hand)} touched it at {met}"
 
     def _struck(self) -> str:
         """How fast the segment's object met this one at the end."""
@@ -171,8 +173,12 @@ class ContactsTold(ToldArgument):
         hand = self.clock.called(arrangements.hand_of(segment))
         until, span = self.clock.at(int(last)), self.clock.span(segment)
         own = self._met_near(arrangements.hand_of(segment), thing, span[1]) if span else None
-        kept = f", when the {hand} still did" * bool(own and own[1] > int(last))
-        return f"{self._touched(other, thing)} before the {hand} did, and until {until}{kept}"
+        if own is None:
+            return UNBOUND
+        kept = f" while the {hand} stayed in contact" * (own[1] > int(last))
+        it, called = self.clock.it(thing, object_=True), self.clock.called(thing)
+        met = f"when the {hand} came into contact with {it} ({self.clock.at(own[0])})"
+        return f"was in contact with the {called} {met}, and parted from {it} (after {until}){kept}"
 
     def _takes(self) -> str:
         """Since when another one touches the object of a segment, that is let go of there."""
@@ -182,13 +188,7 @@ class ContactsTold(ToldArgument):
         if left is None:
             return UNBOUND
         since, until = self.clock.at(int(first)), self.clock.at(left[1])
-        held = f"did from {self.clock.at(left[0])} on"
-        ended = f"when the {self.clock.called(hand)}, which {held}, ceased to (after {until})"
-        return f"{self._touched(other, thing)} from {since} on, and still did {ended}"
-
-    def _touched(self, one: str, other: str) -> str:
-        """How contact of two is told."""
-        near = self.clock.measured.near(one, other)
-        return (
-            f"{'counted as in contact with' if near else 'touched'} the {self.clock.called(other)}"
-        )
+        it, called = self.clock.it(thing, object_=True), self.clock.called(hand)
+        own = f"while the {called} was in contact with {it} (from {self.clock.at(left[0])})"
+        kept = f"and stayed so when the {called} parted from {it} (after {until})"
+        return f"came into contact with the {self.clock.called(thing)} at {since}, {own}, {kept}"

@@ -45,7 +45,7 @@ class MotionsTold(ToldArgument):
             return ""
         if form in SHORTFALLS:
             return self._shortfall(form, body, span).text or UNBOUND
-        if form in (*SHIFTS, "lean", "turn"):
+        if form in (*SHIFTS, "lean", "lean_change", "turn"):
             return self._between(form, body, span)
         turning = {
             "far_over": self._far_over,
@@ -97,7 +97,10 @@ class MotionsTold(ToldArgument):
         least = f" ({quantities.degrees(constants()['turn_mrad'])} or more count)"
         if form == "turn":
             return f"{quantities.degrees(last[1] - first[1])} about the vertical{least}"
-        change = f", a change of {quantities.change(first[0], last[0])}"
+        changed = quantities.change(first[0], last[0])
+        if form == "lean_change":
+            return f"by {changed}{least}"
+        change = f", a change of {changed}"
         return f"{_leant(first[0], last[0])} from {self._posture_of(body)}{change}{least}"
 
     def _extremes(self, body: str, span: tuple[int, int], end_mm: int) -> str:
@@ -128,15 +131,13 @@ class MotionsTold(ToldArgument):
         return self.clock.measured.upright(body)
 
     def _turns_back(self, body: str, span: tuple[int, int]) -> str:
-        """From when to when it was moved to and fro, and how often it turned back in that."""
+        """Along which line it was moved to and fro, and from when to when if not in the segment."""
         turns = self.clock.measured.turns
         if turns is None:
             return ""
         swing, counted = self._swing(body, span), self._counted_turns(body, span)
         when = f" from {self.clock.at(swing[0])} to {self.clock.at(swing[1])}"
-        part = "in this segment " * (swing != span == counted)
-        it = f"{part}{self.clock.it(body)}"
-        return f"{when * (swing != span)} ({it} {turns(body, *counted)})"
+        return f" {turns(body, *counted).sense}{when * (swing != span)}"
 
     def _counted_turns(self, body: str, span: tuple[int, int]) -> tuple[int, int]:
         """Between which frames turns are counted: of the segment, or else of all of that motion."""
@@ -167,8 +168,8 @@ class MotionsTold(ToldArgument):
         return (
             f"turned by {quantities.degrees(angle)} in all "
             f"({quantities.degrees(constants()['half_turn_mrad'])} or more count) on a path of "
-            f"{quantities.length((end[0] - start[0]) / 1000.0)} (at most {far} count as turning: "
-            f"that angle times {quantities.length(wrist)}, from a wrist to what it turns)"
+            f"{quantities.length((end[0] - start[0]) / 1000.0)} (up to {far}, {quantities.length(wrist)} "
+            "times that angle, count as turning in the hand)"
         )
 
     def _of_span(self, form: str) -> str:
@@ -190,7 +191,7 @@ def _leant(first_mrad: int, last_mrad: int) -> str:
 
 def _brief(form: str, moved: Way) -> str:
     if form == "little":
-        within = f" (within {quantities.spread(moved.spread_m)} of its median place)"
+        within = f" (within {quantities.spread(moved.spread_m)} of its median place in the segment)"
         return within if moved.spread_m >= DRIFT_M else ""
     return quantities.spread(moved.spread_m)
 

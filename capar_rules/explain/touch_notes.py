@@ -6,7 +6,11 @@ from capar_rules.explain.briefs import listed
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim
 from capar_rules.explain.clock import Clock
+from capar_rules.explain.quantities import spread
 from capar_rules.explain.reaches import Reach
+
+BEYOND = "at moments up to"
+"""How a contact throughout the segment is told in which bodies were further apart for moments."""
 
 OF_CONTACT = (Measure.DISTANCE, Measure.BORNE)
 """What is measured of two bodies where their contact is told."""
@@ -14,6 +18,7 @@ OF_CONTACT = (Measure.DISTANCE, Measure.BORNE)
 
 def touching(claims: Iterable[Claim], clock: Clock) -> str:
     """Up to which distance bodies are counted as touching whose contact is told."""
+    claims = list(claims)
     found: dict[str, dict[str, list[str]]] = {}
     bodies: list[str] = []
     for one, other in _pairs(claims):
@@ -28,7 +33,31 @@ def touching(claims: Iterable[Claim], clock: Clock) -> str:
         _counted(reaches, between, several=several) for between, reaches in found.items() if reaches
     ]
     counted = f" Contact is counted {'; '.join(told)}." if told else ""
-    return counted + _stand_ins(bodies, clock)
+    return counted + _bridged(claims, clock) + _stand_ins(bodies, clock)
+
+
+def _bridged(claims: Iterable[Claim], clock: Clock) -> str:
+    """Which bodies were further apart at moments within a contact that is not told throughout."""
+    told = "".join(claim.text for claim in claims)
+    found: list[str] = []
+    for one, other in _pairs(claims):
+        far, reach = _farthest(one, other, clock), clock.measured.reaches.get((one, other))
+        if reach is None or far is None or 1000.0 * far <= reach.told_mm or BEYOND in told:
+            continue
+        called = f"the {clock.called(one)} and the {clock.called(other)}"
+        found.append(f"{called} were up to {spread(far)} apart")
+    return f" At moments within the contact {listed(found)}." if found else ""
+
+
+def _farthest(one: str, other: str, clock: Clock) -> float | None:
+    """How far two bodies are apart at most while they count as touching in the segment [m]."""
+    known, span = clock.measured, clock.span(clock.own)
+    if span is None or known.apart is None:
+        return None
+    every = [*known.contacts.get((one, other), ()), *known.contacts.get((other, one), ())]
+    parts = [(max(first, span[0]), min(last, span[1])) for first, last in every]
+    found = [known.apart(one, other, *part) for part in parts if part[0] < part[1]]
+    return max((far for far in found if far is not None), default=None)
 
 
 def _pairs(claims: Iterable[Claim]) -> list[tuple[str, str]]:
