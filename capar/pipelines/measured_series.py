@@ -299,8 +299,8 @@ def _to_and_fro(known: Recording, told: Quantity, forms: frozenset[str]) -> Pane
     least = length(limits.swing_m)
     halts = "; halt: turns back where the hand halts" * bool(told.halts)
     return Panel(
-        f"{known.called(name)}: place of its origin {AXES[axis]}; red: turns back between ways of {least} or "
-        f"more{halts}",
+        f"{known.called(name)}: place of its origin {AXES[axis]}; red: turns back between ways of "
+        f"{least} or more{halts}",
         "cm",
         (known.curve(places),),
         marks=(

@@ -169,7 +169,7 @@ class ContactsTold(ToldArgument):
 
     def _lets_go(self) -> str:
         """Until when another one touches the object of a segment, from before it was reached."""
-        segment, other, thing, last = self.beside
+        segment, _, thing, last = self.beside
         hand = self.clock.called(arrangements.hand_of(segment))
         until, span = self.clock.at(int(last)), self.clock.span(segment)
         own = self._met_near(arrangements.hand_of(segment), thing, span[1]) if span else None
@@ -182,7 +182,7 @@ class ContactsTold(ToldArgument):
 
     def _takes(self) -> str:
         """Since when another one touches the object of a segment, that is let go of there."""
-        segment, other, thing, first = self.beside
+        segment, _, thing, first = self.beside
         hand, span = arrangements.hand_of(segment), self.clock.span(segment)
         left = self._met_near(hand, thing, span[0]) if span else None
         if left is None:

@@ -168,8 +168,8 @@ class MotionsTold(ToldArgument):
         return (
             f"turned by {quantities.degrees(angle)} in all "
             f"({quantities.degrees(constants()['half_turn_mrad'])} or more count) on a path of "
-            f"{quantities.length((end[0] - start[0]) / 1000.0)} (up to {far}, {quantities.length(wrist)} "
-            "times that angle, count as turning in the hand)"
+            f"{quantities.length((end[0] - start[0]) / 1000.0)} (up to {far}, "
+            f"{quantities.length(wrist)} times that angle, count as turning in the hand)"
         )
 
     def _of_span(self, form: str) -> str:
