@@ -33,8 +33,12 @@ class ContactsTold(ToldArgument):
             return UNBOUND
         since, keeper = min(before)
         met = self.clock.at(max(own))
+        if since == max(own):
+            hand = self.clock.called(self._hand)
+            return f"was in contact with the {keeper} from {met} on, as with the {hand}"
         had = f"had been in contact with the {keeper} since {self.clock.at(since)}"
-        return f"{had}, before the {self.clock.called(self._hand)} touched it at {met}"
+        it = self.clock.it(thing, object_=True)
+        return f"{had}, before the {self.clock.called(self._hand)} touched {it} at {met}"
 
     def _struck(self) -> str:
         """How fast the segment's object met this one at the end."""

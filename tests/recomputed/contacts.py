@@ -82,19 +82,24 @@ def newly_met(known: Known, one: str, other: str, at: str, hand: str) -> bool:
     return begins(known, one, other, at) and touched(known, hand, one, at)
 
 
-def let_go(known: Known, other: str, thing: str, hand: str, at: str) -> bool:
-    """The one's contact with the thing ends then, and begins before that of the other one."""
+def let_go(known: Known, other: str, thing: str, hand: str, met: str, at: str) -> bool:
+    """The one's contact with the thing ends then, and the other one's began before, when told."""
     own = [each for each in known.touching(other, thing) if near(each.last, known.at(at))]
     began = any(
-        one.first < two.first <= one.last for one in own for two in known.touching(hand, thing)
+        one.first < two.first <= one.last and near(two.first, known.at(met))
+        for one in own
+        for two in known.touching(hand, thing)
     )
     return known.at(at) >= known.segment.last - 1 and began
 
 
-def took(known: Known, other: str, thing: str, at: str, hand: str, left: str) -> bool:
-    """The one's contact begins then, and outlasts that of the other one, which ends at left."""
+def took(known: Known, other: str, thing: str, at: str, hand: str, since: str, left: str) -> bool:
+    """The one's contact begins then, and outlasts that of the other one, from since to left."""
     own = [each for each in known.touching(other, thing) if near(each.first, known.at(at))]
-    ended = any(near(each.last, known.at(left)) for each in known.touching(hand, thing))
+    ended = any(
+        near(each.last, known.at(left)) and near(each.first, known.at(since))
+        for each in known.touching(hand, thing)
+    )
     return ended and any(each.last > known.at(left) for each in own)
 
 
@@ -181,13 +186,15 @@ FORMS = (
         newly_met,
     ),
     (
-        rf"the {NAME} (?:touched|counted as in contact with) the {NAME} before the {NAME} did, "
-        rf"and until {TIME}(?:, when the [\w ]+ still did)?",
+        rf"the {NAME} was in contact with the {NAME} when the {NAME} came into contact with "
+        rf"(?:it|them) \({TIME}\), and parted from (?:it|them) \(after {TIME}\)"
+        r"(?: while the [\w ]+ stayed in contact)?",
         let_go,
     ),
     (
-        rf"the {NAME} (?:touched|counted as in contact with) the {NAME} from {TIME} on, and still "
-        rf"did when the {NAME}, which did from \d+\.\d\d s on, ceased to \(after {TIME}\)",
+        rf"the {NAME} came into contact with the {NAME} at {TIME}, while the {NAME} was in contact "
+        rf"with (?:it|them) \(from {TIME}\), and stayed so when the [\w ]+ parted from "
+        rf"(?:it|them) \(after {TIME}\)",
         took,
     ),
 )

@@ -13,6 +13,7 @@ from capar.model.facts import (
     ContactNormal,
     Displaced,
     FlickerCorrection,
+    Leans,
     Posture,
     PressDirection,
     Resting,
@@ -32,6 +33,9 @@ UNITS = {"mm": (0.001, 0.0005), "cm": (0.01, 0.005), "m": (1.0, 0.05)}
 
 SMOOTHED_M = 0.006
 """By so much a smoothed place differs from the recorded one [m]."""
+
+LINES = ("along the x axis", "along the y axis", "up and down")
+"""The axes of the world, as summaries have them."""
 
 SHORT_M = 0.01
 """A body that ends nearer than this to where it began is told to end there [m]."""
@@ -408,18 +412,13 @@ def far_over(known: Known, body: str, before: str, after: str, most: str, least:
     )
 
 
-def turned_to_and_fro(
-    known: Known, body: str, since: str, until_: str, often: str, far: str
-) -> bool:
-    """So many extrema of a coordinate lie so far from the ones before and after."""
+def moved_to_and_fro(known: Known, body: str, line: str, since: str, until_: str) -> bool:
+    """On that coordinate most extrema lie at least a centimetre from those before and after."""
     first = known.frame(since) if since else known.segment.first
     last = known.frame(until_) if until_ else known.segment.last
     places = known.stream(body).positions[first:last].T
-    return max(extrema(place, _metres(far)) for place in places) == _count(often)
-
-
-def _count(often: str) -> int:
-    return {"never": 0, "once": 1, "twice": 2}.get(often) or int(often.removesuffix(" times"))
+    found = dict(zip(LINES, (extrema(place, SHORT_M) for place in places), strict=True))
+    return found[line] == max(found.values()) > 0
 
 
 def extrema(values: np.ndarray, least: float) -> int:
@@ -516,7 +515,7 @@ def _at_angle(known: Known, thing: str, line: np.ndarray, angle: str) -> bool:
     return abs(math.degrees(math.acos(min(max(cosine, -1.0), 1.0))) - float(angle)) <= 5.0
 
 
-def pushed_at(known: Known, _: str, angle: str, asked: str) -> bool:
+def pushed_at(known: Known, _: str, angle: str, asked: str = "45") -> bool:
     """Some contact of a body of the segment was measured to push so far off straight up."""
     about = {known.segment.ee, *known.segment.objects}
     angles = (
@@ -592,15 +591,44 @@ def held_until(known: Known, thing: str, hand: str, at: str) -> bool:
     return any(near(each.last, known.at(at)) for each in known.touching(hand, thing))
 
 
-def came_down(known: Known, body: str, asked: str) -> bool:
-    return -float(_shifted(known, body)[2]) > 0.05 - SMOOTHED_M and _asked("height_mm", asked)
+def counted(known: Known, body: str, asked: str, sense: str) -> bool:
+    """It went so far up, down or to the side, to where it ended."""
+    shift = _shifted(known, body)
+    if sense == "to the side":
+        return _length(shift[:2]) > 0.1 - SMOOTHED_M and _asked("aside_mm", asked)
+    height = float(shift[2]) * (1.0 if sense == "up" else -1.0)
+    return height > 0.05 - SMOOTHED_M and _asked("height_mm", asked)
 
 
-def held_since(known: Known, body: str, other: str, at: str) -> bool:
-    """The other end-effector touches the thing from then until the segment ends, or longer."""
-    return any(
-        near(each.first, known.at(at)) and each.last >= known.segment.last
-        for each in known.touching(other.replace(" ", "_"), body)
+def leant_enough(known: Known, body: str, told: str, asked: str) -> bool:
+    before, after = (each.lean for each in _postures(known, body))
+    change = abs(math.degrees((after - before) / 1000.0))
+    return abs(change - float(told)) <= 1.0 and _asked("turn_mrad", asked)
+
+
+def leant_far(known: Known, _: str, thing: str, told: str) -> bool:
+    """Thirty degrees are far over, and a lean of it begins or ends at a border of the segment."""
+    borders = (known.segment.first, known.segment.last)
+    leans = [each for each in known.of(Leans) if each.object == name(thing)]
+    at = [frame for each in leans for frame in (each.first, each.last)]
+    slack = 2 * known.reach
+    return told == "30" and any(abs(one - other) <= slack for one in at for other in borders)
+
+
+def held_alike(known: Known, body: str, other: str, at: str, hand: str) -> bool:
+    """Contacts of both end-effectors with the thing begin then."""
+    met = (known.touching(one, body) for one in (other, hand))
+    return all(any(near(each.first, known.at(at)) for each in contacts) for contacts in met)
+
+
+def held_since(known: Known, body: str, other: str, at: str, hand: str, met: str) -> bool:
+    """The other one touches the thing from then, before the own one does, until its end."""
+    own = any(near(each.first, known.at(met)) for each in known.touching(hand, body))
+    return own and any(
+        near(each.first, known.at(at))
+        and each.first < known.at(met)
+        and each.last >= known.segment.last
+        for each in known.touching(other, body)
     )
 
 
@@ -663,13 +691,14 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"had come to touch the {NAME} (?:before this, )?at {TIME}", met_first),
     (
-        rf"(?:touched|counted as in contact with) the {NAME} before the {NAME} did, and until "
-        rf"{TIME}",
+        rf"was in contact with the {NAME} when the {NAME} came into contact with (?:it|them) "
+        rf"\({TIME}\), and parted from (?:it|them) \(after {TIME}\)",
         let_go,
     ),
     (
-        rf"(?:touched|counted as in contact with) the {NAME} from {TIME} on, and still did when "
-        rf"the {NAME}, which did from \d+\.\d\d s on, ceased to \(after {TIME}\)",
+        rf"came into contact with the {NAME} at {TIME}, while the {NAME} was in contact with "
+        rf"(?:it|them) \(from {TIME}\), and stayed so when the [\w ]+ parted from (?:it|them) "
+        rf"\(after {TIME}\)",
         took,
     ),
     (
@@ -697,7 +726,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
             near(each.last, known.at(at)) for each in known.of(Touching) if each.body == body
         ),
     ),
-    (rf"\({LENGTH} or more down count\)", came_down),
+    (rf"{LENGTH} or more (up|down|to the side) count", counted),
     (
         rf"(?:before|when|where) the {NAME} (?:let go of|was last tracked at) (?:it|them),? "
         rf"at {TIME}",
@@ -711,7 +740,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         again,
     ),
     (rf"the {NAME} at the start \({TIME}\) and until {TIME}", touched_until),
-    (rf"{DEGREES} off straight up \({DEGREES} or less bears\)", pushed_at),
+    (rf"met it {DEGREES} off straight up", pushed_at),
+    (rf"meets it within {DEGREES} of straight up", lambda _, __, told: told == "45"),
     (rf"{DEGREES} off straight up; {DEGREES} or less bears", pushed_at),
     (
         rf"{DEGREES} off straight up as their contact began, at {TIME}; {DEGREES} or less bears",
@@ -726,7 +756,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (r"\((\d+) % of it(?: at \d+\.\d\d s)?\)", shared),
     (rf"ended {LENGTH} from where it began", ended_away),
     (rf"\((?:(up) to {LENGTH} higher|(down) to {LENGTH} lower)(?: and down to {LENGTH} lower)? in "
-     r"between\)", been_beyond),
+     r"between", been_beyond),
     (rf"ended {LENGTH} (higher|lower)(?: and {LENGTH} to the side)?", ended),
     (rf"ended (at the same height)() and {LENGTH} to the side",
      lambda known, body, _, sense, aside: ended(known, body, "", sense, aside)),
@@ -736,14 +766,13 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"turned on its hinge from {NUMBER} rad to {NUMBER} rad open", swung),
     (r"turned back (\d+) times, in strokes of a finger's width and more", turned_back_so_often),
     (
-        rf"moved to and fro(?: from {TIME} to {TIME})? \((?:in this segment )?(?:it|they) turned "
-        rf"back at least (never|once|twice|\d+ times) (?:along the [xy] axis|up and down), between "
-        rf"ways of {LENGTH} or more\)",
-        turned_to_and_fro,
+        rf"moved to and fro (along the x axis|along the y axis|up and down)(?: from {TIME} to "
+        rf"{TIME})?",
+        moved_to_and_fro,
     ),
     (
-        rf"turned by {DEGREES} in all \({DEGREES} or more count\) on a path of {LENGTH} \(at most "
-        rf"{LENGTH} count as turning: that angle times {LENGTH}, from a wrist to what it turns\)",
+        rf"turned by {DEGREES} in all \({DEGREES} or more count\) on a path of {LENGTH} \(up to "
+        rf"{LENGTH}, {LENGTH} times that angle, count as turning in the hand\)",
         turned_in_all,
     ),
     (
@@ -760,9 +789,14 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         lambda known, _, __, told: rest_lasts(known, _, told),
     ),
     (rf"up to {LENGTH} apart", apart_at_most),
-    (rf"such a lean reaches {DEGREES}", lambda _, __, told: told == "30"),
+    (rf"a lean of the {NAME} of {DEGREES} or more", leant_far),
     (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
-    (rf"was held by the {NAME} already \(since {TIME}\)", held_since),
+    (
+        rf"had been in contact with the {NAME} since {TIME}, before the {NAME} touched (?:it|them) "
+        rf"at {TIME}",
+        held_since,
+    ),
+    (rf"was in contact with the {NAME} from {TIME} on, as with the {NAME}", held_alike),
     (
         rf"leant {DEGREES} at the start and {DEGREES} at the end {POSTURE} \({DEGREES} at most; "
         rf"far over is {DEGREES} or more\)",
@@ -774,17 +808,18 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         rf"{DEGREES} \({DEGREES} or more count\)",
         leant_by,
     ),
+    (rf"leant over or was set upright by {DEGREES} \({DEGREES} or more count\)", leant_enough),
     (rf"turned by {DEGREES} about the vertical \({DEGREES} or more count\)", spun_enough),
-    (rf"stayed in place \(within {LENGTH} of its median place\)", kept_within),
+    (rf"stayed in place \(within {LENGTH} of its median place in the segment\)", kept_within),
     (
         rf"was at rest from {TIME} to {TIME}(?:, longer than the 0\.40 s of a rest)? \(it stayed "
-        rf"within {LENGTH} of its median place\)",
+        rf"within {LENGTH} of its median place meanwhile\)",
         lambda known, body, first, last, far: kept_within(known, body, far, first, last),
     ),
     (r"longer than the (\d\.\d\d) s of a rest", rests_longer),
     (rf"(?:had no rest of|at rest for) {TIME} or more", rest_lasts),
     (rf"touched the {NAME} at {TIME}", touched_at),
-    (rf"stayed within {LENGTH} of its median place", kept_within),
+    (rf"stayed within {LENGTH} of its median place in the segment", kept_within),
     (rf"less than the {LENGTH} from which on it counts as moved", counts_from),
     (rf"no longer when last tracked \({TIME}\)", earlier),
     (rf"throughout but for {TIME} to {TIME}", parted),
