@@ -796,7 +796,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         rf"at {TIME}",
         held_since,
     ),
-    (rf"was in contact with the {NAME} from {TIME} on, as with the {NAME}", held_alike),
+    (rf"was in contact with the {NAME} from {TIME} on, as with the {NAME}(?=[.,;])", held_alike),
     (
         rf"leant {DEGREES} at the start and {DEGREES} at the end {POSTURE} \({DEGREES} at most; "
         rf"far over is {DEGREES} or more\)",
