@@ -61,7 +61,8 @@ def summary(
     extra = briefs.also_reached(claims) + briefs.leaning(reason)
     extra += briefs.lost([*claims, *extra])
     told += "".join(f". {_sentence(claim.text)}" for claim in extra)
-    names = [name, *generals * kind, *beside, *(n for one in fresh for n in one.names)]
+    names = [name, *(generals if kind else ()), *beside]
+    names += [other for contrast in fresh for other in contrast.names]
     text = f"{told}." + touching(claims, briefs.clock)
     return Summary(text, (*claims, *extra), tuple(dict.fromkeys(names)))
 
