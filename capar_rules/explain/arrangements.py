@@ -136,11 +136,10 @@ def laid(clock: Clock, segment: str) -> str:
         return ""
     alone = ""
     if not met_at(clock, segment, "end"):
-        it = clock.it(clock.objects.get(segment, ""), object_=True)
-        alone = f", with no other recorded or assumed object in contact with {it}"
+        alone = ", in contact with no other recorded or assumed object"
     let_go = _let_go(clock, segment, held[1])
     later = held[1] - span[1] > in_frames(times().merge_ms, clock.rate_hz)
-    return f"{'did not move again before' if later else 'came down to where'} {let_go}{alone}"
+    return f"{'did not move from the end until' if later else 'came down to where'} {let_go}{alone}"
 
 
 def not_laid(clock: Clock, segment: str) -> str:

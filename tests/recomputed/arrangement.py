@@ -212,9 +212,9 @@ FORMS = (
         went_after,
     ),
     (
-        rf"the {NAME} (?:did not move again before|came down to where) the {NAME} (?:let go of it|"
+        rf"the {NAME} (?:did not move from the end until|came down to where) the {NAME} (?:let go of it|"
         rf"was last tracked at it,) at {TIME}(?: \(taken for letting go\))?"
-        r"(?:, with no other recorded or assumed object in contact with it)?",
+        r"(?:, in contact with no other recorded or assumed object)?",
         came_to_lie,
     ),
 )

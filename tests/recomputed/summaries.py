@@ -728,7 +728,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"{LENGTH} or more (up|down|to the side) count", counted),
     (
-        rf"(?:before|when|where) the {NAME} (?:let go of|was last tracked at) (?:it|them),? "
+        rf"(?:before|until|when|where) the {NAME} (?:let go of|was last tracked at) (?:it|them),? "
         rf"at {TIME}",
         lambda known, _, hand, at: held_until(known, known.segment.objects[0], hand, at),
     ),
