@@ -212,8 +212,8 @@ FORMS = (
         went_after,
     ),
     (
-        rf"the {NAME} (?:did not move from the end until|came down to where) the {NAME} (?:let go of "
-        rf"it|was last tracked at it,) at {TIME}(?: \(taken for letting go\))?"
+        rf"the {NAME} (?:did not move from the end until|came down to where) the {NAME} (?:let go "
+        rf"of it|was last tracked at it,) at {TIME}(?: \(taken for letting go\))?"
         r"(?:, in contact with no other recorded or assumed object)?",
         came_to_lie,
     ),
