@@ -100,7 +100,7 @@ def explain(
         return
     told = list(seen.explainer.explain_all(chosen))
     if svg:
-        _draw(told, svg)
+        _draw(told, seen, svg)
     if plot:
         _plot(told, seen, plot)
     _print(told, seen, json=json, tree=alone)
@@ -144,6 +144,7 @@ def _print_notices(
 
 def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bool) -> None:
     from capar.views.movers import mover_lines
+    from capar.views.reason_tree import reason_tree
 
     if json:
         print_json([_plain(each, seen) for each in told])
@@ -154,7 +155,7 @@ def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bo
         for line in mover_lines(seen.observation, each.ee, each.index, staying=_staying(each)):
             typer.echo(line)
         if tree:
-            _branch(each.reason.with_sentences(), 0)
+            _branch(reason_tree(each, seen.observation), 0)
 
 
 def _staying(told: "Explanation") -> set[str]:
@@ -168,8 +169,10 @@ def _staying(told: "Explanation") -> set[str]:
 
 
 def _branch(reason: "Reason", depth: int) -> None:
+    from capar.views.reason_tree import note
+
     frames = f"  [frames {reason.frames[0]} to {reason.frames[1]}]" if reason.frames else ""
-    rule = f"  ({reason.rule})" if reason.rule else ""
+    rule = f"  ({noted})" if (noted := note(reason)) else ""
     typer.echo(f"{'  ' * depth}- {reason.sentence}{frames}{rule}")
     for each in reason.because:
         _branch(each, depth + 1)
@@ -244,12 +247,12 @@ def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
     return placed
 
 
-def _draw(told: "list[Explanation]", path: Path) -> None:
+def _draw(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
     from capar.cli._output import written
     from capar.views.reasons import reasons_svg
 
     with written(path) as draft:
-        draft.write_text(reasons_svg(told), encoding="utf-8")
+        draft.write_text(reasons_svg(told, seen.observation), encoding="utf-8")
     typer.echo(f"drew {path}", err=True)
 
 

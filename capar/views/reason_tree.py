@@ -1,0 +1,57 @@
+"""The tree of reasons of an explanation as people read it, beside what else was observed."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from capar.model.observation import JointAction, Observation
+from capar.views.rows import who_acts
+from capar_rules.explain.explanation import Explanation, Reason
+
+JOINT, LOOKS, LOOK = "joins_in(", "looks(", "looking_at("
+"""How the atoms of joint actions, of when an object was looked at, and of measured looks begin."""
+
+ABOVE, ALSO_ABOVE = "see above", "see also above"
+"""What a line has in place of all, or of some, of the lines below it, which stand above."""
+
+
+def reason_tree(told: Explanation, seen: Observation) -> Reason:
+    """The sentences of an explanation, each where it is met first.
+
+    A segment is told to be part of the joint actions that were observed, and not once for each
+    other end-effector that takes part. When it was looked at is told by measured looks alone.
+    """
+    top = told.reason
+    below = [
+        cause
+        for cause in map(_by_looks, top.because)
+        if cause is not None and not cause.atom.startswith(JOINT)
+    ]
+    below += _joint(told, seen)
+    return replace(top, because=tuple(below)).with_sentences().without_repeats()
+
+
+def note(reason: Reason) -> str:
+    """The rule that a line rests on, and that others of its reasons stand above it."""
+    above = (ALSO_ABOVE if reason.because else ABOVE) if reason.repeated else ""
+    return "; ".join(filter(None, (reason.rule, above)))
+
+
+def _by_looks(reason: Reason) -> Reason | None:
+    """The same with nothing but looks below it, if it is about looks; None without any."""
+    if not reason.atom.startswith(LOOKS):
+        return reason
+    looks = tuple(cause for cause in reason.because if cause.atom.startswith(LOOK))
+    return replace(reason, because=looks) if looks else None
+
+
+def _joint(told: Explanation, seen: Observation) -> Iterator[Reason]:
+    """The joint actions that a segment is part of."""
+    for joint in seen.joint:
+        if (told.ee, told.index) in zip(joint.ees, joint.segments, strict=True):
+            yield Reason(_together(joint, seen), "", "", (joint.first, joint.last), False, ())
+
+
+def _together(joint: JointAction, seen: Observation) -> str:
+    """Who does it, what it is called, and from when to when all of them do it."""
+    who, span = who_acts(seen, joint), f"from {joint.start_s:.2f} s to {joint.end_s:.2f} s"
+    return f"it is part of one action of {who}: {joint.name}, {span}"
