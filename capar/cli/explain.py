@@ -111,20 +111,15 @@ def explain(
 def _notices(
     segments: "Sequence[Segment]", seen: "Explained", told: "Sequence[Explanation]" = ()
 ) -> "tuple[Notice, ...]":
-    """Reservations about the bodies of segments, and about what touches there by explanations."""
+    """Reservations about the bodies of segments, and about all that explanations speak of."""
     from capar.model.notices import KINDS
-    from capar.views.notices import reservations
-    from capar_rules.engine.syntax import split_arguments
+    from capar.views.notices import named_in, reservations
 
     about = {name for segment in segments for name in (segment.ee, *segment.objects)}
-    contacts = (
-        node.atom
-        for explanation in told
-        for node in explanation.reason.walk()
-        if node.atom.startswith("touching(")
-    )
-    others = {segment.ee for segment in seen.observation.segments}
-    about |= {body for atom in contacts for body in split_arguments(atom)[:2]} - others
+    known = {name for notice in seen.observation.notices for name in notice.bodies}
+    names = seen.explainer.measured.names
+    for explanation in told:
+        about |= named_in(_texts(explanation, seen), known, called=names)
     return tuple(
         notice
         for notice in reservations(seen.observation.notices, about=about)
@@ -132,13 +127,25 @@ def _notices(
     )
 
 
+def _texts(told: "Explanation", seen: "Explained") -> "list[str]":
+    """Everything that is printed of an explanation."""
+    from capar.views.movers import mover_lines
+    from capar.views.reason_tree import reason_tree
+
+    movers = mover_lines(seen.observation, told.ee, told.index, staying=_staying(told))
+    tree = reason_tree(told, seen.observation)
+    return [told.summary, *movers, *(node.sentence for node in tree.walk())]
+
+
 def _print_notices(
     segments: "Sequence[Segment]", seen: "Explained", told: "Sequence[Explanation]" = ()
 ) -> None:
     from capar.views.notices import reservation_lines
 
-    names = seen.explainer.measured.names
-    for line in reservation_lines(_notices(segments, seen, told), called=names):
+    measured = seen.explainer.measured
+    unshaped = {body for reach in measured.reaches.values() for body in reach.unshaped}
+    found = _notices(segments, seen, told)
+    for line in reservation_lines(found, called=measured.names, unshaped=unshaped):
         typer.echo(line)
 
 

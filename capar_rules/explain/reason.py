@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+
 @dataclass(frozen=True)
 class Reason:
     """One node of an explanation."""

@@ -19,19 +19,18 @@ class DerivationsTold(ToldArgument):
         return f"{another} segment of the {self.clock.called(self._hand)}"
 
     def _levels(self) -> str:
-        """From or until when, at the tick that this names, the path of the fourth argument is level.
+        """From or until when the path is level that begins, or ceases, to be so at this tick.
 
-        The path is level where it is less steep than 45 degrees.
+        It is level where it is less steep than 45 degrees.
         """
-        body, frame = self.beside[3], self.clock.frames[self.beside[0]][int(self.text)]
-        spans = self.clock.measured.level.get(body, ())
-        path = f"the path of the {self.clock.called(body)} led more to the side than up or down"
+        frame = self.clock.frames[self.beside[0]][int(self.text)]
+        spans = self.clock.measured.level.get(self.beside[3], ())
         for first, last in spans:
             if frame == first:
-                return f"from {self.clock.at(first)} on (until {self.clock.at(last)}) {path}"
+                return f"from {self.clock.at(first)} on (until {self.clock.at(last)})"
         begun = next((first for first, last in spans if last == frame), None)
         since = f" (from {self.clock.at(begun)} on)" if begun is not None else ""
-        return f"until {self.clock.at(frame)}{since} {path}"
+        return f"until {self.clock.at(frame)}{since}"
 
     def _turned_there(self) -> str:
         """How often the body turned back between the two frames that stand beside it."""

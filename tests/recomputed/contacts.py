@@ -148,9 +148,7 @@ FORMS = (
     (
         rf"the {NAME} moved at some time in the contact with the {NAME} that began at {TIME}, "
         rf"so the {NAME} is taken to have held it",
-        lambda known, thing, hand, at, holder: (
-            hand == holder and possessed(known, hand, thing, at)
-        ),
+        lambda known, thing, hand, at, holder: hand == holder and possessed(known, hand, thing, at),
     ),
     (
         rf"the contact of the {NAME} with the {NAME} ended at {TIME}(?:; the border "

@@ -92,13 +92,13 @@ def gone_at_once(known: Known, what: str) -> bool:
     return float(_apart(known, what, [soon], end)[0]) > 1.0 > float(before[0])
 
 
-def level_from(known: Known, at: str, other: str, what: str) -> bool:
+def level_from(known: Known, what: str, at: str, other: str) -> bool:
     """Its path becomes less steep than 45 degrees then, and steeper at the other time."""
     begins = _levelled(known, what, known.frame(at), begins=True)
     return begins and known.at(at) < known.at(other)
 
 
-def level_until(known: Known, at: str, other: str, what: str) -> bool:
+def level_until(known: Known, what: str, at: str, other: str) -> bool:
     """Its path becomes steeper than 45 degrees then."""
     ends = _levelled(known, what, known.frame(at), begins=False)
     return ends and (not other or known.at(other) < known.at(at))
@@ -299,9 +299,7 @@ def swing_border(known: Known, what: str, sense: str, at: str) -> bool:
     )
 
 
-def swung_on(
-    known: Known, what: str, first: str, last: str, before_s: str, within_s: str
-) -> bool:
+def swung_on(known: Known, what: str, first: str, last: str, before_s: str, within_s: str) -> bool:
     """It is so moved then, from before the segment's start, and not only the rest of it is left."""
     start, end = known.segment.first, known.segment.last
     begin, ended = known.at(first), known.at(last)
@@ -404,13 +402,13 @@ FORMS = (
     (rf"the {NAME} (began|ceased) to be moved to and fro at {TIME}", swing_border),
     (rf"the {NAME} was gone at once", gone_at_once),
     (
-        rf"from {TIME} on \(until {TIME}\) the path of the {NAME} led more to the side than up or "
-        "down",
+        rf"the path of the {NAME} led more to the side than up or down from {TIME} on "
+        rf"\(until {TIME}\)",
         level_from,
     ),
     (
-        rf"until {TIME}(?: \(from {TIME} on\))? the path of the {NAME} led more to the side than up "
-        "or down",
+        rf"the path of the {NAME} led more to the side than up or down until {TIME}"
+        rf"(?: \(from {TIME} on\))?",
         level_until,
     ),
     (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),

@@ -378,7 +378,10 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (r"nothing that fits is more specific than (\w+)", overruled_by_none),
     (r"it would be (\w+) but for this", kept_from),
     (rf"the segment is about the {NAME}", listed),
-    (rf"(?:the segment before this one|an?(?:other)? segment of the [\w ]+) is about the {NAME}", listed),
+    (
+        rf"(?:the segment before this one|an?(?:other)? segment of the [\w ]+) is about the {NAME}",
+        listed,
+    ),
     (rf"the {NAME} is the other object of the segment", subordinate),
     (r"both segments (begin|end) with the same change of the object", changes_alike),
     (r"it agrees with no known primitive from level (\d) of the decision tree on", parted),
