@@ -3,12 +3,17 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from capar.model.body_names import body_names
 from capar.model.observation import JointAction, Observation
-from capar.views.rows import who_acts
+from capar.views.movers import joined
+from capar.views.rows import MOST_NAMED, spoken
 from capar_rules.explain.explanation import Explanation, Reason
 
 JOINT, LOOKS, LOOK = "joins_in(", "looks(", "looking_at("
 """How the atoms of joint actions, of when an object was looked at, and of measured looks begin."""
+
+FIRST_NAMED = 2
+"""So many are named of more than ``MOST_NAMED`` who act together [1]."""
 
 ABOVE, ALSO_ABOVE = "see above", "see also above"
 """What a line has in place of all, or of some, of the lines below it, which stand above."""
@@ -53,5 +58,15 @@ def _joint(told: Explanation, seen: Observation) -> Iterator[Reason]:
 
 def _together(joint: JointAction, seen: Observation) -> str:
     """Who does it, what it is called, and from when to when all of them do it."""
-    who, span = who_acts(seen, joint), f"from {joint.start_s:.2f} s to {joint.end_s:.2f} s"
-    return f"it is part of one action of {who}: {joint.name}, {span}"
+    span = f"from {joint.start_s:.2f} s to {joint.end_s:.2f} s"
+    return f"it is part of one action of {_who(joint, seen)}: {joint.name}, {span}"
+
+
+def _who(joint: JointAction, seen: Observation) -> str:
+    """Who takes part, as the other sentences call them; of many the first two are named."""
+    both, called = seen.who(joint), body_names(seen)
+    if both.startswith("both "):
+        return both
+    names = [f"the {called.get(ee, spoken(ee))}" for ee in joint.who]
+    left = len(names) - FIRST_NAMED
+    return joined([*names[:FIRST_NAMED], f"{left} more"] if len(names) > MOST_NAMED else names)

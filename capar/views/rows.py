@@ -180,11 +180,11 @@ def _joint_rows(observation: Observation, clock: Callable[[int], float]) -> list
             Span(clock(each.first), clock(each.last), each.name, kinds.get(each.name, each.name))
             for each in joint
         )
-        rows.append(Row(Kind.SEGMENTS, who_acts(observation, joint[0]), spans))
+        rows.append(Row(Kind.SEGMENTS, _who(observation, joint[0]), spans))
     return rows
 
 
-def who_acts(observation: Observation, joint: JointAction) -> str:
+def _who(observation: Observation, joint: JointAction) -> str:
     """Who takes part, in few words: of many the first two are named."""
     if len(joint.who) <= MOST_NAMED:
         return observation.who(joint)
