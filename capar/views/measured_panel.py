@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from capar.views.lettering import Span, width_in
+from capar.views.lettering import POINTS_PER_INCH, Span, width_in
 from capar.views.painter import CONTACT, FAINT, INK, QUIET, SPEED
 from capar.views.panels import Mark, Panel
 
@@ -25,6 +25,9 @@ BAR_SHARE = 0.07
 CAPTION_PT, LIMIT_PT, MARK_PT = 9.0, 7.5, 8.5
 """Sizes of the letters of captions, of the names of limits, and of numbers [points]."""
 
+BESIDE_PT = 5.0
+"""How far the number of a mark is beside it [points]."""
+
 LIMIT_LETTERS = 23
 """So many letters of a limit's name stand in one line beside the panel."""
 
@@ -32,6 +35,10 @@ LIMIT_LINE = 0.135
 """How high such a line is, as a share of the panel [1]."""
 
 _BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:mm|cm|m|s)\b|%)")
+
+
+Box = tuple[float, float, float, float]
+"""Left, right, bottom and top [inches]."""
 
 
 def draw_panel(axes: "Axes", panel: Panel, chosen: Span, span_s: tuple[float, float]) -> None:
@@ -65,9 +72,11 @@ def draw_panel(axes: "Axes", panel: Panel, chosen: Span, span_s: tuple[float, fl
     for limit in panel.limits:
         axes.axhline(limit.value, color=LIMIT, linewidth=0.9, linestyle=(0, (4, 2)), zorder=2.5)
     _limits(axes, panel, low, high)
-    for mark in panel.marks:
+    axes.set_xlim(*span_s)
+    marks = sorted(dict.fromkeys(panel.marks), key=lambda mark: (mark.time, mark.value))
+    for mark, (left, upper) in zip(marks, _sides(axes, marks), strict=True):
         axes.plot([mark.time], [mark.value], "o", color=MARK, markersize=5, zorder=4, clip_on=False)
-        _mark(axes, mark, panel.marks, span_s, (low, high))
+        _mark(axes, mark, left=left, upper=upper)
     _bars(axes, panel, low, high)
 
 
@@ -148,53 +157,74 @@ def _spread(at: Sequence[float], texts: Sequence[Sequence[str]]) -> list[float]:
     return [height - min(over, 0.5) for height in out]
 
 
-def _mark(
-    axes: "Axes",
-    mark: Mark,
-    marks: Sequence[Mark],
-    span_s: tuple[float, float],
-    range_: tuple[float, float],
-) -> None:
-    """The number of a mark beside it; below the mark where another one is above."""
-    low, high = range_
-    beside = [other.value for other in marks if other.time == mark.time]
-    below = len(beside) > 1 and mark.value == min(beside) and mark.value < max(beside)
-    right = _stands_left(axes, mark, marks, span_s, range_)
-    upper = mark.value < low + 0.75 * (high - low) and not below
+def _mark(axes: "Axes", mark: Mark, *, left: bool, upper: bool) -> None:
+    """The number of a mark, left or right of it, above or below."""
     axes.annotate(
         mark.label,
         (mark.time, mark.value),
-        xytext=(-5 if right else 5, 3 if upper else -3),
+        xytext=(-BESIDE_PT if left else BESIDE_PT, 3 if upper else -3),
         textcoords="offset points",
         fontsize=MARK_PT,
         weight="bold",
         color=MARK,
-        ha="right" if right else "left",
+        ha="right" if left else "left",
         va="bottom" if upper else "top",
         path_effects=_halo(),
         zorder=6,
     )
 
 
-def _stands_left(
-    axes: "Axes",
-    mark: Mark,
-    marks: Sequence[Mark],
-    span_s: tuple[float, float],
-    range_: tuple[float, float],
-) -> bool:
-    """Whether the number of a mark stands left of it: right of it is the end, or another mark."""
-    figure = axes.get_figure()
-    wide_in = axes.get_position().width * (figure.get_figwidth() if figure else 1.0)
-    scale = (span_s[1] - span_s[0]) / wide_in
-    letters = scale * (width_in(mark.label, points=MARK_PT) * 1.15 + 0.12)
-    room = {True: mark.time - span_s[0], False: span_s[1] - mark.time}
-    for other in marks:
-        level = abs(other.value - mark.value) < 0.3 * (range_[1] - range_[0])
-        if other.time != mark.time and level:
-            side = other.time < mark.time
-            room[side] = min(room[side], abs(other.time - mark.time))
-    return room[False] < letters and room[True] > room[False]
+def _sides(axes: "Axes", marks: Sequence[Mark]) -> list[tuple[bool, bool]]:
+    """For each mark whether its number stands left of it, and whether above it.
+
+    A number stands at the right, where it is on no other number and no other mark, and inside the
+    panel; at the other sides where that is better.
+    """
+    dots = [_inches(axes, mark) for mark in marks]
+    size = axes.bbox.width / axes.figure.dpi, axes.bbox.height / axes.figure.dpi
+    taken: list[Box] = []
+    out: list[tuple[bool, bool]] = []
+    for mark, dot in zip(marks, dots, strict=True):
+        above = dot[1] < 0.75 * size[1]
+        boxes = {
+            (left, upper): _box(mark, dot, left=left, upper=upper)
+            for upper in (above, not above)
+            for left in (False, True)
+        }
+        others = [*taken, *((x, x, y, y) for x, y in dots if (x, y) != dot)]
+        faults = {side: _faults(box, others, size) for side, box in boxes.items()}
+        best = min(faults, key=lambda side: faults[side])
+        taken.append(boxes[best])
+        out.append(best)
+    return out
+
+
+def _faults(box: Box, others: Sequence[Box], size: tuple[float, float]) -> int:
+    """How many others a number would stand on; that it leaves the panel at a side is worse."""
+    aside = box[0] < 0.0 or box[1] > size[0]
+    return (
+        sum(_meet(box, other) for other in others) + 9 * aside + (box[2] < 0.0 or box[3] > size[1])
+    )
+
+
+def _inches(axes: "Axes", mark: Mark) -> tuple[float, float]:
+    """Where a mark stands, from the lower left corner of the panel [inches]."""
+    x, y = axes.transData.transform((mark.time, mark.value))
+    return (x - axes.bbox.x0) / axes.figure.dpi, (y - axes.bbox.y0) / axes.figure.dpi
+
+
+def _box(mark: Mark, dot: tuple[float, float], *, left: bool, upper: bool) -> Box:
+    """What the number of a mark covers there [inches]."""
+    beside = BESIDE_PT / POINTS_PER_INCH
+    wide = 1.2 * width_in(mark.label, points=MARK_PT)
+    tall = 1.2 * MARK_PT / POINTS_PER_INCH
+    x = dot[0] - beside - wide if left else dot[0] + beside
+    y = dot[1] + 0.04 if upper else dot[1] - 0.04 - tall
+    return x, x + wide, y, y + tall
+
+
+def _meet(one: Box, other: Box) -> bool:
+    return one[0] <= other[1] and other[0] <= one[1] and one[2] <= other[3] and other[2] <= one[3]
 
 
 def _halo() -> "list[AbstractPathEffect]":

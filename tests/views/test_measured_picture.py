@@ -72,10 +72,24 @@ def test_names_of_limits_stand_on_nothing_else(limits: tuple[float, ...]) -> Non
         assert not any(axes.get_window_extent().overlaps(box) for _, box in named)
 
 
-def test_numbers_beside_each_other_stand_apart() -> None:
-    figure = drawn(panel(marks=((3.0, 15.0), (3.1, 15.5))))
-    (_, one), (_, other) = letters(figure, MARK)
-    assert not one.overlaps(other)
+@pytest.mark.parametrize(
+    "marks",
+    [
+        ((3.0, 15.0), (3.1, 15.5)),
+        ((3.0, 24.0), (3.0, 20.0)),
+        ((3.1, 12.0), (3.1, 15.5), (3.2, 16.0)),
+        ((4.9, 24.5), (4.95, 24.7)),
+    ],
+)
+def test_numbers_beside_each_other_stand_apart(marks: tuple[tuple[float, float], ...]) -> None:
+    numbers = letters(drawn(panel(marks=marks)), MARK)
+    assert len(numbers) == len(marks)
+    for (_, one), (_, other) in combinations(numbers, 2):
+        assert not one.overlaps(other)
+
+
+def test_a_number_that_is_told_twice_at_one_place_is_written_once() -> None:
+    assert len(letters(drawn(panel(marks=((3.0, 15.0), (3.0, 15.0)))), MARK)) == 1
 
 
 def test_nothing_is_cut_off_at_the_edges() -> None:
