@@ -200,11 +200,13 @@ def _sides(axes: "Axes", marks: Sequence[Mark]) -> list[tuple[bool, bool]]:
 
 
 def _faults(box: Box, others: Sequence[Box], size: tuple[float, float]) -> int:
-    """How many others a number would stand on; that it leaves the panel at a side is worse."""
+    """How many others a number would stand on, twice, and once that it goes over the top.
+
+    It is never to go over the edge at a side.
+    """
     aside = box[0] < 0.0 or box[1] > size[0]
-    return (
-        sum(_meet(box, other) for other in others) + 9 * aside + (box[2] < 0.0 or box[3] > size[1])
-    )
+    beyond = box[2] < 0.0 or box[3] > size[1]
+    return 2 * sum(_meet(box, other) for other in others) + 99 * aside + beyond
 
 
 def _inches(axes: "Axes", mark: Mark) -> tuple[float, float]:
