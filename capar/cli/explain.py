@@ -128,13 +128,13 @@ def _notices(
 
 
 def _texts(told: "Explanation", seen: "Explained") -> "list[str]":
-    """Everything that is printed of an explanation."""
+    """What an explanation says of the bodies on which it rests."""
     from capar.views.movers import mover_lines
-    from capar.views.reason_tree import reason_tree
+    from capar.views.reason_tree import reason_tree, spoken_texts
 
     movers = mover_lines(seen.observation, told.ee, told.index, staying=_staying(told))
     tree = reason_tree(told, seen.observation)
-    return [told.summary, *movers, *(node.sentence for node in tree.walk())]
+    return [told.summary, *movers, *spoken_texts(tree)]
 
 
 def _print_notices(

@@ -1,5 +1,6 @@
 """The tree of reasons of an explanation as people read it, beside what else was observed."""
 
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -14,6 +15,9 @@ JOINT, LOOKS, LOOK = "joins_in(", "looks(", "looking_at("
 
 FIRST_NAMED = 2
 """So many are named of more than ``MOST_NAMED`` who act together [1]."""
+
+MOST_JOINT = 2
+"""So many joint actions of one name are told one by one [1]."""
 
 ABOVE, ALSO_ABOVE = "see above", "see also above"
 """What a line has in place of all, or of some, of the lines below it, which stand above."""
@@ -49,17 +53,35 @@ def _by_looks(reason: Reason) -> Reason | None:
     return replace(reason, because=looks) if looks else None
 
 
+def spoken_texts(tree: Reason) -> Iterator[str]:
+    """The sentences of a tree on which a name rests: not who looked, nor who else acts as well."""
+    for node in tree.walk():
+        if node.atom and not node.atom.startswith(LOOK):
+            yield node.sentence
+
+
 def _joint(told: Explanation, seen: Observation) -> Iterator[Reason]:
-    """The joint actions that a segment is part of."""
+    """The joint actions that a segment is part of; of many of one name the longest."""
+    named: dict[str, list[JointAction]] = defaultdict(list)
     for joint in seen.joint:
         if (told.ee, told.index) in zip(joint.ees, joint.segments, strict=True):
-            yield Reason(_together(joint, seen), "", "", (joint.first, joint.last), False, ())
+            named[joint.name].append(joint)
+    for group in named.values():
+        if len(group) <= MOST_JOINT:
+            for joint in group:
+                yield _told(f"it is part of one action of {_who(joint, seen)}: {joint.name}", joint)
+            continue
+        longest = max(group, key=lambda joint: joint.last - joint.first)
+        counts = sorted({len(joint.who) for joint in group})
+        of = f"{counts[0]} to {counts[-1]}" if len(counts) > 1 else f"{counts[0]}"
+        many = f"it is part of {len(group)} actions of {of} end-effectors each"
+        yield _told(f"{many}; the longest, of {_who(longest, seen)}: {longest.name}", longest)
 
 
-def _together(joint: JointAction, seen: Observation) -> str:
-    """Who does it, what it is called, and from when to when all of them do it."""
+def _told(sentence: str, joint: JointAction) -> Reason:
+    """What is said of a joint action, and from when to when all who take part do it."""
     span = f"from {joint.start_s:.2f} s to {joint.end_s:.2f} s"
-    return f"it is part of one action of {_who(joint, seen)}: {joint.name}, {span}"
+    return Reason(f"{sentence}, {span}", "", "", (joint.first, joint.last), False, ())
 
 
 def _who(joint: JointAction, seen: Observation) -> str:

@@ -3,19 +3,22 @@
 import re
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 from recomputed import STORIES, told
 from recomputed.known import TIME
 
-from capar.model.observation import Observation
-from capar.views.reason_tree import ABOVE, ALSO_ABOVE, note, reason_tree
+from capar.model.observation import JointAction, Observation
+from capar.views.reason_tree import ABOVE, ALSO_ABOVE, note, reason_tree, spoken_texts
 from capar.views.reasons import reasons_svg
 from capar_rules.explain.explanation import Explanation, Reason
 
 pytestmark = pytest.mark.long
 
 JOINT = re.compile(rf"it is part of one action of (.+): (\w+), from {TIME} to {TIME}")
+
+LOOK = re.compile(rf"the [\w ]+ looked at the [\w ]+ from {TIME} to {TIME}")
 
 
 def trees(name: str) -> Iterator[tuple[Observation, Explanation, Reason]]:
@@ -91,6 +94,45 @@ def test_some_story_has_joint_actions_and_looks_before_a_segment() -> None:
     }
     assert any(JOINT.fullmatch(sentence) for sentence in sentences)
     assert any("in the segment before this one" in sentence for sentence in sentences)
+
+
+def test_of_many_joint_actions_of_one_name_the_longest_is_told() -> None:
+    story = told("carry")
+    observation, explanation = story.seen.observation, story.explanations[1]
+    joint = tuple(
+        JointAction(
+            "Lift",
+            ("mug",),
+            tuple(sorted((explanation.ee, *"abcde"[:count]))),
+            (explanation.index,) * (count + 1),
+            10,
+            10 + 10 * count,
+            0.1,
+            0.1 + 0.1 * count,
+        )
+        for count in (2, 5, 3)
+    )
+    tree = reason_tree(explanation, replace(observation, joint=joint))
+    sentences = [node.sentence for node in tree.because if "it is part of" in node.sentence]
+    assert sentences == [
+        "it is part of 3 actions of 3 to 6 end-effectors each; the longest, of the a, the b and 4 "
+        "more: Lift, from 0.10 s to 0.60 s"
+    ]
+    pair = reason_tree(explanation, replace(observation, joint=joint[:2]))
+    sentences = [node.sentence for node in pair.because if "it is part of" in node.sentence]
+    assert sentences[0] == (
+        "it is part of one action of the a, the b and the right hand: Lift, from 0.10 s to 0.30 s"
+    )
+    assert len(sentences) == 2
+
+
+def test_reservations_are_not_of_who_looked_or_acts_as_well() -> None:
+    for name in STORIES:
+        for *_, tree in trees(name):
+            spoken = list(spoken_texts(tree))
+            assert not any(JOINT.fullmatch(sentence) for sentence in spoken)
+            assert not any(LOOK.fullmatch(sentence) for sentence in spoken)
+            assert tree.sentence in spoken
 
 
 def test_the_drawn_tree_has_the_same_lines() -> None:
