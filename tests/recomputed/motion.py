@@ -395,8 +395,8 @@ def flew_on(known: Known) -> bool:
 
 FORMS = (
     (
-        rf"the {NAME} ended 5 cm or more from where it began, or its path was 10 cm or more: a "
-        "grip alone shifts a thing less",
+        rf"the {NAME} ended 5 cm or more from where it began, or went along a path of 10 cm or "
+        "more: a grip alone shifts a thing less",
         went_further,
     ),
     (rf"the {NAME} (began|ceased) to be moved to and fro at {TIME}", swing_border),
