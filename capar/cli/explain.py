@@ -100,7 +100,7 @@ def explain(
         return
     told = list(seen.explainer.explain_all(chosen))
     if svg:
-        _draw(told, svg)
+        _draw(told, seen, svg)
     if plot:
         _plot(told, seen, plot)
     _print(told, seen, json=json, tree=alone)
@@ -111,20 +111,15 @@ def explain(
 def _notices(
     segments: "Sequence[Segment]", seen: "Explained", told: "Sequence[Explanation]" = ()
 ) -> "tuple[Notice, ...]":
-    """Reservations about the bodies of segments, and about what touches there by explanations."""
+    """Reservations about the bodies of segments, and about all that explanations speak of."""
     from capar.model.notices import KINDS
-    from capar.views.notices import reservations
-    from capar_rules.engine.syntax import split_arguments
+    from capar.views.notices import named_in, reservations
 
     about = {name for segment in segments for name in (segment.ee, *segment.objects)}
-    contacts = (
-        node.atom
-        for explanation in told
-        for node in explanation.reason.walk()
-        if node.atom.startswith("touching(")
-    )
-    others = {segment.ee for segment in seen.observation.segments}
-    about |= {body for atom in contacts for body in split_arguments(atom)[:2]} - others
+    known = {name for notice in seen.observation.notices for name in notice.bodies}
+    names = seen.explainer.measured.names
+    for explanation in told:
+        about |= named_in(_texts(explanation, seen), known, called=names)
     return tuple(
         notice
         for notice in reservations(seen.observation.notices, about=about)
@@ -132,18 +127,31 @@ def _notices(
     )
 
 
+def _texts(told: "Explanation", seen: "Explained") -> "list[str]":
+    """What an explanation says of the bodies on which it rests."""
+    from capar.views.movers import mover_lines
+    from capar.views.reason_tree import reason_tree, spoken_texts
+
+    movers = mover_lines(seen.observation, told.ee, told.index, staying=_staying(told))
+    tree = reason_tree(told, seen.observation)
+    return [told.summary, *movers, *spoken_texts(tree)]
+
+
 def _print_notices(
     segments: "Sequence[Segment]", seen: "Explained", told: "Sequence[Explanation]" = ()
 ) -> None:
     from capar.views.notices import reservation_lines
 
-    names = seen.explainer.measured.names
-    for line in reservation_lines(_notices(segments, seen, told), called=names):
+    measured = seen.explainer.measured
+    unshaped = {body for reach in measured.reaches.values() for body in reach.unshaped}
+    found = _notices(segments, seen, told)
+    for line in reservation_lines(found, called=measured.names, unshaped=unshaped):
         typer.echo(line)
 
 
 def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bool) -> None:
     from capar.views.movers import mover_lines
+    from capar.views.reason_tree import reason_tree
 
     if json:
         print_json([_plain(each, seen) for each in told])
@@ -156,7 +164,7 @@ def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bo
         if tree:
             for name, definition in _definitions(each, seen).items():
                 typer.echo(f"{name}: {definition}")
-            _branch(each.reason.with_sentences(), 0)
+            _branch(reason_tree(each, seen.observation), 0)
 
 
 def _definitions(told: "Explanation", seen: "Explained") -> dict[str, str]:
@@ -175,8 +183,10 @@ def _staying(told: "Explanation") -> set[str]:
 
 
 def _branch(reason: "Reason", depth: int) -> None:
+    from capar.views.reason_tree import note
+
     frames = f"  [frames {reason.frames[0]} to {reason.frames[1]}]" if reason.frames else ""
-    rule = f"  ({reason.rule})" if reason.rule else ""
+    rule = f"  ({noted})" if (noted := note(reason)) else ""
     typer.echo(f"{'  ' * depth}- {reason.sentence}{frames}{rule}")
     for each in reason.because:
         _branch(each, depth + 1)
@@ -252,12 +262,12 @@ def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
     return placed
 
 
-def _draw(told: "list[Explanation]", path: Path) -> None:
+def _draw(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
     from capar.cli._output import written
     from capar.views.reasons import reasons_svg
 
     with written(path) as draft:
-        draft.write_text(reasons_svg(told), encoding="utf-8")
+        draft.write_text(reasons_svg(told, seen.observation), encoding="utf-8")
     typer.echo(f"drew {path}", err=True)
 
 

@@ -30,7 +30,7 @@ LABELS: Mapping[str, str] = {
 }
 """By the predicate of a fact: what a row of its stretches is called."""
 
-NOTHING = "{0}: at no time shown in contact with any recorded or assumed object"
+NOTHING = "{0}: in contact with no recorded or assumed object in the time shown"
 """The row of a body that touches nothing."""
 
 FEWEST = 4
@@ -81,7 +81,8 @@ def _rows(known: Recording, wanted: Stretches) -> Iterator[Row]:
     if not found:
         named = [known.called(body) for body in wanted.bodies if body != ANY]
         none = NOTHING if ANY in wanted.bodies else LABELS.get(wanted.predicate, "")
-        yield Row(none.format(*named) if none else " ".join(named), ())
+        label = none.format(*named) if none else " ".join(named)
+        yield Row(label if none == NOTHING else f"{label} (not in the time shown)", ())
 
 
 def _matches(fact: Fact, bodies: Sequence[str]) -> bool:

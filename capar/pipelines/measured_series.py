@@ -26,7 +26,7 @@ from capar_rules.explain.quantities import LEAST_M, degrees, length, spread, upw
 from capar_rules.explain.quantities import change as change_of
 from extractors.calibration import thresholds_of
 from extractors.motion.leaning import lean, spin_steps
-from extractors.motion.object_motion import pace_at_rest, paces
+from extractors.motion.object_motion import motion_floor, pace_at_rest, paces
 from extractors.motion.turning_points import most_turns
 from extractors.relations.places import turned_and_gone
 from extractors.signals.clock import frame_rate
@@ -258,7 +258,9 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     limits = thresholds_of(known.seen.measurements.calibration)
     rate = frame_rate(poses.smooth.times)
     slow = MILLI * pace_at_rest(poses.noise, rate, limits)[0]
-    since, least = "", constants()["rest_ms"] / 1000.0
+    floor = motion_floor(poses.noise, rate, own_m=None, thresholds=limits).position_m
+    least = f"{constants()['rest_ms'] / MILLI:.2f} s or more"
+    held, since = f"slow, and within {length(floor)} of its place of rest", ""
     if forms & SINCE_BEGIN:
         known = replace(known, span=(0, known.span[1]))
         since = " since the recording began"
@@ -266,12 +268,13 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         f"{known.called(name)}: speed{since}",
         "mm/s",
         (known.curve(MILLI * paces(poses.smooth, rate, limits)[0]),),
-        (Limit(slow, f"a rest begins below {slow:.0f} mm/s"),),
+        (Limit(slow, f"slow: below {slow:.0f} mm/s"),),
         bars=_free_rests(known, name) if since else known.bars(Resting, ee=name),
-        bars_label=f"at rest for {least:.2f} s or more, touching nothing"
+        bars_label=f"counts as at rest for {least}, touching nothing: {held}"
         if since
-        else f"counts as at rest: slow, then at that place; a rest lasts {least:.2f} s or more",
+        else f"counts as at rest: {held}; a rest lasts {least}",
         highest=FAST * slow,
+        beyond="what is faster",
         lost=known.lost(name),
         span_s=(known.at(known.span[0]), known.at(known.span[1])) if since else None,
     )

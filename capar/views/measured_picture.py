@@ -6,39 +6,32 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from capar.views.lettering import Span, shortened, width_in
-from capar.views.painter import CONTACT, FAINT, INK, QUIET, SPEED, UNNAMED, colour_of
-from capar.views.panels import Mark, Panel, Row
+from capar.views.measured_panel import SHADE, caption_lines, draw_caption, draw_panel, together
+from capar.views.painter import CONTACT, FAINT, INK, QUIET, UNNAMED, colour_of
+from capar.views.panels import Panel, Row
 from capar.views.picture import save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.patheffects import AbstractPathEffect
 
 WIDTH_IN = 10.0
-LEFT_IN, RIGHT_IN, EDGE_IN = 0.75, 0.3, 0.25
-PANEL_IN, CAPTION_IN, STRIP_IN = 0.95, 0.34, 0.3
-"""Heights of a panel, of the caption above it, and of the strip of segments [inches]."""
+LEFT_IN, RIGHT_IN, EDGE_IN = 0.75, 1.65, 0.25
+"""Rooms left of panels, right of them, where limits are named, and at the edges [inches]."""
 
-CAPTION_WIDE_IN = WIDTH_IN - LEFT_IN - RIGHT_IN
-"""How wide a caption in letters of the usual size may be [inches]; longer ones get smaller."""
+PANEL_IN, CAPTION_IN, STRIP_IN = 0.95, 0.34, 0.3
+"""Heights of a panel, of a line of caption with its room, and of the strip of segments [inches]."""
+
+CAPTION_WIDE_IN = WIDTH_IN - LEFT_IN - EDGE_IN
+"""How wide a line of a caption may be [inches]."""
 
 FOOT_IN = 0.55
-ROW_IN, GAP_IN, TICKS_IN = 0.3, 0.15, 0.2
+ROW_IN, GAP_IN, TICKS_IN = 0.3, 0.15, 0.25
 """Heights of a row of bars, of the room before it, and of times below a panel [inches]."""
 
 LINE_IN = 0.19
 """Height of a line of the summary [inches]."""
-
-SHADE = "#FFF3C4"
-LIMIT, MARK = "#AA3377", "#CC3311"
-"""Colours of limits and of numbers, which people who are colour-blind can tell apart (P. Tol)."""
-
-BAR_SHARE = 0.07
-"""How high a bar is at the foot of a panel, as a share of it [1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,11 +70,18 @@ def _figure(picture: MeasuredPicture) -> "Figure":
     lines = [
         line
         for part in picture.text.splitlines()
-        for line in wrap(part, int((WIDTH_IN - 0.5) / letter))
+        for line in wrap(together(part), int((WIDTH_IN - 0.5) / letter))
     ]
     head = 0.55 + LINE_IN * len(lines) + 0.1
+    captions = {
+        id(panel): caption_lines(
+            panel, picture.chosen, panel.span_s or picture.span_s, CAPTION_WIDE_IN
+        )
+        for panel in picture.panels
+    }
+    tall = {key: CAPTION_IN + LINE_IN * (len(lines) - 1) for key, lines in captions.items()}
     apart = sum(panel.span_s is not None for panel in picture.panels)
-    height = head + STRIP_IN + len(picture.panels) * (CAPTION_IN + PANEL_IN) + FOOT_IN
+    height = head + STRIP_IN + sum(tall.values()) + len(picture.panels) * PANEL_IN + FOOT_IN
     height += apart * TICKS_IN + ROW_IN * len(picture.rows) + GAP_IN * bool(picture.rows)
     figure = Figure(figsize=(WIDTH_IN, height), facecolor="white")
     figure.text(
@@ -103,9 +103,10 @@ def _figure(picture: MeasuredPicture) -> "Figure":
         if panel.span_s is None and not stripped:
             top, stripped = _with_strip(figure, top, picture), True
         own = panel.span_s or span_s
-        last = _axes(figure, top + CAPTION_IN, PANEL_IN, own)
-        _panel(last, panel, chosen, own)
-        top += CAPTION_IN + PANEL_IN
+        last = _axes(figure, top + tall[id(panel)], PANEL_IN, own)
+        draw_panel(last, panel, chosen, own)
+        draw_caption(last, captions[id(panel)])
+        top += tall[id(panel)] + PANEL_IN
         if panel.span_s is None:
             last.tick_params(axis="x", labelbottom=False)
         else:
@@ -114,8 +115,7 @@ def _figure(picture: MeasuredPicture) -> "Figure":
         top = _with_strip(figure, top, picture)
     if picture.rows:
         top += GAP_IN
-        tall = ROW_IN * len(picture.rows)
-        last = _axes(figure, top, tall, span_s)
+        last = _axes(figure, top, ROW_IN * len(picture.rows), span_s)
         _rows(last, picture.rows, chosen)
     if last is not None:
         last.tick_params(axis="x", labelbottom=True)
@@ -153,6 +153,9 @@ def _strip(
     axes.set_ylim(0.0, 1.0)
     axes.axis("off")
     scale = (WIDTH_IN - LEFT_IN - RIGHT_IN) / (span_s[1] - span_s[0])
+    middle = (chosen.start_s + chosen.end_s) / 2.0
+    half = 0.5 * width_in(chosen.label, points=10.0) / scale + 0.06 / scale
+    lettered = min(chosen.start_s, middle - half), max(chosen.end_s, middle + half)
     for segment in segments:
         start, end = max(segment.start_s, span_s[0]), min(segment.end_s, span_s[1])
         if start >= end:
@@ -165,12 +168,15 @@ def _strip(
                 (start, 0.0), end - start, 1.0, **look, linewidth=0.8, alpha=1.0 if own else 0.45
             )
         )
+        if not own:  # the name of the chosen one may reach over its neighbours
+            end = min(end, lettered[0]) if start < chosen.start_s else end
+            start = max(start, lettered[1]) if start >= chosen.start_s else start
         label = shortened(
             segment.label, points=9.0, widest_in=max((end - start) * scale - 0.06, 0.0)
         )
         if len(label) > 2 or own:
             axes.text(
-                (start + end) / 2.0,
+                middle if own else (start + end) / 2.0,
                 0.5,
                 segment.label if own else label,
                 fontsize=9.0,
@@ -178,46 +184,8 @@ def _strip(
                 weight="bold" if own else "normal",
                 ha="center",
                 va="center",
+                zorder=3 if own else 2,
             )
-
-
-def _panel(axes: "Axes", panel: Panel, chosen: Span, span_s: tuple[float, float]) -> None:
-    low, high = panel.range(chosen.start_s, chosen.end_s)
-    if panel.bars:
-        low -= 2.0 * BAR_SHARE * (high - low)
-    axes.set_ylim(low, high)
-    axes.axvspan(chosen.start_s, chosen.end_s, color=SHADE, zorder=0)
-    for gap in panel.lost:
-        axes.axvspan(
-            gap.start_s, gap.end_s, facecolor="none", edgecolor=QUIET, hatch="////", alpha=0.5
-        )
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
-    for side in ("left", "bottom"):
-        axes.spines[side].set_color(QUIET)
-    axes.tick_params(colors=QUIET, labelsize=8, length=3)
-    axes.locator_params(axis="y", nbins=4)
-    axes.grid(color=FAINT, linewidth=0.5)
-    axes.set_axisbelow(True)
-    for number, curve in enumerate(panel.curves):
-        axes.plot(
-            curve.times,
-            curve.values,
-            color=SPEED,
-            linewidth=1.2,
-            linestyle="--" if number else "-",
-            zorder=3,
-        )
-    for limit in panel.limits:
-        axes.axhline(limit.value, color=LIMIT, linewidth=0.9, linestyle=(0, (4, 2)), zorder=2.5)
-    _limits(axes, panel, low, high)
-    for mark in panel.marks:
-        axes.plot([mark.time], [mark.value], "o", color=MARK, markersize=5, zorder=4, clip_on=False)
-        beside = [other.value for other in panel.marks if other.time == mark.time]
-        lowest = len(beside) > 1 and mark.value == min(beside) and mark.value < max(beside)
-        _mark(axes, mark, span_s, (low, high), below=lowest)
-    _bars(axes, panel, low, high)
-    _caption(axes, panel)
 
 
 def _rows(axes: "Axes", rows: Sequence[Row], chosen: Span) -> None:
@@ -256,92 +224,3 @@ def _rows(axes: "Axes", rows: Sequence[Row], chosen: Span) -> None:
                     zorder=2,
                 )
             )
-
-
-def _caption(axes: "Axes", panel: Panel) -> None:
-    """What the panel shows, and what its bars and its dashed curve are."""
-    notes = [f"{curve.label}: dashed" for curve in panel.curves[1:] if curve.label]
-    notes += [f"blue: {panel.bars_label}"] if panel.bars else []
-    notes += ["hatched: not tracked"] if panel.lost else []
-    if any(np.nanmax(curve.values, initial=-np.inf) > panel.highest for curve in panel.curves):
-        notes.append("what is further is cut off")
-    text = f"{panel.title} [{panel.unit}]" + f" ({'; '.join(notes)})" * bool(notes)
-    axes.annotate(
-        text,
-        (0.0, 1.0),
-        xycoords="axes fraction",
-        xytext=(0, 4),
-        textcoords="offset points",
-        fontsize=9 * min(1.0, CAPTION_WIDE_IN / max(width_in(text, points=9.0), 1.0)),
-        color=INK,
-        va="bottom",
-    )
-
-
-def _limits(axes: "Axes", panel: Panel, low: float, high: float) -> None:
-    """The name of each limit at the right, above its line, or below where the panel ends."""
-    for limit in panel.limits:
-        above = limit.value < high - 0.25 * (high - low)
-        axes.annotate(
-            limit.label,
-            (1.0, limit.value),
-            xycoords=("axes fraction", "data"),
-            xytext=(-2, 2 if above else -2),
-            textcoords="offset points",
-            fontsize=7.5,
-            color=LIMIT,
-            ha="right",
-            va="bottom" if above else "top",
-            path_effects=_halo(),
-            zorder=5,
-        )
-
-
-def _mark(
-    axes: "Axes",
-    mark: Mark,
-    span_s: tuple[float, float],
-    range_: tuple[float, float],
-    *,
-    below: bool,
-) -> None:
-    """The number of a mark beside it; below the mark where another one is above."""
-    low, high = range_
-    right = mark.time > span_s[0] + 0.85 * (span_s[1] - span_s[0])
-    upper = mark.value < low + 0.75 * (high - low) and not below
-    axes.annotate(
-        mark.label,
-        (mark.time, mark.value),
-        xytext=(-5 if right else 5, 3 if upper else -3),
-        textcoords="offset points",
-        fontsize=8.5,
-        weight="bold",
-        color=MARK,
-        ha="right" if right else "left",
-        va="bottom" if upper else "top",
-        path_effects=_halo(),
-        zorder=6,
-    )
-
-
-def _halo() -> "list[AbstractPathEffect]":
-    """A white edge of letters, so that they can be read over curves."""
-    from matplotlib.patheffects import withStroke
-
-    return [withStroke(linewidth=2.5, foreground="white")]
-
-
-def _bars(axes: "Axes", panel: Panel, low: float, high: float) -> None:
-    from matplotlib.patches import Rectangle
-
-    tall = BAR_SHARE * (high - low)
-    for bar in panel.bars:
-        axes.add_patch(
-            Rectangle(
-                (bar.start_s, low + 0.3 * tall),
-                bar.end_s - bar.start_s,
-                tall,
-                facecolor=CONTACT,
-                zorder=2,
-            )
-        )

@@ -1,5 +1,6 @@
 """Notices as people read them: one a line, many alike as one, reservations by themselves."""
 
+import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
@@ -65,20 +66,37 @@ def note_lines(notices: Iterable[Notice], *, most: int = MOST) -> tuple[str, ...
     )
 
 
+def named_in(texts: Iterable[str], bodies: Iterable[str], *, called: Mapping[str, str]) -> set[str]:
+    """The bodies of which texts speak by their name, as ``the red cup``."""
+    whole = "\n".join(texts)
+    names = {body: called.get(body, body.replace("_", " ")) for body in bodies}
+    found = set()
+    for body, name in sorted(names.items(), key=lambda row: len(row[1]), reverse=True):
+        whole, count = re.subn(rf"\bthe {re.escape(name)}\b", "", whole, flags=re.IGNORECASE)
+        if count:
+            found.add(body)
+    return found
+
+
 def reservation_lines(
-    notices: Sequence[Notice], *, called: Mapping[str, str] = MappingProxyType({})
+    notices: Sequence[Notice],
+    *,
+    called: Mapping[str, str] = MappingProxyType({}),
+    unshaped: Collection[str] | None = None,
 ) -> tuple[str, ...]:
     """What follows a text whose reservations those are: a gap, a heading, and the notes.
 
     Args:
         notices: What is known with reservations.
         called: What bodies are called in the text, where that is not their name.
+        unshaped: The bodies that have no shape; None where that is not known.
     """
+    lacking = None if unshaped is None else {called.get(body, body) for body in unshaped}
     groups = (
         (code, [replace(each, bodies=_called(each, called)) for each in group])
         for code, group in _by_code(notices).items()
     )
-    lines = (line for code, group in groups for line in _plain(code, group))
+    lines = (line for code, group in groups for line in _plain(code, group, lacking))
     return ("", HEADING, *lines) if notices else ()
 
 
@@ -93,9 +111,9 @@ def _called(notice: Notice, called: Mapping[str, str]) -> tuple[str, ...]:
     return tuple(called.get(body, body) for body in notice.bodies)
 
 
-def _plain(code: str, group: Sequence[Notice]) -> Iterable[str]:
+def _plain(code: str, group: Sequence[Notice], unshaped: Collection[str] | None) -> Iterable[str]:
     """What notices of one code mean to whoever reads what was done."""
-    said = sentences_of(code, group)
+    said = sentences_of(code, group, unshaped=unshaped)
     return [f"note: {text}." for text in said or map(capital, _texts(code, group, most=1))]
 
 

@@ -78,6 +78,9 @@ class Panel:
     highest: float = np.inf
     """What is greater is not shown, in the panel's unit."""
 
+    beyond: str = "what is further"
+    """What is greater than that, in words."""
+
     lost: tuple[Span, ...] = ()
     """When a body of it was not tracked."""
 
@@ -98,3 +101,12 @@ class Panel:
         room = PADDING * ((high - low) or abs(high) or 1.0)
         cut_off = high == self.highest
         return low - room, high + room * (EDGE if cut_off else 1.0)
+
+    def leaves(self, start_s: float, end_s: float, span_s: tuple[float, float]) -> bool:
+        """Whether a curve goes beyond what is drawn for a segment, at any time that is drawn."""
+        low, high = self.range(start_s, end_s)
+        return any(
+            bool(((shown < low) | (shown > high)).any())
+            for curve in self.curves
+            for shown in [curve.values[(curve.times >= span_s[0]) & (curve.times <= span_s[1])]]
+        )

@@ -1,7 +1,7 @@
 """What notices mean to whoever reads what was done: sentences, without terms of the program."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
 from capar.model.notices import Notice
 from kb.lexicon.english import capital, joined, number, the
@@ -23,8 +23,18 @@ _SIDED = re.compile(r"^([lr])[_ ]+(.+?)\d*$")
 """What a skeleton calls a part of the body: ``r_middle1``."""
 
 
-def sentences_of(code: str, group: Sequence[Notice]) -> Sequence[str] | None:
-    """The notices of one code in plain sentences; None where their messages say it."""
+def sentences_of(
+    code: str, group: Sequence[Notice], *, unshaped: Collection[str] | None = None
+) -> Sequence[str] | None:
+    """The notices of one code in plain sentences; None where their messages say it.
+
+    Args:
+        code: The code.
+        group: The notices.
+        unshaped: The bodies that have no shape; None where that is not known.
+    """
+    if code in BY_DISTANCE:
+        return [_by_distance(group, unshaped)]
     said = PLAIN.get(code)
     return None if said is None else list(said(group))
 
@@ -109,17 +119,24 @@ def _assumed(group: Sequence[Notice]) -> Iterable[str]:
     return [f"{capital(_named(bodies))} are assumed: {neither} in the recording"]
 
 
-def _by_distance(group: Sequence[Notice]) -> Iterable[str]:
-    """Of which bodies contacts are told by how near they are."""
-    shared = set.intersection(*(set(each.bodies) for each in group))
-    if len(shared) == 1:
-        (body,) = shared
-        name = _the(body)
-        return [
-            f"Contacts of {name} are inferred from distance: the recording has no shape of the "
-            f"{name.split()[-1]}"
-        ]
-    return ["Contacts are inferred from distance: the recording has no shapes"]
+def _by_distance(group: Sequence[Notice], unshaped: Collection[str] | None) -> str:
+    """Of which bodies contacts are told by how near they are: of those that have no shape."""
+    if unshaped is None:
+        shared = set.intersection(*(set(each.bodies) for each in group))
+        lacking = list(shared) if len(shared) == 1 else []
+    else:
+        lacking = [body for body in _bodies(group) if body in unshaped]
+    if not lacking:
+        return "Some contacts are inferred from distance: the recording lacks shapes of some bodies"
+    named = _named(lacking)
+    which = "of either" if len(lacking) == 2 else "of any of them"
+    if len(lacking) == 1:
+        which = f"of the {named.split()[-1]}"
+    return f"Contacts of {named} are inferred from distance: the recording has no shape {which}"
+
+
+BY_DISTANCE = frozenset({"pivot-distance", "touch-estimated"})
+"""The codes of pairs of bodies whose contacts are told by how near they are."""
 
 
 def _left_out(group: Sequence[Notice]) -> Iterable[str]:
@@ -181,8 +198,6 @@ PLAIN: Mapping[str, Callable[[Sequence[Notice]], Iterable[str]]] = {
     "long-gap": _lost,
     "stand-in-shape": _rough,
     "assumed-support": _assumed,
-    "pivot-distance": _by_distance,
-    "touch-estimated": _by_distance,
     "objects-left-out": _left_out,
     "mount-gap": _gap,
     "no-mover": _unmoved,

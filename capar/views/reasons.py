@@ -4,7 +4,9 @@ from collections.abc import Iterator, Sequence
 from html import escape
 from textwrap import wrap
 
+from capar.model.observation import Observation
 from capar.model.segment_address import SegmentAddress
+from capar.views.reason_tree import note, reason_tree
 from capar_rules.explain.explanation import Explanation, Reason
 
 ROW, LINE, INDENT, TEXT, STRIP = 20, 15, 18, 760, 240
@@ -14,7 +16,7 @@ LETTER, BOLD = 6.4, 7.2
 """How wide a letter is at most, on an average [px]."""
 
 
-def reasons_svg(told: Sequence[Explanation]) -> str:
+def reasons_svg(told: Sequence[Explanation], seen: Observation) -> str:
     """One SVG document with a tree for each explanation."""
     rows: list[str] = []
     y = ROW
@@ -26,7 +28,7 @@ def reasons_svg(told: Sequence[Explanation]) -> str:
         lines = _lines(title, TEXT + STRIP, BOLD)
         rows.append(f'<text x="8" y="{y}" font-weight="bold">{_set(lines, 8)}</text>')
         y += ROW + (len(lines) - 1) * LINE
-        tree = explained.reason.with_sentences()
+        tree = reason_tree(explained, seen)
         span, above = _span(tree), y
         for depth, reason in _rows(tree, 0):
             drawn, height = _row(reason, depth, y, span, above=above)
@@ -45,7 +47,7 @@ def _row(
 ) -> tuple[list[str], int]:
     """What one sentence is drawn with, and how high it is."""
     x = 8 + depth * INDENT
-    rule = f" ({reason.rule})" if reason.rule else ""
+    rule = f" ({noted})" if (noted := note(reason)) else ""
     told = _lines(f"{reason.sentence}{rule}", TEXT - x, LETTER)
     colour = "#000" if reason.because else "#135"
     lines = [f'<text x="{x}" y="{y}" fill="{colour}">{_set(told, x)}</text>']

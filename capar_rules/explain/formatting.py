@@ -6,6 +6,7 @@ from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG
 from capar_rules.explain.told_argument import UNBOUND as UNBOUND
 from capar_rules.explain.told_arrangements import ArrangementsTold
 from capar_rules.explain.told_contacts import ContactsTold
+from capar_rules.explain.told_derivations import DerivationsTold
 from capar_rules.explain.told_motions import BEARINGS, OF_ACTS, SHIFTS, SHORTFALLS, MotionsTold
 from capar_rules.explain.told_rests import RestsTold
 
@@ -30,7 +31,7 @@ OF_BODIES = (
 """Formats of a body, that tell of the segment beside it, or else of the one that is explained."""
 
 
-class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
+class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold, DerivationsTold):
     """An argument, formatted as a name, a time or a distance."""
 
     def __format__(self, form: str) -> str:
@@ -74,6 +75,9 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
             "borne": self._borne,
             "borne_then": lambda: self._borne().replace(UNBOUND, ""),
             "levels": self._levels,
+            "this": self._this,
+            "turned_there": self._turned_there,
+            "swung_on": self._swung_on,
             "least_slide": lambda: quantities.length(constants()["slide_mm"] / 1000.0),
             "least_aside": lambda: quantities.length(constants()["aside_mm"] / 1000.0),
             "unborne": self._unborne,
@@ -128,7 +132,7 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold):
             told = [f"{hand} with {each}" for each in names]
             told += [f"{names[0]} with {each}" for each in names[1:]]
         found = [each for each, bit in zip(told, self.text, strict=False) if bit == "1"]
-        return ", ".join(found) or "none"
+        return ", ".join(found) or "nothing"
 
     def measured_between(self, form: str) -> tuple[int, int] | None:
         """The frames between which what such a format tells of a body was measured."""

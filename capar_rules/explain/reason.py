@@ -3,9 +3,6 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-JOINT = "joins_in("
-"""Prefix of atoms of which the tree of sentences has the first alone."""
-
 
 @dataclass(frozen=True)
 class Reason:
@@ -27,11 +24,19 @@ class Reason:
     because: tuple["Reason", ...]
 
     repeated: bool = False
-    """Whether what it was derived from stands where it is met first (``expanded_once``)."""
+    """Whether some of what it was derived from stands where it is met first (``expanded_once``,
+    ``without_repeats``)."""
 
     def with_sentences(self) -> "Reason":
         """The tree of the nodes that have a sentence, each subtree only once."""
         return _with_sentences(self, set())
+
+    def without_repeats(self) -> "Reason":
+        """The tree in which a sentence stands only where it is met first.
+
+        Nodes below which others were left out are ``repeated``.
+        """
+        return _without_repeats(self, set())
 
     def expanded_once(self) -> "Reason":
         """The tree in which what an atom was derived from stands only where it is met first.
@@ -62,7 +67,6 @@ def _expanded_once(reason: Reason, known: set[str]) -> Reason:
 
 def _with_sentences(reason: Reason, known: set[str]) -> Reason:
     """The tree of sentences; a repeated sentence has nothing below it."""
-    reason = _with_one_joint_action(reason)
     below: list[Reason] = []
     if reason.sentence not in known:
         known.add(reason.sentence)
@@ -70,15 +74,13 @@ def _with_sentences(reason: Reason, known: set[str]) -> Reason:
     return replace(reason, because=tuple(below))
 
 
-def _with_one_joint_action(reason: Reason) -> Reason:
-    """The node with the first segment that it is one action with, and the number of the others."""
-    joint = [cause for cause in reason.because if cause.atom.startswith(JOINT)]
-    if len(joint) < 2:
-        return reason
-    told = f"{joint[0].sentence}, and with what {len(joint) - 1} more do"
-    first = replace(joint[0], sentence=told)
-    below = (cause for cause in reason.because if cause not in joint)
-    return replace(reason, because=(*below, first))
+def _without_repeats(reason: Reason, known: set[str]) -> Reason:
+    known.add(reason.sentence)
+    below: list[Reason] = []
+    for cause in reason.because:
+        if cause.sentence not in known:
+            below.append(_without_repeats(cause, known))
+    return replace(reason, because=tuple(below), repeated=len(below) < len(reason.because))
 
 
 def _nearest(reason: Reason) -> list[Reason]:

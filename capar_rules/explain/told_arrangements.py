@@ -139,14 +139,6 @@ class ArrangementsTold(ToldArgument):
         found = arrangements.met_at(self.clock, self.text, self.beside[1])
         return " and ".join(f"the {self.clock.called(each)}" for each in found) or UNBOUND
 
-    def _levels(self) -> str:
-        """Whether a path becomes level at the tick that this names, or ceases to be."""
-        frame = self.clock.frames[self.beside[0]][int(self.text)]
-        spans = self.clock.measured.level.get(self.beside[3], ())
-        begins = any(first == frame for first, _ in spans)
-        ends = any(last == frame for _, last in spans)
-        return "began to count as level" if begins and not ends else "ceased to count so" * ends
-
     def _moved_in_hand(self) -> str:
         """That what a segment moves had moved before in the same hold, so that it began nowhere."""
         span, hand = self.clock.span(self.text), self._hand

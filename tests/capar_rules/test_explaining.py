@@ -75,7 +75,7 @@ TRUE_OF_ANY_SEGMENT = {
     r"the ([\w ]+?) turned about one hinge on the ([\w ]+?) throughout the recording": (
         "it is said of the whole capture"
     ),
-    r"the ([\w ]+?) was not borne along by the ([\w ]+?)": "no story has a load",
+    r"the ([\w ]+?) did not carry the ([\w ]+?) along": "no story has a load",
     r"the ([\w ]+?) stayed with the ([\w ]+?)": "it is said of a whole contact",
     (
         r"the ([\w ]+?) touched no recorded or assumed object when the segment began, nor when it "

@@ -194,9 +194,9 @@ FORMS = (
     (rf"leaning of the {NAME} far over was measured from {TIME} to {TIME}", measured_leaning),
     (rf"the {NAME} turned about the vertical", spun),
     (
-        rf"the {NAME} touched the {NAME} at the segment's (start|end), which bore it from below"
+        rf"the {NAME} bore the {NAME} from below at the segment's (start|end)"
         rf"(?: \(\d+° off straight up as their contact began, at {TIME}; 45° or less bears\))?",
-        borne,
+        lambda known, below, what, side, at: borne(known, what, below, side, at),
     ),
     (rf"the {NAME} was above the {NAME} at the segment's (start|end)", was_above),
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),

@@ -152,8 +152,8 @@ FORMS = (
     (rf"the {NAME} began to touch the {NAME} at {TIME}", begins),
     (
         rf"the {NAME} moved at some time in the contact with the {NAME} that began at {TIME}, "
-        "which so counts as a hold",
-        lambda known, thing, hand, at: possessed(known, hand, thing, at),
+        rf"so the {NAME} is taken to have held it",
+        lambda known, thing, hand, at, holder: hand == holder and possessed(known, hand, thing, at),
     ),
     (
         rf"the contact of the {NAME} with the {NAME} ended at {TIME}(?:; the border "
@@ -171,10 +171,9 @@ FORMS = (
         rested_on,
     ),
     (
-        rf"the {NAME} counts as a further object of the segment",
-        lambda known, other: no_support(
-            known, other, known.segment.objects[0], known.segment.ee.replace("_", " ")
-        ),
+        rf"the {NAME} is not merely what the {NAME} rested on, unmoved, since before the {NAME} "
+        "touched it",
+        no_support,
     ),
     (
         rf"the {NAME} had moved before this in the contact with the {NAME} that began at {TIME}",

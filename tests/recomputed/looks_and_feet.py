@@ -46,7 +46,7 @@ def looked(known: Known, what: str, when: str) -> bool:
         return bool(start) and all(_seen(known, what, each) for each in whole[::5])
     if when == "in between":
         return not start and not end and any(_seen(known, what, each) for each in whole)
-    if when == "before the segment":
+    if when.startswith("in the segment before"):
         mine = [each for each in known.seen.observation.segments if each.ee == known.segment.ee]
         earlier = mine[known.segment.index - 1]
         return not start and any(
@@ -146,7 +146,7 @@ FORMS = (
     (rf"the {NAME} looked at the {NAME} from {TIME} to {TIME}", measured_look),
     (
         rf"the {NAME} was looked at (throughout|when the segment (?:began|ended)|in between|"
-        r"before the segment)",
+        r"in the segment before this one, and no longer when this one began)",
         looked,
     ),
     (rf"the {NAME} was looked at", gazed),

@@ -92,16 +92,28 @@ def gone_at_once(known: Known, what: str) -> bool:
     return float(_apart(known, what, [soon], end)[0]) > 1.0 > float(before[0])
 
 
-def levelled(known: Known, what: str, how: str, at: str) -> bool:
-    """Its path is steeper than 45 degrees before that time and less after it, or reversed."""
-    frame, aside = known.frame(at), round(SIDE_S * known.rate)
+def level_from(known: Known, what: str, at: str, other: str) -> bool:
+    """Its path becomes less steep than 45 degrees then, and steeper at the other time."""
+    begins = _levelled(known, what, known.frame(at), begins=True)
+    return begins and known.at(at) < known.at(other)
+
+
+def level_until(known: Known, what: str, at: str, other: str) -> bool:
+    """Its path becomes steeper than 45 degrees then."""
+    ends = _levelled(known, what, known.frame(at), begins=False)
+    return ends and (not other or known.at(other) < known.at(at))
+
+
+def _levelled(known: Known, what: str, frame: int, *, begins: bool) -> bool:
+    """Its path is steeper than 45 degrees before that frame and less after it, or reversed."""
+    aside = round(SIDE_S * known.rate)
     place, last = known.stream(what).positions, len(known.capture.times) - 1
     ways = [
         place[min(max(end, 0), last)] - place[min(max(begin, 0), last)]
         for begin, end in ((frame - aside, frame), (frame, frame + aside))
     ]
     steep = [abs(float(way[2])) - float(np.linalg.norm(way[:2])) for way in ways]
-    before, after = steep if how == "began to count as level" else reversed(steep)
+    before, after = steep if begins else reversed(steep)
     return after < 0.0 < before
 
 
@@ -287,7 +299,21 @@ def swing_border(known: Known, what: str, sense: str, at: str) -> bool:
     )
 
 
-def measured_swings(known: Known, what: str, first: str, last: str) -> bool:
+def swung_on(known: Known, what: str, first: str, last: str, before_s: str, within_s: str) -> bool:
+    """It is so moved then, from before the segment's start, and not only the rest of it is left."""
+    start, end = known.segment.first, known.segment.last
+    begin, ended = known.at(first), known.at(last)
+    shares = (start - begin) / known.rate, (min(ended, end) - start) / known.rate
+    told = float(before_s), float(within_s)
+    alike = all(abs(one - other) <= 0.02 for one, other in zip(shares, told, strict=True))
+    return alike and measured_swings(known, what, first, last) and swung_within(known, what)
+
+
+def measured_swings(known: Known, what: str, first: str, last: str, often: str = "") -> bool:
+    place = known.stream(what).positions[known.frame(first) : known.frame(last) + 1]
+    turned = max(_turning_points(place[:, axis]) for axis in range(3))
+    if often and turned < int(often):
+        return False
     found = any(
         each.body == what.replace(" ", "_")
         and near(each.first, known.at(first))
@@ -369,13 +395,22 @@ def flew_on(known: Known) -> bool:
 
 FORMS = (
     (
-        rf"the {NAME} ended 5 cm or more from where it began, or its path was 10 cm or more: a "
-        "grip alone shifts a thing less",
+        rf"the {NAME} ended 5 cm or more from where it began, or went along a path of 10 cm or "
+        "more: a grip alone shifts a thing less",
         went_further,
     ),
     (rf"the {NAME} (began|ceased) to be moved to and fro at {TIME}", swing_border),
     (rf"the {NAME} was gone at once", gone_at_once),
-    (rf"the path of the {NAME} (began to count as level|ceased to count so) at {TIME}", levelled),
+    (
+        rf"the path of the {NAME} led more to the side than up or down from {TIME} on "
+        rf"\(until {TIME}\)",
+        level_from,
+    ),
+    (
+        rf"the path of the {NAME} led more to the side than up or down until {TIME}"
+        rf"(?: \(from {TIME} on\))?",
+        level_until,
+    ),
     (rf"the {NAME} moved(?: (\d+\.\d\d) m)? between {TIME} and {TIME}", moved),
     (
         rf"the {NAME} moved along (\d+\.\d\d) m of path between {TIME} and {TIME}, and ended "
@@ -387,7 +422,12 @@ FORMS = (
         rf"between {TIME} and {TIME}",
         drifted,
     ),
-    (rf"motion of the {NAME} to and fro was measured from {TIME} to {TIME}", measured_swings),
+    (
+        rf"motion of the {NAME} to and fro was measured from {TIME} to {TIME}, where (?:it|they) "
+        r"turned back at least (?:once|twice|(\d+) times) (?:along the [xy] axis|up and down), "
+        r"between ways of \d+(?:\.\d+)? c?m or more",
+        measured_swings,
+    ),
     (rf"motion of the {NAME} was measured from {TIME} to {TIME}", measured),
     (rf"rolling of the {NAME} was measured from {TIME} to {TIME}", measured_rolling),
     (rf"free fall of the {NAME} was measured from {TIME} to {TIME}", measured_fall),
@@ -395,9 +435,11 @@ FORMS = (
     (rf"the {NAME} turned as it went, without slipping", rolled),
     (rf"the {NAME} was moved to and fro", swung),
     (
-        rf"the motion of the {NAME} to and fro did not lie mainly before the segment",
-        swung_within,
+        rf"of the motion of the {NAME} to and fro from {TIME} to {TIME}, (\d+\.\d\d) s lie before "
+        r"the segment and (\d+\.\d\d) s in it",
+        swung_on,
     ),
+    (rf"no motion of the {NAME} to and fro had begun before the segment", swung_within),
     (rf"the {NAME}, long and thin, went along its own length", went_lengthwise),
     (
         rf"lengthwise motion of the {NAME} was measured from {TIME} to {TIME}",

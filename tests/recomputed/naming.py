@@ -60,11 +60,24 @@ def table(known: Known) -> dict[str, tuple[Row, ...]]:
     return {each: PUBLISHED[each] + FURTHER.get(each, ()) for each in PUBLISHED}
 
 
-def borders(known: Known, first: str, last: str) -> bool:
-    """Some segment lies there, and at either end something changes, or the capture ends."""
+def own_borders(known: Known, first: str, last: str) -> bool:
+    """The segment lies there, and at either end something changes, or the capture ends."""
+    own = near(known.segment.first, known.at(first)) and near(known.segment.last, known.at(last))
+    return own and borders(known, known.segment.ee, first, last)
+
+
+def borders_before(known: Known, first: str, last: str) -> bool:
+    """The same of one of the same end-effector that ends where the segment begins."""
+    own = near(known.segment.first, known.at(last))
+    return own and borders(known, known.segment.ee, first, last)
+
+
+def borders(known: Known, ee: str, first: str, last: str) -> bool:
+    """A segment of that end-effector lies there, between such changes."""
     known_ends = any(
         near(each.first, known.at(first)) and near(each.last, known.at(last))
         for each in known.seen.observation.segments
+        if each.ee == ee.replace(" ", "_")
     )
     return known_ends and all(_changes(known, known.at(each)) for each in (first, last))
 
@@ -196,7 +209,7 @@ def _strings(known: Known, objects: Sequence[str], told: Sequence[str]) -> list[
     hand = known.segment.ee.replace("_", " ")
     pairs = [f"{hand} with {each}" for each in names]
     pairs += [f"{names[0]} with {each}" for each in names[1:]]
-    lists = [[] if each == "none" else each.split(", ") for each in told]
+    lists = [[] if each == "nothing" else each.split(", ") for each in told]
     if not all({*each} <= {*pairs, *names} for each in lists):
         raise ValueError(told)
     return [
@@ -344,25 +357,31 @@ def nearest(known: Known, what: str) -> bool:
 
 
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
-    (rf"the segment lies between {TIME} and {TIME}", borders),
+    (rf"the segment lies between {TIME} and {TIME}", own_borders),
+    (rf"the segment before this one lies between {TIME} and {TIME}", borders_before),
+    (rf"(?:a|another) segment of the {NAME} lies between {TIME} and {TIME}", borders),
     (
-        rf"of (the [\w ,]+), contacts among these at the start: {LIST}; at the end: {LIST}; moved: "
-        rf"{LIST}; struck by the [\w ]+ itself: {LIST}",
+        rf"of (the [\w ,]+), in contact at the start: {LIST}; in contact at the end: {LIST}; "
+        rf"what moved: {LIST}; what the [\w ]+ itself struck: {LIST}",
         features_in_words,
     ),
     (
-        rf"of (the [\w ,]+), leaving aside what else is in the {NAME}, contacts among these at "
-        rf"the start: {LIST}; at the end: {LIST}; moved: {LIST}; struck by the [\w ]+ itself: "
-        rf"{LIST}",
+        rf"of (the [\w ,]+), leaving aside what else is in the {NAME}, in contact at the start: "
+        rf"{LIST}; in contact at the end: {LIST}; what moved: {LIST}; what the [\w ]+ itself "
+        rf"struck: {LIST}",
         _core_of,
     ),
     (rf"more than one thing was in the {NAME}", accompanied),
-    (r"that is what defines (\w+)", defined),
+    (r"by these contacts and motions the rules know a (\w+)", defined),
     (r"it is (\w+)", written),
     (r"it fits (\w+)", fits),
     (r"nothing that fits is more specific than (\w+)", overruled_by_none),
     (r"it would be (\w+) but for this", kept_from),
     (rf"the segment is about the {NAME}", listed),
+    (
+        rf"(?:the segment before this one|an?(?:other)? segment of the [\w ]+) is about the {NAME}",
+        listed,
+    ),
     (rf"the {NAME} is the other object of the segment", subordinate),
     (r"both segments (begin|end) with the same change of the object", changes_alike),
     (r"it agrees with no known primitive from level (\d) of the decision tree on", parted),

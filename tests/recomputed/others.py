@@ -124,6 +124,10 @@ def not_borne(known: Known, what: str, bearer: str) -> bool:
     )
 
 
+def not_carried(known: Known, bearer: str, what: str) -> bool:
+    return not_borne(known, what, bearer)
+
+
 RIDE_SHARE, RIDE_M = 0.25, 0.01
 """What goes along strays by no larger share of its bearer's way [1], or by so little [m]."""
 
@@ -306,7 +310,7 @@ FORMS = (
         touched_nothing,
     ),
     (rf"the {NAME} moved", not_resting),
-    (rf"the {NAME} was not borne along by the {NAME}", not_borne),
+    (rf"the {NAME} did not carry the {NAME} along", not_carried),
     (
         rf"the {NAME} was borne by the {NAME} and went along with it, "
         rf"in the contact that began at {TIME}",

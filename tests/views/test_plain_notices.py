@@ -7,8 +7,8 @@ from motions import TALL_MAN, drink_from_mug
 
 from capar.model.notices import Notice, notice
 from capar.pipelines.observation import observe
-from capar.views.notices import reservation_lines, reservations_on_told
-from capar.views.plain_notices import PLAIN
+from capar.views.notices import named_in, reservation_lines, reservations_on_told
+from capar.views.plain_notices import BY_DISTANCE, PLAIN
 
 
 def rough(*names: str) -> list[Notice]:
@@ -73,7 +73,7 @@ TOLD: tuple[tuple[list[Notice], str], ...] = (
     ),
     (
         judged("touch-estimated", ("right_hand", "mug"), ("cup", "table")),
-        "Contacts are inferred from distance: the recording has no shapes.",
+        "Some contacts are inferred from distance: the recording lacks shapes of some bodies.",
     ),
     (
         [notice("objects-left-out", "100 half egg carton(Clone)-18146", objects=9)],
@@ -114,12 +114,46 @@ def test_each_kind_has_its_sentence(group: list[Notice], text: str) -> None:
 
 
 def test_every_kind_is_told_here() -> None:
-    assert {group[0].code for group, _ in TOLD} == set(PLAIN)
+    assert {group[0].code for group, _ in TOLD} == {*PLAIN, *BY_DISTANCE}
 
 
 def test_other_kinds_have_their_own_words_as_a_sentence() -> None:
     (line,) = reservation_lines([notice("no-shape", "mug")])[2:]
     assert line == "note: 'mug' has no shape, so no contact of it is known."
+
+
+@pytest.mark.parametrize(
+    ("unshaped", "text"),
+    [
+        (
+            {"right_hand"},
+            "Contacts of the right hand are inferred from distance: the recording has no shape of "
+            "the hand.",
+        ),
+        (
+            {"right_hand", "cup", "head"},
+            "Contacts of the right hand and the cup are inferred from distance: the recording has "
+            "no shape of either.",
+        ),
+        (
+            set(),
+            "Some contacts are inferred from distance: the recording lacks shapes of some bodies.",
+        ),
+    ],
+)
+def test_only_what_has_no_shape_is_said_to_have_none(unshaped: set[str], text: str) -> None:
+    group = judged("pivot-distance", ("right_hand", "mug"), ("right_hand", "cup"))
+    assert reservation_lines(group, unshaped=unshaped)[2:] == (f"note: {text}",)
+    alone = judged("pivot-distance", ("right_hand", "mug"))
+    (line,) = reservation_lines(alone, unshaped={"right_hand"})[2:]
+    assert "Contacts of the right hand are inferred" in line
+
+
+def test_the_bodies_of_which_texts_speak_are_found_by_their_longest_name() -> None:
+    bodies, called = {"hand", "right_hand", "t1", "cup"}, {"t1": "large table"}
+    texts = ["Carry, because the right hand touched the large table.", "The cups were moved."]
+    assert named_in(texts, bodies, called=called) == {"right_hand", "t1"}
+    assert named_in(["The cup moved", "the hand"], bodies, called=called) == {"cup", "hand"}
 
 
 def test_a_note_calls_a_thing_as_the_text_does() -> None:
