@@ -76,7 +76,6 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold, Derivatio
             "borne_then": lambda: self._borne().replace(UNBOUND, ""),
             "levels": self._levels,
             "this": self._this,
-            "turned_there": self._turned_there,
             "swung_on": self._swung_on,
             "least_slide": lambda: quantities.length(constants()["slide_mm"] / 1000.0),
             "least_aside": lambda: quantities.length(constants()["aside_mm"] / 1000.0),

@@ -32,14 +32,6 @@ class DerivationsTold(ToldArgument):
         since = f" (from {self.clock.at(begun)} on)" if begun is not None else ""
         return f"until {self.clock.at(frame)}{since}"
 
-    def _turned_there(self) -> str:
-        """How often the body turned back between the two frames that stand beside it."""
-        turns = self.clock.measured.turns
-        if turns is None:
-            return ""
-        first, last = (int(frame) for frame in self.beside[1:3])
-        return f", where {self.clock.it(self.body)} {turns(self.body, first, last)}"
-
     def _swung_on(self) -> str:
         """How long the motion to and fro that goes on at the start lasted before it, and in it."""
         span = self.clock.span(self.beside[0])
