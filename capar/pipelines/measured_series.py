@@ -257,10 +257,12 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     poses = known.body(name).poses
     limits = thresholds_of(known.seen.measurements.calibration)
     rate = frame_rate(poses.smooth.times)
-    slow = MILLI * pace_at_rest(poses.noise, rate, limits)[0]
+    slow_mps, turning = pace_at_rest(poses.noise, rate, limits)
+    slow = MILLI * slow_mps
     floor = motion_floor(poses.noise, rate, own_m=None, thresholds=limits).position_m
     least = f"{constants()['rest_ms'] / MILLI:.2f} s or more"
-    held, since = f"slow, and within {length(floor)} of its place of rest", ""
+    held = f"within {length(floor)} of a place, from the first to the last slow moment there"
+    held, since = f"{held}; rests without a gap are one", ""
     if forms & SINCE_BEGIN:
         known = replace(known, span=(0, known.span[1]))
         since = " since the recording began"
@@ -268,7 +270,12 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         f"{known.called(name)}: speed{since}",
         "mm/s",
         (known.curve(MILLI * paces(poses.smooth, rate, limits)[0]),),
-        (Limit(slow, f"slow: below {slow:.0f} mm/s"),),
+        (
+            Limit(
+                slow,
+                f"slow: below {slow:.0f} mm/s (and {math.degrees(turning):.0f} °/s of turning)",
+            ),
+        ),
         bars=_free_rests(known, name) if since else known.bars(Resting, ee=name),
         bars_label=f"counts as at rest for {least}, touching nothing: {held}"
         if since
