@@ -55,19 +55,20 @@ def _of_parts(
             yield separation(touchable(part), touchable(other), frames)
 
 
-def apart_at_most(measurements: Measurements) -> Apart:
+def apart_within(measurements: Measurements) -> Apart:
     """How far bodies were apart, at the frames at which pictures show it."""
 
     @cache
-    def most(one: str, other: str, first: int, last: int) -> float | None:
+    def range_of(one: str, other: str, first: int, last: int) -> tuple[float, float] | None:
         pair = measurements.calibration.sought(one, other)
         pair = pair or measurements.calibration.sought(other, one)
         if pair is None:
             return None
         found = distances(measurements, pair, frames_between(first, last))
-        return float(np.nanmax(found)) if np.isfinite(found).any() else None
+        known = np.isfinite(found).any()
+        return (float(np.nanmin(found)), float(np.nanmax(found))) if known else None
 
-    return most
+    return range_of
 
 
 def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:

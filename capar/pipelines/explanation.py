@@ -14,7 +14,7 @@ from capar.model.capture import Capture
 from capar.model.facts import Moving
 from capar.model.observation import Observation, Segment
 from capar.model.segment_address import SegmentAddress, find_segment
-from capar.pipelines.distances import apart_at_most, reaches
+from capar.pipelines.distances import apart_within, reaches
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar_rules.authoring.catalogue import rules_of
@@ -159,7 +159,7 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
         },
         heights=_heights(measurements),
         over=_over(measurements),
-        apart=apart_at_most(measurements),
+        apart=apart_within(measurements),
         lost=_lost(observation, measurements),
         unrested=_unrested(observation),
     )

@@ -3,8 +3,9 @@
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from math import floor
 
-from capar_rules.explain.arrangements import kept, reached, untracked
+from capar_rules.explain.arrangements import hand_of, kept, reached, untracked
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined_claims, resting_on
 from capar_rules.explain.clock import Clock
@@ -32,6 +33,9 @@ AT_ONE_SIDE = {
     "near_at_end": "end",
 }
 """Clauses of contact at one border, and that border."""
+
+TOUCHING_NOTHING = ("rests", "touches_no_object")
+"""Predicates that say that an end-effector touches nothing."""
 
 LEANING = {"tips": "begins, tipping over included", "rights": "ends, righting included"}
 """Kinds of events at which borders lie, of a far lean, as the summary says it."""
@@ -154,6 +158,22 @@ class Briefs:
         )
         text = f"the segment {told}"
         return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="leaning"),))]
+
+    def off_the_ground(self, claims: Iterable[Claim]) -> list[Claim]:
+        """How far a foot that touches nothing is from what is fixed, as it may seem to stand."""
+        known, span = self.clock.measured, self.clock.span(self.clock.own)
+        foot = hand_of(self.clock.own)
+        clear = any(claim.of in TOUCHING_NOTHING for claim in claims)
+        if not clear or foot not in known.feet or span is None or known.apart is None:
+            return []
+        found = []
+        for other in sorted(other for one, other in known.reaches if one == foot):
+            apart = None if other in known.movable else known.apart(foot, other, *span)
+            if apart is not None:
+                far, called = floor(1000.0 * apart[0]), self.clock.called
+                text = f"the {called(foot)} was {far} mm or more from the {called(other)}"
+                found.append(Claim(text, (Quantity(Measure.DISTANCE, (foot, other), *span),)))
+        return found
 
     def also_reached(self, claims: Iterable[Claim]) -> list[Claim]:
         """What else the segment's thing came to touch, where of one thing it is told."""

@@ -32,6 +32,9 @@ from capar_rules.explain.reaches import Reach
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
+FEET = ("foot", "toe")
+"""Kinds of end-effectors that may stand."""
+
 Ways = Callable[[str, int, int], Way]
 """How a body moved between two frames."""
 
@@ -44,8 +47,8 @@ TurnsBack = Callable[[str, int, int], Turns]
 Heights = Callable[[str, int, int], tuple[float, float]]
 """How low and how high a body was between two frames, from where it was at the first [m]."""
 
-Apart = Callable[[str, str, int, int], float | None]
-"""How far two bodies were apart at most between two frames [m]; None if that is not measured."""
+Apart = Callable[[str, str, int, int], tuple[float, float] | None]
+"""How far two bodies were apart at least and at most between two frames [m]; None if unmeasured."""
 
 Places = Callable[[str, str, int], Over]
 """Where a body is to another one at a frame."""
@@ -155,7 +158,7 @@ class Measured:
     """Objects of which no shape is known."""
 
     feet: frozenset[str] = frozenset()
-    """End-effectors that are feet or parts of them."""
+    """End-effectors that are feet or toes."""
 
     def stands_uncounted(self, body: str) -> bool:
         """Whether it is a foot of which no contact with anything fixed is looked for."""
@@ -239,7 +242,7 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
         travelled=travelled,
         held=held,
         tracked=touched,
-        feet=frozenset(link.ee for link in links if link.kind == "foot"),
+        feet=frozenset(link.ee for link in links if link.kind in FEET),
     )
 
 

@@ -58,12 +58,13 @@ def summary(
     mended = briefs.clauses(doubts)
     claims += [briefs.claims[clause] for clause in mended if clause in briefs.claims]
     told += f". {_sentence(listed(mended))}" * bool(mended)
-    extra = briefs.also_reached(claims) + briefs.leaning(reason)
+    extra = [*briefs.off_the_ground(claims), *briefs.also_reached(claims)]
+    extra += briefs.leaning(reason)
     extra += briefs.lost([*claims, *extra])
     told += "".join(f". {_sentence(claim.text)}" for claim in extra)
     names = [name, *(generals if kind else ()), *beside]
     names += [other for contrast in fresh for other in contrast.names]
-    text = f"{told}." + touching(claims, briefs.clock)
+    text = f"{told}." + touching([*claims, *extra], briefs.clock)
     return Summary(text, (*claims, *extra), tuple(dict.fromkeys(names)))
 
 

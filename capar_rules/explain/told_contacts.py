@@ -103,9 +103,9 @@ class ContactsTold(ToldArgument):
         one, other = self.beside[1:3]
         known, reach = self.clock.measured, self.clock.measured.reaches.get((one, other))
         far = known.apart(one, other, *span) if known.apart and reach else None
-        if far is None or reach is None or 1000.0 * far <= reach.told_mm:
+        if far is None or reach is None or 1000.0 * far[1] <= reach.told_mm:
             return ""
-        return f" (at moments up to {quantities.spread(far)} apart)"
+        return f" (at moments up to {quantities.spread(far[1])} apart)"
 
     def _after_leaving(self) -> str:
         """When the two bodies beside this parted before, if at the start or in the segment."""

@@ -63,7 +63,10 @@ class RestsTold(ToldArgument):
             none = f"no rest of {self._rest_s()} or more, touching nothing, before {start}"
             return f"had no posture to resume ({none})"
         found = self._nearest_posture()
-        if found is None or found[0] < near:
+        if found is None:
+            start = self.clock.at(self.clock.frames[self._hand][0])
+            return f"had no known posture to resume (it was not tracked at {start})"
+        if found[0] < near:
             return UNBOUND
         far = quantities.length(found[0])
         return f"ended {far} from {self._posture(found[1], near)}"

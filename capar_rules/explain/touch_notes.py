@@ -57,7 +57,7 @@ def _farthest(one: str, other: str, clock: Clock) -> float | None:
     every = [*known.contacts.get((one, other), ()), *known.contacts.get((other, one), ())]
     parts = [(max(first, span[0]), min(last, span[1])) for first, last in every]
     found = [known.apart(one, other, *part) for part in parts if part[0] < part[1]]
-    return max((far for far in found if far is not None), default=None)
+    return max((far[1] for far in found if far is not None), default=None)
 
 
 def _pairs(claims: Iterable[Claim]) -> list[tuple[str, str]]:

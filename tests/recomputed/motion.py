@@ -456,6 +456,10 @@ FORMS = (
         came_elsewhere,
     ),
     (
+        rf"the {NAME} had no known posture to resume \(it was not tracked at {TIME}\)",
+        lambda known, what, at: bool(known.stream(what).lost[known.frame(at)]),
+    ),
+    (
         rf"the {NAME} had no posture to resume \(no rest of 0\.40 s or more, touching nothing, "
         rf"before {TIME}\)",
         never_rested,

@@ -394,7 +394,15 @@ def apart_at_most(known: Known, body: str, far: str) -> bool:
     pairs = [(one, other) for one in about for other in about if one != other]
     assert measured.apart is not None
     found = (measured.apart(*pair, known.segment.first, known.segment.last) for pair in pairs)
-    return any(one is not None and _is(one, far, slack_m=0.001) for one in found)
+    return any(one is not None and _is(one[1], far, slack_m=0.001) for one in found)
+
+
+def apart_at_least(known: Known, body: str, far: str, other: str) -> bool:
+    """They are never nearer than that, to a millimetre."""
+    measured, span = known.seen.explainer.measured, known.segment
+    assert measured.apart is not None
+    found = measured.apart(body, name(other), span.first, span.last)
+    return found is not None and 0.0 <= found[0] - _metres(far) < 0.001
 
 
 def far_over(known: Known, body: str, before: str, after: str, most: str, least: str) -> bool:
@@ -474,6 +482,10 @@ def rested_there(known: Known, body: str, far: str, at: str, asked: str) -> bool
 def never_rested(known: Known, body: str, asked: str, at: str) -> bool:
     begun = not list(_from_rests(known, body)) and near(known.segment.first, known.at(at))
     return begun and _asked("rest_ms", asked)
+
+
+def untracked(known: Known, body: str, at: str) -> bool:
+    return bool(known.stream(body).lost[known.frame(at)])
 
 
 def _from_rests(known: Known, body: str) -> Iterator[tuple[float, int]]:
@@ -719,6 +731,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         rested_there,
     ),
     (rf"no rest of {TIME} or more, touching nothing, before {TIME}", never_rested),
+    (rf"it was not tracked at {TIME}", untracked),
     (rf"came to rest at {TIME}", rests_from),
     (
         rf"after parting from it at {TIME}",
@@ -789,6 +802,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         lambda known, _, __, told: rest_lasts(known, _, told),
     ),
     (rf"up to {LENGTH} apart", apart_at_most),
+    (rf"was {LENGTH} or more from the {NAME}(?=\.)", apart_at_least),
     (rf"a lean of the {NAME} of {DEGREES} or more", leant_far),
     (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
     (
