@@ -43,6 +43,9 @@ KEY_ITERATIONS = 40
 MOST_TURNS = 120
 """Turns of a grip that are tried."""
 
+GAINED_M = 0.06
+"""Nearer to the body no turn of a grip brings the palm (of a mug's 112 turns at most 42 mm) [m]."""
+
 FREELY = 0.003
 """Share of its weight that a palm's turning has where it is sought how the body would turn it."""
 
@@ -54,6 +57,14 @@ ROUNDS = 4
 
 SETTLE_S = 0.45
 """How long the head takes to be firmly where it is to be [s]."""
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """Where a palm does not come, however it is turned."""
+
+    frame: int
+    sentence: str
 
 
 @dataclass(frozen=True)
@@ -99,19 +110,58 @@ class Draft:
         self.only: frozenset[int] = frozenset()
         self.watched, self.style = watched, style
 
-    def reachable_grips(self, most: int = MOST_TURNS) -> tuple[list[Grip], str | None]:
+    def beyond(self, frames: frozenset[int] | None = None) -> Beyond | None:
+        """The first key frame at which a palm that may turn freely misses by more than grips gain.
+
+        Args:
+            frames: Frames at which it is tried; the key frames of every hold, unless stated.
+        """
+        for hold in self.source.holds:
+            grips, solver = self._gripped([hold], Turn()), self._solver()
+            solver.turning = FREELY
+            held = {f for f in frames or () if hold.first <= f <= hold.last}
+            for frame in self.key_frames([hold]) if frames is None else sorted(held):
+                goal = self.targets(grips, frame)
+                solver.follow(goal, most=KEY_ITERATIONS)
+                missed_m = solver.missed(goal)[0]
+                if missed_m > GAINED_M:
+                    return Beyond(
+                        frame,
+                        f"the {hold.side} hand cannot {self._does(hold, frame)} {hold.thing!r} at "
+                        f"{self.source.times[frame]:.2f} s: however it is turned, it misses by "
+                        f"{1e3 * missed_m:.0f} mm",
+                    )
+        return None
+
+    def _does(self, hold: Hold, frame: int) -> str:
+        """What a hand does at a frame with what it holds, as a verb."""
+        tosses = [toss for toss in self.source.tosses if toss.thing == hold.thing]
+        if any(frame == toss.first and hold.side == toss.side for toss in tosses):
+            return "throw"
+        caught = any(frame == toss.last and hold.side == toss.catcher for toss in tosses)
+        return "catch" if caught else "follow"
+
+    def reachable_grips(
+        self, most: int = MOST_TURNS, *, thorough: bool | None = None
+    ) -> tuple[list[Grip], str | None]:
         """A grip for every hold with the least turn that reaches; what is missed if none does.
 
         Where an arm presses against what it holds whatever the grip, that is in ``pressed``.
+
+        Args:
+            most: Turns of a grip that are tried.
+            thorough: Whether a hand is also drawn back, and turned as the body would take the
+                thing; with all turns only, unless stated.
         """
+        thorough = most == MOST_TURNS if thorough is None else thorough
         chosen: list[Grip] = []
         for group in _groups(led_holds(self.source.holds, self.source.companions)):
             usual = list(turns(self.scene.thing(group[0].thing)))[:most]
             miss, grips = self._best_grips(chosen, group, usual)
-            if miss.ratio > 1.0 and miss.cuts and most == MOST_TURNS:
+            if miss.ratio > 1.0 and miss.cuts and thorough:
                 found = self._best_grips(chosen, group, list(drawn_turns()))
                 miss, grips = min((miss, grips), found, key=lambda tried: tried[0].ratio)
-            if miss.ratio > 1.0 and most == MOST_TURNS:
+            if miss.ratio > 1.0 and thorough:
                 found = self._eased_grips(chosen, group, miss, grips)
                 miss, grips = min((miss, grips), found, key=lambda tried: tried[0].ratio)
             chosen += grips

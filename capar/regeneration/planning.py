@@ -1,7 +1,7 @@
 """From a recorded performance to what another body is to do in another scene."""
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +12,7 @@ from capar.body.human import Human
 from capar.model.capture import TagType
 from capar.regeneration import attending
 from capar.regeneration.body_frames import BodyFrames
-from capar.regeneration.drafts import MOST_TURNS, Draft, check_companions, check_stance
+from capar.regeneration.drafts import MOST_TURNS, Beyond, Draft, check_companions, check_stance
 from capar.regeneration.errors import PlanError
 from capar.regeneration.fastening import resized_with
 from capar.regeneration.forces.flights import flight_notes, flights
@@ -27,6 +27,14 @@ from capar.regeneration.thing_goals import Goal
 
 FEW_TURNS = 6
 """Turns of a grip that are tried where another place or a remedy is sought."""
+
+TOSS_TURNS = 24
+"""Turns of a grip that are tried for a throw and a catch, each of which takes seconds [1]."""
+
+MOST_CHANGES, MOST_GRIPPED, MOST_PERFORMED = 24, 6, 2
+"""Of a toss so many other places, and so many remedies, are tried by a few postures with palms
+that turn freely; of those that come near, so many by turns of the grips; and so many are performed
+[1]."""
 
 STEPS_M = (
     (0.05, 0.0), (-0.05, 0.0), (0.1, 0.0), (-0.1, 0.0), (0.0, -0.1), (0.0, 0.1),
@@ -50,6 +58,68 @@ TOLD_M = 0.005
 
 SMALLER = 0.7
 """Likewise the size of what can be moved [1]."""
+
+
+Performs = Callable[[Draft], bool]
+"""Whether the motion of a draft passes every gate."""
+
+
+class BeyondReachError(PlanError):
+    """A palm does not come to where it is to be, however it is turned."""
+
+    def __init__(self, beyond: Beyond) -> None:
+        super().__init__(beyond.sentence)
+        self.frame = beyond.frame
+
+
+@dataclass
+class Search:
+    """Finds which other place or remedy does; of a toss it tries no more than ``MOST_...``."""
+
+    source: Source
+    style: Style
+    frames: frozenset[int] = frozenset()
+    """Frames of a toss at which reach is tried first."""
+
+    performs: Performs | None = None
+    """Tries the motion of a toss that is in reach; left out, reach is enough."""
+
+    changes: int = 0
+    gripped: int = 0
+    performed: int = 0
+
+    def finds(self, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
+        """Whether a body does it from just there, as far as that is tried.
+
+        Args:
+            scene: Where.
+            human: Who performs.
+            most: Turns of a grip that are tried, of a toss no more than usual here.
+        """
+        if not self.source.tosses:
+            return is_possible(self.source, scene, human, most)
+        if self.changes == MOST_CHANGES or self.gripped == MOST_GRIPPED:
+            return False
+        self.changes += 1
+        try:
+            check_stance(scene, human)
+            draft = Draft(self.source, scene, human, self.style)
+            if draft.beyond(self.frames):
+                return False
+            self.gripped += 1
+            grips, missed = draft.reachable_grips(FEW_TURNS)
+        except PlanError:
+            return False
+        if missed is not None or draft.pressed:
+            return False
+        draft.grips = tuple(grips)
+        return self.performs is None or self._performs(draft, self.performs)
+
+    def _performs(self, draft: Draft, performs: Performs) -> bool:
+        if self.performed == MOST_PERFORMED:
+            return False
+        self.performed += 1
+        return performs(draft)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +186,7 @@ def reachable(
     human: Human,
     style: Style | None = None,
     watched: frozenset[int] = frozenset(),
+    performs: Performs | None = None,
 ) -> Draft:
     """Goals, and grips that reach them, from where it stands or, unless it stays, from nearby.
 
@@ -124,7 +195,9 @@ def reachable(
         scene: Where it is performed.
         human: Who performs.
         style: How it is done; as it was recorded, unless stated.
-        watched: Frames at which reach is tried besides the usual ones.
+        watched: Frames at which reach is tried besides the usual ones; without any grip that
+            reaches there, nothing else is sought that would help.
+        performs: Tries the motion of what would help a toss; left out, reach is enough.
 
     Raises:
         PlanError: As ``plan`` says.
@@ -132,16 +205,21 @@ def reachable(
     style = style or own_style(source)
     check_companions(source, scene, human)
     pressed: Draft | None = None
+    frames = frozenset(frame for toss in source.tosses for frame in (toss.first, toss.last))
     try:
         found = _draft(source, scene, human, style, watched)
         if not found.pressed:
             return found
         pressed, why = found, found.pressed[0]
+    except BeyondReachError as error:
+        frames |= {error.frame}
+        why = str(error)
     except PlanError as error:
         why = str(error)
+    places = Search(source, style, frames)
     for ahead_m, aside_m in () if scene.stays else STEPS_M:
         nearby = beside(scene, ahead_m, aside_m)
-        if is_possible(source, nearby, human):
+        if places.finds(nearby, human):
             found = _draft(source, nearby, human, style, watched)
             way = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
             found.told.append(f"stands {way} of the given place, since there {why}")
@@ -149,7 +227,9 @@ def reachable(
     if pressed:
         pressed.told += [f"whatever the grip, {told}" for told in pressed.pressed]
         return pressed
-    raise PlanError(f"{why}; {_remedy(source, scene, human)}")
+    if watched:
+        raise PlanError(why)
+    raise PlanError(f"{why}; {_remedy(Search(source, style, frames, performs), scene, human)}")
 
 
 def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) -> str | None:
@@ -196,7 +276,13 @@ def _draft(
 ) -> Draft:
     check_stance(scene, human)
     draft = Draft(source, scene, human, style, watched)
-    grips, missed = draft.reachable_grips()
+    if source.tosses:
+        beyond = draft.beyond()
+        if beyond:
+            raise BeyondReachError(beyond)
+        grips, missed = draft.reachable_grips(TOSS_TURNS, thorough=True)
+    else:
+        grips, missed = draft.reachable_grips()
     if missed is not None:
         raise PlanError(missed)
     draft.grips = tuple(grips)
@@ -211,12 +297,17 @@ def beside(scene: Scene, ahead_m: float, aside_m: float) -> Scene:
     return replace(scene, place=(float(x), float(y)))
 
 
-def _remedy(source: Source, scene: Scene, human: Human) -> str:
+def _remedy(search: Search, scene: Scene, human: Human) -> str:
     """What would make it possible."""
-    for words, changed, body in _remedies(source, scene, human):
+    for words, changed, body in _remedies(search.source, scene, human):
         most = FEW_TURNS if body is human else MOST_TURNS
-        if is_possible(source, changed, body, most):
+        if search.finds(changed, body, most):
             return f"{words} would do"
+    if search.source.tosses:
+        return (
+            f"none of {search.changes} other heights, sizes, nearer places and bodies that were "
+            "tried would do"
+        )
     return "no other height, size, nearer place or recorded body that was tried would do"
 
 

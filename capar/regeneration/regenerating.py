@@ -49,7 +49,7 @@ def regenerate(
         PlanError: It is out of reach or impossible; the message says what would help.
     """
     where = scene or source.scene
-    draft = reachable(source, where, human, style)
+    draft = reachable(source, where, human, style, performs=_performs)
     return best_motion(draft, lambda watched: reachable(source, where, human, style, watched))
 
 
@@ -76,6 +76,11 @@ def best_motion(draft: Draft, again: Callable[[frozenset[int]], Draft]) -> tuple
             break
         best = min(best, found, key=_failures)
     return best
+
+
+def _performs(draft: Draft) -> bool:
+    """Whether the motion of a draft passes every gate."""
+    return _careful(draft)[1].passed
 
 
 def _careful(draft: Draft, guide: Guide | None = None) -> tuple[Motion, Quality]:
