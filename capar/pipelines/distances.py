@@ -10,6 +10,7 @@ from jaxtyping import Float, Int
 from capar.model.calibration import Found, PairCalibration
 from capar_rules.explain.clock import Apart
 from capar_rules.explain.reaches import Between, Reach
+from extractors.contact.arrivals import SETTLES
 from extractors.contact.contacts import points_apart
 from extractors.contact.proximity import separation
 from extractors.contact.touch_distances import touchable
@@ -83,6 +84,7 @@ def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
                 for name in (pair.first, pair.second)
                 if measurements.bodies.named(name).shape is None
             ),
+            pair.pivots and pair.found in SETTLES and pair.first in measurements.bodies.sensors,
         )
         for pair in measurements.calibration.pairs
         if pair.found is not Found.NEVER

@@ -143,6 +143,8 @@ def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
 
 def measured_of(observation: Observation, measurements: Measurements) -> Measured:
     """What explanations say of bodies beside the facts: ways, names and distances of touch."""
+    calibration = measurements.calibration
+    bodies = (*calibration.sensors, *calibration.objects)
     return Measured(
         ways(measurements),
         leans=_leans(measurements),
@@ -150,7 +152,9 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
         turns=_turns(measurements),
         names=body_names(observation),
         reaches=reaches(measurements),
-        floors={thing.name: thing.motion_floor_m for thing in measurements.calibration.objects},
+        floors={thing.name: thing.motion_floor_m for thing in bodies},
+        turned=_turned(measurements),
+        turn_floors={thing.name: thing.motion_floor_rad for thing in bodies},
         stand_ins={
             body: str(notice["shape"])
             for notice in observation.notices
@@ -240,6 +244,16 @@ def _leans(measurements: Measurements) -> Leans:
         orientations = measurements.bodies.named(name).orientations[first : last + 1]
         upright = np.array(measurements.calibration.body(name).upright)
         return float(np.nanmax(lean(orientations, upright)))
+
+    return most
+
+
+def _turned(measurements: Measurements) -> Leans:
+    """By what angle bodies were turned at most from how they were at the first of two frames."""
+
+    def most(name: str, first: int, last: int) -> float:
+        orientations = measurements.bodies.named(name).orientations[first : last + 1]
+        return float(np.nanmax(geometry.angle_between(orientations, orientations[:1])))
 
     return most
 

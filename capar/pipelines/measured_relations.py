@@ -51,6 +51,11 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
         for frame in (told.first, told.last)
         if math.isfinite(at_borders.get(frame, math.nan))
     ]
+    if "nearest" in forms:
+        inside = {at: gap for at, gap in at_borders.items() if told.first <= at <= told.last}
+        at = min(inside, key=lambda frame: np.nan_to_num(inside[frame], nan=np.inf))
+        label = f"{_gap(inside[at], highest)} at the nearest"
+        marks = [Mark(known.at(at), min(inside[at], highest), label)]
     between = _between(pair, shaped=all(known.body(name).shape for name in (one, other)))
     rough = [name for name in (one, other) if name in known.seen.explainer.measured.stand_ins]
     about = f" (shape of the {known.called(rough[0])}: a stand-in)" if rough else ""

@@ -14,6 +14,7 @@ from capar.model.facts import (
     Swings,
     Touching,
 )
+from capar.model.geometry import angle_between
 from capar.pipelines.explanation import AXES
 from capar.pipelines.measured_relations import RELATIONS, Series
 from capar.pipelines.shown_recording import CENTI, MILLI, Recording
@@ -22,8 +23,9 @@ from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Quantity
-from capar_rules.explain.quantities import LEAST_M, degrees, length, spread, upward
+from capar_rules.explain.quantities import LEAST_M, degrees, length, spread
 from capar_rules.explain.quantities import change as change_of
+from capar_rules.explain.told_motions import COURSES
 from extractors.calibration import thresholds_of
 from extractors.motion.leaning import lean, spin_steps
 from extractors.motion.object_motion import motion_floor, pace_at_rest, paces
@@ -108,6 +110,22 @@ def _spread(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     )
 
 
+def _turned(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
+    (name,) = told.bodies
+    orientations = known.body(name).orientations
+    angle = np.degrees(angle_between(orientations, orientations[told.first : told.first + 1]))
+    most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
+    floor = math.degrees(known.seen.measurements.calibration.body(name).motion_floor_rad)
+    return Panel(
+        f"{known.called(name)}: angle by which it is turned from how it was at "
+        f"{known.at(told.first):.2f} s",
+        "°",
+        (known.curve(angle),),
+        (Limit(floor, f"counts as moved from {floor:.0f}° on"),),
+        (Mark(known.at(most), float(angle[most]), f"at most {max(angle[most], 1.0):.0f}°"),),
+    )
+
+
 def _turn_in_all(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
     turned = turned_and_gone(known.body(name))[1]
@@ -145,13 +163,13 @@ def _height(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     rounded = np.diff(np.rint(MILLI * height[[told.first, told.last]]))[0] / MILLI
     marks = [Mark(known.at(told.last), CENTI * end, signed(rounded))]
     inside, least = up[told.first : told.last + 1], constants()["height_mm"] / MILLI
-    if "course" in forms and np.nanmax(inside) - max(end, 0.0) >= least:
+    if forms & set(COURSES) and np.nanmax(inside) - max(end, 0.0) >= least:
         top = told.first + int(np.nanargmax(inside))
-        marks.append(Mark(known.at(top), CENTI * float(up[top]), f"{spread(up[top])} at most"))
-    if "course" in forms and min(end, 0.0) - np.nanmin(inside) >= least:
+        marks.append(Mark(known.at(top), CENTI * float(up[top]), f"{length(up[top])} at most"))
+    if forms & set(COURSES) and min(end, 0.0) - np.nanmin(inside) >= least:
         low = told.first + int(np.nanargmin(inside))
         marks.append(
-            Mark(known.at(low), CENTI * float(up[low]), f"{MINUS}{spread(-up[low])} at most")
+            Mark(known.at(low), CENTI * float(up[low]), f"{MINUS}{length(-up[low])} at most")
         )
     limits = (
         _limit("height_mm", "up: {} or more"),
@@ -196,7 +214,8 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     measurements = known.seen.measurements
     upright = np.array(measurements.calibration.body(name).upright)
     angle = np.degrees(lean(known.body(name).orientations, upright))
-    limits, labels = [], [f"{angle[frame]:.0f}°" for frame in (told.first, told.last)]
+    ends = [round(MILLI * math.radians(angle[frame])) for frame in (told.first, told.last)]
+    limits, labels = [], [degrees(end) for end in ends]
     marks = [
         Mark(known.at(frame), float(angle[frame]), label)
         for frame, label in zip((told.first, told.last), labels, strict=True)
@@ -206,19 +225,16 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         limits.append(Limit(far, f"far over from {far:.0f}° on"))
     if "far_over" in forms:
         most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
-        bound = upward(float(angle[most]))
-        marks.append(Mark(known.at(most), float(angle[most]), f"{bound:.0f}° at most"))
+        marks.append(Mark(known.at(most), float(angle[most]), f"{angle[most]:.0f}° at most"))
     inside = angle[told.first : told.last + 1]
     most = told.first + int(np.nanargmax(inside))
     change_deg = math.degrees(constants()["turn_mrad"] / MILLI)
     beyond = float(np.nanmax(inside)) - max(inside[0], inside[-1]) >= change_deg
     if "not_leant" in forms and beyond and "far_over" not in forms:
-        bound = upward(float(angle[most]))
-        marks.append(Mark(known.at(most), float(angle[most]), f"{bound:.0f}° at most"))
+        marks.append(Mark(known.at(most), float(angle[most]), f"{angle[most]:.0f}° at most"))
     if forms & {"lean", "not_leant"}:
         change = math.degrees(constants()["turn_mrad"] / 1000.0)
         start = float(angle[told.first])
-        ends = (round(MILLI * math.radians(angle[frame])) for frame in (told.first, told.last))
         marks[1] = replace(marks[1], label=f"{labels[1]} (a change of {change_of(*ends)})")
         limits += [
             Limit(value, f"{change:.0f}° {sense} than at the start")
@@ -239,6 +255,7 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
 def _turn(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
     turned = np.concatenate([[0.0], np.cumsum(spin_steps(known.body(name).orientations))])
+    rounded = np.diff(np.rint(MILLI * turned[[told.first, told.last]]))[0]
     turned -= turned[told.first]
     turned *= -1.0 if turned[told.last] < 0.0 else 1.0
     least = constants()["turn_mrad"]
@@ -248,7 +265,7 @@ def _turn(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         "°",
         (known.curve(np.degrees(turned)),),
         (Limit(math.degrees(least / 1000.0), f"a turn: {degrees(least)} or more"),),
-        (Mark(known.at(told.last), math.degrees(end), degrees(round(1000.0 * end))),),
+        (Mark(known.at(told.last), math.degrees(end), degrees(int(rounded))),),
     )
 
 
@@ -359,6 +376,7 @@ SERIES: Mapping[Measure, Series] = {
     Measure.ASIDE: _aside,
     Measure.LEAN: _lean,
     Measure.TURN: _turn,
+    Measure.TURNED: _turned,
     Measure.TURN_IN_ALL: _turn_in_all,
     Measure.PATH: _path,
     Measure.SPEED: _speed,

@@ -32,8 +32,9 @@ ALL_BUT = 95.0
 """What has this share of a motion is told of all of it [%]."""
 
 OF_TIME = " of the time it moved"
+ALL_THE_TIME = " all the time it moved"
 
-MOST_TOLD = 3
+MOST_TOLD = 6
 """The most movers of one thing that are named, those with the greatest shares [1]."""
 
 
@@ -148,14 +149,19 @@ def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
     for mover, count in most:
         alike.setdefault(_how_long(count, len(movers)), []).append(f"the {spoken(mover)}")
     told = [f"by {joined(who)}{how_long}" for how_long, who in alike.items()]
-    told = [share.removesuffix(OF_TIME) for share in told[:-1]] + told[-1:]
+    several = len(told) > 1 and told[0].endswith(ALL_THE_TIME)
+    told = (
+        [told[0], *(share.replace(OF_TIME, " of it") for share in told[1:])]
+        if several
+        else [*(share.removesuffix(OF_TIME) for share in told[:-1]), *told[-1:]]
+    )
     others = len(shares) - len(most)
     told += [f"by {others} other{'s' * (others > 1)}"] if others else []
     alike_at = sum(len(_movers(found) - touching) > 1 for found in frames.values())
     word = "both" if len(shares) == 2 else "several"
     percent = round(100.0 * alike_at / len(frames))
     both = f" ({percent} % of it {word} at once)" * bool(percent)
-    both = both if len(shares) > 1 and " throughout" not in " ".join(told) else ""
+    both = both if len(shares) > 1 and ALL_THE_TIME not in " ".join(told) else ""
     remainder = _remainder(movers.values(), it="they were" if is_plural(thing) else "it was")
     return f"The {thing} {was} moved {joined(told)}{both}{remainder}{beside}."
 
@@ -208,7 +214,7 @@ def _remainder(frames: Collection[Collection[tuple[str, str]]], *, it: str) -> s
 
 def _how_long(count: int, total: int) -> str:
     share = 100.0 * count / total
-    return " throughout" if share >= ALL_BUT else f" for {share:.0f} %{OF_TIME}"
+    return ALL_THE_TIME if share >= ALL_BUT else f" for {share:.0f} %{OF_TIME}"
 
 
 def _together(movers: Collection[tuple[str, str]]) -> str:

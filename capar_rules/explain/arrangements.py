@@ -160,7 +160,7 @@ def not_laid(clock: Clock, segment: str) -> str:
         objects = clock.listed.get(segment, ())
         new = sorted(reached(clock, segment), key=lambda other: other not in objects)
         return (
-            f"came to touch the {clock.called(new[0])} (a PutDown makes no new contact, see below)"
+            f"came to touch the {clock.called(new[0])} (a PutDown makes no new contact)"
             if new
             else ""
         )

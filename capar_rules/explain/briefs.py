@@ -3,7 +3,6 @@
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from math import floor
 
 from capar_rules.explain.arrangements import hand_of, kept, reached, untracked
 from capar_rules.explain.claimed_measures import ANY, Measure
@@ -11,7 +10,8 @@ from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.leading import DOUBTED, nodes_below, parsed, rank
-from capar_rules.explain.quantities import degrees
+from capar_rules.explain.quantities import degrees, spread
+from capar_rules.explain.reaches import Between
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
 from capar_rules.explain.told_argument import UNBOUND
@@ -37,8 +37,24 @@ AT_ONE_SIDE = {
 TOUCHING_NOTHING = ("rests", "touches_no_object")
 """Predicates that say that an end-effector touches nothing."""
 
-LEANING = {"tips": "begins, tipping over included", "rights": "ends, righting included"}
-"""Kinds of events at which borders lie, of a far lean, as the summary says it."""
+LEANING = {
+    "tips": (
+        "the lean of the {thing} reaches {least}",
+        "the {thing} begins to tip, to {least} or more",
+    ),
+    "rights": (
+        "the lean of the {thing} falls below {least}",
+        "the {thing} has come upright again from a lean of {least} or more",
+    ),
+}
+"""Kinds of events at which borders lie, of a far lean, as the summary says it: where the thing
+leans so far at the border, and where its tipping or righting counts too."""
+
+FAR_M = 0.5
+"""What is no nearer than this [m] nobody takes for touched."""
+
+LEAN_SLACK_RAD = 0.05
+"""At a border at which a thing leans less by more than that [rad] it does not lean far over."""
 
 MOST_GAPS = 3
 """So many gaps of a track are told one by one."""
@@ -144,36 +160,52 @@ class Briefs:
             if predicate == "event" and arguments[2] in LEANING and arguments[3] == thing:
                 side = ticks.get(int(arguments[1])) if arguments[0] == hand else None
                 if side is not None:
-                    found[side] = LEANING[arguments[2]]
+                    found[side] = arguments[2]
         if not found or span is None:
             return []
-        called, least = self.clock.called(thing), round(1000.0 * self.clock.measured.far_over_rad)
-        borders = {"start": "begins", "end": "ends"}
-        lean = f"a lean of the {called} of {degrees(least)} or more"
-        told = listed(
-            [
-                f"{borders[side]} where {lean} {how}"
-                for side, how in sorted(found.items(), reverse=True)
-            ]
-        )
-        text = f"the segment {told}"
+        told = [
+            f"{begins} where {self._far_lean(found[side], thing, frame)}"
+            for side, begins, frame in zip(("start", "end"), ("begins", "ends"), span, strict=True)
+            if side in found
+        ]
+        text = f"the segment {listed(told)}"
         return [Claim(text, (Quantity(Measure.LEAN, (thing,), *span, form="leaning"),))]
 
-    def off_the_ground(self, claims: Iterable[Claim]) -> list[Claim]:
-        """How far a foot that touches nothing is from what is fixed, as it may seem to stand."""
+    def _far_lean(self, kind: str, thing: str, frame: int) -> str:
+        """What a thing that leans far over begins or ceases to do at a border."""
+        known = self.clock.measured
+        lean = known.postures.get((thing, frame), (0, 0))[0] / 1000.0
+        far = lean >= known.far_over_rad - LEAN_SLACK_RAD
+        least = degrees(round(1000.0 * known.far_over_rad))
+        return LEANING[kind][not far].format(thing=self.clock.called(thing), least=least)
+
+    def clear_of(self, claims: Iterable[Claim]) -> list[Claim]:
+        """How far an end-effector that touches nothing is from what it may seem to touch.
+
+        That is what is fixed, of a foot, and the nearest of all bodies of which shapes are known or
+        assumed.
+        """
         known, span = self.clock.measured, self.clock.span(self.clock.own)
-        foot = hand_of(self.clock.own)
+        hand, called = hand_of(self.clock.own), self.clock.called
         clear = any(claim.of in TOUCHING_NOTHING for claim in claims)
-        if not clear or foot not in known.feet or span is None or known.apart is None:
+        if not clear or span is None or known.apart is None:
             return []
-        found = []
-        for other in sorted(other for one, other in known.reaches if one == foot):
-            apart = None if other in known.movable else known.apart(foot, other, *span)
+        near: dict[str, float] = {}
+        for other in sorted(other for one, other in known.reaches if one == hand):
+            surfaces = known.reaches[hand, other].between is Between.SURFACES
+            apart = known.apart(hand, other, *span) if surfaces else None
             if apart is not None:
-                far, called = floor(1000.0 * apart[0]), self.clock.called
-                text = f"the {called(foot)} was {far} mm or more from the {called(other)}"
-                found.append(Claim(text, (Quantity(Measure.DISTANCE, (foot, other), *span),)))
-        return found
+                near[other] = apart[0]
+        fixed = [other for other in near if hand in known.feet and other not in known.movable]
+        nearest = min(near, key=lambda other: (near[other], other), default="")
+        shown = [*fixed, *([nearest] if near.get(nearest, FAR_M) < FAR_M else [])]
+        return [
+            Claim(
+                f"the {called(hand)} was {far} from the {called(other)} at the nearest",
+                (Quantity(Measure.DISTANCE, (hand, other), *span, form="nearest"),),
+            )
+            for other, far in {other: spread(near[other]) for other in shown}.items()
+        ]
 
     def also_reached(self, claims: Iterable[Claim]) -> list[Claim]:
         """What else the segment's thing came to touch, where of one thing it is told."""

@@ -30,6 +30,9 @@ class Measure(StrEnum):
     TURN = "turn"
     """By how much it has turned about the vertical since the first frame."""
 
+    TURNED = "turned"
+    """By what angle about any axis it is turned from how it was at the first frame."""
+
     TURN_IN_ALL = "turn_in_all"
     """By how much it has turned about any axis since the first frame."""
 
@@ -71,7 +74,7 @@ FORMS: Mapping[str, tuple[Measure, ...]] = {
     "back": (Measure.WAY, Measure.SPEED),
     "spread": (Measure.SPREAD,),
     "still": (Measure.SPREAD,),
-    "course": (Measure.HEIGHT, Measure.ASIDE),
+    **dict.fromkeys(("course", "steep_course", "level_course"), (Measure.HEIGHT, Measure.ASIDE)),
     "slope": (Measure.HEIGHT, Measure.ASIDE),
     "not_up": (Measure.HEIGHT, Measure.ASIDE),
     "not_down": (Measure.HEIGHT, Measure.ASIDE),
@@ -80,6 +83,7 @@ FORMS: Mapping[str, tuple[Measure, ...]] = {
     "lean_change": (Measure.LEAN,),
     "far_over": (Measure.LEAN,),
     "not_leant": (Measure.LEAN,),
+    "turned": (Measure.TURNED,),
     "turn": (Measure.TURN,),
     "not_turned": (Measure.TURN,),
     "turns_back": (Measure.TO_AND_FRO,),
@@ -136,6 +140,7 @@ ANY = "*"
 """Stands for each body there is."""
 
 ROWS: Mapping[str, tuple[tuple[str, Bodies], ...]] = {
+    **dict.fromkeys(("ceases_to_touch", "ceases_to_be_near"), (("touching", (1, ANY)),)),
     "touches_no_object": (("touching", (END, ANY)),),
     "rests": (("resting", (0,)), ("touching", (0, ANY))),
     "rests_afterwards": (("resting", (0,)),),

@@ -87,6 +87,12 @@ class Measured:
     reaches: Mapping[tuple[str, str], Reach] = field(default_factory=dict)
     """Up to which distance two bodies count as touching, by their names in either order."""
 
+    turned: Leans | None = None
+    """By what angle bodies were turned at most from how they were at the first of two frames."""
+
+    turn_floors: Mapping[str, float] = field(default_factory=dict)
+    """From what angle on a body counts as moved, by body [rad]."""
+
     stand_ins: Mapping[str, str] = field(default_factory=dict)
     """The shapes of bodies that stand in for the true ones, in words, by body."""
 

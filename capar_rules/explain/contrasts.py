@@ -1,7 +1,7 @@
 """Which neighbouring names a segment comes nearest to, and which condition decided."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from capar_rules.explain.near_misses import more_specific
 from capar_rules.explain.neighbours import (
     FEATURE,
     Neighbour,
+    all_generals_of,
     conditions_of_neighbours,
     feature_strings,
     names_of_strings,
@@ -98,6 +99,9 @@ class Contrast:
     nearness: float = HALF
     """By how much what decided missed being otherwise: a share of what was asked for."""
 
+    general: str = ""
+    """The first name, where the others are kinds of it."""
+
     @property
     def weak(self) -> bool:
         """Whether it is too far off to be told where a more general name can be told instead."""
@@ -121,9 +125,17 @@ class Contrast:
     @property
     def called(self) -> str:
         """The names, and what was so though the segment has none of them."""
-        *before, last = self.names
         though = f", though {_joined(self.though)}" if self.though else ""
-        return f"{', '.join(before)}{' or ' * bool(before)}{last}{though}"
+        return f"{alternatives(self.names, self.general)}{though}"
+
+
+def alternatives(names: Sequence[str], general: str = "") -> str:
+    """Names of which a segment has none; those that are kinds of the first one are told so."""
+    if general and len(names) > 1 and names[0] == general:
+        kinds = "its kind" if len(names) == 2 else "its kinds"
+        return f"{general} or {kinds} {_joined(names[1:])}"
+    *before, last = names
+    return f"{', '.join(before)}{' or ' * bool(before)}{last}"
 
 
 @dataclass(frozen=True)
@@ -173,16 +185,23 @@ def contrasts(
     direct = list(_nearest([each for each in features if each.direct], most=1))
     supported = list(_supported(base, derived, atoms, clock, tell))
     found_once = _told_once(supported + own + direct + indirect)
-    return tuple(_of_its_kind(base, contrast) for contrast in found_once)
+    own_names = {name, *all_generals_of(base, name)}
+    return tuple(_of_its_kind(base, contrast, own_names) for contrast in found_once)
 
 
-def _of_its_kind(base: RuleBase, contrast: Contrast) -> Contrast:
-    """A contrast by a row of the first name's own, of it and of the names that are kinds of it."""
-    if not contrast.direct:
+def _of_its_kind(base: RuleBase, contrast: Contrast, own: Collection[str]) -> Contrast:
+    """A contrast by the row of a name, of it and of the names that are kinds of it.
+
+    A name that is among the segment's own is left out.
+    """
+    general = contrast.names[0] if contrast.direct else contrast.general
+    if not contrast.by_features or not general:
         return contrast
-    kinds = more_specific(base.statements, contrast.names[0])
-    names = (name for name in contrast.names[1:] if name in kinds)
-    return replace(contrast, names=(contrast.names[0], *names))
+    kinds = more_specific(base.statements, general)
+    names = tuple(name for name in contrast.names if name in kinds)
+    if not contrast.direct and (general in own or contrast.though):
+        return replace(contrast, names=names or contrast.names, general="")
+    return replace(contrast, names=(general, *names)[:MOST_NAMES], general=general)
 
 
 def _told_once(found: Sequence[Contrast]) -> Iterator[Contrast]:
@@ -244,19 +263,20 @@ def _of_neighbour(
     ]
     if any(match is not None and not match.failing for _, match in matches):
         return  # it fits, and another name comes before it
+    as_featured = any(match is not None and not _featured(match) for _, match in matches)
     for form, match in matches:
-        if match is None:
-            continue
+        if match is None or (as_featured and _featured(match)):
+            continue  # where the features fit one rule for a name, those of another deny nothing
         clauses = [_clauses(base, each, match, atoms, tell) for each in match.failing]
         if not all(clauses):
             continue
-        numbered = (at for at, each in enumerate(clauses) if re.search(r"\d", "".join(each)))
-        place = next(numbered, 0)
+        place = _deciding(match, clauses)
         near = min(_nearness(base, each, match, clock) for each in match.failing)
         though = _though(other, form, match, tell)
         near = max(near, HALF) if though else near
-        read = {each.atoms[0].signature for each in match.failing}
-        featured, direct = bool(read & {FITS, FEATURE}), FEATURE in read
+        told = match.failing[place].atoms[0]
+        featured, direct = told.signature in (FITS, FEATURE), told.signature == FEATURE
+        general = split_arguments(told.text)[1].strip('"') if told.signature == FITS else ""
         where = f"{Path(form.rule.place.file).name}:{form.rule.place.line}"
         contrast = Contrast(
             (other.name,),
@@ -269,11 +289,28 @@ def _of_neighbour(
             numbered=bool(re.search(r"\d", "".join(clauses[place]))),
             direct=direct,
             nearness=near,
+            general=general,
         )
         related = other.steps, *other.distance(form)
         seen_first = not though, not other.below
-        order = *seen_first, len(match.failing), -round(near, 1), *related
+        brief = len(clauses[place])
+        order = *seen_first, len(match.failing), -round(near, 1), brief, *related
         yield _Found(direct, near, order, contrast)
+
+
+def _featured(match: Match) -> bool:
+    """Whether the features are among what keeps a rule from fitting."""
+    return any(each.atoms[0].signature in (FITS, FEATURE) for each in match.failing)
+
+
+def _deciding(match: Match, clauses: Sequence[Sequence[str]]) -> int:
+    """Which of the conditions that fail is told: one of the name's own, and one with a number."""
+
+    def order(at: int) -> tuple[bool, bool]:
+        features = match.failing[at].atoms[0].signature in (FITS, FEATURE)
+        return features, not re.search(r"\d", "".join(clauses[at]))
+
+    return min(range(len(clauses)), key=order)
 
 
 def _though(other: Neighbour, form: Form, match: Match, tell: Wording) -> tuple[str, ...]:
@@ -342,11 +379,12 @@ def _row(base: RuleBase, arguments: Sequence[str], atoms: Atoms, tell: Wording) 
     """What holds instead of the one string in which a row of another name differs."""
     segment, name = arguments
     own = {side: string for term, side, string in atoms.rows[FEATURE] if term == segment}
+    told = []
     for row in feature_strings(base, name.strip('"')):
         differing = [side for side, string in row.items() if own.get(side) != string]
         if len(differing) == 1:
-            return _feature((segment, differing[0], row[differing[0]]), atoms, tell)
-    return ()
+            told.append(_feature((segment, differing[0], row[differing[0]]), atoms, tell))
+    return min(filter(None, told), key=len, default=())
 
 
 def _feature(arguments: Sequence[str], atoms: Atoms, tell: Wording) -> tuple[str, ...]:

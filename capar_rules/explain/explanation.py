@@ -168,7 +168,8 @@ class Explainer:
         against = self._against(segment.name, derived, reasons[0], briefs) if segment.known else ()
         fitting = {name for term, name in derived.holding("fits") if term == clock.own}
         generals = generals_of(self.base, segment.name)
-        generals = [general for general in generals if general in fitting]
+        if len(generals) > 1:  # a kind of either is what it fits
+            generals = [general for general in generals if general in fitting]
         return _explanation(segment, reasons, briefs, against, generals)
 
     def _against(

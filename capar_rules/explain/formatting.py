@@ -18,6 +18,7 @@ OF_BODIES = (
     *SHIFTS,
     *(form for form in SHORTFALLS if form not in OF_ACTS),
     "spread",
+    "turned",
     "lean",
     "far_over",
     "turn",
@@ -89,6 +90,8 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold, Derivatio
             "comes": self._comes,
             "no_longer": self._no_longer,
             "unseen": self._unseen,
+            "all_along": self._all_along,
+            "touched": self._touched,
             "after_leaving": self._after_leaving,
             "lets_go": self._lets_go,
             "takes": self._takes,
@@ -98,7 +101,6 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold, Derivatio
             "ended_at": self._ended_at,
             "placed_end": self._placed_end,
             "not_laid": lambda: arrangements.not_laid(self.clock, self.text) or UNBOUND,
-            "least_height": lambda: quantities.length(constants()["height_mm"] / 1000.0),
             "hollow": self._hollow,
             "not_at_rest": self._not_at_rest,
             "rest_s": self._rest_s,
@@ -148,6 +150,9 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold, Derivatio
         if form == "not_laid":
             return arrangements.nearly_laid(self.clock, self.text)
         if form in BEARINGS:
+            little = arrangements.little_way(self.clock, self.text)
+            if little is not None:
+                return max(1000.0 * little / constants()["slide_mm"], quantities.FAR_OFF)
             found = arrangements.bearing(self.clock, self.text)
             if found is None:
                 return 0.0

@@ -130,6 +130,11 @@ def generals_of(base: RuleBase, name: str) -> list[str]:
     return sorted(_names(base).above.get(name, ()))
 
 
+def all_generals_of(base: RuleBase, name: str) -> frozenset[str]:
+    """What a primitive specialises, directly or by others."""
+    return _names(base).generals.get(name, frozenset())
+
+
 def feature_strings(base: RuleBase, name: str) -> list[dict[str, str]]:
     """The four strings of each row of a name, by their side."""
     return [dict(zip(SIDES, row, strict=True)) for row in _names(base).rows.get(name, ())]

@@ -68,12 +68,16 @@ def _from_start(metres: float) -> str:
 
 
 def spread(metres: float) -> str:
-    """Within what a body stayed, to stand after ``within``: rounded up, so that it is so."""
-    for unit, scale, digits in (("mm", 1000.0, 0), ("cm", 100.0, 0), ("m", 1.0, 1)):
-        bound = upward(scale * metres, digits)
-        if unit == "m" or bound < 100:
-            return f"{max(bound, 1.0):.{digits}f} {unit}"
-    raise AssertionError
+    """Within what a body stayed, to stand after ``within``."""
+    if round(1000.0 * metres) < 100:
+        return f"{max(1000.0 * metres, 1.0):.0f} mm"
+    return length(metres)
+
+
+def beyond(metres: float, limit_m: float) -> str:
+    """A distance beyond a limit, with a decimal where it would else read as the limit."""
+    told = spread(metres)
+    return f"{1000.0 * metres:.1f} mm" if told == spread(limit_m) else told
 
 
 def upward(value: float, digits: int = 0) -> float:
@@ -84,15 +88,35 @@ def upward(value: float, digits: int = 0) -> float:
 
 def course(x_mm: int, y_mm: int, z_mm: int) -> str:
     """A displacement by its rise and its way aside, to stand after ``ended``."""
+    return " and ".join(_course(x_mm, y_mm, z_mm).values()) or "where it began"
+
+
+def steep_course(x_mm: int, y_mm: int, z_mm: int) -> str:
+    """The same, with how far up or down counts."""
+    parts = _course(x_mm, y_mm, z_mm)
+    if "height" in parts:
+        parts["height"] += f" ({length(constants()['height_mm'] / 1000.0)} or more count)"
+    return " and ".join(parts.values()) or "where it began"
+
+
+def level_course(x_mm: int, y_mm: int, z_mm: int) -> str:
+    """The same, with how far to the side counts."""
+    parts = _course(x_mm, y_mm, z_mm)
+    if "aside" in parts:
+        parts["aside"] += f" ({length(constants()['aside_mm'] / 1000.0)} or more count)"
+    return " and ".join(parts.values()) or "where it began"
+
+
+def _course(x_mm: int, y_mm: int, z_mm: int) -> dict[str, str]:
     aside = math.hypot(x_mm, y_mm)
-    parts = []
+    parts = {}
     if abs(z_mm) < 1 <= aside:
-        parts.append("at the same height")
+        parts["height"] = "at the same height"
     elif abs(z_mm) >= 1:
-        parts.append(f"{length(abs(z_mm) / 1000.0)} {'higher' if z_mm > 0 else 'lower'}")
+        parts["height"] = f"{length(abs(z_mm) / 1000.0)} {'higher' if z_mm > 0 else 'lower'}"
     if aside >= LEVEL_MM:
-        parts.append(f"{length(aside / 1000.0)} to the side")
-    return " and ".join(parts) or "where it began"
+        parts["aside"] = f"{length(aside / 1000.0)} to the side"
+    return parts
 
 
 def slope(x_mm: int, y_mm: int, z_mm: int) -> str:
@@ -232,8 +256,8 @@ def _little(aside_mm: float, z_mm: float, wanted_mm: float) -> Shortfall:
     parts = [rise] * (abs(z_mm) >= 1.0) + [f"{aside} to the side"] * (aside_mm >= 1.0)
     level = "at the same height and " * (abs(z_mm) < 1.0)
     text = (
-        f"ended {level}only {' and '.join(parts)} ({least} up or down, or {far} to the side, "
-        "would count)"
+        f"ended {level}only {' and '.join(parts)} (up and down count from {least} on, to the side "
+        f"from {far} on)"
     )
     share = max(abs(z_mm) / known["height_mm"], aside_mm / known["aside_mm"])
     return Shortfall(text, share if wanted_mm >= 0.0 else FAR_OFF)
@@ -259,21 +283,20 @@ def not_turned(turned_mrad: int) -> Shortfall:
     """Why an angle about the vertical is no turn."""
     least = constants()["turn_mrad"]
     text = f"turned by {degrees(turned_mrad)} about the vertical, less than {degrees(least)}"
-    return Shortfall(text, abs(turned_mrad) / least)
+    return Shortfall(text, max(abs(turned_mrad) / least, FAR_OFF))
 
 
 def not_leant(before_mrad: int, after_mrad: int, most_mrad: int, posture: str) -> Shortfall:
     """Why a change of lean is no tilting; near to one is what leant much more in between."""
     least, change = constants()["turn_mrad"], abs(after_mrad - before_mrad)
     beyond = most_mrad - max(before_mrad, after_mrad) >= least
-    bound = upward(math.degrees(most_mrad / 1000.0))
-    most = f" ({bound:.0f}° at most in between)" * beyond
+    most = f" ({degrees(most_mrad)} at most in between)" * beyond
     text = (
         f"leant {degrees(before_mrad)} at the start and {degrees(after_mrad)} at the end from "
         f"{posture}{most}, a change of {_short_of(before_mrad, after_mrad)}, less than "
         f"{degrees(least)}"
     )
-    return Shortfall(text, max(change / least, NEAR_BY * beyond))
+    return Shortfall(text, max(change / least, NEAR_BY * beyond, FAR_OFF))
 
 
 def _short_of(before_mrad: int, after_mrad: int) -> str:

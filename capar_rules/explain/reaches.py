@@ -31,6 +31,9 @@ class Reach:
     unshaped: tuple[str, ...] = ()
     """Which of the two have no known shape."""
 
+    settles: bool = False
+    """Whether contact lasts but from when the end-effector has arrived until it sets off."""
+
     @property
     def told_mm(self) -> int:
         """The distance in whole millimetres, as it is told: rounded up, so that it bounds."""

@@ -1,13 +1,21 @@
 """The summary of an explanation: the name's conditions, and what decided against neighbours."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from capar_rules.explain.briefs import BOTH, COURSES, Briefs, listed
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Claim
-from capar_rules.explain.contrasts import BUT_FOR, LEAST_SEEN, MOST_NAMES, MOST_TOLD, Contrast
+from capar_rules.explain.contrasts import (
+    BUT_FOR,
+    LEAST_NEARNESS,
+    LEAST_SEEN,
+    MOST_NAMES,
+    MOST_TOLD,
+    Contrast,
+    alternatives,
+)
 from capar_rules.explain.leading import DOUBTED, OWN, leading, parsed, rank
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.touch_notes import touching
@@ -45,7 +53,11 @@ def summary(
     beside, fresh = _told_contrasts(_against(against, clauses, briefs), clauses)
     more = [clause for clause in clauses if clause not in own]
     kind = bool(generals and own and more) and all(one.by_features for one in fresh)
-    told = f"{name}, and not {listed(beside, 'or')}, because " if beside else f"{name}, because "
+    told = name + (f", a kind of {listed(generals)}," * bool(generals and not kind))
+    if beside:
+        denied = listed([alternatives(one.names, one.general) for one in beside], "or")
+        told += f"{',' * (not told.endswith(','))} and not {denied}"
+    told += f"{',' * (not told.endswith(','))} because "
     told += _by_subject(own if kind else clauses, subjects)
     if kind:
         told += f". It is a kind of {listed(generals)}, because {_by_subject(more, subjects)}"
@@ -58,12 +70,11 @@ def summary(
     mended = briefs.clauses(doubts)
     claims += [briefs.claims[clause] for clause in mended if clause in briefs.claims]
     told += f". {_sentence(listed(mended))}" * bool(mended)
-    extra = [*briefs.off_the_ground(claims), *briefs.also_reached(claims)]
+    extra = [*briefs.clear_of(claims), *briefs.also_reached(claims)]
     extra += briefs.leaning(reason)
     extra += briefs.lost([*claims, *extra])
     told += "".join(f". {_sentence(claim.text)}" for claim in extra)
-    names = [name, *(generals if kind else ()), *beside]
-    names += [other for contrast in fresh for other in contrast.names]
+    names = [name, *generals, *(other for one in (*beside, *fresh) for other in one.names)]
     text = f"{told}." + touching([*claims, *extra], briefs.clock)
     return Summary(text, (*claims, *extra), tuple(dict.fromkeys(names)))
 
@@ -107,11 +118,10 @@ def _shortened(contrast: Contrast, clauses: Sequence[str], briefs: Briefs) -> Co
 
 def _told_contrasts(
     against: Sequence[Contrast], clauses: Sequence[str]
-) -> tuple[tuple[str, ...], list[Contrast]]:
-    """The names that the whole of what is said denies, and the contrasts that are told.
+) -> tuple[list[Contrast], list[Contrast]]:
+    """The contrasts whose reason is among the name's own, and those that are told after it.
 
-    Those with reasons of their own precede those whose reason is among the name's own. Names of
-    other features are told only where too few others are; each name is told once.
+    Names of other features are told only where too few others are; each name is told once.
     """
     fresh = [one for one in against if one.though or one.clause not in clauses]
     alike = [one for one in against if one not in fresh and one.failing == 1]
@@ -121,7 +131,10 @@ def _told_contrasts(
     features += [one for one in (*fresh, *alike) if one.by_features and one.direct]
     order = [*order, *features]
     order.sort(key=lambda one: (one.nearness < LEAST_SEEN) + (one.nearness < BUT_FOR))
-    beside, told, names = tuple[str, ...](), list[Contrast](), set[str]()
+    names = {name for one in order if one.though for name in one.names}
+    beside, told = list(_beside(order, clauses, names)), list[Contrast]()
+    names = {name for one in beside for name in one.names}
+    order = [one for one in order if one.though or one.clause not in clauses]
     most = MOST_TOLD + any(contrast.though for contrast in order)
     for contrast in sorted(order, key=lambda one: not one.though):
         left = tuple(name for name in contrast.names if name not in names)
@@ -131,18 +144,29 @@ def _told_contrasts(
             both = (*told[alike_at[-1]].names, *left)[:MOST_NAMES]
             names |= {*both}
             told[alike_at[-1]] = replace(told[alike_at[-1]], names=both)
-        elif left and len(told) + bool(beside) < most and not (_idle(contrast) and told):
+        elif left and len(told) < most and not _idle(contrast, bool(told), bool(beside)):
             names |= {*left}
-            if [*clauses] == [contrast.clause] and not contrast.though:
-                beside = left
-            else:
-                told.append(replace(contrast, names=left))
+            told.append(replace(contrast, names=left))
     return beside, told
 
 
-def _idle(contrast: Contrast) -> bool:
-    """Whether nobody would ask for the names, where others are told."""
-    return contrast.nearness < LEAST_SEEN and not contrast.though
+def _beside(
+    order: Iterable[Contrast], clauses: Sequence[str], names: Collection[str]
+) -> Iterator[Contrast]:
+    """The contrasts whose reason is among the name's own, without names that are told apart."""
+    told = {*names}
+    for contrast in order:
+        left = tuple(name for name in contrast.names if name not in told)
+        left = left[: max(MOST_NAMES + len(names) - len(told), 0)]
+        if left and contrast.clause in clauses and not contrast.though:
+            told |= {*left}
+            yield replace(contrast, names=left)
+
+
+def _idle(contrast: Contrast, told: bool, beside: bool) -> bool:
+    """Whether nobody would ask for the names, where others are told, or denied by what is told."""
+    least = LEAST_SEEN if told else LEAST_NEARNESS if beside else 0.0
+    return contrast.nearness < least and not contrast.though
 
 
 def _subjects(nodes: Iterable[Reason], briefs: Briefs) -> list[str]:

@@ -17,8 +17,9 @@ class ArrangementsTold(ToldArgument):
         little = arrangements.little_way(self.clock, self.text)
         if little is not None:
             least = quantities.length(constants()["slide_mm"] / 1000.0)
-            aside = quantities.length(little) if little >= LEAST_ASIDE_M else "less than 1 mm"
-            told = f", from start to end, only {aside} to the side"
+            aside = f"only {quantities.length(little)}"
+            aside = aside if little >= LEAST_ASIDE_M else "less than 1 mm"
+            told = f", from start to end, {aside} to the side"
             return f"{told}, less than the {least} from which on a direction counts"
         found = arrangements.bearing(self.clock, self.text)
         if found is None:
@@ -138,6 +139,13 @@ class ArrangementsTold(ToldArgument):
         """What the segment's object touches at the side of the segment that stands second."""
         found = arrangements.met_at(self.clock, self.text, self.beside[1])
         return " and ".join(f"the {self.clock.called(each)}" for each in found) or UNBOUND
+
+    def _touched(self) -> str:
+        """That the segment's object touches, or counts as touching, something at that side."""
+        thing = self.clock.objects.get(self.text, "")
+        found = arrangements.met_at(self.clock, self.text, self.beside[1])
+        near = any(self.clock.measured.near(thing, other) for other in found)
+        return "counted as in contact with" if near else "touched"
 
     def _moved_in_hand(self) -> str:
         """That what a segment moves had moved before in the same hold, so that it began nowhere."""

@@ -105,7 +105,7 @@ class ContactsTold(ToldArgument):
         far = known.apart(one, other, *span) if known.apart and reach else None
         if far is None or reach is None or 1000.0 * far[1] <= reach.told_mm:
             return ""
-        return f" (at moments up to {quantities.spread(far[1])} apart)"
+        return f" (at moments up to {quantities.beyond(far[1], reach.distance_m)} apart)"
 
     def _after_leaving(self) -> str:
         """When the two bodies beside this parted before, if at the start or in the segment."""
@@ -127,7 +127,7 @@ class ContactsTold(ToldArgument):
         near = self.clock.measured.near(one, other)
         if self._lost_at("start"):
             met = "counted as in contact with" if near else "touched"
-            return f"{met} the {called} at the end ({end}) and was not tracked at the start"
+            return f"{met} the {called} {self._since_seen()}"
         touch = "count as in contact with" if near else "touch"
         return f"did not {touch} the {called} at the start ({start}) but did at the end ({end})"
 
@@ -138,6 +138,11 @@ class ContactsTold(ToldArgument):
         """
         end = self.clock.border(self.text, "end")
         if not self._lost_at("end"):
+            if self.beside[1] == self._hand and not self._touches_then(self._hand):
+                near = self.clock.measured.near(self._hand, self.beside[2])
+                return (
+                    f" and {'with ' * near}nothing recorded or assumed any more at the end ({end})"
+                )
             return f" but no longer at the end ({end})"
         span = self.clock.span(self.text) or (0, 0)
         last = max(
@@ -148,6 +153,36 @@ class ContactsTold(ToldArgument):
         if found is None or last <= found[1]:
             return f" and was not tracked at the end ({end})"
         return f" but no longer when last tracked ({self.clock.at(last)})"
+
+    def _since_seen(self) -> str:
+        """From when on two bodies touch of which one was not tracked at the start."""
+        span = self.clock.span(self.text) or (0, 0)
+        found = self._met_near(self.beside[1], self.beside[2], span[1])
+        since = max(found[0], span[0]) if found else span[1]
+        end = f"at the end ({self.clock.at(span[1])})"
+        at = end if since == span[1] else f"from {self.clock.at(since)} on"
+        return f"{at}, and was not tracked at the start, which counts as no contact"
+
+    def _touches_then(self, body: str) -> bool:
+        """Whether a body touches anything in the last frame of the segment and after it."""
+        span = self.clock.span(self.text) or (0, 0)
+        return any(
+            first <= span[1] < last
+            for pair, spans in self.clock.measured.contacts.items()
+            if body in pair
+            for first, last in spans
+        )
+
+    def _all_along(self) -> str:
+        """Throughout, if the end-effector touched nothing in between either."""
+        span = self.clock.span(self.text) or (0, 0)
+        between = any(
+            first < span[1] and last > span[0]
+            for pair, spans in self.clock.measured.contacts.items()
+            if self._hand in pair
+            for first, last in spans
+        )
+        return "at the start or at the end" if between else "throughout"
 
     def _unseen(self) -> str:
         """That the end-effector was not tracked at a border of the segment."""

@@ -11,7 +11,21 @@ from capar_rules.explain.told_argument import UNBOUND, ToldArgument
 DRIFT_M = 0.005
 """Of a body that stays, shorter distances are left out of sentences [m]."""
 
-SHIFTS = {"course": quantities.course, "place": quantities.place, "slope": quantities.slope}
+LEAST_MRAD = 17
+"""Smaller angles are told as that [1/1000 rad]: a degree."""
+
+COURSES: Mapping[str, Callable[[int, int, int], str]] = {
+    "course": quantities.course,
+    "steep_course": quantities.steep_course,
+    "level_course": quantities.level_course,
+}
+"""Formats of a displacement by its rise and its way aside."""
+
+SHIFTS: Mapping[str, Callable[[int, int, int], str]] = {
+    **COURSES,
+    "place": quantities.place,
+    "slope": quantities.slope,
+}
 """Formats of a displacement."""
 
 SHORT_WAYS: Mapping[str, Callable[[int, int, int], Shortfall]] = {
@@ -48,6 +62,7 @@ class MotionsTold(ToldArgument):
         if form in (*SHIFTS, "lean", "lean_change", "turn"):
             return self._between(form, body, span)
         turning = {
+            "turned": self._turned,
             "far_over": self._far_over,
             "turns_back": self._turns_back,
             "turned_in_all": self._turned_in_all,
@@ -61,9 +76,33 @@ class MotionsTold(ToldArgument):
         if moved is None:
             return UNBOUND if form == "spread" else ""
         if form != "way":
-            return _brief(form, moved)
+            return self._still(body, moved) if form == "still" else _brief(form, moved)
         late = span[1] - moving[1] > in_frames(times().merge_ms, self.clock.rate_hz)
-        return quantities.way(moved, f" until {self.clock.at(moving[1])}" * late)
+        told = quantities.way(moved, f" until {self.clock.at(moving[1])}" * late)
+        return told + self._in_course_of(body, moved, span)
+
+    def _still(self, body: str, moved: Way) -> str:
+        """Within what a body rested, and that it did so at more than one place if it is far."""
+        floor_m = self.clock.measured.floors.get(body)
+        told = f"{quantities.spread(moved.spread_m)} of its median place meanwhile"
+        if floor_m is None or moved.spread_m <= floor_m:
+            return told
+        place = f"within {quantities.length(floor_m)} of one place"
+        return f"{told}; rests {place}, and then of another, count as one"
+
+    def _in_course_of(self, body: str, moved: Way, span: tuple[int, int]) -> str:
+        """Of which motion a way is part that by itself would be too short to count."""
+        floor_m = self.clock.measured.floors.get(body, 0.0)
+        moves = self.clock.measured.moving.get(body, ())
+        longer = [
+            (first, last)
+            for first, last in moves
+            if first < span[1] and last > span[0] and (first < span[0] or last > span[1])
+        ]
+        if moved.path_m >= floor_m or not longer:
+            return ""
+        first, last = longer[0][0], longer[-1][1]
+        return f", as part of a motion from {self.clock.at(first)} to {self.clock.at(last)}"
 
     def _shortfall(self, form: str, body: str, span: tuple[int, int]) -> Shortfall:
         known = self.clock.measured
@@ -90,7 +129,7 @@ class MotionsTold(ToldArgument):
                 return "elsewhere"
             shift = [after - before for before, after in zip(start, end, strict=True)]
             told = SHIFTS[form](*shift)
-            return told + self._extremes(body, span, shift[2]) * (form == "course")
+            return told + self._extremes(body, span, shift[2]) * (form in COURSES)
         first, last = (known.postures.get((body, frame)) for frame in span)
         if first is None or last is None:
             return "by an unknown angle"
@@ -110,10 +149,18 @@ class MotionsTold(ToldArgument):
         low, high = (1000.0 * each for each in self.clock.measured.heights(body, *span))
         found = []
         if high - max(end_mm, 0) >= constants()["height_mm"]:
-            found.append(f"up to {quantities.spread(high / 1000.0)} higher")
+            found.append(f"up to {quantities.length(high / 1000.0)} higher")
         if min(end_mm, 0) - low >= constants()["height_mm"]:
-            found.append(f"down to {quantities.spread(-low / 1000.0)} lower")
+            found.append(f"down to {quantities.length(-low / 1000.0)} lower")
         return f" ({' and '.join(found)} in between)" if found else ""
+
+    def _turned(self, body: str, span: tuple[int, int]) -> str:
+        """By what angle a body that stays has turned at most."""
+        turned = self.clock.measured.turned
+        if turned is None or body not in self.clock.measured.turn_floors:
+            return ""
+        angle = max(round(1000.0 * turned(body, *span)), LEAST_MRAD)
+        return f" and turned by at most {quantities.degrees(angle)}"
 
     def _far_over(self, body: str, span: tuple[int, int]) -> str:
         """How far a body leant, and from where on that is far over."""
@@ -121,7 +168,7 @@ class MotionsTold(ToldArgument):
         first, last = (known.postures.get((body, frame)) for frame in span)
         if first is None or last is None or known.leans is None:
             return "far over"
-        most = quantities.upward(math.degrees(known.leans(body, *span)))
+        most = math.degrees(known.leans(body, *span))
         least = quantities.degrees(round(1000.0 * known.far_over_rad))
         told = f"{_leant(first[0], last[0])} from {self._posture_of(body)}"
         return f"{told} ({most:.0f}° at most; far over is {least} or more)"

@@ -18,13 +18,18 @@ class RestsTold(ToldArgument):
 
     def _floor(self) -> str:
         """From where on a body's motion counts, if it is known."""
-        floor_m = self.clock.measured.floors.get(self.text)
-        span = self._span_beside("spread")
+        known, span = self.clock.measured, self._span_beside("spread")
+        floor_m = known.floors.get(self.text)
         moved = None if span is None else self._moved(self.text, span)
-        if not floor_m or moved is None or moved.spread_m >= floor_m:
+        if span is None or not floor_m or moved is None or moved.spread_m >= floor_m:
             return " and did not count as moving"
-        far = quantities.length(floor_m)
-        return f", less than the {far} from which on it counts as moved"
+        far, turn = quantities.length(floor_m), known.turn_floors.get(self.text)
+        if known.turned is None or not turn:
+            return f", less than the {far} from which on it counts as moved"
+        if known.turned(self.text, *span) >= turn:
+            return " and did not count as moving"
+        angle = quantities.degrees(round(1000.0 * turn))
+        return f", less than the {far} or {angle} from which on it counts as moved"
 
     def _not_at_rest(self) -> str:
         """Why the segment is no rest: it lasted too briefly, or its end-effector moved."""
@@ -42,7 +47,7 @@ class RestsTold(ToldArgument):
         """That a rest is longer than a rest has to be."""
         span, least = self._span_beside("long"), constants()["rest_ms"]
         long = span is not None and span[1] - span[0] > in_frames(least, self.clock.rate_hz)
-        return f", longer than the {self._rest_s()} of a rest" * long
+        return f", {'longer than' if long else 'just'} the {self._rest_s()} of a rest"
 
     def _when(self) -> str:
         """A time, and whether it lies before or after the segment that is explained."""

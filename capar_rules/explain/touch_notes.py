@@ -6,11 +6,14 @@ from capar_rules.explain.briefs import listed
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.quantities import spread
+from capar_rules.explain.quantities import beyond
 from capar_rules.explain.reaches import Reach
 
 BEYOND = "at moments up to"
 """How a contact throughout the segment is told in which bodies were further apart for moments."""
+
+SETTLED = ", from when the hand stops coming nearer until it starts to go away"
+"""How contact is told to last for which only an estimated distance is known."""
 
 OF_CONTACT = (Measure.DISTANCE, Measure.BORNE)
 """What is measured of two bodies where their contact is told."""
@@ -45,7 +48,7 @@ def _bridged(claims: Iterable[Claim], clock: Clock) -> str:
         if reach is None or far is None or 1000.0 * far <= reach.told_mm or BEYOND in told:
             continue
         called = f"the {clock.called(one)} and the {clock.called(other)}"
-        found.append(f"{called} were up to {spread(far)} apart")
+        found.append(f"{called} were up to {beyond(far, reach.distance_m)} apart")
     return f" At moments within the contact {listed(found)}." if found else ""
 
 
@@ -75,7 +78,8 @@ def _between(reach: Reach, clock: Clock) -> str:
     """What of two bodies their distance is between, and which of them has no known shape."""
     called = [f"the {clock.called(name)}" for name in reach.unshaped]
     has = "has no known shape" if len(called) == 1 else "have no known shapes"
-    return reach.between.value + f", as {listed(called)} {has}" * bool(called)
+    unshaped = f", as {listed(called)} {has}" * bool(called)
+    return reach.between.value + unshaped + SETTLED * reach.settles
 
 
 def _counted(reaches: Mapping[str, Sequence[str]], between: str, *, several: bool) -> str:

@@ -196,8 +196,9 @@ def test_every_leaf_with_a_time_is_linked_to_its_frames(name: str) -> None:
 def test_the_summary_names_the_segment_and_its_reasons(name: str) -> None:
     for known, found in zip(told(name).known, told(name).explanations, strict=True):
         though = r"(, though [^.;]*)?"
-        names = rf"(, and not(?: just)? \w+(, \w+)*(,? or \w+)?{though})?"
-        opening = rf"{known.segment.name}{names}, because "
+        names = rf"(, and not \w+(, \w+)*(,? or (its kinds? )?\w+)*((,| and) \w+)*{though})?"
+        kind = r"(, a kind of \w+(?: and \w+)?)?"
+        opening = rf"{known.segment.name}{kind}{names},? because "
         assert re.match(opening, found.summary)
         assert found.summary.endswith(".")
 

@@ -12,7 +12,7 @@ from capar_rules.explain import quantities
 
 MM = st.integers(-3000, 3000)
 NUMBER = re.compile(r"([\d.]+) (mm|cm|m)\b")
-LITTLE = re.compile(r"ended (?:at the same height and )?only .* would count\)$")
+LITTLE = re.compile(r"ended (?:at the same height and )?only .* to the side from .* on\)$")
 SCALE = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
 
 
@@ -93,8 +93,8 @@ def test_two_lengths_that_decide_are_never_told_as_the_same(x: int, y: int, z: i
         ((100, 0, 48), "ended 48 mm higher, less than the 50 mm that count"),
         (
             (30, 0, 30),
-            "ended only 3 cm higher and 3 cm to the side (5 cm up or down, or 10 cm to the side, "
-            "would count)",
+            "ended only 3 cm higher and 3 cm to the side (up and down count from 5 cm on, "
+            "to the side from 10 cm on)",
         ),
         ((0, 0, -300), "ended 30 cm lower, not 5 cm or more higher"),
     ],

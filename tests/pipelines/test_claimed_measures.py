@@ -121,8 +121,8 @@ def reads_as_told(mark: Mark, unit: str) -> bool:
     value = abs(mark.value) * SCALES.get((unit, told_unit), 1.0)
     if mark.label.startswith("less than"):
         return value < float(number)
-    if mark.label.startswith("at most") or mark.label.endswith("at most"):
-        return 0.0 <= float(number) - value + 1e-6 <= 1.0 + 1e-5
+    if mark.label.startswith("at most"):
+        value = max(value, 1.0)  # nothing less is told
     slack = 0.1 if told_unit == "cm" else 1.0 if told_unit == "mm" else 0.01
     return abs(value - float(number)) <= ROUNDED[told_unit] + slack
 
@@ -148,10 +148,10 @@ def test_every_quantity_is_claimed_by_some_clause_and_has_a_panel() -> None:
 
 
 FURNITURE = re.compile(
-    r"[A-Z]\w+, and not [\w, ]+?(?=, though)|"
-    r"the rules say so|[A-Z]\w+(?:, and not [\w, ]+)?, because |"
+    r"[A-Z]\w+(?:, a kind of [\w ]+)?, and not [\w, ]+?(?=, though)|"
+    r"the rules say so|[A-Z]\w+(?:, a kind of [\w ]+)?(?:, and not [\w, ]+)?, because |"
     r"It is a kind of [\w, ]+?, because |"
-    r"[Nn]ot \w+(?:, \w+)*(?:,? or \w+)?|"
+    r"[Nn]ot \w+(?:, \w+)*(?:,? or (?:its kinds? )?\w+(?:, \w+)*(?:,? and \w+)?)?|"
     r", though|, because |, and at the end|"
     r"(?:A shape is|Shapes are) assumed for [^.]*(?:\.\d+[^.]*)*, so contact is known only "
     r"roughly\.|"
@@ -203,13 +203,13 @@ def test_contact_throughout_is_told_with_a_bound_of_every_distance_drawn(name: s
     count = 0
     for explanation in story.explanations:
         for claim in explanation.claims:
-            if not re.search(r"\bthroughout(?! but for)", claim.text):
+            if not claim.quantities or not re.search(r"\bthroughout(?! but for)", claim.text):
                 continue
             alone = replace(explanation, claims=(claim,))
             bodies = next(part.bodies for part in claim.quantities)
             reach = story.seen.explainer.measured.reaches[bodies[0], bodies[1]]
-            beyond = re.search(r"at moments up to (\d+) mm apart", claim.text)
-            most = int(beyond[1]) if beyond else reach.told_mm
+            beyond = re.search(r"at moments up to (\d+(?:\.\d)?) mm apart", claim.text)
+            most = float(beyond[1]) + 0.5 if beyond else reach.told_mm
             for panel in measured_panels(story.seen, alone):
                 (curve,) = panel.curves
                 times = curve.times
@@ -226,7 +226,7 @@ def test_each_mover_that_a_line_names_has_bars(name: str) -> None:
         about = story.seen.observation, explanation.ee, explanation.index
         labels = " ".join(row.label for row in measured_rows(story.seen, explanation))
         for line in mover_lines(*about):
-            for who in re.findall(r"by the ([\w ]+?)(?= throughout| for |,|;|\.| and )", line):
+            for who in re.findall(r"by the ([\w ]+?)(?= all the time| for |,|;|\.| and )", line):
                 assert f"by the {who}" in labels, line
 
 

@@ -14,6 +14,7 @@ from capar.model.facts import (
     Displaced,
     FlickerCorrection,
     Leans,
+    Moving,
     Posture,
     PressDirection,
     Resting,
@@ -194,12 +195,13 @@ def _asked(name: str, told: str) -> bool:
     return _is(int(asked) / 1000.0, told, slack_m=0.0)
 
 
-def counts_from(known: Known, body: str, far: str) -> bool:
+def counts_from(known: Known, body: str, far: str, angle: str) -> bool:
     """The body moves from there on, and stayed nearer to where it was."""
     calibration = known.seen.observation.calibration
     assert calibration is not None
-    (floor,) = [each.motion_floor_m for each in calibration.objects if each.name == body]
-    return _is(floor, far, slack_m=0.0)
+    (own,) = [each for each in calibration.objects if each.name == body]
+    turns = not angle or abs(math.degrees(own.motion_floor_rad) - float(angle)) <= 0.6
+    return turns and _is(own.motion_floor_m, far, slack_m=0.0)
 
 
 def too_low(known: Known, body: str, far: str, sense: str, asked: str) -> bool:
@@ -402,7 +404,7 @@ def apart_at_least(known: Known, body: str, far: str, other: str) -> bool:
     measured, span = known.seen.explainer.measured, known.segment
     assert measured.apart is not None
     found = measured.apart(body, name(other), span.first, span.last)
-    return found is not None and 0.0 <= found[0] - _metres(far) < 0.001
+    return found is not None and _is(found[0], far, slack_m=0.001)
 
 
 def far_over(known: Known, body: str, before: str, after: str, most: str, least: str) -> bool:
@@ -603,13 +605,37 @@ def held_until(known: Known, thing: str, hand: str, at: str) -> bool:
     return any(near(each.last, known.at(at)) for each in known.touching(hand, thing))
 
 
-def counted(known: Known, body: str, asked: str, sense: str) -> bool:
-    """It went so far up, down or to the side, to where it ended."""
-    shift = _shifted(known, body)
-    if sense == "to the side":
-        return _length(shift[:2]) > 0.1 - SMOOTHED_M and _asked("aside_mm", asked)
-    height = float(shift[2]) * (1.0 if sense == "up" else -1.0)
-    return height > 0.05 - SMOOTHED_M and _asked("height_mm", asked)
+def steep_enough(known: Known, body: str, rise: str, sense: str, asked: str, aside: str) -> bool:
+    """It went so far up or down, and aside, to where it ended."""
+    height = float(_shifted(known, body)[2]) * (1.0 if sense == "higher" else -1.0)
+    counts = height > 0.05 - SMOOTHED_M and _asked("height_mm", asked)
+    return counts and ended(known, body, rise, sense, aside)
+
+
+def level_enough(known: Known, body: str, rise: str, sense: str, aside: str, asked: str) -> bool:
+    """It went so far to the side, and up or down, to where it ended."""
+    counts = _length(_shifted(known, body)[:2]) > 0.1 - SMOOTHED_M and _asked("aside_mm", asked)
+    return counts and ended(known, body, rise, sense, aside)
+
+
+def part_of_motion(known: Known, body: str, first: str, last: str) -> bool:
+    """Motions of it begin and end then, beyond the segment."""
+    moves = [each for each in known.of(Moving) if each.object == body]
+    begins = any(near(each.first, known.at(first)) for each in moves)
+    return begins and any(near(each.last, known.at(last)) for each in moves)
+
+
+def seen_from(known: Known, _: str, at: str) -> bool:
+    """A contact begins then."""
+    return any(near(each.first, known.at(at)) for each in known.of(Touching))
+
+
+def kept_as_it_was(known: Known, body: str, far: str, angle: str) -> bool:
+    """It is never further from the middle of where it is, nor turned further from how it was."""
+    begin, end = known.segment.first, known.segment.last
+    turns = known.turns(body, range(begin, end + 1))
+    most = max(math.degrees(float((turns[0].inv() * turns).magnitude().max())), 1.0)
+    return kept_within(known, body, far) and (not angle or abs(most - float(angle)) <= 1.0)
 
 
 def leant_enough(known: Known, body: str, told: str, asked: str) -> bool:
@@ -650,14 +676,13 @@ def turned_back_so_often(known: Known, _: str, count: str) -> bool:
 
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (
-        rf"ended only {LENGTH} (higher|lower)(?: and {LENGTH} to the side)? \({LENGTH} up or down, "
-        rf"or {LENGTH} to the side, would count\)",
+        rf"ended only {LENGTH} (higher|lower)(?: and {LENGTH} to the side)? \(up and down "
+        rf"count from {LENGTH} on, to the side from {LENGTH} on\)",
         too_little,
     ),
     (
-        rf"ended at the same height and only ()(){LENGTH} to the side \({LENGTH} up or down, or "
-        rf"{LENGTH} to the side, "
-        r"would count\)",
+        rf"ended at the same height and only ()(){LENGTH} to the side \(up and down count from "
+        rf"{LENGTH} on, to the side from {LENGTH} on\)",
         too_little,
     ),
     (rf"ended {LENGTH} (higher|lower), less than the {LENGTH} that count", too_low),
@@ -669,7 +694,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"went further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
     (rf"went further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
     (
-        rf"only {LENGTH} to the side, less than the {LENGTH} from which on a direction counts",
+        rf"(?:only|less than) {LENGTH} to the side, less than the {LENGTH} from which on a "
+        "direction counts",
         too_short_for_a_direction,
     ),
     (rf"ended {LENGTH} to the side, less than the {LENGTH} that count", too_little_aside),
@@ -739,7 +765,6 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
             near(each.last, known.at(at)) for each in known.of(Touching) if each.body == body
         ),
     ),
-    (rf"{LENGTH} or more (up|down|to the side) count", counted),
     (
         rf"(?:before|until|when|where) the {NAME} (?:let go of|was last tracked at) (?:it|them),? "
         rf"at {TIME}",
@@ -748,8 +773,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"was moved again from {TIME} on", moved_on),
     (rf"was still moving at the end \({TIME}\)", moved_on),
     (
-        rf"(?:of|touched) the {NAME} at the start \(until {TIME}\) and again at the end \(from "
-        rf"{TIME}\)",
+        rf"(?:with|touched) the {NAME} at the start, but not from {TIME} to {TIME}, and again at "
+        r"the end",
         again,
     ),
     (rf"the {NAME} at the start \({TIME}\) and until {TIME}", touched_until),
@@ -768,8 +793,18 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (r"\((\d+) % of it(?: at \d+\.\d\d s)?\)", shared),
     (rf"ended {LENGTH} from where it began", ended_away),
-    (rf"\((?:(up) to {LENGTH} higher|(down) to {LENGTH} lower)(?: and down to {LENGTH} lower)? in "
-     r"between", been_beyond),
+    (
+        rf"ended {LENGTH} (higher|lower) \({LENGTH} or more count(?:\)|(?=;))"
+        rf"(?: and {LENGTH} to the side)?",
+        steep_enough,
+    ),
+    (
+        rf"ended (?:{LENGTH} (higher|lower) and |at the same height and |){LENGTH} to the side "
+        rf"\({LENGTH} or more count(?:\)|(?=;))",
+        level_enough,
+    ),
+    (rf"(?:\(|; )(?:(up) to {LENGTH} higher|(down) to {LENGTH} lower)"
+     rf"(?: and down to {LENGTH} lower)? in between", been_beyond),
     (rf"ended {LENGTH} (higher|lower)(?: and {LENGTH} to the side)?", ended),
     (rf"ended (at the same height)() and {LENGTH} to the side",
      lambda known, body, _, sense, aside: ended(known, body, "", sense, aside)),
@@ -802,8 +837,12 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         lambda known, _, __, told: rest_lasts(known, _, told),
     ),
     (rf"up to {LENGTH} apart", apart_at_most),
-    (rf"was {LENGTH} or more from the {NAME}(?=\.)", apart_at_least),
-    (rf"a lean of the {NAME} of {DEGREES} or more", leant_far),
+    (rf"was {LENGTH} from the {NAME} at the nearest", apart_at_least),
+    (rf"the lean of the {NAME} (?:reaches|falls below) {DEGREES}", leant_far),
+    (rf"the {NAME} begins to tip, to {DEGREES} or more", leant_far),
+    (rf"the {NAME} has come upright again from a lean of {DEGREES} or more", leant_far),
+    (rf"as part of a motion from {TIME} to {TIME}", part_of_motion),
+    (rf"from {TIME} on, and was not tracked at the start", seen_from),
     (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
     (
         rf"had been in contact with the {NAME} since {TIME}, before the {NAME} touched (?:it|them) "
@@ -826,15 +865,20 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"turned by {DEGREES} about the vertical \({DEGREES} or more count\)", spun_enough),
     (rf"stayed in place \(within {LENGTH} of its median place in the segment\)", kept_within),
     (
-        rf"was at rest from {TIME} to {TIME}(?:, longer than the 0\.40 s of a rest)? \(it stayed "
-        rf"within {LENGTH} of its median place meanwhile\)",
+        rf"counted as at rest from {TIME} to {TIME}, (?:longer than|just) the 0\.40 s of a rest "
+        rf"\(it stayed within {LENGTH} of its median place meanwhile(?:; rests within 1 cm of one "
+        r"place, and then of another, count as one)?\)",
         lambda known, body, first, last, far: kept_within(known, body, far, first, last),
     ),
     (r"longer than the (\d\.\d\d) s of a rest", rests_longer),
     (rf"(?:had no rest of|at rest for) {TIME} or more", rest_lasts),
     (rf"touched the {NAME} at {TIME}", touched_at),
-    (rf"stayed within {LENGTH} of its median place in the segment", kept_within),
-    (rf"less than the {LENGTH} from which on it counts as moved", counts_from),
+    (
+        rf"stayed within {LENGTH} of its median place(?: and turned by at most {DEGREES})? in the "
+        r"segment",
+        kept_as_it_was,
+    ),
+    (rf"less than the {LENGTH}(?: or {DEGREES})? from which on it counts as moved", counts_from),
     (rf"no longer when last tracked \({TIME}\)", earlier),
     (rf"throughout but for {TIME} to {TIME}", parted),
     (rf"at the start \({TIME}\)", starts),

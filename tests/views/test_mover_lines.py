@@ -44,7 +44,9 @@ def test_a_thing_that_now_is_steady_in_a_hand_and_now_slips_is_told_in_the_same_
 
 def test_whoever_joins_is_told_with_the_share_of_the_time_and_who_holds_on_without() -> None:
     line = told(by("right_hand"), by("left_hand", share=0.5))
-    assert line.startswith("The mug was moved by the right hand throughout and by the left hand")
+    assert line.startswith(
+        "The mug was moved by the right hand all the time it moved and by the left hand"
+    )
     assert "for 5" in line and line.count("%") == 1
 
 
