@@ -151,7 +151,7 @@ class ContactsTold(ToldArgument):
         )
         found = self._met_near(self.beside[1], self.beside[2], span[0])
         if found is None or last <= found[1]:
-            return f" and was not tracked at the end ({end})"
+            return f" and was not tracked at the end ({end}), which counts as no contact"
         return f" but no longer when last tracked ({self.clock.at(last)})"
 
     def _since_seen(self) -> str:
