@@ -68,7 +68,7 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
         bars=touching,
         bars_label="counts as contact",
         held=held(Touching, one, other),
-        unheld="counts as contact nowhere in the time shown",
+        unheld="no contact in the time shown",
         highest=highest,
         lost=known.lost(one, other),
     )

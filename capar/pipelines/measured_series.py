@@ -71,7 +71,7 @@ def _way(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         known.bars(Moving, object=name),
         "counts as moving",
         held(Moving, name),
-        "counts as moving nowhere in the time shown" if known.is_object(name) else "",
+        "no motion that counts in the time shown" if known.is_object(name) else "",
     )
 
 
