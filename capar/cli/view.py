@@ -52,7 +52,7 @@ def view(
     if html is None and png is None:
         raise CaparError("nothing to write: give --html FILE, or --png FILE with --at SECONDS")
     trial = read_capture(capture)
-    shown = stage(trial)
+    shown = stage(trial, at_s=at)
     if fit:
         from capar.body.whole_bodies import fit_body
         from capar.views.viewer.mannequin import with_mannequin

@@ -1,19 +1,19 @@
 """What the summary of an explanation claims, as a picture: a panel for each quantity."""
 
 from collections import defaultdict
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from capar.model.segment_address import SegmentAddress
 from capar.pipelines.explanation import Explained, segment_named
 from capar.pipelines.measured_rows import claimed_rows, mover_rows
-from capar.pipelines.measured_series import SERIES
+from capar.pipelines.measured_series import BESIDE, SERIES
 from capar.pipelines.shown_recording import Recording
 from capar.views.lettering import Span
 from capar.views.measured_picture import MeasuredPicture, draw_measured
 from capar.views.movers import mover_lines, mover_stretches
-from capar.views.panels import Panel, Row
+from capar.views.panels import Held, Panel, Row
 from capar.views.rows import kind_of
 from capar_rules.explain.claims import Quantity
 from capar_rules.explain.explanation import Explanation
@@ -45,15 +45,16 @@ def draw_claims(
     }
     address = SegmentAddress(told.ee, told.index)
     about = seen.observation, told.ee, told.index
+    panels = measured_panels(seen, told)
     title = f"{address}  {told.name}  {told.start_s:.2f} to {told.end_s:.2f} s"
     picture = MeasuredPicture(
         title,
         "\n".join([told.summary, *mover_lines(*about, staying=staying)]),
         list(spans.values()),
         spans[told.index],
-        measured_panels(seen, told),
+        panels,
         (first / rate, last / rate),
-        measured_rows(seen, told, staying=staying),
+        measured_rows(seen, told, panels, staying=staying),
     )
     draw_measured(picture, path)
 
@@ -91,19 +92,47 @@ def measured_panels(seen: Explained, told: Explanation) -> tuple[Panel, ...]:
             shown = replace(quantity, form="", halts=())
             forms[shown].add(quantity.form)
             halts[shown].update(quantity.halts)
+    known = Recording(seen, span)
     found = (
-        SERIES[quantity.measure](
-            Recording(seen, span), replace(quantity, halts=tuple(halts[quantity])), frozenset(said)
-        )
+        series(known, replace(quantity, halts=tuple(halts[quantity])), frozenset(said))
         for quantity, said in forms.items()
+        for series in (SERIES[quantity.measure], *BESIDE.get(quantity.measure, ()))
     )
-    return tuple(panel for panel in found if panel is not None)
+    return _each_bar_once([panel for panel in found if panel is not None])
+
+
+def _each_bar_once(panels: Sequence[Panel]) -> tuple[Panel, ...]:
+    """The same panels, where those that show what others show have no bars.
+
+    Bars stay where it is told what is said of none, or else where they come first.
+    """
+    once: dict[Held, Panel] = {}
+    for panel in sorted(panels, key=lambda panel: not panel.unheld):
+        if panel.bars and panel.held and panel.span_s is None:
+            once.setdefault(panel.held, panel)
+    return tuple(
+        replace(panel, bars=(), unheld="") if once.get(panel.held, panel) is not panel else panel
+        for panel in panels
+    )
 
 
 def measured_rows(
-    seen: Explained, told: Explanation, *, staying: Collection[str] = ()
+    seen: Explained,
+    told: Explanation,
+    panels: Sequence[Panel] = (),
+    *,
+    staying: Collection[str] = (),
 ) -> tuple[Row, ...]:
-    """A row for what held when, of what the summary and lines of movers say without a number."""
+    """A row for what held when, of what the summary and lines of movers say without a number.
+
+    Args:
+        seen: The capture.
+        told: The explanation of one of its segments.
+        panels: Those above the rows, which do not tell again what these show.
+        staying: Objects whose motion does not count there.
+    """
     known = Recording(seen, shown_span(seen, told))
     moved = mover_stretches(seen.observation, told.ee, told.index, staying=staying)
-    return (*claimed_rows(known, told.claims), *mover_rows(known, moved))
+    shown = {held for panel in panels for held in panel.shows}
+    rows = (row for row in claimed_rows(known, told.claims) if row.held not in shown)
+    return (*rows, *mover_rows(known, moved))

@@ -1,14 +1,14 @@
 """What is measured of two bodies as a panel over time: how far apart, above, inside, which way."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from capar.model.calibration import Found, PairCalibration
 from capar.model.facts import ClosingSpeed, Lies, Touching
 from capar.pipelines.distances import distances, frames_between
-from capar.pipelines.shown_recording import CENTI, MILLI, Recording
+from capar.pipelines.shown_recording import CENTI, MILLI, Recording, held, told_beside
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG, steepest_deg
@@ -24,7 +24,7 @@ CLOSE = 5.0
 
 
 def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel | None:
-    one, other = told.bodies
+    first, second = one, other = told.bodies
     calibration = known.seen.measurements.calibration
     pair = calibration.sought(one, other)
     if pair is None:
@@ -35,7 +35,7 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
     touching = known.bars(Touching, body=one, other=other)
     every = known.frames
     spans = (every[0], told.first), (told.first, told.last), (told.last, every[-1])
-    some = [frames_between(int(first), int(last)) for first, last in spans if first <= last]
+    some = [frames_between(int(begin), int(end)) for begin, end in spans if begin <= end]
     frames = np.unique(np.clip(np.concatenate(some), every[0], every[-1]))
     apart = MILLI * distances(known.seen.measurements, pair, frames)
     limits = {MILLI * pair.touch_m: "contact begins within {:.0f} mm"}
@@ -45,9 +45,14 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
     if pair.found is Found.NEVER:
         limits = {}
     highest = CLOSE * max([*limits, 20.0])
+    named = [Limit(value, label.format(upward(value))) for value, label in limits.items()]
     at_borders = dict(zip(frames.tolist(), apart.tolist(), strict=True))
     marks = [
-        Mark(known.at(frame), min(at_borders[frame], highest), _gap(at_borders[frame], highest))
+        Mark(
+            known.at(frame),
+            min(at_borders[frame], highest),
+            _gap(at_borders[frame], named, highest),
+        )
         for frame in (told.first, told.last)
         if math.isfinite(at_borders.get(frame, math.nan))
     ]
@@ -60,22 +65,28 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
     rough = [name for name in (one, other) if name in known.seen.explainer.measured.stand_ins]
     about = f" (shape of the {known.called(rough[0])}: a stand-in)" if rough else ""
     return Panel(
-        f"{known.called(one)} to {known.called(other)}: distance of {between}{about}",
+        f"{known.called(first)} to {known.called(second)}: distance of {between}{about}",
         "mm",
         (Curve(frames / known.rate, apart),),
-        tuple(Limit(value, label.format(upward(value))) for value, label in limits.items()),
+        tuple(named),
         tuple(marks),
         bars=touching,
         bars_label="counts as contact",
+        held=held(Touching, one, other),
+        unheld="no contact in the time shown",
         highest=highest,
         lost=known.lost(one, other),
     )
 
 
-def _gap(millimetres: float, highest: float) -> str:
+def _gap(millimetres: float, limits: Sequence[Limit], highest: float) -> str:
     """A distance of two bodies, as a mark has it; that it is cut off beyond the highest shown."""
-    told = f"{millimetres:.0f} mm" if millimetres < 100.0 else length(millimetres / MILLI)
+    told = told_beside(millimetres, limits, _apart, " mm")
     return told + " (cut off)" * (millimetres > highest)
+
+
+def _apart(millimetres: float) -> str:
+    return f"{millimetres:.0f} mm" if millimetres < 100.0 else length(millimetres / MILLI)
 
 
 def _between(pair: PairCalibration, *, shaped: bool) -> str:
@@ -106,6 +117,7 @@ def _closing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         (Mark(known.at(near.first), float(near.speed), f"{near.speed} mm/s"),) if near else (),
         known.bars(Touching, body=one, other=other),
         "counts as contact",
+        held(Touching, one, other),
     )
 
 
@@ -170,6 +182,7 @@ def _above(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         tuple(marks),
         known.bars(Lies, body=name, how="above", other=other),
         "counts as above",
+        held(Lies, name, "above", other),
     )
 
 
@@ -205,6 +218,7 @@ def _inside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         tuple(Mark(known.at(one), float(share[one]), f"{share[one]:.0f} %") for one in known_at),
         known.bars(Lies, body=name, how="dips" if dips else "inside", other=other),
         "dips in, as some of an end is well inside" if dips else "counts as inside",
+        held(Lies, name, "dips" if dips else "inside", other),
     )
 
 

@@ -1,13 +1,13 @@
 """What held when, of what an explanation says without a number, as bars over time."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 
-from capar.model.facts import Fact, Link, Solid, Tag
+from capar.model.facts import Fact, Link, Resting, Solid, Tag
 from capar.pipelines.shown_recording import Recording
 from capar.views.lettering import Span
 from capar.views.movers import MoverStretches
-from capar.views.panels import Row
+from capar.views.panels import Held, Row
 from capar_rules.explain.claimed_measures import ANY
 from capar_rules.explain.claims import Claim, Stretches
 from capar_rules.explain.instants import STRETCHES
@@ -31,7 +31,8 @@ LABELS: Mapping[str, str] = {
 """By the predicate of a fact: what a row of its stretches is called."""
 
 NOTHING = "{0}: in contact with no recorded or assumed object in the time shown"
-"""The row of a body that touches nothing."""
+NO_OBJECT = "{0}: in contact with no object (the recording has none)"
+"""The row of a body that touches nothing, and where there is nothing to touch."""
 
 FEWEST = 4
 """Where more bodies would have a row each, they share one [1]."""
@@ -57,7 +58,9 @@ def mover_rows(known: Recording, movers: Sequence[MoverStretches]) -> Iterator[R
 
 def _rows(known: Recording, wanted: Stretches) -> Iterator[Row]:
     if wanted.predicate == "lost":
-        yield _row(known, "lost", wanted.bodies, known.lost(*wanted.bodies))
+        called = tuple(known.called(body) for body in wanted.bodies)
+        row = _row(known, "lost", wanted.bodies, known.lost(*wanted.bodies))
+        yield replace(row, held=("lost", *called))
         return
     if wanted.predicate == "thing":
         yield _thing(known, *wanted.bodies)
@@ -71,6 +74,8 @@ def _rows(known: Recording, wanted: Stretches) -> Iterator[Row]:
         if type(fact).predicate == wanted.predicate and _matches(fact, wanted.bodies):
             about = _about(fact, count)
             first, last = (getattr(fact, end) for end in ("first", "last"))
+            if isinstance(fact, Resting) and last - first < known.least_rest:
+                continue
             if first <= known.span[1] and last >= known.span[0]:
                 begin, end = max(first, known.span[0]), min(last, known.span[1])
                 found.setdefault(about, []).append(Span(known.at(begin), known.at(end), ""))
@@ -80,9 +85,16 @@ def _rows(known: Recording, wanted: Stretches) -> Iterator[Row]:
         yield _row(known, wanted.predicate, about, bars)
     if not found:
         named = [known.called(body) for body in wanted.bodies if body != ANY]
-        none = NOTHING if ANY in wanted.bodies else LABELS.get(wanted.predicate, "")
-        label = none.format(*named) if none else " ".join(named)
-        yield Row(label if none == NOTHING else f"{label} (not in the time shown)", ())
+        if ANY in wanted.bodies:
+            none = NOTHING if known.seen.observation.objects else NO_OBJECT
+            yield Row(none.format(*named), ())
+            return
+        label = LABELS.get(wanted.predicate, " ".join(["{}"] * len(named))).format(*named)
+        yield Row(f"{label} (not in the time shown)", (), _held(wanted.predicate, wanted.bodies))
+
+
+def _held(predicate: str, about: Sequence[str]) -> Held:
+    return (predicate, *sorted(about))
 
 
 def _matches(fact: Fact, bodies: Sequence[str]) -> bool:
@@ -100,7 +112,7 @@ def _row(known: Recording, predicate: str, about: Sequence[str], bars: Sequence[
         "any recorded or assumed object" if body == ANY else known.called(body) for body in about
     ]
     label = LABELS.get(predicate, "{0}: " + predicate.replace("_", " "))
-    return Row(label.format(*called), tuple(bars))
+    return Row(label.format(*called), tuple(bars), _held(predicate, about))
 
 
 def _thing(known: Recording, name: str) -> Row:

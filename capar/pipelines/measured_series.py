@@ -1,8 +1,9 @@
 """Each quantity that a claim rests on as a panel over time, with its limits and its numbers."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from capar.model.facts import (
 from capar.model.geometry import angle_between
 from capar.pipelines.explanation import AXES
 from capar.pipelines.measured_relations import RELATIONS, Series
-from capar.pipelines.shown_recording import CENTI, MILLI, Recording
+from capar.pipelines.shown_recording import CENTI, MILLI, Recording, held, told_beside
 from capar.views.lettering import Span
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
@@ -32,6 +33,7 @@ from extractors.motion.object_motion import motion_floor, pace_at_rest, paces
 from extractors.motion.turning_points import most_turns
 from extractors.relations.places import turned_and_gone
 from extractors.signals.clock import frame_rate
+from extractors.thresholds import Thresholds
 
 FAST = 10.0
 """A speed is shown up to so many times what may be rest [1]."""
@@ -50,7 +52,10 @@ def _way(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         ends = np.rint(MILLI * middles[[told.first, told.last]])
         placed = float(np.linalg.norm(ends[1] - ends[0])) / MILLI
     short = placed < LEAST_M and (winding or "way" not in forms)
-    label = f"less than {length(LEAST_M)}" if short else length(placed)
+    limits = [known.floor(name)] if "way" in forms and known.is_object(name) else []
+    for form in sorted(forms & set(WAYS)):
+        limits.append(_limit(*WAYS[form]))
+    label = f"less than {length(LEAST_M)}" if short else _length(CENTI * placed, limits)
     marks = [Mark(known.at(told.last), CENTI * end, label)]
     if winding:
         steps = np.nan_to_num(np.linalg.norm(np.diff(middles, axis=0), axis=1))
@@ -59,10 +64,6 @@ def _way(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         inside = np.where(np.arange(len(path)) < told.first, np.nan, path)
         curves.append(known.curve(CENTI * inside, "along its path"))
         marks.append(Mark(known.at(told.last), CENTI * path[told.last], length(path[told.last])))
-    limits = [known.floor(name)] if "way" in forms and known.is_object(name) else []
-    for form in sorted(forms & set(WAYS)):
-        constant, label = WAYS[form]
-        limits.append(_limit(constant, label))
     return Panel(
         f"{known.called(name)}: way from where it was at {known.at(told.first):.2f} s",
         "cm",
@@ -71,6 +72,8 @@ def _way(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         tuple(marks),
         known.bars(Moving, object=name),
         "counts as moving",
+        held(Moving, name),
+        "no motion that counts in the time shown" if known.is_object(name) else "",
     )
 
 
@@ -82,6 +85,11 @@ WAYS = {
     "back": ("aside_mm", "back there is within {}"),
 }
 """By the format of a way: the constant of the rules that it is compared with, and how it reads."""
+
+
+def _length(centimetres: float, limits: Sequence[Limit]) -> str:
+    """A length as it is told, beside those that it is compared with."""
+    return told_beside(centimetres, limits, lambda far: length(far / CENTI), " cm")
 
 
 def _limit(constant: str, label: str, *, sign: float = 1.0) -> Limit:
@@ -104,8 +112,9 @@ def _spread(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         (known.curve(CENTI * away),),
         tuple(limit for limit in limits if limit.value > CENTI * away[far]),
         (Mark(known.at(far), CENTI * away[far], f"at most {spread(away[far])}"),),
-        known.bars(Moving, object=name) if thing else known.bars(Resting, ee=name),
+        known.bars(Moving, object=name) if thing else known.rests(name),
         "counts as moving" if thing else "counts as at rest",
+        held(Moving if thing else Resting, name),
         lost=known.lost(name),
     )
 
@@ -161,7 +170,12 @@ def _height(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     up = height - height[told.first]
     end = float(up[told.last])
     rounded = np.diff(np.rint(MILLI * height[[told.first, told.last]]))[0] / MILLI
-    marks = [Mark(known.at(told.last), CENTI * end, signed(rounded))]
+    limits = (
+        _limit("height_mm", "up: {} or more"),
+        _limit("height_mm", "down: {} or more", sign=-1.0),
+    )
+    sign = MINUS * bool(rounded < 0.0)
+    marks = [Mark(known.at(told.last), CENTI * end, sign + _length(CENTI * abs(rounded), limits))]
     inside, least = up[told.first : told.last + 1], constants()["height_mm"] / MILLI
     if forms & set(COURSES) and np.nanmax(inside) - max(end, 0.0) >= least:
         top = told.first + int(np.nanargmax(inside))
@@ -171,10 +185,6 @@ def _height(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         marks.append(
             Mark(known.at(low), CENTI * float(up[low]), f"{MINUS}{length(-up[low])} at most")
         )
-    limits = (
-        _limit("height_mm", "up: {} or more"),
-        _limit("height_mm", "down: {} or more", sign=-1.0),
-    )
     return Panel(
         f"{known.called(name)}: height above where it was at {known.at(told.first):.2f} s",
         "cm",
@@ -185,11 +195,6 @@ def _height(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
 
 
 MINUS = "\u2212"
-
-
-def signed(metres: float) -> str:
-    """A height, with a minus where it is below."""
-    return f"{MINUS * bool(metres < 0.0)}{length(abs(metres))}"
 
 
 def _aside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
@@ -205,7 +210,7 @@ def _aside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         "cm",
         (known.curve(CENTI * away),),
         tuple(limits),
-        (Mark(known.at(told.last), CENTI * end, length(math.hypot(*rounded))),),
+        (Mark(known.at(told.last), CENTI * end, _length(CENTI * math.hypot(*rounded), limits)),),
     )
 
 
@@ -220,8 +225,8 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         Mark(known.at(frame), float(angle[frame]), label)
         for frame, label in zip((told.first, told.last), labels, strict=True)
     ]
+    far = math.degrees(thresholds_of(measurements.calibration).lean_rad)
     if forms & {"far_over", "leaning"}:
-        far = math.degrees(thresholds_of(measurements.calibration).lean_rad)
         limits.append(Limit(far, f"far over from {far:.0f}° on"))
     if "far_over" in forms:
         most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
@@ -248,7 +253,8 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         tuple(limits),
         tuple(marks),
         known.bars(Leans, object=name),
-        "counts as a far lean",
+        f"counts as a far lean: beyond {far:.0f}°, with tipping over before and righting after it",
+        held(Leans, name),
     )
 
 
@@ -260,43 +266,38 @@ def _turn(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     turned *= -1.0 if turned[told.last] < 0.0 else 1.0
     least = constants()["turn_mrad"]
     end = float(turned[told.last])
+    limits = (Limit(math.degrees(least / MILLI), f"a turn: {degrees(least)} or more"),)
+    label = told_beside(math.degrees(end), limits, lambda _: degrees(int(rounded)), "°")
     return Panel(
         f"{known.called(name)}: turn about the vertical since {known.at(told.first):.2f} s",
         "°",
         (known.curve(np.degrees(turned)),),
-        (Limit(math.degrees(least / 1000.0), f"a turn: {degrees(least)} or more"),),
-        (Mark(known.at(told.last), math.degrees(end), degrees(int(rounded))),),
+        limits,
+        (Mark(known.at(told.last), math.degrees(end), label),),
     )
 
 
 def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
-    poses = known.body(name).poses
-    limits = thresholds_of(known.seen.measurements.calibration)
-    rate = frame_rate(poses.smooth.times)
-    slow_mps, turning = pace_at_rest(poses.noise, rate, limits)
-    slow = MILLI * slow_mps
-    floor = motion_floor(poses.noise, rate, own_m=None, thresholds=limits).position_m
-    least = f"{constants()['rest_ms'] / MILLI:.2f} s or more"
-    held = f"within {length(floor)} of a place, from the first to the last slow moment there"
-    held, since = f"{held}; rests without a gap are one", ""
+    poses, pace = known.body(name).poses, _Pace.of(known, name)
+    slow, since = MILLI * pace.slow_mps, ""
     if forms & SINCE_BEGIN:
         known = replace(known, span=(0, known.span[1]))
         since = " since the recording began"
+    free = ", touching nothing" * bool(since)
+    rest = (
+        f"at rest for {constants()['rest_ms'] / MILLI:.2f} s or more{free}: {pace.within} of a "
+        "place, from the first to the last slow moment there; rests without a gap are one"
+    )
     return Panel(
         f"{known.called(name)}: speed{since}",
         "mm/s",
-        (known.curve(MILLI * paces(poses.smooth, rate, limits)[0]),),
-        (
-            Limit(
-                slow,
-                f"slow: below {slow:.0f} mm/s (and {math.degrees(turning):.0f} °/s of turning)",
-            ),
-        ),
-        bars=_free_rests(known, name) if since else known.bars(Resting, ee=name),
-        bars_label=f"counts as at rest for {least}, touching nothing: {held}"
-        if since
-        else f"counts as at rest: {held}; a rest lasts {least}",
+        (known.curve(MILLI * paces(poses.smooth, pace.rate, pace.thresholds)[0]),),
+        (Limit(slow, f"slow: below {slow:.0f} mm/s (and {pace.turning_deg:.0f} °/s of turning)"),),
+        bars=_free_rests(known, name) if since else known.rests(name),
+        bars_label=f"counts as {rest}",
+        held=held(Resting, name),
+        unheld=f"nowhere {rest}",
         highest=FAST * slow,
         beyond="what is faster",
         lost=known.lost(name),
@@ -304,15 +305,60 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     )
 
 
+def _turning(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel | None:
+    """How fast it turns, where that and not its speed keeps it from being at rest."""
+    (name,) = told.bodies
+    if forms & SINCE_BEGIN:
+        return None
+    pace = _Pace.of(known, name)
+    speed, turning = paces(known.body(name).poses.smooth, pace.rate, pace.thresholds)
+    with np.errstate(invalid="ignore"):
+        alone = (speed < pace.slow_mps) & (np.degrees(turning) >= pace.turning_deg)
+    if not alone[known.span[0] : known.span[1] + 1].any():
+        return None
+    return Panel(
+        f"{known.called(name)}: speed of turning, which is slow too while it is at rest",
+        "°/s",
+        (known.curve(np.degrees(turning)),),
+        (Limit(pace.turning_deg, f"slow: below {pace.turning_deg:.0f} °/s"),),
+        highest=FAST * pace.turning_deg,
+        beyond="what is faster",
+        lost=known.lost(name),
+    )
+
+
+@dataclass(frozen=True)
+class _Pace:
+    """What a body may do at rest."""
+
+    thresholds: Thresholds
+    rate: float
+    slow_mps: float
+    turning_deg: float
+    """Below which speed [m/s] and turning [degrees a second] it is slow."""
+
+    within: str
+    """How far it may be from the place where it rests."""
+
+    @classmethod
+    def of(cls, known: Recording, name: str) -> Self:
+        """As calibrated for a body."""
+        poses = known.body(name).poses
+        limits = thresholds_of(known.seen.measurements.calibration)
+        rate = frame_rate(poses.smooth.times)
+        slow_mps, turning = pace_at_rest(poses.noise, rate, limits)
+        floor = motion_floor(poses.noise, rate, own_m=None, thresholds=limits)
+        within = f"within {length(floor.position_m)} and {math.degrees(floor.rotation_rad):.0f}°"
+        return cls(limits, rate, slow_mps, math.degrees(turning), within)
+
+
 def _free_rests(known: Recording, name: str) -> tuple[Span, ...]:
     """Rests of an end-effector that are long enough and in which it touches nothing."""
-    least = constants()["rest_ms"] / MILLI
     met = known.bars(Touching, body=name)
     return tuple(
         rest
-        for rest in known.bars(Resting, ee=name)
-        if rest.end_s - rest.start_s >= least
-        and not any(one.start_s <= rest.end_s and one.end_s >= rest.start_s for one in met)
+        for rest in known.rests(name)
+        if not any(one.start_s <= rest.end_s and one.end_s >= rest.start_s for one in met)
     )
 
 
@@ -336,6 +382,7 @@ def _to_and_fro(known: Recording, told: Quantity, forms: frozenset[str]) -> Pane
         ),
         bars=known.bars(Swings, body=name),
         bars_label="counts as to and fro",
+        held=held(Swings, name),
     )
 
 
@@ -384,3 +431,6 @@ SERIES: Mapping[Measure, Series] = {
     Measure.OPENING: _opening,
 }
 """The panel of each quantity."""
+
+BESIDE: Mapping[Measure, tuple[Series, ...]] = {Measure.SPEED: (_turning,)}
+"""What more is shown of a quantity, where it decides too."""

@@ -1,19 +1,50 @@
 """A recording as its measured picture shows it: which frames, and what held in them."""
 
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float, Int
 
-from capar.model.facts import Observed
+from capar.model.facts import Observed, Resting
 from capar.pipelines.explanation import Explained
 from capar.views.lettering import Span
-from capar.views.panels import Curve, Limit
+from capar.views.panels import Curve, Held, Limit
 from capar_rules.borders.times import in_frames, times
 from capar_rules.explain.quantities import length
 from extractors.bodies.body_geometry import BodyGeometry
 
 MILLI, CENTI = 1000.0, 100.0
+
+MOST_DIGITS = 3
+"""With at most so many decimals a number is told that is near its limit."""
+
+
+def held(kind: type[Observed], *about: str) -> Held:
+    """What bars of facts of a kind about certain bodies show."""
+    return (kind.predicate, *sorted(about))
+
+
+def told_beside(
+    value: float, limits: Sequence[Limit], form: Callable[[float], str], unit: str
+) -> str:
+    """A number as a form has it; with decimals where it would read as a limit that it is not.
+
+    Args:
+        value: In the panel's unit, as the limits.
+        limits: What it is compared with.
+        form: How such a number is told.
+        unit: How the panel's unit is told behind a number.
+    """
+    told = form(value)
+    others = [abs(limit.value) for limit in limits if abs(abs(limit.value) - value) > 1e-6]
+    near = [other for other in others if form(other) == told]
+    for digits in range(1, MOST_DIGITS + 1) if near else ():
+        told = f"{value:.{digits}f}{unit}"
+        if all(told != f"{other:.{digits}f}{unit}" for other in near):
+            break
+    return told
 
 
 @dataclass(frozen=True)
@@ -60,8 +91,14 @@ class Recording:
         """The shown part of what is known at every frame."""
         return Curve(self.times, values[self.span[0] : self.span[1] + 1], label)
 
-    def bars(self, kind: type[Observed], **about: str) -> tuple[Span, ...]:
-        """When facts of a kind about certain bodies hold, within what is shown."""
+    def bars(self, kind: type[Observed], *, least: int = 0, **about: str) -> tuple[Span, ...]:
+        """When facts of a kind about certain bodies hold, within what is shown.
+
+        Args:
+            kind: The kind.
+            least: So many frames from first to last it holds at least, shown or not.
+            about: The bodies, by the names of the fact's fields.
+        """
         first, last = self.span
         ends = (
             (fact.ends()[0], fact.ends()[-1])
@@ -72,16 +109,26 @@ class Recording:
         return tuple(
             Span(self.at(max(begin, first)), self.at(min(end, last)), "")
             for begin, end in ends
-            if begin <= last and end >= first
+            if begin <= last and end >= first and end - begin >= least
         )
+
+    @property
+    def least_rest(self) -> int:
+        """How many frames from its first to its last one a rest has that counts."""
+        return math.ceil(in_frames(times().rest_ms, self.rate) - 1e-9)
+
+    def rests(self, name: str) -> tuple[Span, ...]:
+        """When an end-effector is at rest for so long that it counts, within what is shown."""
+        return self.bars(Resting, least=self.least_rest, ee=name)
 
     def lost(self, *names: str) -> tuple[Span, ...]:
         """When a body of those was not tracked, within what is shown."""
         first, last = self.span
-        gaps = (gap for name in names for gap in self.seen.explainer.measured.lost.get(name, ()))
+        gaps = self.seen.explainer.measured.lost
         return tuple(
-            Span(self.at(max(begin, first)), self.at(min(end, last)), "")
-            for begin, end in gaps
+            Span(self.at(max(begin, first)), self.at(min(end, last)), self.called(name))
+            for name in names
+            for begin, end in gaps.get(name, ())
             if begin <= last and end >= first
         )
 

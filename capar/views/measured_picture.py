@@ -6,11 +6,13 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from capar.views.lettering import Span, shortened, width_in
-from capar.views.measured_panel import SHADE, caption_lines, draw_caption, draw_panel, together
-from capar.views.painter import CONTACT, FAINT, INK, QUIET, UNNAMED, colour_of
+from capar.views.captions import caption_lines, draw_caption, together
+from capar.views.lettering import Span, width_in
+from capar.views.measured_panel import SHADE, draw_panel
+from capar.views.painter import CONTACT, FAINT, INK, QUIET
 from capar.views.panels import Panel, Row
 from capar.views.picture import save
+from capar.views.segment_strip import Strip, draw_strip, strip
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,8 +22,8 @@ WIDTH_IN = 10.0
 LEFT_IN, RIGHT_IN, EDGE_IN = 0.75, 1.65, 0.25
 """Rooms left of panels, right of them, where limits are named, and at the edges [inches]."""
 
-PANEL_IN, CAPTION_IN, STRIP_IN = 0.95, 0.34, 0.3
-"""Heights of a panel, of a line of caption with its room, and of the strip of segments [inches]."""
+PANEL_IN, CAPTION_IN = 0.95, 0.34
+"""Heights of a panel, and of a line of caption with its room [inches]."""
 
 CAPTION_WIDE_IN = WIDTH_IN - LEFT_IN - EDGE_IN
 """How wide a line of a caption may be [inches]."""
@@ -29,6 +31,9 @@ CAPTION_WIDE_IN = WIDTH_IN - LEFT_IN - EDGE_IN
 FOOT_IN = 0.55
 ROW_IN, GAP_IN, TICKS_IN = 0.3, 0.15, 0.25
 """Heights of a row of bars, of the room before it, and of times below a panel [inches]."""
+
+NAMED = 0.66
+"""Which share of a row, from its top, is for its name: the segment is shaded below [1]."""
 
 LINE_IN = 0.19
 """Height of a line of the summary [inches]."""
@@ -81,7 +86,13 @@ def _figure(picture: MeasuredPicture) -> "Figure":
     }
     tall = {key: CAPTION_IN + LINE_IN * (len(lines) - 1) for key, lines in captions.items()}
     apart = sum(panel.span_s is not None for panel in picture.panels)
-    height = head + STRIP_IN + sum(tall.values()) + len(picture.panels) * PANEL_IN + FOOT_IN
+    shown = strip(
+        picture.segments,
+        picture.chosen,
+        picture.span_s,
+        width_in=WIDTH_IN - LEFT_IN - RIGHT_IN,
+    )
+    height = head + shown.height + sum(tall.values()) + len(picture.panels) * PANEL_IN + FOOT_IN
     height += apart * TICKS_IN + ROW_IN * len(picture.rows) + GAP_IN * bool(picture.rows)
     figure = Figure(figsize=(WIDTH_IN, height), facecolor="white")
     figure.text(
@@ -101,7 +112,7 @@ def _figure(picture: MeasuredPicture) -> "Figure":
     last, stripped = None, False
     for panel in sorted(picture.panels, key=lambda panel: panel.span_s is None):
         if panel.span_s is None and not stripped:
-            top, stripped = _with_strip(figure, top, picture), True
+            top, stripped = _with_strip(figure, top, picture, shown), True
         own = panel.span_s or span_s
         last = _axes(figure, top + tall[id(panel)], PANEL_IN, own)
         draw_panel(last, panel, chosen, own)
@@ -112,7 +123,7 @@ def _figure(picture: MeasuredPicture) -> "Figure":
         else:
             top += TICKS_IN
     if not stripped:
-        top = _with_strip(figure, top, picture)
+        top = _with_strip(figure, top, picture, shown)
     if picture.rows:
         top += GAP_IN
         last = _axes(figure, top, ROW_IN * len(picture.rows), span_s)
@@ -123,11 +134,10 @@ def _figure(picture: MeasuredPicture) -> "Figure":
     return figure
 
 
-def _with_strip(figure: "Figure", top_in: float, picture: MeasuredPicture) -> float:
+def _with_strip(figure: "Figure", top_in: float, picture: MeasuredPicture, shown: Strip) -> float:
     """Draw the strip of segments above the panels of its own times; where it ends [inches]."""
-    axes = _axes(figure, top_in, STRIP_IN, picture.span_s)
-    _strip(axes, picture.segments, picture.chosen, picture.span_s)
-    return top_in + STRIP_IN
+    draw_strip(_axes(figure, top_in, shown.height, picture.span_s), shown)
+    return top_in + shown.height
 
 
 def _axes(figure: "Figure", top_in: float, tall_in: float, span_s: tuple[float, float]) -> "Axes":
@@ -144,57 +154,12 @@ def _axes(figure: "Figure", top_in: float, tall_in: float, span_s: tuple[float, 
     return axes
 
 
-def _strip(
-    axes: "Axes", segments: Sequence[Span], chosen: Span, span_s: tuple[float, float]
-) -> None:
-    """The segment among its neighbours, each with its name where it has room."""
-    from matplotlib.patches import Rectangle
-
-    axes.set_ylim(0.0, 1.0)
-    axes.axis("off")
-    scale = (WIDTH_IN - LEFT_IN - RIGHT_IN) / (span_s[1] - span_s[0])
-    middle = (chosen.start_s + chosen.end_s) / 2.0
-    half = 0.5 * width_in(chosen.label, points=10.0) / scale + 0.06 / scale
-    lettered = min(chosen.start_s, middle - half), max(chosen.end_s, middle + half)
-    for segment in segments:
-        start, end = max(segment.start_s, span_s[0]), min(segment.end_s, span_s[1])
-        if start >= end:
-            continue
-        own = (segment.start_s, segment.end_s) == (chosen.start_s, chosen.end_s)
-        known = {"facecolor": colour_of(segment.kind or segment.label), "edgecolor": "white"}
-        look = UNNAMED if segment.kind == "Unknown" else known
-        axes.add_patch(
-            Rectangle(
-                (start, 0.0), end - start, 1.0, **look, linewidth=0.8, alpha=1.0 if own else 0.45
-            )
-        )
-        if not own:  # the name of the chosen one may reach over its neighbours
-            end = min(end, lettered[0]) if start < chosen.start_s else end
-            start = max(start, lettered[1]) if start >= chosen.start_s else start
-        label = shortened(
-            segment.label, points=9.0, widest_in=max((end - start) * scale - 0.06, 0.0)
-        )
-        if len(label) > 2 or own:
-            axes.text(
-                middle if own else (start + end) / 2.0,
-                0.5,
-                segment.label if own else label,
-                fontsize=9.0,
-                color=INK if own else QUIET,
-                weight="bold" if own else "normal",
-                ha="center",
-                va="center",
-                zorder=3 if own else 2,
-            )
-
-
 def _rows(axes: "Axes", rows: Sequence[Row], chosen: Span) -> None:
     """Each row's name, and below it bars where it holds."""
     from matplotlib.patches import Rectangle
 
     axes.set_ylim(len(rows), 0.0)
     axes.set_yticks([])
-    axes.axvspan(chosen.start_s, chosen.end_s, color=SHADE, zorder=0)
     for side in ("top", "right", "left"):
         axes.spines[side].set_visible(False)
     axes.spines["bottom"].set_color(QUIET)
@@ -214,13 +179,10 @@ def _rows(axes: "Axes", rows: Sequence[Row], chosen: Span) -> None:
             zorder=5,
         )
         axes.axhline(number + 0.84, color=FAINT, linewidth=0.5, zorder=1)
-        for bar in row.bars:
-            axes.add_patch(
-                Rectangle(
-                    (bar.start_s, number + 0.72),
-                    bar.end_s - bar.start_s,
-                    0.24,
-                    facecolor=CONTACT,
-                    zorder=2,
-                )
-            )
+        for each, low, tall, colour in (
+            (chosen, NAMED, 1.0 - NAMED, SHADE),
+            *((bar, 0.72, 0.24, CONTACT) for bar in row.bars),
+        ):
+            size = each.end_s - each.start_s, tall
+            place = each.start_s, number + low
+            axes.add_patch(Rectangle(place, *size, facecolor=colour, zorder=1.0 + (tall < 0.3)))

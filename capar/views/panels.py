@@ -52,12 +52,17 @@ class Mark:
     """The number as the sentence tells it."""
 
 
+Held = tuple[str, ...]
+"""What holds where a bar is: the predicate of facts, and the bodies that they are about, sorted."""
+
+
 @dataclass(frozen=True)
 class Row:
     """When something held, without a number."""
 
     label: str
     bars: tuple[Span, ...]
+    held: Held = ()
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,12 @@ class Panel:
     bars_label: str = ""
     """What holds then."""
 
+    held: Held = ()
+    """The same as facts have it: a row of bars that says no more is left out."""
+
+    unheld: str = ""
+    """What is said of bars where there are none; else nothing is."""
+
     highest: float = np.inf
     """What is greater is not shown, in the panel's unit."""
 
@@ -82,10 +93,18 @@ class Panel:
     """What is greater than that, in words."""
 
     lost: tuple[Span, ...] = ()
-    """When a body of it was not tracked."""
+    """When a body of it was not tracked, by its name."""
 
     span_s: tuple[float, float] | None = None
     """The first and the last time of it [s], where it shows others than the picture."""
+
+    @property
+    def shows(self) -> frozenset[Held]:
+        """What its bars and its hatching show, at all times of the picture."""
+        if self.span_s is not None:
+            return frozenset()
+        bars = [self.held] if self.held and (self.bars or self.unheld) else []
+        return frozenset([*bars, *(("lost", gap.label) for gap in self.lost)])
 
     def range(self, start_s: float, end_s: float) -> tuple[float, float]:
         """The lowest and highest value that are drawn: of the curves in a span, and all else."""

@@ -21,6 +21,7 @@ from capar.pipelines.measured_rows import claimed_rows
 from capar.pipelines.shown_recording import Recording
 from capar.views.movers import mover_lines
 from capar.views.panels import Mark, Panel
+from capar_rules.borders.times import constants
 from capar_rules.explain.claimed_measures import ARRANGED, FORMS, PREDICATES, Measure
 from capar_rules.explain.explanation import Explanation
 from capar_rules.explain.formatting import OF_BODIES
@@ -40,7 +41,7 @@ NAMES = (
     "put_down",
 )
 
-NUMBER = re.compile(r"\d+(?:\.\d)? (?:mm/s|mm|cm|m)\b|\d+°|\d+ %")
+NUMBER = re.compile(r"\d+(?:\.\d+)? (?:mm/s|mm|cm|m)\b|\d+°|\d+ %")
 """A number with a unit that a panel can have."""
 
 ROUNDED = {"mm/s": 0.5, "mm": 0.5, "cm": 0.5, "m": 0.05, "°": 0.6, "%": 0.5}
@@ -228,6 +229,26 @@ def test_each_mover_that_a_line_names_has_bars(name: str) -> None:
         for line in mover_lines(*about):
             for who in re.findall(r"by the ([\w ]+?)(?= all the time| for |,|;|\.| and )", line):
                 assert f"by the {who}" in labels, line
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_holds_is_drawn_once(name: str) -> None:
+    for seen, explanation, panels in pictured(name):
+        here = [panel for panel in panels if panel.span_s is None]
+        bars = [panel.held for panel in here if panel.held and panel.bars]
+        rows = [row.held for row in measured_rows(seen, explanation, panels) if row.held]
+        shown = [*bars, *rows]
+        assert len(shown) == len(set(shown)), shown
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_only_rests_that_are_long_enough_are_drawn(name: str) -> None:
+    for seen, _, _ in pictured(name):
+        known = Recording(seen, (0, seen.observation.frames - 1))
+        for hand in {segment.ee for segment in seen.observation.segments}:
+            for rest in known.rests(hand):
+                assert rest.end_s - rest.start_s >= constants()["rest_ms"] / 1000.0 - 1e-9
+        break
 
 
 def test_a_picture_is_written_in_each_format(tmp_path: Path) -> None:

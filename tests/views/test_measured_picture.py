@@ -7,12 +7,14 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.text import Annotation, Text
+from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from capar.pipelines.shown_recording import told_beside
 from capar.views import measured_picture
+from capar.views.captions import caption_lines
 from capar.views.lettering import Span
-from capar.views.measured_panel import LIMIT, MARK, caption_lines
+from capar.views.measured_panel import LIMIT, MARK
 from capar.views.measured_picture import MeasuredPicture
 from capar.views.panels import Curve, Limit, Mark, Panel, Row
 
@@ -122,13 +124,58 @@ def test_a_caption_tells_what_is_cut_off_and_another_axis_of_time() -> None:
     assert caption(level) == "height [cm]"
 
 
-def test_every_line_of_a_caption_fits() -> None:
-    figure = drawn(panel(limits=(16.0,)))
-    axes = next(axes for axes in figure.axes if axes.lines)
-    assert isinstance(axes, Axes)
-    (written,) = (
-        text
-        for text in axes.texts
-        if isinstance(text, Annotation) and text.get_text().startswith("the second joint")
-    )
-    assert "\n" in written.get_text()
+def captions(figure: Figure) -> list[Text]:
+    texts = [text for axes in figure.axes for text in axes.texts]
+    return [text for text in texts if text.get_text().startswith("the second joint")]
+
+
+def test_every_line_of_a_caption_fits_and_none_is_a_word_alone() -> None:
+    (written,) = captions(drawn(panel(limits=(16.0,))))
+    lines = written.get_text().split("\n")
+    assert len(lines) > 1
+    assert len(lines[-1]) > 0.5 * len(lines[0])
+
+
+def crosses(box: Bbox, axes: Axes) -> bool:
+    """Whether a curve or a dashed line of a panel goes through a box."""
+    for line in axes.lines:
+        if line.get_marker() == "o":
+            continue
+        x, y = (np.asarray(values, dtype=float) for values in line.get_data())
+        share = np.linspace(0.0, len(x) - 1.0, 4001)
+        at = np.column_stack([np.interp(share, np.arange(len(x)), one) for one in (x, y)])
+        at = line.get_transform().transform(at)
+        inside = (at > [box.x0, box.y0]) & (at < [box.x1, box.y1])
+        if inside.all(axis=1).any():
+            return True
+    return False
+
+
+@pytest.mark.parametrize("value", [0.5, 5.0, 15.0, 29.0])
+@pytest.mark.parametrize("limits", [(), (15.2,), (4.0, 28.0)])
+def test_no_number_stands_on_a_curve_or_a_dashed_line(
+    value: float, limits: tuple[float, ...]
+) -> None:
+    figure = drawn(panel(limits, marks=((3.0, 15.0), (value / 5.0, value))))
+    for axes in figure.axes:
+        for text in axes.texts:
+            if text.get_color() == MARK:
+                assert not crosses(Text.get_window_extent(text), axes), text.get_text()
+
+
+def test_the_name_of_a_narrow_segment_stands_above_the_strip() -> None:
+    figure = drawn(panel())
+    strip = figure.axes[0]
+    (name,) = (text for text in strip.texts if text.get_text() == "MoveObjTo")
+    bars = [patch.get_window_extent() for patch in strip.patches]
+    assert not any(Text.get_window_extent(name).overlaps(bar) for bar in bars)
+
+
+def test_what_is_near_a_limit_is_told_apart_from_it() -> None:
+    limits = (Limit(20.0, "within 20 mm"),)
+
+    def form(value: float) -> str:
+        return f"{value:.0f} mm"
+
+    told = [told_beside(value, limits, form, " mm") for value in (12.3, 19.7, 19.98, 20.0)]
+    assert told == ["12 mm", "19.7 mm", "19.98 mm", "20 mm"]

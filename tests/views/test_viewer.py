@@ -114,6 +114,15 @@ def test_a_picture_shows_another_moment_otherwise_and_the_same_alike(capture, tm
     assert drawn[0] == drawn[1] != drawn[2]
 
 
+def test_a_moment_that_is_asked_for_is_shown_though_frames_are_thinned(capture):
+    every = stage(capture).times
+    left_out = sorted(set(capture.times.tolist()) - set(every.tolist()))
+    for time_s in left_out[:2]:
+        shown = stage(capture, at_s=time_s)
+        assert shown.times[shown.nearest(time_s)] == time_s
+        assert len(shown.times) == len(every) + 1
+
+
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [

@@ -1,5 +1,6 @@
 """One moment of a capture as a picture: bodies from obliquely above, in parallel projection."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -9,6 +10,8 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.model.errors import FileError
+from capar.views.lettering import POINTS_PER_INCH, width_in
+from capar.views.viewer.body_labels import Labelled, leader, place_labels
 from capar.views.viewer.stage import Stage, StagedBody, is_ground, world_bounds
 
 if TYPE_CHECKING:
@@ -36,10 +39,13 @@ LEAST_M = 0.3
 """The picture is at least so high [m]."""
 
 MOST_NAMES = 15
-"""Of more bodies than this only the objects are named: names would cover them."""
+"""With more sensors than this only objects are named: names would cover them."""
 
-POINT_M = 0.015
-"""How large a body without a surface is drawn."""
+POINT_M, POINT_PT = 0.015, 8.0
+"""How large a body without a surface is [m], and is drawn in any case [points]."""
+
+LABEL_PT = 7.5
+"""Size of the letters of names [points]."""
 
 
 def snapshot(shown: Stage, time_s: float, path: Path) -> None:
@@ -94,16 +100,58 @@ def _paint(axes: "Axes", shown: Stage, frame: int) -> None:
             linewidths=0.2,
         )
     )
-    for body in known:
-        crowded = len(known) > MOST_NAMES and body.kind in ("sensor", "looks")
-        if crowded or body.kind == "body":
-            continue
-        place = body.positions[frame]
-        axes.annotate(
-            body.label, (place @ across, place @ up), fontsize=7, ha="center",
-            bbox={"boxstyle": "round,pad=0.15", "facecolor": "#ffffffb0", "linewidth": 0},
-        )  # fmt: skip
     _frame(axes, shown, across, up)
+    covered = [part.reshape(-1, 2) for part in patches[1:]]
+    _points(axes, known, covered)
+    _labels(axes, known, covered)
+
+
+def _points(
+    axes: "Axes", known: Sequence[StagedBody], covered: Sequence[Float[np.ndarray, "corners 2"]]
+) -> None:
+    """Bodies without a surface, before all others, as they may be inside of one."""
+    found = [index for index, body in enumerate(known) if body.shape is None]
+    size_pt = POINT_PT if len(found) <= MOST_NAMES else POINT_PT / 2.0
+    for index in found:
+        axes.plot(
+            *covered[index].mean(axis=0),
+            "o",
+            color=known[index].colour,
+            markeredgecolor="black",
+            markeredgewidth=0.8,
+            markersize=size_pt,
+            zorder=3,
+        )
+
+
+def _labels(
+    axes: "Axes", known: Sequence[StagedBody], covered: Sequence[Float[np.ndarray, "corners 2"]]
+) -> None:
+    """Names of bodies, clear of each other and of what is small, with lines to their bodies."""
+    kinds = [body.kind for body in known]
+    crowded = sum(kind in ("sensor", "looks") for kind in kinds) > MOST_NAMES
+    left_out = {"body", "sensor", "looks"} if crowded else {"body"}
+    named = [index for index, kind in enumerate(kinds) if kind not in left_out]
+    page = SIZE_IN[0], SIZE_IN[1] * PAINTED
+    corner = np.array([axes.get_xlim()[0], axes.get_ylim()[0]])
+    scale = page[0] / float(np.ptp(axes.get_xlim()))
+    bodies = []
+    for index in named:
+        low, high = (scale * (end(covered[index], axis=0) - corner) for end in (np.min, np.max))
+        wide = width_in(known[index].label, points=LABEL_PT) + 0.07
+        box = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+        bodies.append(Labelled(box, (wide, 1.6 * LABEL_PT / POINTS_PER_INCH)))
+    for index, body, box in zip(named, bodies, place_labels(bodies, page), strict=True):
+        line = leader(box, body.middle) / scale + corner
+        if not body.large:
+            axes.plot(*line.T, color="#555555", linewidth=0.6, zorder=2.5)
+        middle = np.array([box[0] + box[1], box[2] + box[3]]) / 2.0
+        x, y = middle / scale + corner
+        axes.text(
+            x, y, known[index].label, fontsize=LABEL_PT,
+            ha="center", va="center", zorder=5,
+            bbox={"boxstyle": "square,pad=0.1", "facecolor": "#ffffffd0", "linewidth": 0},
+        )  # fmt: skip
 
 
 def _view() -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:

@@ -71,9 +71,16 @@ class Stage:
         return int(np.argmin(np.abs(self.times - time_s)))
 
 
-def stage(capture: Capture) -> Stage:
-    """A capture as it is shown; bodies of which a bone changes its length are only points."""
+def stage(capture: Capture, *, at_s: float | None = None) -> Stage:
+    """A capture as it is shown; bodies of which a bone changes its length are only points.
+
+    Args:
+        capture: The capture.
+        at_s: The frame nearest to this time is shown, whatever others are left out [s].
+    """
     frames = shown_frames(capture)
+    if at_s is not None:
+        frames = np.union1d(frames, np.argmin(np.abs(capture.times - at_s)))
     stretching = {one.bodies[0] for one in capture.notices if one.code == "bone-stretches"}
     bodies = tuple(
         replace(one, shape=None) if one.name in stretching else one
