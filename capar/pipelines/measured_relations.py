@@ -19,6 +19,9 @@ from extractors.calibration import thresholds_of
 from extractors.motion.impacts import APPROACH_S, closing_speed
 from extractors.relations.arrangement import Pair
 
+AROUND = 1.5
+"""Up to so many times the least distance is shown where that is told [1]."""
+
 CLOSE = 5.0
 """A distance is shown up to so many times what counts as contact: beyond, it only is far [1]."""
 
@@ -59,8 +62,9 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
     if "nearest" in forms:
         inside = {at: gap for at, gap in at_borders.items() if told.first <= at <= told.last}
         at = min(inside, key=lambda frame: np.nan_to_num(inside[frame], nan=np.inf))
-        label = f"{_gap(inside[at], highest)} at the nearest"
-        marks = [Mark(known.at(at), min(inside[at], highest), label)]
+        highest = max(highest, AROUND * inside[at])
+        label = f"{_gap(inside[at], named, highest)} at the nearest"
+        marks = [Mark(known.at(at), inside[at], label)]
     between = _between(pair, shaped=all(known.body(name).shape for name in (one, other)))
     rough = [name for name in (one, other) if name in known.seen.explainer.measured.stand_ins]
     about = f" (shape of the {known.called(rough[0])}: a stand-in)" if rough else ""

@@ -172,6 +172,16 @@ def not_laid(clock: Clock, segment: str) -> str:
     return f"was still moving {still} {let_go}"
 
 
+def laid_frames(clock: Clock, segment: str) -> tuple[int, ...]:
+    """When a thing that came down is moved again, if it is, and let go of."""
+    span, held = clock.span(segment), _held(clock, segment)
+    if span is None or held is None:
+        return ()
+    moves = clock.measured.moving.get(clock.objects.get(segment, ""), ())
+    again = [first for first, last in moves if last > span[1] and span[1] < first < held[1]]
+    return (*again[:1], held[1])
+
+
 def _let_go(clock: Clock, segment: str, frame: int) -> str:
     """When an end-effector let go of its thing, or, if not tracked then, was last seen at it."""
     hand, thing = hand_of(segment), clock.objects.get(segment, "")

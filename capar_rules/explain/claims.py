@@ -108,6 +108,9 @@ def claim(
                 found.append(Quantity(measure, (argument.body,), *measured, form))
         if form == "turns_back" and span is not None:
             frames += span
+        if form in ("laid", "not_laid"):
+            told_then = arrangements.laid_frames(clock, clock.own)
+            frames += [frame for frame in told_then if clock.at(frame) in text]
         if form in ("when", "frame"):
             frames.append(int(text_of))
         if form == "tick":

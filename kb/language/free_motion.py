@@ -118,6 +118,8 @@ def _reached(
     there = np.flatnonzero(ways > furthest_m - STILL_M)
     home = _stops(places, max(round(UNSEEN_S / track.step_s), 1))
     returns = places[-1] - places[int(there[-1])]
+    down = -float(returns[2]) > ASIDE_SHARE * float(np.linalg.norm(returns))
+    home = min(home, _arrives(places, int(there[-1]), np.array([0.0, 0.0, -1.0]))) if down else home
     found = Reached(
         ee=ee,
         where=where,
@@ -126,10 +128,16 @@ def _reached(
         leaves_s=(first + int(there[-1])) * track.step_s,
         end_s=(first + max(home, int(there[-1]))) * track.step_s,
         back=float(ways[-1]) < 0.5 * furthest_m,
-        down=-float(returns[2]) > ASIDE_SHARE * float(np.linalg.norm(returns)),
+        down=down,
         leans=head is not None and _leans(head, first, apex, furthest - places[0]),
     )
     return found, furthest_m
+
+
+def _arrives(places: Float[np.ndarray, "frames 3"], since: int, way: Float[np.ndarray, "3"]) -> int:
+    """The frame since another one at which it is as far along a direction as it gets."""
+    along = (places[since:] - places[since]) @ way
+    return since + int(np.argmax(along > float(along.max()) - STILL_M))
 
 
 def _leans(head: SampledTrack, first: int, apex: int, way: Float[np.ndarray, "3"]) -> bool:

@@ -1,5 +1,6 @@
 """A hand that touches nothing reaches up, forward or aside, as the person faces."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -24,10 +25,12 @@ def told(
     back: bool = True,
     head: Sequence[float] = (0.0, 0.0, 0.0),
     things: tuple[ObservedObject, ...] = (MUG,),
+    swing_m: float = 0.0,
 ) -> str:
     """What is told of a right hand that goes that way from rest, in a person who faces so [rad].
 
-    The head goes its own way meanwhile.
+    The head goes its own way meanwhile. With a swing the hand is back at 2 s, and swings up so far
+    until 2.5 s.
     """
     pieces = (Piece("Rest", 50, ()), Piece("PostureChange", 250, ()), Piece("Rest", 300, ()))
     still = (Piece("Rest", 300, ()),)
@@ -47,11 +50,13 @@ def told(
     )
     share = np.clip((np.arange(301) - 50) / 100.0, 0.0, 1.0)
     if back:
-        share -= np.clip((np.arange(301) - 150) / 100.0, 0.0, 1.0)
+        share -= np.clip((np.arange(301) - 150) / (50.0 if swing_m else 100.0), 0.0, 1.0)
+    swing = swing_m * np.clip((np.arange(301) - 200) / 50.0, 0.0, 1.0)
     over = (np.array((0.0, 0.0, 1.6)) + share[:, None] * np.asarray(head)) @ turn.T
     tracks = [sampled_track("head", 0.01, over)]
     for ee, place in AT.items():
-        gone = share[:, None] * np.asarray(way) if ee == "right_hand" else np.zeros((301, 3))
+        gone = share[:, None] * np.asarray(way) + swing[:, None] * (0.0, 0.0, 1.0)
+        gone = gone if ee == "right_hand" else np.zeros((301, 3))
         tracks.append(sampled_track(ee, 0.01, (np.asarray(place) + gone) @ turn.T))
     return describe(replace(made, tracks=tuple(tracks)), timed=True)
 
@@ -78,6 +83,15 @@ def test_a_reach_has_its_direction(way: tuple[float, ...], words: str) -> None:
     back = "lowered the hand again" if way[2] > 0.0 else back
     assert f" and {back} (" in text
     assert text.endswith(" s) without touching anything.")
+
+
+def test_a_hand_is_lowered_when_it_is_lowest_though_it_swings_up_a_little_after() -> None:
+    found = re.search(
+        r"lowered the hand again \((\d\.\d\d)–(\d\.\d\d) s\)", told((0.0, 0.0, 0.6), swing_m=0.06)
+    )
+    assert found is not None
+    assert float(found[1]) == pytest.approx(1.5, abs=0.05)
+    assert float(found[2]) == pytest.approx(2.0, abs=0.05)
 
 
 def test_a_hand_that_gets_above_the_head_is_told_to() -> None:
