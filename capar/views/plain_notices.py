@@ -104,10 +104,11 @@ def _rough(group: Sequence[Notice]) -> Iterable[str]:
     bodies = _bodies(group)
     parts = [each for each in bodies if _SIDED.match(each)]
     if len(parts) <= NAMED:
-        return [f"Rough shapes are assumed for {_named(bodies)}: the recording has none"]
+        named = _named(bodies).replace("both hands", "the hands")
+        return [f"The recording has no surfaces of {named}; rough ones are assumed"]
     hands = any({*_spoken(each).split()} & {*LIMB, *_parts()} for each in parts)
     also = ", including the hands" if hands else ""
-    return [f"Rough shapes are assumed for the body{also}: the recording has none"]
+    return [f"The recording has no surface of the body{also}; a rough one is assumed"]
 
 
 def _assumed(group: Sequence[Notice]) -> Iterable[str]:
@@ -143,8 +144,10 @@ def _left_out(group: Sequence[Notice]) -> Iterable[str]:
     """Of what nothing can be told."""
     bodies = _bodies(group)
     one = len({*map(_the, bodies)}) == 1
-    are, shapes = ("is", "its shape is") if one else ("are", "their shapes are")
-    return [f"{capital(_named(bodies))} {are} left out: {shapes} not known"]
+    are, them = ("is", "it") if one else ("are", "them")
+    shapes = "its shape is" if one else "their shapes are"
+    left = f"{capital(_named(bodies))} {are} left out, and what was done with {them} is not told"
+    return [f"{left}: {shapes} not known"]
 
 
 def _gap(group: Sequence[Notice]) -> Iterable[str]:

@@ -215,22 +215,20 @@ class Briefs:
         new = reached(self.clock, self.clock.own)
         if span is None or thing not in told or not told & {*new}:
             return []
-        called = self.clock.called(thing)
+        called = self.clock.called
+        too = [other for other in new if other not in told]
+        both = [other for other in kept(self.clock, self.clock.own) if other not in told]
+        clauses = (
+            ("came into contact with {} too", too),
+            ("counted as in contact with {} both at the start and at the end", both),
+        )
         return [
             Claim(
-                f"the {called} came into contact with the {self.clock.called(other)} too",
-                (Quantity(Measure.DISTANCE, (thing, other), *span),),
+                f"the {called(thing)} {clause.format(listed([f'the {called(o)}' for o in others]))}",
+                tuple(Quantity(Measure.DISTANCE, (thing, other), *span) for other in others),
             )
-            for other in new
-            if other not in told
-        ] + [
-            Claim(
-                f"the {called} counted as in contact with the {self.clock.called(other)} both at "
-                "the start and at the end",
-                (Quantity(Measure.DISTANCE, (thing, other), *span),),
-            )
-            for other in kept(self.clock, self.clock.own)
-            if other not in told
+            for clause, others in clauses
+            if others
         ]
 
     def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:

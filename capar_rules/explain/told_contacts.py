@@ -138,7 +138,9 @@ class ContactsTold(ToldArgument):
         """
         end = self.clock.border(self.text, "end")
         if not self._lost_at("end"):
-            if self.beside[1] == self._hand and not self._touches_then(self._hand):
+            if self.beside[1] == self._hand and not self._touches(
+                self._hand, (self.clock.span(self.text) or (0, 0))[1]
+            ):
                 near = self.clock.measured.near(self._hand, self.beside[2])
                 return (
                     f" and {'with ' * near}nothing recorded or assumed any more at the end ({end})"
@@ -152,7 +154,11 @@ class ContactsTold(ToldArgument):
         found = self._met_near(self.beside[1], self.beside[2], span[0])
         if found is None or last <= found[1]:
             return f" and was not tracked at the end ({end}), which counts as no contact"
-        return f" but no longer when last tracked ({self.clock.at(last)})"
+        when = f"when last tracked ({self.clock.at(last)})"
+        if self.beside[1] == self._hand and not self._touches(self._hand, last):
+            near = self.clock.measured.near(self._hand, self.beside[2])
+            return f" and {'with ' * near}nothing recorded or assumed any more {when}"
+        return f" but no longer {when}"
 
     def _since_seen(self) -> str:
         """From when on two bodies touch of which one was not tracked at the start."""
@@ -163,11 +169,10 @@ class ContactsTold(ToldArgument):
         at = end if since == span[1] else f"from {self.clock.at(since)} on"
         return f"{at}, and was not tracked at the start, which counts as no contact"
 
-    def _touches_then(self, body: str) -> bool:
-        """Whether a body touches anything in the last frame of the segment and after it."""
-        span = self.clock.span(self.text) or (0, 0)
+    def _touches(self, body: str, frame: int) -> bool:
+        """Whether a body touches anything at a frame and after it."""
         return any(
-            first <= span[1] < last
+            first <= frame < last
             for pair, spans in self.clock.measured.contacts.items()
             if body in pair
             for first, last in spans

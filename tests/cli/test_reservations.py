@@ -90,7 +90,7 @@ def test_stand_ins_are_told_after_the_text(bundle: Callable[[int, int], str]) ->
     told, _, notes = run("describe", bundle(0, 0)).partition(f"\n{HEADING}\n")
     assert told == "Anna touched the box with the right hand.\n"
     assert notes == (
-        "note: Rough shapes are assumed for the box and the post: the recording has none.\n"
+        "note: The recording has no surfaces of the box and the post; rough ones are assumed.\n"
     )
 
 
@@ -102,7 +102,8 @@ def test_what_is_left_out_is_listed_as_people_call_it() -> None:
         objects=9,
     )
     assert reservation_lines((left,))[-1] == (
-        "note: The half egg carton and the tooth brush are left out: their shapes are not known."
+        "note: The half egg carton and the tooth brush are left out, and what was done with them "
+        "is not told: their shapes are not known."
     )
 
 
@@ -138,7 +139,7 @@ def test_explain_tells_those_of_the_bodies_that_its_segment_is_about(
     for arguments in ((place,), (place, "right_hand/1"), (place, "--why-not", "Hit")):
         told, _, notes = run("explain", *arguments).partition(f"\n{HEADING}\n")
         assert "the right hand touched the box" in told or "Hit" in told
-        assert notes.startswith("note: Rough shapes are assumed for the box: ")
+        assert notes.startswith("note: The recording has no surfaces of the box; ")
         assert "post" not in notes
     for arguments in ((), ("--why-not", "Hit")):
         rows = json.loads(run("explain", place, *arguments, "--json"))

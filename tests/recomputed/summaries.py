@@ -879,7 +879,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         kept_as_it_was,
     ),
     (rf"less than the {LENGTH}(?: or {DEGREES})? from which on it counts as moved", counts_from),
-    (rf"no longer when last tracked \({TIME}\)", earlier),
+    (rf"(?:no longer|any more) when last tracked \({TIME}\)", earlier),
     (rf"throughout but for {TIME} to {TIME}", parted),
     (rf"at the start \({TIME}\)", starts),
     (rf"at the end \({TIME}\)", ends),

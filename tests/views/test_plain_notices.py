@@ -27,15 +27,15 @@ def judged(code: str, *pairs: tuple[str, str]) -> list[Notice]:
 TOLD: tuple[tuple[list[Notice], str], ...] = (
     (
         rough("right_hand", "left_hand"),
-        "Rough shapes are assumed for both hands: the recording has none.",
+        "The recording has no surfaces of the hands; rough ones are assumed.",
     ),
     (
         rough("pelvis", "l_hip", "r_hip", "l_knee", "r_knee"),
-        "Rough shapes are assumed for the body: the recording has none.",
+        "The recording has no surface of the body; a rough one is assumed.",
     ),
     (
         rough("pelvis", "l_hip", "r_hip", "l_knee", "r_thumb1"),
-        "Rough shapes are assumed for the body, including the hands: the recording has none.",
+        "The recording has no surface of the body, including the hands; a rough one is assumed.",
     ),
     (
         [lost("bowl", fixed=False, moved_m=0.004)],
@@ -77,7 +77,8 @@ TOLD: tuple[tuple[list[Notice], str], ...] = (
     ),
     (
         [notice("objects-left-out", "100 half egg carton(Clone)-18146", objects=9)],
-        "The half egg carton is left out: its shape is not known.",
+        "The half egg carton is left out, and what was done with it is not told: its shape is not "
+        "known.",
     ),
     (
         [notice("mount-gap", "r_middle1", "chair", touch_m=0.02, shown_m=0.04, frames=9)],
