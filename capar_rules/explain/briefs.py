@@ -211,24 +211,28 @@ class Briefs:
         """What else the segment's thing came to touch, where of one thing it is told."""
         thing, span = self.clock.objects.get(self.clock.own, ""), self.clock.span(self.clock.own)
         claims = list(claims)
-        told = {body for claim in claims for part in claim.quantities for body in part.bodies}
+        known = {body for claim in claims for part in claim.quantities for body in part.bodies}
         new = reached(self.clock, self.clock.own)
-        if span is None or thing not in told or not told & {*new}:
+        if span is None or thing not in known or not known & {*new}:
             return []
         called = self.clock.called
-        too = [other for other in new if other not in told]
-        both = [other for other in kept(self.clock, self.clock.own) if other not in told]
+        too = [other for other in new if other not in known]
+        both = [other for other in kept(self.clock, self.clock.own) if other not in known]
         clauses = (
             ("came into contact with {} too", too),
             ("counted as in contact with {} both at the start and at the end", both),
         )
-        return [
-            Claim(
-                f"the {called(thing)} {clause.format(listed([f'the {called(o)}' for o in others]))}",
-                tuple(Quantity(Measure.DISTANCE, (thing, other), *span) for other in others),
-            )
+        told = (
+            (clause.format(listed([f"the {called(other)}" for other in others])), others)
             for clause, others in clauses
             if others
+        )
+        return [
+            Claim(
+                f"the {called(thing)} {clause}",
+                tuple(Quantity(Measure.DISTANCE, (thing, other), *span) for other in others),
+            )
+            for clause, others in told
         ]
 
     def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:
