@@ -16,6 +16,9 @@ from extractors.contact.proximity import separation
 from extractors.contact.touch_distances import touchable
 from extractors.measure import Measurements
 
+OUTLYING_M = 0.01
+"""An origin that lies so far outside of a body's box [m] is told to."""
+
 SAMPLES = 120
 """At so many frames of a span at most distances of surfaces are measured [1]."""
 
@@ -84,12 +87,27 @@ def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
                 for name in (pair.first, pair.second)
                 if measurements.bodies.named(name).shape is None
             ),
+            _outlying(pair, measurements),
             pair.pivots and pair.found in SETTLES and pair.first in measurements.bodies.sensors,
         )
         for pair in measurements.calibration.pairs
         if pair.found is not Found.NEVER
         for names in ((pair.first, pair.second), (pair.second, pair.first))
     }
+
+
+def _outlying(pair: PairCalibration, measurements: Measurements) -> tuple[tuple[str, float], ...]:
+    """The bodies of a pair whose origins are compared, and lie outside of their boxes, how far."""
+    if _measured_between(pair, measurements) is not Between.ORIGINS:
+        return ()
+    found = []
+    for name in (pair.first, pair.second):
+        shape = measurements.bodies.named(name).shape
+        if shape is not None:
+            low, high = shape.bounds
+            far = float(np.linalg.norm(np.maximum(np.maximum(low, -high), 0.0)))
+            found += [(name, far)] * (far >= OUTLYING_M)
+    return tuple(found)
 
 
 def _measured_between(pair: PairCalibration, measurements: Measurements) -> Between:

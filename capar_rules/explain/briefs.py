@@ -23,6 +23,9 @@ COURSES = ("rises", "comes_down", "travels", "stays_near", "sliding")
 """Predicates that tell how a body moved, so that its motion need not be told again, or that it was
 not slid."""
 
+COURSES_TOLD = ("way", "course", "steep_course", "level_course", "place", "lean", "turn")
+"""Formats in which a clause tells how a thing that is possessed moved."""
+
 NUMBERED = ("stays(", "met_gently(")
 """Prefixes of atoms of which a contrast tells the number that decided."""
 
@@ -213,9 +216,16 @@ class Briefs:
         claims = list(claims)
         known = {body for claim in claims for part in claim.quantities for body in part.bodies}
         new = reached(self.clock, self.clock.own)
-        if span is None or thing not in known or not known & {*new}:
-            return []
         called = self.clock.called
+        if span is None or thing not in known:
+            return []
+        if not new and self._moves_clear(claims, thing, span):
+            row = Stretches("touching", (thing, ANY))
+            return [
+                Claim(f"the {called(thing)} came into contact with nothing new", (), (), (row,))
+            ]
+        if not known & {*new}:
+            return []
         too = [other for other in new if other not in known]
         both = [other for other in kept(self.clock, self.clock.own) if other not in known]
         clauses = (
@@ -234,6 +244,21 @@ class Briefs:
             )
             for clause, others in told
         ]
+
+    def _moves_clear(self, claims: Iterable[Claim], thing: str, span: tuple[int, int]) -> bool:
+        """Whether claims tell how a thing moved, and no contact of it with another body began."""
+        courses = any(
+            quantity.form in COURSES_TOLD and thing in quantity.bodies
+            for claim in claims
+            for quantity in claim.quantities
+        )
+        begun = any(
+            span[0] < first <= span[1]
+            for pair, spans in self.clock.measured.contacts.items()
+            if thing in pair and hand_of(self.clock.own) not in pair
+            for first, _ in spans
+        )
+        return courses and not begun and thing in self.clock.measured.movable
 
     def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:
         was = "were" if self.clock.called(body) in self.clock.several else "was"

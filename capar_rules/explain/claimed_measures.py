@@ -145,6 +145,7 @@ ROWS: Mapping[str, tuple[tuple[str, Bodies], ...]] = {
     "rests": (("resting", (0,)), ("touching", (0, ANY))),
     "rests_afterwards": (("resting", (0,)),),
     "accompanied": (("touching", (END, ANY)),),
+    "free": (("touching", (THING, ANY)),),
     "comes_to_lie": (("touching", (THING, ANY)), ("moving", (THING,))),
     "moved_before": (("moving", (1,)), ("touching", (END, 1))),
     "from_rest": (("touching", (THING, ANY)), ("moving", (THING,))),

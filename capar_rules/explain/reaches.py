@@ -31,6 +31,9 @@ class Reach:
     unshaped: tuple[str, ...] = ()
     """Which of the two have no known shape."""
 
+    outlying: tuple[tuple[str, float], ...] = ()
+    """Bodies whose origin the distance is of, and that lies outside of their shape, so far [m]."""
+
     settles: bool = False
     """Whether contact lasts but from when the end-effector has arrived until it sets off."""
 

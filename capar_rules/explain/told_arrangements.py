@@ -103,7 +103,7 @@ class ArrangementsTold(ToldArgument):
         found = arrangements.met_at(self.clock, self.beside[0], self.text)
         if not found:
             return f"the {self.clock.called(thing)} touched {self._nothing()} at the {self.text}"
-        told = []
+        told, hand = [], arrangements.hand_of(self.beside[0])
         for other in found:
             angle = arrangements.normal_deg(self.clock, thing, other, frame)
             if angle is None or angle <= most:
@@ -111,7 +111,8 @@ class ArrangementsTold(ToldArgument):
             called = self.clock.called(other)
             told.append(f"the {called} met it {angle:.0f}° off straight up")
         return (
-            f"nothing bore the {self.clock.called(thing)} from below at the {self.text}: "
+            f"apart from the {self.clock.called(hand)}, nothing bore the "
+            f"{self.clock.called(thing)} from below at the {self.text}: "
             f"{' and '.join(told)} (what bears meets it within {most:.0f}° of straight up)"
         )
 

@@ -6,7 +6,7 @@ from capar_rules.explain.briefs import listed
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.quantities import beyond
+from capar_rules.explain.quantities import beyond, length
 from capar_rules.explain.reaches import Reach
 
 BEYOND = "at moments up to"
@@ -79,7 +79,12 @@ def _between(reach: Reach, clock: Clock) -> str:
     called = [f"the {clock.called(name)}" for name in reach.unshaped]
     has = "has no known shape" if len(called) == 1 else "have no known shapes"
     unshaped = f", as {listed(called)} {has}" * bool(called)
-    return reach.between.value + unshaped + SETTLED * reach.settles
+    outlying = [
+        f"that of the {clock.called(name)} lies {length(far)} outside of it"
+        for name, far in reach.outlying
+    ]
+    aside = f" ({listed(outlying)})" * bool(outlying)
+    return reach.between.value + aside + unshaped + SETTLED * reach.settles
 
 
 def _counted(reaches: Mapping[str, Sequence[str]], between: str, *, several: bool) -> str:
