@@ -166,6 +166,7 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
         apart=apart_within(measurements),
         lost=_lost(observation, measurements),
         unrested=_unrested(observation),
+        rate_hz=observation.rate_hz,
     )
 
 

@@ -110,7 +110,7 @@ def _spread(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         f"{known.called(name)}: distance from its median place",
         "cm",
         (known.curve(CENTI * away),),
-        tuple(limit for limit in limits if limit.value > CENTI * away[far]),
+        tuple(limits),
         (Mark(known.at(far), CENTI * away[far], f"at most {spread(away[far])}"),),
         known.bars(Moving, object=name) if thing else known.rests(name),
         "counts as moving" if thing else "counts as at rest",

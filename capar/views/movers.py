@@ -28,6 +28,9 @@ decides between the two, and the segment's name says how it was moved.
 WITHOUT_MOVER = frozenset({"set_going", "unknown"})
 """Kinds of motion in which nothing moves the thing."""
 
+HAND = "hand"
+"""The kind of end-effector that takes things."""
+
 ALL_BUT = 95.0
 """What has this share of a motion is told of all of it [%]."""
 
@@ -107,6 +110,8 @@ def _moved(
         if (each.ee, each.index) == (ee, index)
     )
     names = limb_names(seen)
+    limbs = {names.get(link.ee, link.ee) for link in seen.links}
+    hands = {names.get(link.ee, link.ee) for link in seen.links if link.kind == HAND}
     frames: dict[str, dict[int, set[tuple[str, str]]]] = defaultdict(lambda: defaultdict(set))
     for fact in seen.facts:
         if isinstance(fact, MovedBy) and fact.object in segment.objects:
@@ -114,7 +119,19 @@ def _moved(
                 frames[fact.object][frame].add((fact.how, names.get(fact.mover, fact.mover)))
     for thing in segment.objects:
         if thing not in staying and frames.get(thing):
-            yield thing, frames[thing]
+            yield thing, _by_hands(frames[thing], hands, limbs)
+
+
+def _by_hands(
+    frames: Mapping[int, Collection[tuple[str, str]]], hands: set[str], limbs: set[str]
+) -> Mapping[int, Collection[tuple[str, str]]]:
+    """Movers by frame, without arms and trunk where hands move it: they go along with these."""
+    found = {}
+    for frame, movers in frames.items():
+        by_hand = {who for _, who in movers} & hands
+        others = limbs - hands if by_hand else set()
+        found[frame] = {(how, who) for how, who in movers if who not in others}
+    return found
 
 
 def _spans(frames: Sequence[int]) -> Iterator[tuple[int, int]]:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
+from capar_rules.borders.times import in_frames, times
 from capar_rules.explain.arrangements import hand_of, kept, reached, untracked
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined_claims, resting_on
@@ -36,6 +37,9 @@ AT_ONE_SIDE = {
     "near_at_end": "end",
 }
 """Clauses of contact at one border, and that border."""
+
+COMING = ("comes_to_touch", "comes_near")
+"""Predicates that say that a body comes to touch another one."""
 
 TOUCHING_NOTHING = ("rests", "touches_no_object")
 """Predicates that say that an end-effector touches nothing."""
@@ -151,6 +155,22 @@ class Briefs:
             for body, gaps in untracked(self.clock, bodies)
         ]
 
+    def unmeasured_speed(self, claims: Iterable[Claim]) -> list[Claim]:
+        """That it is not known how fast an end-effector came that was not tracked as it came."""
+        thing, span = self.clock.objects.get(self.clock.own, ""), self.clock.span(self.clock.own)
+        hand, known = hand_of(self.clock.own), self.clock.measured
+        comes = any(claim.of in COMING for claim in claims)
+        gaps = known.lost.get(hand, ())
+        if span is None or not comes or not gaps or not thing:
+            return []
+        slack = in_frames(times().merge_ms, self.clock.rate_hz)
+        met = known.contact(hand, thing, span[1], slack)
+        if met is None or not any(first < met[0] <= last + slack for first, last in gaps):
+            return []
+        called = self.clock.called
+        text = f"how fast the {called(hand)} came to the {called(thing)} is not known"
+        return [Claim(text, (), (), (Stretches("lost", (hand,)),))]
+
     def leaning(self, top: Reason) -> list[Claim]:
         """That the segment's borders are where its thing begins or ceases to lean far over."""
         thing, span = self.clock.objects.get(self.clock.own, ""), self.clock.span(self.clock.own)
@@ -190,7 +210,7 @@ class Briefs:
         """
         known, span = self.clock.measured, self.clock.span(self.clock.own)
         hand, called = hand_of(self.clock.own), self.clock.called
-        clear = any(claim.of in TOUCHING_NOTHING for claim in claims)
+        clear = known.grasps(hand) and any(claim.of in TOUCHING_NOTHING for claim in claims)
         if not clear or span is None or known.apart is None:
             return []
         near: dict[str, float] = {}

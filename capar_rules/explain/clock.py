@@ -32,6 +32,9 @@ from capar_rules.explain.reaches import Reach
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
+HANDS = ("hand", "index", "middle", "ring", "pinky", "thumb", "finger")
+"""How kinds of end-effectors begin that are hands or parts of them."""
+
 FEET = ("foot", "toe")
 """Kinds of end-effectors that may stand."""
 
@@ -120,6 +123,9 @@ class Measured:
     held: Mapping[str, Sequence[tuple[str, int, int]]] = field(default_factory=dict)
     """Which end-effectors touched an object from when to when, by object."""
 
+    rate_hz: float = 0.0
+    """Frames a second [Hz]; zero where that is not known."""
+
     tracked: bool = True
     """Whether there is an object that could be touched."""
 
@@ -166,6 +172,13 @@ class Measured:
     feet: frozenset[str] = frozenset()
     """End-effectors that are feet or toes."""
 
+    hands: frozenset[str] = frozenset()
+    """End-effectors that are hands or parts of them."""
+
+    def grasps(self, body: str) -> bool:
+        """Whether it is a hand, a foot, or a part of one, which is where it seems to be."""
+        return body in self.hands or body in self.feet
+
     def stands_uncounted(self, body: str) -> bool:
         """Whether it is a foot of which no contact with anything fixed is looked for."""
         pairs = (pair for pair in self.reaches if body in pair)
@@ -175,7 +188,13 @@ class Measured:
         """The posture from which a body's lean is measured, in words."""
         several = is_plural(self.names.get(body, body.replace("_", " ")))
         it, was = ("they", "were") if several else ("it", "was")
-        return f"how {it} {was} first seen" if body in self.unrested else f"how {it} first rested"
+        if body in self.unrested:
+            return f"how {it} {was} first seen"
+        moving = min(self.moving.get(body, ()), default=(1, 1))
+        later = f" (after {moving[1] / self.rate_hz:.2f} s)" * (
+            not moving[0] and bool(self.rate_hz)
+        )
+        return f"how {it} first rested{later}"
 
     def contact(self, one: str, other: str, frame: int, slack: float) -> Frames | None:
         """The contact of two bodies at a frame, or the nearest so few frames from it."""
@@ -249,6 +268,7 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
         held=held,
         tracked=touched,
         feet=frozenset(link.ee for link in links if link.kind in FEET),
+        hands=frozenset(link.ee for link in links if link.kind.startswith(HANDS)),
     )
 
 

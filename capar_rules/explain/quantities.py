@@ -113,9 +113,10 @@ def _course(x_mm: int, y_mm: int, z_mm: int) -> dict[str, str]:
     if abs(z_mm) < 1 <= aside:
         parts["height"] = "at the same height"
     elif abs(z_mm) >= 1:
-        parts["height"] = f"{length(abs(z_mm) / 1000.0)} {'higher' if z_mm > 0 else 'lower'}"
+        height = _short_of_limit(abs(z_mm), constants()["height_mm"])
+        parts["height"] = f"{height} {'higher' if z_mm > 0 else 'lower'}"
     if aside >= LEVEL_MM:
-        parts["aside"] = f"{length(aside / 1000.0)} to the side"
+        parts["aside"] = f"{_short_of_limit(aside, constants()['aside_mm'])} to the side"
     return parts
 
 
@@ -130,6 +131,13 @@ def slope(x_mm: int, y_mm: int, z_mm: int) -> str:
     if abs(z_mm) >= aside:
         return f"{sense} more than to the side"
     return f"more to the side than {sense}"
+
+
+def _short_of_limit(millimetres: float, limit_mm: float) -> str:
+    """A length, in millimetres where it would read as a limit that it does not reach."""
+    told = length(millimetres / 1000.0)
+    short = millimetres < limit_mm and told == length(limit_mm / 1000.0)
+    return f"{millimetres:.0f} mm" if short else told
 
 
 @dataclass(frozen=True, slots=True)

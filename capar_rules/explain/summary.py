@@ -72,7 +72,8 @@ def summary(
     told += f". {_sentence(listed(mended))}" * bool(mended)
     extra = [*briefs.clear_of(claims), *briefs.also_reached(claims)]
     extra += briefs.leaning(reason)
-    extra += briefs.lost([*claims, *extra])
+    lost = briefs.lost([*claims, *extra])
+    extra += [*lost, *(briefs.unmeasured_speed(claims) if lost else ())]
     told += "".join(f". {_sentence(claim.text)}" for claim in extra)
     names = [name, *generals, *(other for one in (*beside, *fresh) for other in one.names)]
     text = f"{told}." + touching([*claims, *extra], briefs.clock)
@@ -165,7 +166,7 @@ def _beside(
 
 def _idle(contrast: Contrast, told: bool, beside: bool) -> bool:
     """Whether nobody would ask for the names, where others are told, or denied by what is told."""
-    least = LEAST_SEEN if told else LEAST_NEARNESS if beside else 0.0
+    least = LEAST_SEEN if told else LEAST_NEARNESS if beside and not contrast.below else 0.0
     return contrast.nearness < least and not contrast.though
 
 

@@ -111,7 +111,7 @@ class ArrangementsTold(ToldArgument):
             called = self.clock.called(other)
             told.append(f"the {called} met it {angle:.0f}° off straight up")
         return (
-            f"apart from the {self.clock.called(hand)}, nothing bore the "
+            f"apart from the {self.clock.called(hand)}, nothing was found to bear the "
             f"{self.clock.called(thing)} from below at the {self.text}: "
             f"{' and '.join(told)} (what bears meets it within {most:.0f}° of straight up)"
         )

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 
 from capar_rules.borders.times import constants, in_frames, times
-from capar_rules.explain import quantities
+from capar_rules.explain import arrangements, quantities
 from capar_rules.explain.quantities import LEAST_M, Shortfall, Way
 from capar_rules.explain.told_argument import UNBOUND, ToldArgument
 
@@ -76,10 +76,29 @@ class MotionsTold(ToldArgument):
         if moved is None:
             return UNBOUND if form == "spread" else ""
         if form != "way":
-            return self._still(body, moved) if form == "still" else _brief(form, moved)
+            if form == "still":
+                return self._still(body, moved)
+            return _brief(form, moved) + self._counts_later(form, body, moved, span)
         late = span[1] - moving[1] > in_frames(times().merge_ms, self.clock.rate_hz)
         told = quantities.way(moved, f" until {self.clock.at(moving[1])}" * late)
-        return told + self._in_course_of(body, moved, span)
+        return told + self._in_course_of(body, moved, span) + self._untouched(body, moving)
+
+    def _untouched(self, body: str, moving: tuple[int, int]) -> str:
+        """That it moved while the end-effector did not touch it that touched it before."""
+        hand = arrangements.hand_of(self.clock.own)
+        touches = self.clock.measured.contacts.get((hand, body), ())
+        begun = [first for first, _ in touches if first <= moving[0]]
+        meanwhile = any(first < moving[1] and last > moving[0] for first, last in touches)
+        called = self.clock.called(hand)
+        return f" (without contact with the {called})" if begun and not meanwhile else ""
+
+    def _counts_later(self, form: str, body: str, moved: Way, span: tuple[int, int]) -> str:
+        """From when on the motion counts of what has begun to move before the segment ends."""
+        floor_m = self.clock.measured.floors.get(body)
+        if form != "little" or not floor_m or moved.spread_m < floor_m:
+            return ""
+        later = [first for first, _ in self.clock.measured.moving.get(body, ()) if first >= span[1]]
+        return f" (it counted as moving only from {self.clock.at(min(later))} on)" if later else ""
 
     def _still(self, body: str, moved: Way) -> str:
         """Within what a body rested, and that it did so at more than one place if it is far."""

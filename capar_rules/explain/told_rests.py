@@ -55,8 +55,9 @@ class RestsTold(ToldArgument):
 
     def _from_rest(self) -> str:
         """What the segment's object left in it, if it touched anything."""
+        hand = self.clock.called(self._hand)
         left = [f"the {self.clock.called(one)}" for one in arrangements.left(self.clock, self.text)]
-        return f"left {' and '.join(left)}" if left else "started from rest"
+        return f"left {' and '.join(left)}" if left else f"was at rest when the {hand} took it"
 
     def _away(self) -> str:
         """How far from where it had rested the end-effector ended, or that it had not rested."""

@@ -12,7 +12,7 @@ from capar_rules.explain.reaches import Reach
 BEYOND = "at moments up to"
 """How a contact throughout the segment is told in which bodies were further apart for moments."""
 
-SETTLED = ", from when the hand stops coming nearer until it starts to go away"
+SETTLED = ", from when the hand has all but stopped coming nearer until it starts to go away"
 """How contact is told to last for which only an estimated distance is known."""
 
 OF_CONTACT = (Measure.DISTANCE, Measure.BORNE)
