@@ -261,13 +261,14 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
 def _turn(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
     turned = np.concatenate([[0.0], np.cumsum(spin_steps(known.body(name).orientations))])
-    rounded = np.diff(np.rint(MILLI * turned[[told.first, told.last]]))[0]
     turned -= turned[told.first]
     turned *= -1.0 if turned[told.last] < 0.0 else 1.0
     least = constants()["turn_mrad"]
     end = float(turned[told.last])
     limits = (Limit(math.degrees(least / MILLI), f"a turn: {degrees(least)} or more"),)
-    label = told_beside(math.degrees(end), limits, lambda _: degrees(int(rounded)), "°")
+    label = told_beside(
+        math.degrees(end), limits, lambda angle: degrees(round(MILLI * math.radians(angle))), "°"
+    )
     return Panel(
         f"{known.called(name)}: turn about the vertical since {known.at(told.first):.2f} s",
         "°",

@@ -53,10 +53,10 @@ def summary(
     beside, fresh = _told_contrasts(_against(against, clauses, briefs), clauses)
     more = [clause for clause in clauses if clause not in own]
     kind = bool(generals and own and more) and all(one.by_features for one in fresh)
+    kind = kind and all(one.clause in own for one in beside)  # what denies them leads
     told = name + (f", a kind of {listed(generals)}," * bool(generals and not kind))
     if beside:
-        denied = listed([alternatives(one.names, one.general) for one in beside], "or")
-        told += f"{',' * (not told.endswith(','))} and not {denied}"
+        told += f"{',' * (not told.endswith(','))} and not {_denied(beside)}"
     told += f"{',' * (not told.endswith(','))} because "
     told += _by_subject(own if kind else clauses, subjects)
     if kind:
@@ -78,6 +78,13 @@ def summary(
     names = [name, *generals, *(other for one in (*beside, *fresh) for other in one.names)]
     text = f"{told}." + touching([*claims, *extra], briefs.clock)
     return Summary(text, (*claims, *extra), tuple(dict.fromkeys(names)))
+
+
+def _denied(beside: Sequence[Contrast]) -> str:
+    """The names of contrasts as one list, those that are kinds of another one behind it."""
+    plain = [name for one in beside if not one.general for name in one.names]
+    kinds = [alternatives(one.names, one.general) for one in beside if one.general]
+    return alternatives([*plain, *kinds])
 
 
 def _sentence(clause: str) -> str:

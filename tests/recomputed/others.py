@@ -297,9 +297,21 @@ def not_put_down(known: Known, _: str) -> bool:
     return not lets_go or float(known.way(what)[2]) > -0.045
 
 
+def only_held(known: Known, what: str, side: str) -> bool:
+    """Nothing but end-effectors touches it at that side, or what is there for no longer."""
+    at = known.segment.last if side == "end" else known.segment.first
+    acting = {link.ee for link in known.seen.observation.links}
+    return not any(
+        each.first + ROUNDED < at < each.last - ROUNDED - known.reach
+        for each in known.of(Touching)
+        if name(what) in (each.body, each.other) and not {each.body, each.other} & acting
+    )
+
+
 FORMS = (
+    (rf"the {NAME} touched nothing but what held it at the segment's (start|end)", only_held),
     (
-        rf"the {NAME} (?:started from rest|left the [\w ]+)",
+        rf"the {NAME} (?:was at rest when the [\w ]+ took it|left the [\w ]+)",
         lambda known, what: name(what) == known.segment.objects[0] and started_from_rest(known),
     ),
     (rf"the {NAME} was not slid on anything", not_slid),
