@@ -31,8 +31,9 @@ LABELS: Mapping[str, str] = {
 """By the predicate of a fact: what a row of its stretches is called."""
 
 NOTHING = "{0}: in contact with no recorded or assumed object in the time shown"
+NOTHING_ELSE = "{0}: in contact with nothing else in the time shown"
 NO_OBJECT = "{0}: in contact with no object (the recording has none)"
-"""The row of a body that touches nothing, and where there is nothing to touch."""
+"""The rows of a body that touches nothing, or nothing else, and where there is nothing to touch."""
 
 FEWEST = 4
 """Where more bodies would have a row each, they share one [1]."""
@@ -83,6 +84,9 @@ def _rows(known: Recording, wanted: Stretches) -> Iterator[Row]:
         found = {wanted.bodies: [span for spans in found.values() for span in spans]}
     for about, bars in found.items():
         yield _row(known, wanted.predicate, about, bars)
+    if found and wanted.predicate == "touching" and ANY in wanted.bodies and len(found) <= FEWEST:
+        named = [known.called(body) for body in wanted.bodies if body != ANY]
+        yield Row(NOTHING_ELSE.format(*named), ())
     if not found:
         named = [known.called(body) for body in wanted.bodies if body != ANY]
         if ANY in wanted.bodies:

@@ -318,7 +318,7 @@ def _turning(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel |
     if not alone[known.span[0] : known.span[1] + 1].any():
         return None
     return Panel(
-        f"{known.called(name)}: speed of turning, which is slow too while it is at rest",
+        f"{known.called(name)}: speed of turning, which is slow too where a rest begins and ends",
         "°/s",
         (known.curve(np.degrees(turning)),),
         (Limit(pace.turning_deg, f"slow: below {pace.turning_deg:.0f} °/s"),),

@@ -215,8 +215,8 @@ class Briefs:
             return []
         near: dict[str, float] = {}
         for other in sorted(other for one, other in known.reaches if one == hand):
-            surfaces = known.reaches[hand, other].between is Between.SURFACES
-            apart = known.apart(hand, other, *span) if surfaces else None
+            between = known.reaches[hand, other].between
+            apart = known.apart(hand, other, *span) if between is not Between.ORIGINS else None
             if apart is not None:
                 near[other] = apart[0]
         fixed = [other for other in near if hand in known.feet and other not in known.movable]

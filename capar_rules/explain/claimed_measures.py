@@ -73,7 +73,7 @@ FORMS: Mapping[str, tuple[Measure, ...]] = {
     "away": (Measure.WAY, Measure.SPEED),
     "back": (Measure.WAY, Measure.SPEED),
     "spread": (Measure.SPREAD,),
-    "still": (Measure.SPREAD,),
+    "still": (Measure.SPREAD, Measure.TURNED),
     **dict.fromkeys(("course", "steep_course", "level_course"), (Measure.HEIGHT, Measure.ASIDE)),
     "slope": (Measure.HEIGHT, Measure.ASIDE),
     "not_up": (Measure.HEIGHT, Measure.ASIDE),

@@ -59,6 +59,12 @@ class ContactsTold(ToldArgument):
         found = None if frame is None else self._met_near(self.beside[1], self.beside[2], frame)
         return UNBOUND if found is None else self.clock.at(found[end])
 
+    def _apart_between(self) -> str:
+        """From when to when the two bodies beside this did not touch that did at both borders."""
+        until, since = self._contact("start", 1), self._contact("end", 0)
+        borders = [self.clock.border(self.beside[0], side) for side in ("start", "end")]
+        return "in between" if [until, since] == borders else f"from {until} to {since}"
+
     def _on(self) -> str:
         """Until when the contact that there is at the start lasts, if longer than a border."""
         frame = arrangements.frame_of(self.clock, self.beside[0], "start")

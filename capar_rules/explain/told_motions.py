@@ -103,10 +103,16 @@ class MotionsTold(ToldArgument):
     def _still(self, body: str, moved: Way) -> str:
         """Within what a body rested, and that it did so at more than one place if it is far."""
         floor_m = self.clock.measured.floors.get(body)
-        told = f"{quantities.spread(moved.spread_m)} of its median place meanwhile"
-        if floor_m is None or moved.spread_m <= floor_m:
+        span = self._span_beside("still") or (0, 0)
+        turned = self._turned(body, span)
+        told = f"{quantities.spread(moved.spread_m)} of its median place{turned} meanwhile"
+        turns = self.clock.measured.turned
+        turn_floor = self.clock.measured.turn_floors.get(body, math.inf)
+        turned_far = bool(turned) and turns is not None and turns(body, *span) > turn_floor
+        if floor_m is None or (moved.spread_m <= floor_m and not turned_far):
             return told
-        place = f"within {quantities.length(floor_m)} of one place"
+        angle = f" and {quantities.degrees(round(1000.0 * turn_floor))}" * bool(turned)
+        place = f"within {quantities.length(floor_m)}{angle} of one place"
         return f"{told}; rests {place}, and then of another, count as one"
 
     def _in_course_of(self, body: str, moved: Way, span: tuple[int, int]) -> str:

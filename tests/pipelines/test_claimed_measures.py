@@ -153,7 +153,7 @@ FURNITURE = re.compile(
     r"the rules say so|[A-Z]\w+(?:, a kind of [\w ]+)?(?:, and not [\w, ]+)?, because |"
     r"It is a kind of [\w, ]+?, because |"
     r"[Nn]ot \w+(?:, \w+)*(?:,? or (?:its kinds? )?\w+(?:, \w+)*(?:,? and \w+)?)?|"
-    r", though|, because |, and at the end|"
+    r", though|, because |,? and at the end|"
     r"(?:A shape is|Shapes are) assumed for [^.]*(?:\.\d+[^.]*)*, so contact is known only "
     r"roughly\.|"
     r"Contact is counted (?:within|from) \d+ mm[^.]*\.|\band\b|\bor\b|[,;. ]"

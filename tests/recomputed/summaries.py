@@ -632,10 +632,16 @@ def seen_from(known: Known, _: str, at: str) -> bool:
 
 def kept_as_it_was(known: Known, body: str, far: str, angle: str) -> bool:
     """It is never further from the middle of where it is, nor turned further from how it was."""
-    begin, end = known.segment.first, known.segment.last
+    return kept_within(known, body, far) and turned_within(known, body, angle)
+
+
+def turned_within(known: Known, body: str, angle: str, first: str = "", last: str = "") -> bool:
+    """It is turned by no more from how it was at first, if that is told."""
+    begin = known.frame(first) if first else known.segment.first
+    end = known.frame(last) if last else known.segment.last
     turns = known.turns(body, range(begin, end + 1))
     most = max(math.degrees(float((turns[0].inv() * turns).magnitude().max())), 1.0)
-    return kept_within(known, body, far) and (not angle or abs(most - float(angle)) <= 1.0)
+    return not angle or abs(most - float(angle)) <= 1.0
 
 
 def leant_enough(known: Known, body: str, told: str, asked: str) -> bool:
@@ -773,8 +779,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"was moved again from {TIME} on", moved_on),
     (rf"was still moving at the end \({TIME}\)", moved_on),
     (
-        rf"(?:with|touched) the {NAME} at the start, but not from {TIME} to {TIME}, and again at "
-        r"the end",
+        rf"(?:with|touched) the {NAME} at the start, but not from {TIME} to {TIME}, and again "
+        r"at the end",
         again,
     ),
     (rf"the {NAME} at the start \({TIME}\) and until {TIME}", touched_until),
@@ -866,9 +872,11 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"stayed in place \(within {LENGTH} of its median place in the segment\)", kept_within),
     (
         rf"counted as at rest from {TIME} to {TIME}, (?:longer than|just) the 0\.40 s of a rest "
-        rf"\(it stayed within {LENGTH} of its median place meanwhile(?:; rests within 1 cm of one "
-        r"place, and then of another, count as one)?\)",
-        lambda known, body, first, last, far: kept_within(known, body, far, first, last),
+        rf"\(it stayed within {LENGTH} of its median place(?: and turned by at most {DEGREES})? "
+        r"meanwhile(?:; rests within 1 cm(?: and \d+°)? of one place, and then of another, count "
+        r"as one)?\)",
+        lambda known, body, first, last, far, angle: kept_within(known, body, far, first, last)
+        and turned_within(known, body, angle, first, last),
     ),
     (r"longer than the (\d\.\d\d) s of a rest", rests_longer),
     (rf"(?:had no rest of|at rest for) {TIME} or more", rest_lasts),
