@@ -24,7 +24,7 @@ from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Quantity
-from capar_rules.explain.quantities import LEAST_M, degrees, length, spread
+from capar_rules.explain.quantities import LEAST_M, angle_bound, degrees, extreme, length, spread
 from capar_rules.explain.quantities import change as change_of
 from capar_rules.explain.told_motions import COURSES
 from extractors.calibration import thresholds_of
@@ -119,6 +119,11 @@ def _spread(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     )
 
 
+def _angle_mark(known: Recording, frame: int, degrees_: float, label: str) -> Mark:
+    """A mark of an angle that bounds others."""
+    return Mark(known.at(frame), degrees_, label.format(angle_bound(math.radians(degrees_))))
+
+
 def _turned(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
     orientations = known.body(name).orientations
@@ -131,7 +136,13 @@ def _turned(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         "°",
         (known.curve(angle),),
         (Limit(floor, f"counts as moved from {floor:.0f}° on"),),
-        (Mark(known.at(most), float(angle[most]), f"at most {max(angle[most], 1.0):.0f}°"),),
+        (
+            Mark(
+                known.at(most),
+                float(angle[most]),
+                f"at most {angle_bound(math.radians(angle[most]))}",
+            ),
+        ),
     )
 
 
@@ -179,11 +190,11 @@ def _height(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     inside, least = up[told.first : told.last + 1], constants()["height_mm"] / MILLI
     if forms & set(COURSES) and np.nanmax(inside) - max(end, 0.0) >= least:
         top = told.first + int(np.nanargmax(inside))
-        marks.append(Mark(known.at(top), CENTI * float(up[top]), f"{length(up[top])} at most"))
+        marks.append(Mark(known.at(top), CENTI * float(up[top]), f"{extreme(up[top])} at most"))
     if forms & set(COURSES) and min(end, 0.0) - np.nanmin(inside) >= least:
         low = told.first + int(np.nanargmin(inside))
         marks.append(
-            Mark(known.at(low), CENTI * float(up[low]), f"{MINUS}{length(-up[low])} at most")
+            Mark(known.at(low), CENTI * float(up[low]), f"{MINUS}{extreme(-up[low])} at most")
         )
     return Panel(
         f"{known.called(name)}: height above where it was at {known.at(told.first):.2f} s",
@@ -230,13 +241,25 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         limits.append(Limit(far, f"far over from {far:.0f}° on"))
     if "far_over" in forms:
         most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
-        marks.append(Mark(known.at(most), float(angle[most]), f"{angle[most]:.0f}° at most"))
+        marks.append(
+            Mark(
+                known.at(most),
+                float(angle[most]),
+                f"{angle_bound(math.radians(angle[most]))} at most",
+            )
+        )
     inside = angle[told.first : told.last + 1]
     most = told.first + int(np.nanargmax(inside))
     change_deg = math.degrees(constants()["turn_mrad"] / MILLI)
     beyond = float(np.nanmax(inside)) - max(inside[0], inside[-1]) >= change_deg
     if "not_leant" in forms and beyond and "far_over" not in forms:
-        marks.append(Mark(known.at(most), float(angle[most]), f"{angle[most]:.0f}° at most"))
+        marks.append(
+            Mark(
+                known.at(most),
+                float(angle[most]),
+                f"{angle_bound(math.radians(angle[most]))} at most",
+            )
+        )
     if forms & {"lean", "not_leant"}:
         change = math.degrees(constants()["turn_mrad"] / 1000.0)
         start = float(angle[told.first])

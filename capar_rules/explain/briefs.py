@@ -11,7 +11,7 @@ from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
 from capar_rules.explain.leading import DOUBTED, nodes_below, parsed, rank
-from capar_rules.explain.quantities import degrees, spread
+from capar_rules.explain.quantities import degrees, gap
 from capar_rules.explain.reaches import Between
 from capar_rules.explain.reason import Reason
 from capar_rules.explain.sentences import Sentences
@@ -227,7 +227,7 @@ class Briefs:
                 f"the {called(hand)} was {far} from the {called(other)} at the nearest",
                 (Quantity(Measure.DISTANCE, (hand, other), *span, form="nearest"),),
             )
-            for other, far in {other: spread(near[other]) for other in shown}.items()
+            for other, far in {other: gap(near[other]) for other in shown}.items()
         ]
 
     def also_reached(self, claims: Iterable[Claim]) -> list[Claim]:

@@ -67,17 +67,28 @@ def _from_start(metres: float) -> str:
     return f"{'less than ' * least}{length(LEAST_M if least else metres)} from where it began"
 
 
+def gap(metres: float) -> str:
+    """How far two bodies are apart, in millimetres where that is near."""
+    return f"{1000.0 * metres:.0f} mm" if round(1000.0 * metres) < 100 else length(metres)
+
+
 def spread(metres: float) -> str:
-    """Within what a body stayed, to stand after ``within``."""
-    if round(1000.0 * metres) < 100:
-        return f"{max(1000.0 * metres, 1.0):.0f} mm"
-    return length(metres)
+    """A length that bounds another one: rounded up to a decimal, so that it does, and hardly."""
+    if 1000.0 * metres < 100.0:
+        return f"{max(upward(1000.0 * metres, 1), 0.1):.1f} mm"
+    return extreme(metres)
 
 
-def beyond(metres: float, limit_m: float) -> str:
-    """A distance beyond a limit, with a decimal where it would else read as the limit."""
-    told = spread(metres)
-    return f"{1000.0 * metres:.1f} mm" if told == spread(limit_m) else told
+def extreme(metres: float) -> str:
+    """The same of how far a body went at most, in centimetres or metres."""
+    if metres < 1.0:
+        return f"{upward(100.0 * metres, 1):.1f} cm"
+    return f"{upward(metres, 2):.2f} m"
+
+
+def angle_bound(radians: float) -> str:
+    """An angle that bounds another one: rounded up to a decimal."""
+    return f"{max(upward(math.degrees(radians), 1), 0.1):.1f}°"
 
 
 def upward(value: float, digits: int = 0) -> float:
@@ -298,7 +309,7 @@ def not_leant(before_mrad: int, after_mrad: int, most_mrad: int, posture: str) -
     """Why a change of lean is no tilting; near to one is what leant much more in between."""
     least, change = constants()["turn_mrad"], abs(after_mrad - before_mrad)
     beyond = most_mrad - max(before_mrad, after_mrad) >= least
-    most = f" ({degrees(most_mrad)} at most in between)" * beyond
+    most = f" ({angle_bound(most_mrad / 1000.0)} at most in between)" * beyond
     text = (
         f"leant {degrees(before_mrad)} at the start and {degrees(after_mrad)} at the end from "
         f"{posture}{most}, a change of {_short_of(before_mrad, after_mrad)}, less than "

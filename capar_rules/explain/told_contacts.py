@@ -111,7 +111,7 @@ class ContactsTold(ToldArgument):
         far = known.apart(one, other, *span) if known.apart and reach else None
         if far is None or reach is None or 1000.0 * far[1] <= reach.told_mm:
             return ""
-        return f" (at moments up to {quantities.beyond(far[1], reach.distance_m)} apart)"
+        return f" (at moments up to {quantities.spread(far[1])} apart)"
 
     def _after_leaving(self) -> str:
         """When the two bodies beside this parted before, if at the start or in the segment."""

@@ -11,9 +11,6 @@ from capar_rules.explain.told_argument import UNBOUND, ToldArgument
 DRIFT_M = 0.005
 """Of a body that stays, shorter distances are left out of sentences [m]."""
 
-LEAST_MRAD = 17
-"""Smaller angles are told as that [1/1000 rad]: a degree."""
-
 COURSES: Mapping[str, Callable[[int, int, int], str]] = {
     "course": quantities.course,
     "steep_course": quantities.steep_course,
@@ -174,9 +171,9 @@ class MotionsTold(ToldArgument):
         low, high = (1000.0 * each for each in self.clock.measured.heights(body, *span))
         found = []
         if high - max(end_mm, 0) >= constants()["height_mm"]:
-            found.append(f"up to {quantities.length(high / 1000.0)} higher")
+            found.append(f"up to {quantities.extreme(high / 1000.0)} higher")
         if min(end_mm, 0) - low >= constants()["height_mm"]:
-            found.append(f"down to {quantities.length(-low / 1000.0)} lower")
+            found.append(f"down to {quantities.extreme(-low / 1000.0)} lower")
         return f" ({' and '.join(found)} in between)" if found else ""
 
     def _turned(self, body: str, span: tuple[int, int]) -> str:
@@ -184,8 +181,7 @@ class MotionsTold(ToldArgument):
         turned = self.clock.measured.turned
         if turned is None or body not in self.clock.measured.turn_floors:
             return ""
-        angle = max(round(1000.0 * turned(body, *span)), LEAST_MRAD)
-        return f" and turned by at most {quantities.degrees(angle)}"
+        return f" and turned by at most {quantities.angle_bound(turned(body, *span))}"
 
     def _far_over(self, body: str, span: tuple[int, int]) -> str:
         """How far a body leant, and from where on that is far over."""
@@ -193,10 +189,10 @@ class MotionsTold(ToldArgument):
         first, last = (known.postures.get((body, frame)) for frame in span)
         if first is None or last is None or known.leans is None:
             return "far over"
-        most = math.degrees(known.leans(body, *span))
+        most = quantities.angle_bound(known.leans(body, *span))
         least = quantities.degrees(round(1000.0 * known.far_over_rad))
         told = f"{_leant(first[0], last[0])} from {self._posture_of(body)}"
-        return f"{told} ({most:.0f}° at most; far over is {least} or more)"
+        return f"{told} ({most} at most; far over is {least} or more)"
 
     def _posture_of(self, body: str) -> str:
         """The posture from which a body's lean is measured."""

@@ -6,7 +6,7 @@ from capar_rules.explain.briefs import listed
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.quantities import beyond, length
+from capar_rules.explain.quantities import length, spread
 from capar_rules.explain.reaches import Reach
 
 BEYOND = "at moments up to"
@@ -48,7 +48,7 @@ def _bridged(claims: Iterable[Claim], clock: Clock) -> str:
         if reach is None or far is None or 1000.0 * far <= reach.told_mm or BEYOND in told:
             continue
         called = f"the {clock.called(one)} and the {clock.called(other)}"
-        found.append(f"{called} were up to {beyond(far, reach.distance_m)} apart")
+        found.append(f"{called} were up to {spread(far)} apart")
     return f" At moments within the contact {listed(found)}." if found else ""
 
 

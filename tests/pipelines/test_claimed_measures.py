@@ -41,7 +41,7 @@ NAMES = (
     "put_down",
 )
 
-NUMBER = re.compile(r"\d+(?:\.\d+)? (?:mm/s|mm|cm|m)\b|\d+°|\d+ %")
+NUMBER = re.compile(r"\d+(?:\.\d+)? (?:mm/s|mm|cm|m)\b|\d+(?:\.\d)?°|\d+ %")
 """A number with a unit that a panel can have."""
 
 ROUNDED = {"mm/s": 0.5, "mm": 0.5, "cm": 0.5, "m": 0.05, "°": 0.6, "%": 0.5}
@@ -122,8 +122,8 @@ def reads_as_told(mark: Mark, unit: str) -> bool:
     value = abs(mark.value) * SCALES.get((unit, told_unit), 1.0)
     if mark.label.startswith("less than"):
         return value < float(number)
-    if mark.label.startswith("at most"):
-        value = max(value, 1.0)  # nothing less is told
+    if "at most" in mark.label:
+        return 0.0 <= float(number) - value + 1e-6 <= 0.1 + 1e-5
     slack = 0.1 if told_unit == "cm" else 1.0 if told_unit == "mm" else 0.01
     return abs(value - float(number)) <= ROUNDED[told_unit] + slack
 

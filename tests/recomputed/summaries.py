@@ -26,9 +26,9 @@ from recomputed.doors import NUMBER, slid, swung
 from recomputed.known import NAME, TIME, Known, covers, name, near
 from recomputed.motion import lasted, stroked
 
-LENGTH = r"(\d+(?:\.\d)? mm|\d+ cm|\d+\.\d m)"
+LENGTH = r"(\d+(?:\.\d)? mm|\d+(?:\.\d)? cm|\d+\.\d\d? m)"
 POSTURE = r"from how it (?:first rested|was first seen)"
-DEGREES = r"(\d+)°"
+DEGREES = r"(\d+(?:\.\d)?)°"
 UNITS = {"mm": (0.001, 0.0005), "cm": (0.01, 0.005), "m": (1.0, 0.05)}
 """Of each unit: metres, and half of the last place that is told [m]."""
 
@@ -640,7 +640,7 @@ def turned_within(known: Known, body: str, angle: str, first: str = "", last: st
     begin = known.frame(first) if first else known.segment.first
     end = known.frame(last) if last else known.segment.last
     turns = known.turns(body, range(begin, end + 1))
-    most = max(math.degrees(float((turns[0].inv() * turns).magnitude().max())), 1.0)
+    most = math.degrees(float((turns[0].inv() * turns).magnitude().max()))
     return not angle or abs(most - float(angle)) <= 1.0
 
 
