@@ -278,7 +278,9 @@ class Briefs:
             if thing in pair and hand_of(self.clock.own) not in pair
             for first, _ in spans
         )
-        return courses and not begun and thing in self.clock.measured.movable
+        touches = self.clock.measured.contacts.get((hand_of(self.clock.own), thing), ())
+        held = any(first <= span[0] and last >= span[1] for first, last in touches)
+        return held and courses and not begun and thing in self.clock.measured.movable
 
     def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:
         was = "were" if self.clock.called(body) in self.clock.several else "was"

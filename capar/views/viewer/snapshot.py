@@ -48,6 +48,10 @@ LABEL_PT = 7.5
 """Size of the letters of names [points]."""
 
 
+ROUNDED_S = 1e-6
+"""Times that differ by no more are one [s]."""
+
+
 def snapshot(shown: Stage, time_s: float, path: Path) -> None:
     """Draw the moment that is nearest to a time to a PNG file, which is overwritten.
 
@@ -60,7 +64,7 @@ def snapshot(shown: Stage, time_s: float, path: Path) -> None:
         FileError: The capture has no such time, or the file cannot be written.
     """
     first, last = float(shown.times[0]), float(shown.times[-1])
-    if not first <= time_s <= last:
+    if not first - ROUNDED_S <= time_s <= last + ROUNDED_S:
         raise FileError(
             path, f"no moment at {time_s:g} s;", f"the capture lasts from {first:g} to {last:g} s."
         )
