@@ -300,7 +300,7 @@ def _of_neighbour(
 
 def _featured(match: Match) -> bool:
     """Whether the features are among what keeps a rule from fitting."""
-    return any(each.atoms[0].signature in (FITS, FEATURE) for each in match.failing)
+    return any(literal.atoms[0].signature in (FITS, FEATURE) for literal in match.failing)
 
 
 def _deciding(match: Match, clauses: Sequence[Sequence[str]]) -> int:

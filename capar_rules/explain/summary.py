@@ -152,7 +152,7 @@ def _told_contrasts(
             both = (*told[alike_at[-1]].names, *left)[:MOST_NAMES]
             names |= {*both}
             told[alike_at[-1]] = replace(told[alike_at[-1]], names=both)
-        elif left and len(told) < most and not _idle(contrast, bool(told), bool(beside)):
+        elif left and len(told) < most and not _idle(contrast, told=told, beside=beside):
             names |= {*left}
             told.append(replace(contrast, names=left))
     return beside, told
@@ -171,7 +171,7 @@ def _beside(
             yield replace(contrast, names=left)
 
 
-def _idle(contrast: Contrast, told: bool, beside: bool) -> bool:
+def _idle(contrast: Contrast, *, told: Sequence[Contrast], beside: Sequence[Contrast]) -> bool:
     """Whether nobody would ask for the names, where others are told, or denied by what is told."""
     least = LEAST_SEEN if told else LEAST_NEARNESS if beside and not contrast.below else 0.0
     return contrast.nearness < least and not contrast.though
