@@ -99,6 +99,21 @@ def angle_between(
     return 2.0 * np.arccos(np.clip(dots, 0.0, 1.0))
 
 
+def from_mean(
+    orientations: Float[np.ndarray, "frames 4"], of: slice = slice(None)
+) -> Float[np.ndarray, "frames"]:
+    """The angle of each orientation to the mean of some of them [rad]; NaN where it is lost.
+
+    Args:
+        orientations: Unit quaternions (w x y z), NaN where lost.
+        of: The frames of which the mean is taken.
+    """
+    known = orientations[of][~np.isnan(orientations[of]).any(axis=1)]
+    if not len(known):
+        return np.full(len(orientations), np.nan)
+    return angle_between(orientations, quaternions(rotations(known).mean())[None])
+
+
 def fit_rigid(
     local: Float[np.ndarray, "markers 3"], world: Float[np.ndarray, "markers 3"]
 ) -> tuple["RigidTransform", float]:

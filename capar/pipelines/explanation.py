@@ -148,7 +148,7 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
     return Measured(
         ways(measurements),
         leans=_leans(measurements),
-        far_over_rad=thresholds_of(measurements.calibration).lean_rad,
+        far_over_rad=thresholds_of(calibration).lean_rad,
         turns=_turns(measurements),
         names=body_names(observation),
         reaches=reaches(measurements),
@@ -164,6 +164,7 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
         heights=_heights(measurements),
         over=_over(measurements),
         apart=apart_within(measurements),
+        dropout_s=calibration.contact_dropout_s,
         lost=_lost(observation, measurements),
         unrested=_unrested(observation),
         rate_hz=observation.rate_hz,
@@ -250,11 +251,11 @@ def _leans(measurements: Measurements) -> Leans:
 
 
 def _turned(measurements: Measurements) -> Leans:
-    """By what angle bodies were turned at most from how they were at the first of two frames."""
+    """By what angle bodies were turned at most from their mean orientation between two frames."""
 
     def most(name: str, first: int, last: int) -> float:
         orientations = measurements.bodies.named(name).orientations[first : last + 1]
-        return float(np.nanmax(geometry.angle_between(orientations, orientations[:1])))
+        return float(np.nanmax(geometry.from_mean(orientations)))
 
     return most
 

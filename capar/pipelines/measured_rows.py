@@ -53,7 +53,7 @@ def claimed_rows(known: Recording, claims: Sequence[Claim]) -> Iterator[Row]:
 def mover_rows(known: Recording, movers: Sequence[MoverStretches]) -> Iterator[Row]:
     """A row for each way in which something moves a thing in the segment."""
     for mover in movers:
-        bars = tuple(Span(known.at(first), known.at(last), "") for first, last in mover.spans)
+        bars = tuple(Span(known.at(first), known.at(last + 1), "") for first, last in mover.spans)
         yield Row(f"{mover.thing}: {mover.words}, for {mover.percent} % of its motion", bars)
 
 
@@ -80,11 +80,12 @@ def _rows(known: Recording, wanted: Stretches) -> Iterator[Row]:
             if first <= known.span[1] and last >= known.span[0]:
                 begin, end = max(first, known.span[0]), min(last, known.span[1])
                 found.setdefault(about, []).append(Span(known.at(begin), known.at(end), ""))
-    if len(found) > FEWEST and ANY in wanted.bodies:
+    several = len(found) > FEWEST and ANY in wanted.bodies
+    if several:
         found = {wanted.bodies: [span for spans in found.values() for span in spans]}
     for about, bars in found.items():
         yield _row(known, wanted.predicate, about, bars)
-    if found and wanted.predicate == "touching" and ANY in wanted.bodies and len(found) <= FEWEST:
+    if found and wanted.predicate == "touching" and ANY in wanted.bodies and not several:
         named = [known.called(body) for body in wanted.bodies if body != ANY]
         yield Row(NOTHING_ELSE.format(*named), ())
     if not found:

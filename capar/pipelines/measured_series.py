@@ -15,7 +15,7 @@ from capar.model.facts import (
     Swings,
     Touching,
 )
-from capar.model.geometry import angle_between
+from capar.model.geometry import from_mean
 from capar.pipelines.explanation import AXES
 from capar.pipelines.measured_relations import RELATIONS, Series
 from capar.pipelines.shown_recording import CENTI, MILLI, Recording, held, told_beside
@@ -127,12 +127,11 @@ def _angle_mark(known: Recording, frame: int, degrees_: float, label: str) -> Ma
 def _turned(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
     orientations = known.body(name).orientations
-    angle = np.degrees(angle_between(orientations, orientations[told.first : told.first + 1]))
+    angle = np.degrees(from_mean(orientations, slice(told.first, told.last + 1)))
     most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
     floor = math.degrees(known.seen.measurements.calibration.body(name).motion_floor_rad)
     return Panel(
-        f"{known.called(name)}: angle by which it is turned from how it was at "
-        f"{known.at(told.first):.2f} s",
+        f"{known.called(name)}: angle to its mean orientation",
         "°",
         (known.curve(angle),),
         (Limit(floor, f"counts as moved from {floor:.0f}° on"),),

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from capar.model.body_names import is_plural, limb_names
-from capar.model.facts import MovedBy
+from capar.model.facts import MovedBy, Touching
 from capar.model.observation import Observation
 from capar.views.rows import spoken
 
@@ -24,6 +24,9 @@ What a hand does is told in one way, whether the thing was steady in its frame o
 decides between the two, and the segment's name says how it was moved.
 """
 
+
+BY_HAND = frozenset({"carried", "pushed"})
+"""Kinds of motion in which an end-effector moves the thing."""
 
 WITHOUT_MOVER = frozenset({"set_going", "unknown"})
 """Kinds of motion in which nothing moves the thing."""
@@ -54,9 +57,27 @@ def mover_lines(
     """
     names = limb_names(seen)
     return tuple(
-        _line(names.get(thing, spoken(thing)), frames)
+        _line(names.get(thing, spoken(thing)), frames, _apart(seen, thing, frames))
         for thing, frames in _moved(seen, ee, index, staying)
     )
+
+
+def _apart(
+    seen: Observation, thing: str, frames: Mapping[int, Collection[tuple[str, str]]]
+) -> Mapping[str, int]:
+    """In what share of a thing's motion each end-effector moves it without counted contact [%]."""
+    names = limb_names(seen)
+    met: dict[str, set[int]] = {names.get(link.ee, link.ee): set() for link in seen.links}
+    for fact in seen.facts:
+        if isinstance(fact, Touching) and fact.other == thing:
+            met.get(names.get(fact.body, fact.body), set()).update(range(fact.first, fact.last + 1))
+    alone = Counter(
+        who
+        for frame, movers in frames.items()
+        for who in {who for how, who in movers if how in BY_HAND}
+        if who in met and frame not in met[who]
+    )
+    return {who: round(100.0 * count / len(frames)) for who, count in sorted(alone.items())}
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +166,9 @@ def _spans(frames: Sequence[int]) -> Iterator[tuple[int, int]]:
     yield first, last
 
 
-def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
+def _line(
+    thing: str, frames: Mapping[int, Collection[tuple[str, str]]], apart: Mapping[str, int]
+) -> str:
     """What moves a thing: one plain statement, or each mover with its share of the time."""
     was, it = ("were", "them") if is_plural(thing) else ("was", "it")
     touching = _touching(frames.values())
@@ -153,7 +176,7 @@ def _line(thing: str, frames: Mapping[int, Collection[tuple[str, str]]]) -> str:
         frame: [(how, mover) for how, mover in found if mover not in touching]
         for frame, found in frames.items()
     }
-    beside = _beside(frames, touching, it)
+    beside = _beside(frames, touching, it) + _without_contact(apart)
     ways = Counter(_together(found) for found in movers.values()).most_common(1)
     (together, count) = ways[0]
     if 100.0 * count >= ALL_BUT * len(movers):
@@ -197,6 +220,16 @@ def _beside(
         f"; {_few(who)} {'were' if len(who) > 1 else 'was'} in contact with {it} "
         + (f"for {share} % of that time" if share < ALL_BUT else "meanwhile")
         for share, who in sorted(shares.items(), reverse=True)
+    )
+
+
+def _without_contact(apart: Mapping[str, int]) -> str:
+    """Who moved a thing, and in how much of its motion, while no contact of the two counted."""
+    return "".join(
+        f"; {f'for {share} % of that time ' * (share < ALL_BUT)}the {spoken(who)} was near, and "
+        "moved alike, but did not count as in contact"
+        for who, share in apart.items()
+        if share > 100.0 - ALL_BUT
     )
 
 

@@ -139,7 +139,18 @@ def laid(clock: Clock, segment: str) -> str:
         alone = ", in contact with no other recorded or assumed object"
     let_go = _let_go(clock, segment, held[1])
     later = held[1] - span[1] > in_frames(times().merge_ms, clock.rate_hz)
-    return f"{'did not move from the end until' if later else 'came down to where'} {let_go}{alone}"
+    stilled = _stilled(clock, segment)
+    if later:
+        return f"did not move from the end until {let_go}{alone}"
+    if stilled is None or stilled >= held[1]:
+        return f"came down to where {let_go}{alone}"
+    return f"came down and did not count as moving from {clock.at(stilled)} until {let_go}{alone}"
+
+
+def _stilled(clock: Clock, segment: str) -> int | None:
+    """The last frame in which a segment's thing counts as moving within it."""
+    span, moves = clock.span(segment), clock.measured.moving.get(clock.objects.get(segment, ""), ())
+    return max((last for first, last in moves if span and first < span[1]), default=None)
 
 
 def not_laid(clock: Clock, segment: str) -> str:

@@ -210,7 +210,7 @@ class Briefs:
         """
         known, span = self.clock.measured, self.clock.span(self.clock.own)
         hand, called = hand_of(self.clock.own), self.clock.called
-        clear = known.grasps(hand) and any(claim.of in TOUCHING_NOTHING for claim in claims)
+        clear = any(claim.of in TOUCHING_NOTHING for claim in claims)
         if not clear or span is None or known.apart is None:
             return []
         near: dict[str, float] = {}
@@ -241,9 +241,8 @@ class Briefs:
             return []
         if not new and self._moves_clear(claims, thing, span):
             row = Stretches("touching", (thing, ANY))
-            return [
-                Claim(f"the {called(thing)} came into contact with nothing new", (), (), (row,))
-            ]
+            what = "no new object" if self._met_within(thing, span) else "nothing new"
+            return [Claim(f"the {called(thing)} came into contact with {what}", (), (), (row,))]
         if not known & {*new}:
             return []
         too = [other for other in new if other not in known]
@@ -266,21 +265,27 @@ class Briefs:
         ]
 
     def _moves_clear(self, claims: Iterable[Claim], thing: str, span: tuple[int, int]) -> bool:
-        """Whether claims tell how a thing moved, and no contact of it with another body began."""
+        """Whether claims tell how a thing moved, and no contact of it with an object began."""
         courses = any(
             quantity.form in COURSES_TOLD and thing in quantity.bodies
             for claim in claims
             for quantity in claim.quantities
         )
-        begun = any(
-            span[0] < first <= span[1]
-            for pair, spans in self.clock.measured.contacts.items()
-            if thing in pair and hand_of(self.clock.own) not in pair
-            for first, _ in spans
-        )
+        begun = self._met_within(thing, span) - {*self.clock.frames}
         touches = self.clock.measured.contacts.get((hand_of(self.clock.own), thing), ())
         held = any(first <= span[0] and last >= span[1] for first, last in touches)
         return held and courses and not begun and thing in self.clock.measured.movable
+
+    def _met_within(self, thing: str, span: tuple[int, int]) -> set[str]:
+        """What a thing came into contact with after the first frame, but the end-effector."""
+        return {
+            other
+            for pair, spans in self.clock.measured.contacts.items()
+            if thing in pair
+            for other in pair
+            if other not in (thing, hand_of(self.clock.own))
+            and any(span[0] < first <= span[1] for first, _ in spans)
+        }
 
     def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:
         was = "were" if self.clock.called(body) in self.clock.several else "was"

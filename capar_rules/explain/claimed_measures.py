@@ -31,7 +31,7 @@ class Measure(StrEnum):
     """By how much it has turned about the vertical since the first frame."""
 
     TURNED = "turned"
-    """By what angle about any axis it is turned from how it was at the first frame."""
+    """By what angle it is turned from its mean orientation between the two frames."""
 
     TURN_IN_ALL = "turn_in_all"
     """By how much it has turned about any axis since the first frame."""

@@ -32,9 +32,6 @@ from capar_rules.explain.reaches import Reach
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
-HANDS = ("hand", "index", "middle", "ring", "pinky", "thumb", "finger")
-"""How kinds of end-effectors begin that are hands or parts of them."""
-
 FEET = ("foot", "toe")
 """Kinds of end-effectors that may stand."""
 
@@ -91,7 +88,7 @@ class Measured:
     """Up to which distance two bodies count as touching, by their names in either order."""
 
     turned: Leans | None = None
-    """By what angle bodies were turned at most from how they were at the first of two frames."""
+    """By what angle bodies were turned at most from their mean orientation between two frames."""
 
     turn_floors: Mapping[str, float] = field(default_factory=dict)
     """From what angle on a body counts as moved, by body [rad]."""
@@ -157,6 +154,9 @@ class Measured:
     apart: Apart | None = None
     """How far bodies were apart; None where that is not known."""
 
+    dropout_s: float = 0.0
+    """A shorter interruption ends no contact [s]; zero where that is not known."""
+
     movable: frozenset[str] = frozenset()
     """Objects that can be moved."""
 
@@ -171,13 +171,6 @@ class Measured:
 
     feet: frozenset[str] = frozenset()
     """End-effectors that are feet or toes."""
-
-    hands: frozenset[str] = frozenset()
-    """End-effectors that are hands or parts of them."""
-
-    def grasps(self, body: str) -> bool:
-        """Whether it is a hand, a foot, or a part of one, which is where it seems to be."""
-        return body in self.hands or body in self.feet
 
     def stands_uncounted(self, body: str) -> bool:
         """Whether it is a foot of which no contact with anything fixed is looked for."""
@@ -268,7 +261,6 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
         held=held,
         tracked=touched,
         feet=frozenset(link.ee for link in links if link.kind in FEET),
-        hands=frozenset(link.ee for link in links if link.kind.startswith(HANDS)),
     )
 
 
@@ -371,6 +363,12 @@ class Clock:
     def motion(self, name: str, span: tuple[int, int]) -> tuple[int, int]:
         """From when to when an object was measured to move within a span; the span if never."""
         return _within(self.measured.moving.get(name, ()), span)
+
+    @property
+    def closed_gaps(self) -> str:
+        """Up to how long bodies may be too far apart within a contact, after how far they were."""
+        dropout_s = self.measured.dropout_s
+        return f": gaps of less than {dropout_s:.2f} s end no contact" if dropout_s else ""
 
     def displacement(self, name: str, span: tuple[int, int]) -> tuple[int, int]:
         """The same from when it truly left its place until it truly reached another."""

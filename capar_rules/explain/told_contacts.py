@@ -111,7 +111,7 @@ class ContactsTold(ToldArgument):
         far = known.apart(one, other, *span) if known.apart and reach else None
         if far is None or reach is None or 1000.0 * far[1] <= reach.told_mm:
             return ""
-        return f" (at moments up to {quantities.spread(far[1])} apart)"
+        return f" (at moments up to {quantities.spread(far[1])} apart{self.clock.closed_gaps})"
 
     def _after_leaving(self) -> str:
         """When the two bodies beside this parted before, if at the start or in the segment."""

@@ -78,16 +78,18 @@ class MotionsTold(ToldArgument):
             return _brief(form, moved) + self._counts_later(form, body, moved, span)
         late = span[1] - moving[1] > in_frames(times().merge_ms, self.clock.rate_hz)
         told = quantities.way(moved, f" until {self.clock.at(moving[1])}" * late)
-        return told + self._in_course_of(body, moved, span) + self._untouched(body, moving)
+        return told + self._untouched(body, moving) + self._in_course_of(body, moved, span)
 
     def _untouched(self, body: str, moving: tuple[int, int]) -> str:
-        """That it moved while the end-effector did not touch it that touched it before."""
+        """That it moved while the end-effector did not touch it, which did before or does after."""
         hand = arrangements.hand_of(self.clock.own)
         touches = self.clock.measured.contacts.get((hand, body), ())
-        begun = [first for first, _ in touches if first <= moving[0]]
         meanwhile = any(first < moving[1] and last > moving[0] for first, last in touches)
         called = self.clock.called(hand)
-        return f" (without contact with the {called})" if begun and not meanwhile else ""
+        if not touches or meanwhile:
+            return ""
+        begun = any(first <= moving[0] for first, _ in touches)
+        return f" ({'without' if begun else 'before any'} contact with the {called})"
 
     def _counts_later(self, form: str, body: str, moved: Way, span: tuple[int, int]) -> str:
         """From when on the motion counts of what has begun to move before the segment ends."""
@@ -115,7 +117,8 @@ class MotionsTold(ToldArgument):
     def _in_course_of(self, body: str, moved: Way, span: tuple[int, int]) -> str:
         """Of which motion a way is part that by itself would be too short to count."""
         floor_m = self.clock.measured.floors.get(body, 0.0)
-        moves = self.clock.measured.moving.get(body, ())
+        known = self.clock.measured
+        moves = known.displaced.get(body) or known.moving.get(body, ())
         longer = [
             (first, last)
             for first, last in moves
@@ -177,11 +180,11 @@ class MotionsTold(ToldArgument):
         return f" ({' and '.join(found)} in between)" if found else ""
 
     def _turned(self, body: str, span: tuple[int, int]) -> str:
-        """By what angle a body that stays has turned at most."""
+        """Within what angle of its mean orientation a body has stayed."""
         turned = self.clock.measured.turned
         if turned is None or body not in self.clock.measured.turn_floors:
             return ""
-        return f" and turned by at most {quantities.angle_bound(turned(body, *span))}"
+        return f" and {quantities.angle_bound(turned(body, *span))} of its mean orientation"
 
     def _far_over(self, body: str, span: tuple[int, int]) -> str:
         """How far a body leant, and from where on that is far over."""

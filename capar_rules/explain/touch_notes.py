@@ -49,7 +49,8 @@ def _bridged(claims: Iterable[Claim], clock: Clock) -> str:
             continue
         called = f"the {clock.called(one)} and the {clock.called(other)}"
         found.append(f"{called} were up to {spread(far)} apart")
-    return f" At moments within the contact {listed(found)}." if found else ""
+    gaps = clock.closed_gaps
+    return f" At moments within the contact {listed(found)}{gaps}." if found else ""
 
 
 def _farthest(one: str, other: str, clock: Clock) -> float | None:

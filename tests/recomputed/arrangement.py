@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from capar.model.facts import Leans, Place
+from capar.model.facts import Leans, Moving, Place
 from recomputed.known import NAME, TIME, Known, name, near
 
 HEIGHT_M, ASIDE_M, TURN_RAD = 0.05, 0.10, np.radians(20.0)
@@ -172,9 +172,12 @@ def _pressing(known: Known) -> float:
     return float(ahead @ goes / lengths) if lengths else 0.0
 
 
-def came_to_lie(known: Known, what: str, hand: str, at: str) -> bool:
-    """It came down, and where it is then it is when the hand leaves it."""
+def came_to_lie(known: Known, what: str, stilled: str | None, hand: str, at: str) -> bool:
+    """It came down, and where it is then it is when the hand leaves it; its motion ends before."""
     left = known.frame(at)
+    moves = [each.last for each in known.of(Moving) if each.object == name(what)]
+    if stilled and not any(near(each, known.at(stilled)) for each in moves):
+        return False
     if not any(near(each.last, left) for each in known.touching(hand, what)):
         return False
     place = known.stream(what).positions
@@ -212,8 +215,9 @@ FORMS = (
         went_after,
     ),
     (
-        rf"the {NAME} (?:did not move from the end until|came down to where) the {NAME} (?:let go "
-        rf"of it|was last tracked at it,) at {TIME}(?: \(taken for letting go\))?"
+        rf"the {NAME} (?:did not move from the end until|came down to where|came down and did not "
+        rf"count as moving from {TIME} until) the {NAME} (?:let go of it|was last tracked at it,) "
+        rf"at {TIME}(?: \(taken for letting go\))?"
         r"(?:, in contact with no other recorded or assumed object)?",
         came_to_lie,
     ),

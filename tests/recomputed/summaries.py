@@ -14,7 +14,6 @@ from capar.model.facts import (
     Displaced,
     FlickerCorrection,
     Leans,
-    Moving,
     Posture,
     PressDirection,
     Resting,
@@ -619,8 +618,8 @@ def level_enough(known: Known, body: str, rise: str, sense: str, aside: str, ask
 
 
 def part_of_motion(known: Known, body: str, first: str, last: str) -> bool:
-    """Motions of it begin and end then, beyond the segment."""
-    moves = [each for each in known.of(Moving) if each.object == body]
+    """Motions of it truly begin and end then, beyond the segment."""
+    moves = [each for each in known.of(Displaced) if each.object == body]
     begins = any(near(each.first, known.at(first)) for each in moves)
     return begins and any(near(each.last, known.at(last)) for each in moves)
 
@@ -631,16 +630,16 @@ def seen_from(known: Known, _: str, at: str) -> bool:
 
 
 def kept_as_it_was(known: Known, body: str, far: str, angle: str) -> bool:
-    """It is never further from the middle of where it is, nor turned further from how it was."""
+    """It is never further from the middle of where it is, nor turned further from its mean."""
     return kept_within(known, body, far) and turned_within(known, body, angle)
 
 
 def turned_within(known: Known, body: str, angle: str, first: str = "", last: str = "") -> bool:
-    """It is turned by no more from how it was at first, if that is told."""
+    """It is turned by no more from its mean orientation, if that is told."""
     begin = known.frame(first) if first else known.segment.first
     end = known.frame(last) if last else known.segment.last
     turns = known.turns(body, range(begin, end + 1))
-    most = math.degrees(float((turns[0].inv() * turns).magnitude().max()))
+    most = math.degrees(float((turns.mean().inv() * turns).magnitude().max()))
     return not angle or abs(most - float(angle)) <= 1.0
 
 
@@ -872,9 +871,9 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"stayed in place \(within {LENGTH} of its median place in the segment\)", kept_within),
     (
         rf"counted as at rest from {TIME} to {TIME}, (?:longer than|just) the 0\.40 s of a rest "
-        rf"\(it stayed within {LENGTH} of its median place(?: and turned by at most {DEGREES})? "
-        r"meanwhile(?:; rests within 1 cm(?: and \d+°)? of one place, and then of another, count "
-        r"as one)?\)",
+        rf"\(it stayed within {LENGTH} of its median place(?: and {DEGREES} of its mean "
+        r"orientation)? meanwhile(?:; rests within 1 cm(?: and \d+°)? of one place, "
+        r"and then of another, count as one)?\)",
         lambda known, body, first, last, far, angle: kept_within(known, body, far, first, last)
         and turned_within(known, body, angle, first, last),
     ),
@@ -882,8 +881,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"(?:had no rest of|at rest for) {TIME} or more", rest_lasts),
     (rf"touched the {NAME} at {TIME}", touched_at),
     (
-        rf"stayed within {LENGTH} of its median place(?: and turned by at most {DEGREES})? in the "
-        r"segment",
+        rf"stayed within {LENGTH} of its median place(?: and {DEGREES} of its mean orientation)? "
+        r"in the segment",
         kept_as_it_was,
     ),
     (rf"less than the {LENGTH}(?: or {DEGREES})? from which on it counts as moved", counts_from),

@@ -2,7 +2,7 @@
 
 from itertools import combinations
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from capar.views.number_places import Box, distance, meet
@@ -10,6 +10,9 @@ from capar.views.viewer.body_labels import Labelled, leader, place_labels
 
 PAGE = (9.0, 6.6)
 places = st.tuples(st.floats(3.0, 6.0), st.floats(2.0, 4.5))
+SCENES = 25
+"""So many scenes are tried: one takes a quarter of a second."""
+
 bodies = st.lists(st.tuples(places, st.floats(0.05, 0.6), st.floats(0.3, 1.0)), max_size=12)
 
 
@@ -19,6 +22,7 @@ def labelled(place: tuple[float, float], half: float, wide: float) -> Labelled:
     return Labelled(box, (wide, 0.17))
 
 
+@settings(max_examples=SCENES)
 @given(bodies)
 def test_no_name_stands_on_another_or_leaves_the_page(
     parts: list[tuple[tuple[float, float], float, float]],
@@ -30,6 +34,7 @@ def test_no_name_stands_on_another_or_leaves_the_page(
         assert box[0] >= 0.0 and box[1] <= PAGE[0] and box[2] >= 0.0 and box[3] <= PAGE[1]
 
 
+@settings(max_examples=SCENES)
 @given(bodies)
 def test_the_line_of_a_name_leads_from_its_body_to_it(
     parts: list[tuple[tuple[float, float], float, float]],
