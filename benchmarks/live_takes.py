@@ -69,7 +69,8 @@ def noisy(name: str, noise_mm: float) -> Capture:
 
 def whole_body(take: str) -> Capture:
     """A clip of somebody who carries something, by the sensors of the thesis."""
-    clip = trial_of(f"{CARRIER}:{take}")
+    file = "largebox.toml" if "largebox" in take else "capture.toml"
+    clip = trial_of(f"{CARRIER / file}:{take}")
     sensors = tuple(sensor for sensor in clip.sensors if sensor.name.endswith(BIRDS))
     return replace(clip, sensors=sensors)
 

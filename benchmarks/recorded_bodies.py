@@ -35,7 +35,8 @@ def places() -> Iterator[tuple[str, str]]:
     """The name and the place of each capture."""
     yield "box lift", str(EXAMPLES / "pyomeca_box_lift")
     for clip in CLIPS:
-        yield clip, f"{EXAMPLES / 'omomo_intermimic'}:{clip}"
+        file = "largebox.toml" if "largebox" in clip else "capture.toml"
+        yield clip, f"{EXAMPLES / 'omomo_intermimic' / file}:{clip}"
     for reach in REACHES:
         yield reach, f"{EXAMPLES / 'smartbody_mocap_reaching'}:{reach}"
     for name in FILES:

@@ -134,6 +134,7 @@ def _scored(pair: Pair, plan: Plan, base: Profile) -> Scored:
         times = frame_times(pair.capture, file=plan.frames_of)
         labels, pairs = read_contact_arrays(pair.labels, plan.contacts, pair.words, times)
         labels = labels.renamed(dict(plan.names))
+        pairs = tuple((plan.names.get(body, body), other) for body, other in pairs)
     _check_bodies(labels, capture)
     check_span(labels, capture.times)
     measurements, _ = facts_program(capture, rules=base)

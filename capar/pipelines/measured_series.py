@@ -105,12 +105,11 @@ def _spread(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     away = np.linalg.norm(middles - np.nanmedian(inside, axis=0), axis=1)
     far = told.first + int(np.nanargmax(away[told.first : told.last + 1]))
     thing = known.is_object(name)
-    limits = (known.floor(name),) if thing else ()
     return Panel(
         f"{known.called(name)}: distance from its median place",
         "cm",
         (known.curve(CENTI * away),),
-        tuple(limits),
+        (known.floor(name),),
         (Mark(known.at(far), CENTI * away[far], f"at most {spread(away[far])}"),),
         known.bars(Moving, object=name) if thing else known.rests(name),
         "counts as moving" if thing else "counts as at rest",
@@ -129,12 +128,11 @@ def _turned(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     orientations = known.body(name).orientations
     angle = np.degrees(from_mean(orientations, slice(told.first, told.last + 1)))
     most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
-    floor = math.degrees(known.seen.measurements.calibration.body(name).motion_floor_rad)
     return Panel(
         f"{known.called(name)}: angle to its mean orientation",
         "°",
         (known.curve(angle),),
-        (Limit(floor, f"counts as moved from {floor:.0f}° on"),),
+        (known.turn_floor(name),),
         (
             Mark(
                 known.at(most),
@@ -307,6 +305,9 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     if forms & SINCE_BEGIN:
         known = replace(known, span=(0, known.span[1]))
         since = " since the recording began"
+    turning = f"and {pace.turning_deg:.0f} °/s of turning"
+    if not _only_turns(known, name, pace):
+        turning = f"where it is, it turns below {pace.turning_deg:.0f} °/s, slowly too"
     free = ", touching nothing" * bool(since)
     rest = (
         f"at rest for {constants()['rest_ms'] / MILLI:.2f} s or more{free}: {pace.within} of a "
@@ -316,7 +317,7 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         f"{known.called(name)}: speed{since}",
         "mm/s",
         (known.curve(MILLI * paces(poses.smooth, pace.rate, pace.thresholds)[0]),),
-        (Limit(slow, f"slow: below {slow:.0f} mm/s (and {pace.turning_deg:.0f} °/s of turning)"),),
+        (Limit(slow, f"slow: below {slow:.0f} mm/s ({turning})"),),
         bars=_free_rests(known, name) if since else known.rests(name),
         bars_label=f"counts as {rest}",
         held=held(Resting, name),
@@ -334,11 +335,9 @@ def _turning(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel |
     if forms & SINCE_BEGIN:
         return None
     pace = _Pace.of(known, name)
-    speed, turning = paces(known.body(name).poses.smooth, pace.rate, pace.thresholds)
-    with np.errstate(invalid="ignore"):
-        alone = (speed < pace.slow_mps) & (np.degrees(turning) >= pace.turning_deg)
-    if not alone[known.span[0] : known.span[1] + 1].any():
+    if not _only_turns(known, name, pace):
         return None
+    turning = paces(known.body(name).poses.smooth, pace.rate, pace.thresholds)[1]
     return Panel(
         f"{known.called(name)}: speed of turning, which is slow too where a rest begins and ends",
         "°/s",
@@ -348,6 +347,14 @@ def _turning(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel |
         beyond="what is faster",
         lost=known.lost(name),
     )
+
+
+def _only_turns(known: Recording, name: str, pace: "_Pace") -> bool:
+    """Whether a body turns fast somewhere in the time shown, where it is slow else."""
+    speed, turning = paces(known.body(name).poses.smooth, pace.rate, pace.thresholds)
+    with np.errstate(invalid="ignore"):
+        alone = (speed < pace.slow_mps) & (np.degrees(turning) >= pace.turning_deg)
+    return bool(alone[known.span[0] : known.span[1] + 1].any())
 
 
 @dataclass(frozen=True)

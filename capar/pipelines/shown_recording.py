@@ -141,6 +141,14 @@ class Recording:
         return name in self.seen.measurements.bodies.objects
 
     def floor(self, body: str) -> Limit:
-        """From where on a body counts as moved."""
+        """From where on a thing counts as moved, and up to where an end-effector rests."""
         floor_m = self.seen.measurements.calibration.body(body).motion_floor_m
-        return Limit(CENTI * floor_m, f"counts as moved from {length(floor_m)}")
+        return Limit(CENTI * floor_m, self._of_rest(body).format(length(floor_m)))
+
+    def turn_floor(self, body: str) -> Limit:
+        """The same of the angle by which it is turned."""
+        degrees_ = math.degrees(self.seen.measurements.calibration.body(body).motion_floor_rad)
+        return Limit(degrees_, self._of_rest(body).format(f"{degrees_:.0f}°"))
+
+    def _of_rest(self, body: str) -> str:
+        return "counts as moved from {} on" if self.is_object(body) else "a rest is within {}"

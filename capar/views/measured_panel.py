@@ -85,7 +85,14 @@ def _limits(axes: "Axes", panel: Panel, low: float, high: float) -> None:
             color=LIMIT,
             ha="left",
             va="center",
-            arrowprops={"arrowstyle": "-", "color": LIMIT, "linewidth": 0.6, "shrinkA": 0.0},
+            arrowprops={
+                "arrowstyle": "-",
+                "color": LIMIT,
+                "linewidth": 0.6,
+                "shrinkA": 0.0,
+                "shrinkB": 0.0,
+                "relpos": (0.0, 0.5),  # to the middle of its left side
+            },
             annotation_clip=False,
         )
 
@@ -97,8 +104,13 @@ def _spread(at: Sequence[float], texts: Sequence[Sequence[str]]) -> list[float]:
     for index, wanted in enumerate(at):
         least = out[-1] + half[index - 1] + half[index] if out else -np.inf
         out.append(max(wanted, least))
-    over = max(out[-1] + half[-1] - 1.03, 0.0) if out else 0.0
-    return [height - min(over, 0.5) for height in out]
+    if not out:
+        return []
+    over = max(out[-1] + half[-1] - 1.03, 0.0)
+    room = max(out[0] - half[0] + 0.03, 0.0)
+    pushed = float(np.mean(out) - np.mean(at))
+    down = max(min(over, 0.5), min(pushed, room))
+    return [height - down for height in out]
 
 
 def _numbers(axes: "Axes", panel: Panel, low: float, high: float) -> None:

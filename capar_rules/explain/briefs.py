@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from capar_rules.borders.times import in_frames, times
 from capar_rules.explain.arrangements import hand_of, kept, reached, untracked
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined_claims, resting_on
@@ -27,8 +26,8 @@ not slid."""
 COURSES_TOLD = ("way", "course", "steep_course", "level_course", "place", "lean", "turn")
 """Formats in which a clause tells how a thing that is possessed moved."""
 
-NUMBERED = ("stays(", "met_gently(")
-"""Prefixes of atoms of which a contrast tells the number that decided."""
+NUMBERED = ("stays(", "met_gently(", "met_unseen(")
+"""Prefixes of atoms of which a contrast tells the number that decided, or that none is known."""
 
 AT_ONE_SIDE = {
     "touches_at_start": "start",
@@ -38,8 +37,8 @@ AT_ONE_SIDE = {
 }
 """Clauses of contact at one border, and that border."""
 
-COMING = ("comes_to_touch", "comes_near")
-"""Predicates that say that a body comes to touch another one."""
+THROUGHOUT = ("touches_throughout", "near_throughout")
+"""Predicates that say that two bodies touch as long as the segment lasts."""
 
 TOUCHING_NOTHING = ("rests", "touches_no_object")
 """Predicates that say that an end-effector touches nothing."""
@@ -155,22 +154,6 @@ class Briefs:
             for body, gaps in untracked(self.clock, bodies)
         ]
 
-    def unmeasured_speed(self, claims: Iterable[Claim]) -> list[Claim]:
-        """That it is not known how fast an end-effector came that was not tracked as it came."""
-        thing, span = self.clock.objects.get(self.clock.own, ""), self.clock.span(self.clock.own)
-        hand, known = hand_of(self.clock.own), self.clock.measured
-        comes = any(claim.of in COMING for claim in claims)
-        gaps = known.lost.get(hand, ())
-        if span is None or not comes or not gaps or not thing:
-            return []
-        slack = in_frames(times().merge_ms, self.clock.rate_hz)
-        met = known.contact(hand, thing, span[1], slack)
-        if met is None or not any(first < met[0] <= last + slack for first, last in gaps):
-            return []
-        called = self.clock.called
-        text = f"how fast the {called(hand)} came to the {called(thing)} is not known"
-        return [Claim(text, (), (), (Stretches("lost", (hand,)),))]
-
     def leaning(self, top: Reason) -> list[Claim]:
         """That the segment's borders are where its thing begins or ceases to lean far over."""
         thing, span = self.clock.objects.get(self.clock.own, ""), self.clock.span(self.clock.own)
@@ -210,7 +193,7 @@ class Briefs:
         """
         known, span = self.clock.measured, self.clock.span(self.clock.own)
         hand, called = hand_of(self.clock.own), self.clock.called
-        clear = any(claim.of in TOUCHING_NOTHING for claim in claims)
+        clear = known.grasps(hand) and any(claim.of in TOUCHING_NOTHING for claim in claims)
         if not clear or span is None or known.apart is None:
             return []
         near: dict[str, float] = {}
@@ -264,6 +247,23 @@ class Briefs:
             for clause, others in told
         ]
 
+    def fixed(self, claims: Iterable[Claim]) -> list[Claim]:
+        """That what an end-effector touches throughout is fixed, so that it stays."""
+        hand, thing = hand_of(self.clock.own), self.clock.objects.get(self.clock.own, "")
+        kept = any(claim.of in THROUGHOUT and self._is_of(claim, hand, thing) for claim in claims)
+        if not kept or not thing or thing in self.clock.measured.movable:
+            return []
+        text = f"the {self.clock.called(thing)} {'are' if self._several(thing) else 'is'} fixed"
+        return [Claim(text, (), (), (Stretches("thing", (thing,)),))]
+
+    @staticmethod
+    def _is_of(claim: Claim, one: str, other: str) -> bool:
+        return any({*quantity.bodies} == {one, other} for quantity in claim.quantities)
+
+    def _several(self, body: str) -> bool:
+        """Whether a body is told as more than one."""
+        return self.clock.called(body) in self.clock.several
+
     def _moves_clear(self, claims: Iterable[Claim], thing: str, span: tuple[int, int]) -> bool:
         """Whether claims tell how a thing moved, and no contact of it with an object began."""
         courses = any(
@@ -288,7 +288,7 @@ class Briefs:
         }
 
     def _lost(self, body: str, gaps: Sequence[tuple[int, int]]) -> str:
-        was = "were" if self.clock.called(body) in self.clock.several else "was"
+        was = "were" if self._several(body) else "was"
         spans = [f"from {self.clock.at(first)} to {self.clock.at(last)}" for first, last in gaps]
         if len(spans) > MOST_GAPS:
             lost = sum(last - first for first, last in gaps) / self.clock.rate_hz

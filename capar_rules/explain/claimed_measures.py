@@ -142,6 +142,7 @@ ANY = "*"
 ROWS: Mapping[str, tuple[tuple[str, Bodies], ...]] = {
     **dict.fromkeys(("ceases_to_touch", "ceases_to_be_near"), (("touching", (1, ANY)),)),
     "touches_no_object": (("touching", (END, ANY)),),
+    "met_unseen": (("lost", (END,)),),
     "rests": (("resting", (0,)), ("touching", (0, ANY))),
     "rests_afterwards": (("resting", (0,)),),
     "accompanied": (("touching", (END, ANY)),),

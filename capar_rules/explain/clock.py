@@ -32,6 +32,9 @@ from capar_rules.explain.reaches import Reach
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
+HANDS = ("hand", "index", "middle", "ring", "pinky", "thumb", "finger")
+"""How kinds of end-effectors begin that are hands or parts of them."""
+
 FEET = ("foot", "toe")
 """Kinds of end-effectors that may stand."""
 
@@ -172,6 +175,13 @@ class Measured:
     feet: frozenset[str] = frozenset()
     """End-effectors that are feet or toes."""
 
+    hands: frozenset[str] = frozenset()
+    """End-effectors that are hands or parts of them."""
+
+    def grasps(self, body: str) -> bool:
+        """Whether it is a hand, a foot, or a part of one, which is where it seems to be."""
+        return body in self.hands or body in self.feet
+
     def stands_uncounted(self, body: str) -> bool:
         """Whether it is a foot of which no contact with anything fixed is looked for."""
         pairs = (pair for pair in self.reaches if body in pair)
@@ -261,6 +271,7 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
         held=held,
         tracked=touched,
         feet=frozenset(link.ee for link in links if link.kind in FEET),
+        hands=frozenset(link.ee for link in links if link.kind.startswith(HANDS)),
     )
 
 

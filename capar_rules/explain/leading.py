@@ -18,7 +18,15 @@ BORDERS = ("segment(", "border(", "member(")
 APART = ("no_contact", "uncounted")
 """Predicates of no contact that counts at a border; where that border lies is no reason."""
 
-BESIDE_BORDERS = ("met_gently(", "met_hard(", "newly_met(", "moved_before(", "lets_go(", "takes(")
+BESIDE_BORDERS = (
+    "met_gently(",
+    "met_unseen(",
+    "met_hard(",
+    "newly_met(",
+    "moved_before(",
+    "lets_go(",
+    "takes(",
+)
 """Prefixes of atoms that say themselves when a contact began or ended."""
 
 DOUBTED = "doubted("
@@ -59,7 +67,8 @@ def bit(top: Reason, feature: str, clock: Clock) -> list[Reason]:
         ]
         return [each for each in top.walk() if each.atom in wanted]
     if side == "force":
-        return [each for each in top.walk() if each.atom.startswith(f"met_gently({segment},")]
+        met = f"met_gently({segment},", f"met_unseen({segment},"
+        return [each for each in top.walk() if each.atom.startswith(met)]
     pair = hand, objects.get(place, "")
     if place >= len(objects):
         pair = objects.get(0, ""), objects.get(place - len(objects) + 1, "")

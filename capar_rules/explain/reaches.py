@@ -16,7 +16,7 @@ class Between(StrEnum):
     SURFACES = "between their surfaces"
     POINT = "from the surface of the one to the origin of the other"
     ORIGINS = "between their origins"
-    POINTS = "between a point of each body, estimated from how the two moved together"
+    POINTS = "between a point of each body, of which only an estimate is known"
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,10 +70,9 @@ def summary(
     mended = briefs.clauses(doubts)
     claims += [briefs.claims[clause] for clause in mended if clause in briefs.claims]
     told += f". {_sentence(listed(mended))}" * bool(mended)
-    extra = [*briefs.clear_of(claims), *briefs.also_reached(claims)]
+    extra = [*briefs.clear_of(claims), *briefs.fixed(claims), *briefs.also_reached(claims)]
     extra += briefs.leaning(reason)
-    lost = briefs.lost([*claims, *extra])
-    extra += [*lost, *(briefs.unmeasured_speed(claims) if lost else ())]
+    extra += briefs.lost([*claims, *extra])
     told += "".join(f". {_sentence(claim.text)}" for claim in extra)
     names = [name, *generals, *(other for one in (*beside, *fresh) for other in one.names)]
     text = f"{told}." + touching([*claims, *extra], briefs.clock)

@@ -108,9 +108,11 @@ class MotionsTold(ToldArgument):
         turns = self.clock.measured.turned
         turn_floor = self.clock.measured.turn_floors.get(body, math.inf)
         turned_far = bool(turned) and turns is not None and turns(body, *span) > turn_floor
-        if floor_m is None or (moved.spread_m <= floor_m and not turned_far):
+        if floor_m is None:
             return told
         angle = f" and {quantities.degrees(round(1000.0 * turn_floor))}" * bool(turned)
+        if moved.spread_m <= floor_m and not turned_far:
+            return f"{told}, and a rest is within {quantities.length(floor_m)}{angle}"
         place = f"within {quantities.length(floor_m)}{angle} of one place"
         return f"{told}; rests {place}, and then of another, count as one"
 

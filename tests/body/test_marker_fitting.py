@@ -140,7 +140,7 @@ def test_clusters_with_few_joints_between_them_are_followed_by_their_markers(
 
 @pytest.mark.usefixtures("recordings")
 def test_a_body_of_poses_is_followed_from_its_capture() -> None:
-    found = whole_body(EXAMPLES / "omomo_intermimic:sub3_largebox_003")
+    found = whole_body(EXAMPLES / "omomo_intermimic/largebox.toml:sub3_largebox_003")
     assert found is not None
     short = {name: each[:60] for name, each in found.points.items()}
     made = fit_places(type(found)(found.times[:60], short, found.names))

@@ -159,7 +159,7 @@ def test_an_array_that_is_not_there_lists_those_that_are(tmp_path: Path) -> None
 def test_bodies_touch_a_carried_table_when_the_labels_say_so(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Two of the seventeen clips that the evaluation file beside the example scores."""
+    """Two of the sixteen clips that the evaluation file beside the example scores."""
     monkeypatch.setenv("CAPAR_DATA", str(recordings_folder()))
     plan = read_plan(CLIPS, takes=["sub2_largetable_00[01]"])
     found = report(evaluate(plan))

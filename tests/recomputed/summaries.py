@@ -872,8 +872,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (
         rf"counted as at rest from {TIME} to {TIME}, (?:longer than|just) the 0\.40 s of a rest "
         rf"\(it stayed within {LENGTH} of its median place(?: and {DEGREES} of its mean "
-        r"orientation)? meanwhile(?:; rests within 1 cm(?: and \d+°)? of one place, "
-        r"and then of another, count as one)?\)",
+        r"orientation)? meanwhile(?:, and a rest is within 1 cm(?: and \d+°)?|; rests within 1 cm"
+        r"(?: and \d+°)? of one place, and then of another, count as one)?\)",
         lambda known, body, first, last, far, angle: kept_within(known, body, far, first, last)
         and turned_within(known, body, angle, first, last),
     ),

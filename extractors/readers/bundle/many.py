@@ -24,17 +24,18 @@ def many_sensors(entry: "ManySensors", files: Mapping[str, WorldRecording]) -> "
     known = _bodies(entry, files)
     names = list(known) if entry.bodies == "*" else entry.bodies
     names = [names] if isinstance(names, str) else names
-    for name in [*names, *entry.end_effectors, *entry.attends]:
+    for name in [*names, *entry.names, *entry.end_effectors, *entry.attends]:
         if name not in known:
             raise entry.unknown("body", name, known, "bodies")
     out = []
     for name in names:
-        side, stem = _side(name, entry.sides)
+        called = entry.names.get(name, name)
+        side, stem = _side(called, entry.sides)
         values = {
-            "name": constant_name(name),
+            "name": constant_name(called),
             "end_effector": entry.end_effectors.get(name, constant_name(stem)),
             "side": side,
-            "link": constant_name(name),
+            "link": constant_name(called),
             "role": "attends" if name in entry.attends else "acts",
             "file": entry.file,
             "body": name,

@@ -207,6 +207,9 @@ class ManySensors(Entry):
 
     file: Annotated[str, key("Name under ``[files]``.")]
     bodies: Annotated[TextOrTexts, key("The bodies' names; ``*`` is every body.")] = "*"
+    names: Annotated[
+        dict[str, str], key("What bodies are called whose names in the file are those of others.")
+    ] = {}
     sides: Annotated[
         dict[Literal["left", "right"], str], key("How the names of each side begin.")
     ] = {}

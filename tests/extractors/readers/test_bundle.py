@@ -247,6 +247,25 @@ shape = { capsules = "children", radius_m = 0.02 }
     assert np.allclose(tip.size, [0.04, 0.04, 0.04], atol=2e-3)
 
 
+def test_a_body_that_bears_the_name_of_another_is_called_what_it_is(tmp_path: Path) -> None:
+    text = """unit = "cm"
+up = "z"
+[files]
+motion = "m.bvh"
+[[sensors_from]]
+file = "motion"
+names = { tip = "L_Thumb" }
+sides = { left = "L_" }
+"""
+    capture: Capture = read_capture(bundle(tmp_path, text, "bvh"))
+    assert [(each.name, each.side, each.end_effector) for each in capture.sensors] == [
+        ("hand", "none", "hand"),
+        ("l_thumb", "left", "thumb"),
+    ]
+    with pytest.raises(CaparError, match="tips"):
+        read_capture(bundle(tmp_path, text.replace("{ tip", "{ tips"), "bvh"))
+
+
 def test_a_capture_may_say_itself_when_bodies_touch(tmp_path: Path) -> None:
     assert read_capture(bundle(tmp_path)).contact_minimum_s is None
     text = BASE + "[contact]\ntolerance_m = 0.02\ndropout_s = 0.0\nminimum_s = 0.01\n"

@@ -56,7 +56,7 @@ def test_the_pillow_lies_under_the_hand_at_every_descent() -> None:
 
 
 def test_the_fifty_two_bodies_have_one_radius_and_the_box_stands_on_the_floor() -> None:
-    capture = example("omomo_intermimic:sub3_largebox_003")
+    capture = example("omomo_intermimic/largebox.toml:sub3_largebox_003")
     assert len(capture.sensors) == 52
     assert all(each.shape and "radius 0.02 m" in each.shape.description for each in capture.sensors)
     assert lowest(capture, "largebox", 0) == pytest.approx(-0.001, abs=0.002)
