@@ -88,7 +88,10 @@ def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
                 if measurements.bodies.named(name).shape is None
             ),
             _outlying(pair, measurements),
-            pair.pivots and pair.found in SETTLES and pair.first in measurements.bodies.sensors,
+            offsets=_offsets(pair, measurements),
+            settles=pair.pivots
+            and pair.found in SETTLES
+            and pair.first in measurements.bodies.sensors,
         )
         for pair in measurements.calibration.pairs
         if pair.found is not Found.NEVER
@@ -108,6 +111,14 @@ def _outlying(pair: PairCalibration, measurements: Measurements) -> tuple[tuple[
             far = float(np.linalg.norm(np.maximum(np.maximum(low, -high), 0.0)))
             found += [(name, far)] * (far >= OUTLYING_M)
     return tuple(found)
+
+
+def _offsets(pair: PairCalibration, measurements: Measurements) -> tuple[tuple[str, float], ...]:
+    """How far the points of a pair that are compared lie from the origins of their bodies."""
+    if _measured_between(pair, measurements) is not Between.POINTS:
+        return ()
+    points = (pair.first, pair.first_point), (pair.second, pair.second_point)
+    return tuple((name, math.hypot(*point)) for name, point in points)
 
 
 def _measured_between(pair: PairCalibration, measurements: Measurements) -> Between:

@@ -4,11 +4,13 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
+from jaxtyping import Float, Int
 
 from capar.model.calibration import Found, PairCalibration
 from capar.model.facts import ClosingSpeed, Lies, Touching
 from capar.pipelines.distances import distances, frames_between
 from capar.pipelines.shown_recording import CENTI, MILLI, Recording, held, told_beside
+from capar.views.lettering import Span
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG, steepest_deg
@@ -75,12 +77,28 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
         tuple(named),
         tuple(marks),
         bars=touching,
-        bars_label="counts as contact",
+        bars_label="counts as contact" + _bridged(known, touching, frames, apart, pair),
         held=held(Touching, one, other),
         unheld="no contact in the time shown",
         highest=highest,
         lost=known.lost(one, other),
     )
+
+
+def _bridged(
+    known: Recording,
+    touching: Sequence[Span],
+    frames: Int[np.ndarray, "some"],
+    apart: Float[np.ndarray, "some"],
+    pair: PairCalibration,
+) -> str:
+    """How long gaps in a contact may last, where there is one in the time shown."""
+    times, far = frames / known.rate, apart > MILLI * max(pair.touch_m, pair.release_m)
+    inside = np.zeros(len(times), dtype=bool)
+    for bar in touching:
+        inside |= (times > bar.start_s) & (times < bar.end_s)
+    dropout_s = known.seen.measurements.calibration.contact_dropout_s
+    return f"; gaps of less than {dropout_s:.2f} s end none" * bool((inside & far).any())
 
 
 def _gap(millimetres: float, limits: Sequence[Limit], highest: float) -> str:
@@ -149,7 +167,7 @@ def _bearing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         ends.append(float(angle[told.last]))
     return Panel(
         f"{known.called(name)}: level angle of its way since {known.at(first):.2f} s to the line "
-        f"from the {known.called(hand)} to its middle",
+        f"from the {known.called(hand)} to its middle, as it was then",
         "°",
         tuple(curves),
         (

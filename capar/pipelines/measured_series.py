@@ -307,7 +307,7 @@ def _speed(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         since = " since the recording began"
     turning = f"and {pace.turning_deg:.0f} °/s of turning"
     if not _only_turns(known, name, pace):
-        turning = f"where it is, it turns below {pace.turning_deg:.0f} °/s, slowly too"
+        turning = f"its turning there is slow too, below {pace.turning_deg:.0f} °/s"
     free = ", touching nothing" * bool(since)
     rest = (
         f"at rest for {constants()['rest_ms'] / MILLI:.2f} s or more{free}: {pace.within} of a "

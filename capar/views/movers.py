@@ -64,20 +64,20 @@ def mover_lines(
 
 def _apart(
     seen: Observation, thing: str, frames: Mapping[int, Collection[tuple[str, str]]]
-) -> Mapping[str, int]:
-    """In what share of a thing's motion each end-effector moves it without counted contact [%]."""
+) -> Mapping[str, list[int]]:
+    """The frames in which each end-effector moves a thing without contact that counts, if many."""
     names = limb_names(seen)
     met: dict[str, set[int]] = {names.get(link.ee, link.ee): set() for link in seen.links}
     for fact in seen.facts:
         if isinstance(fact, Touching) and fact.other == thing:
             met.get(names.get(fact.body, fact.body), set()).update(range(fact.first, fact.last + 1))
-    alone = Counter(
-        who
-        for frame, movers in frames.items()
-        for who in {who for how, who in movers if how in BY_HAND}
-        if who in met and frame not in met[who]
-    )
-    return {who: round(100.0 * count / len(frames)) for who, count in sorted(alone.items())}
+    alone: dict[str, list[int]] = defaultdict(list)
+    for frame, movers in sorted(frames.items()):
+        for who in sorted({who for how, who in movers if how in BY_HAND}):
+            if who in met and frame not in met[who]:
+                alone[who].append(frame)
+    least = (1.0 - ALL_BUT / 100.0) * len(frames)
+    return {who: held for who, held in sorted(alone.items()) if len(held) > least}
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +110,10 @@ def mover_stretches(
         for words, held in sorted(ways.items(), key=lambda way: (-len(way[1]), way[0])):
             share = round(100.0 * len(held) / len(frames))
             called = names.get(thing, spoken(thing))
+            found.append(MoverStretches(called, words, tuple(_spans(held)), share))
+        for who, held in _apart(seen, thing, frames).items():
+            share = round(100.0 * len(held) / len(frames))
+            words = f"the {spoken(who)} near, moving alike, and not in contact"
             found.append(MoverStretches(called, words, tuple(_spans(held)), share))
     return tuple(found)
 
@@ -167,7 +171,9 @@ def _spans(frames: Sequence[int]) -> Iterator[tuple[int, int]]:
 
 
 def _line(
-    thing: str, frames: Mapping[int, Collection[tuple[str, str]]], apart: Mapping[str, int]
+    thing: str,
+    frames: Mapping[int, Collection[tuple[str, str]]],
+    apart: Mapping[str, Sequence[int]],
 ) -> str:
     """What moves a thing: one plain statement, or each mover with its share of the time."""
     was, it = ("were", "them") if is_plural(thing) else ("was", "it")
@@ -176,7 +182,7 @@ def _line(
         frame: [(how, mover) for how, mover in found if mover not in touching]
         for frame, found in frames.items()
     }
-    beside = _beside(frames, touching, it) + _without_contact(apart)
+    beside = _beside(frames, touching, it) + _without_contact(apart, len(frames))
     ways = Counter(_together(found) for found in movers.values()).most_common(1)
     (together, count) = ways[0]
     if 100.0 * count >= ALL_BUT * len(movers):
@@ -223,13 +229,13 @@ def _beside(
     )
 
 
-def _without_contact(apart: Mapping[str, int]) -> str:
+def _without_contact(apart: Mapping[str, Sequence[int]], count: int) -> str:
     """Who moved a thing, and in how much of its motion, while no contact of the two counted."""
+    shares = {who: round(100.0 * len(held) / count) for who, held in apart.items()}
     return "".join(
         f"; {f'for {share} % of that time ' * (share < ALL_BUT)}the {spoken(who)} was near, and "
         "moved alike, but did not count as in contact"
-        for who, share in apart.items()
-        if share > 100.0 - ALL_BUT
+        for who, share in shares.items()
     )
 
 

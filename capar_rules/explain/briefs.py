@@ -46,11 +46,11 @@ TOUCHING_NOTHING = ("rests", "touches_no_object")
 LEANING = {
     "tips": (
         "the lean of the {thing} reaches {least}",
-        "the {thing} begins to tip, to {least} or more",
+        "the tipping of the {thing} to {least} or more is taken to begin",
     ),
     "rights": (
         "the lean of the {thing} falls below {least}",
-        "the {thing} has come upright again from a lean of {least} or more",
+        "the righting of the {thing} from {least} or more is taken to end",
     ),
 }
 """Kinds of events at which borders lie, of a far lean, as the summary says it: where the thing

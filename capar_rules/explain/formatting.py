@@ -99,6 +99,7 @@ class Argument(ContactsTold, ArrangementsTold, RestsTold, MotionsTold, Derivatio
             "on": self._on,
             "ended_at": self._ended_at,
             "placed_end": self._placed_end,
+            "parted": self._parted,
             "not_laid": lambda: arrangements.not_laid(self.clock, self.text) or UNBOUND,
             "hollow": self._hollow,
             "not_at_rest": self._not_at_rest,

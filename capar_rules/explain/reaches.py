@@ -16,7 +16,7 @@ class Between(StrEnum):
     SURFACES = "between their surfaces"
     POINT = "from the surface of the one to the origin of the other"
     ORIGINS = "between their origins"
-    POINTS = "between a point of each body, of which only an estimate is known"
+    POINTS = "between an estimated point of each body"
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +33,9 @@ class Reach:
 
     outlying: tuple[tuple[str, float], ...] = ()
     """Bodies whose origin the distance is of, and that lies outside of their shape, so far [m]."""
+
+    offsets: tuple[tuple[str, float], ...] = ()
+    """Bodies of which the distance is of a point: how far that is from their origin [m]."""
 
     settles: bool = False
     """Whether contact lasts but from when the end-effector has arrived until it sets off."""

@@ -19,20 +19,20 @@ class ArrangementsTold(ToldArgument):
             least = quantities.length(constants()["slide_mm"] / 1000.0)
             aside = f"only {quantities.length(little)}"
             aside = aside if little >= LEAST_ASIDE_M else "less than 1 mm"
-            told = f", from start to end, {aside} to the side"
+            told = f", on the whole, {aside} to the side"
             return f"{told}, less than the {least} from which on a direction counts"
         found = arrangements.bearing(self.clock, self.text)
         if found is None:
             return UNBOUND
         hand, thing = self.clock.called(self._hand), self.clock.about(self.text)
-        line = f"to the level line from the {hand} to the middle of the {thing}"
+        line = f"to the level line from the {hand} to the middle of the {thing} at the start"
         ahead, after = f"{AHEAD_DEG:.0f}° or less is ahead", f"{AFTER_DEG:.0f}° or more is after"
         if form.startswith("not_"):
-            whither = f", from start to end, neither after the {hand} nor ahead of it, but"
+            whither = f", on the whole, neither after the {hand} nor ahead of it, but"
             if found.offset_deg >= AFTER_DEG:
-                whither = f", from start to end, after the {hand}, and not ahead of it,"
+                whither = f", on the whole, after the {hand}, and not ahead of it,"
             if found.offset_deg <= AHEAD_DEG:
-                whither = f", from start to end, ahead of the {hand}, and not after it,"
+                whither = f", on the whole, ahead of the {hand}, and not after it,"
             angle = f"{found.offset_deg:.0f}°"
             return f"{whither} at {angle} {line} ({after}, {ahead})"
         if form == "ahead" and found.by_press:

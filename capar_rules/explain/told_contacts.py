@@ -82,6 +82,15 @@ class ContactsTold(ToldArgument):
         tick = self.clock.frames[self.beside[0]][int(self.beside[1])]
         return self.clock.at(tick if last is None else last)
 
+    def _parted(self) -> str:
+        """When the contact that began at the fourth argument ends, if before the segment."""
+        one, other, first = *self.beside[1:3], int(self.beside[3])
+        contacts, span = self.clock.measured.contacts, self.clock.span(self.clock.own)
+        found = [*contacts.get((one, other), ()), *contacts.get((other, one), ())]
+        last = next((end for begin, end in found if begin == first), None)
+        tick = self.clock.frames[self.beside[0]][int(self.text)]
+        return self.clock.at(last if last is not None and span and last < span[0] else tick)
+
     def _placed_end(self) -> str:
         """Where the border of the end of a contact stands, if not where that ends."""
         ended = type(self)(self.beside[5], self.beside, self.clock)._ended_at()

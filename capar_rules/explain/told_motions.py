@@ -114,7 +114,8 @@ class MotionsTold(ToldArgument):
         if moved.spread_m <= floor_m and not turned_far:
             return f"{told}, and a rest is within {quantities.length(floor_m)}{angle}"
         place = f"within {quantities.length(floor_m)}{angle} of one place"
-        return f"{told}; rests {place}, and then of another, count as one"
+        slow = "from its first to its last slow moment"
+        return f"{told}; rests {place}, {slow}, and then of another, count as one"
 
     def _in_course_of(self, body: str, moved: Way, span: tuple[int, int]) -> str:
         """Of which motion a way is part that by itself would be too short to count."""

@@ -75,7 +75,16 @@ class RestsTold(ToldArgument):
         if found[0] < near:
             return UNBOUND
         far = quantities.length(found[0])
-        return f"ended {far} from {self._posture(found[1], near)}"
+        return f"ended {far} from {self._posture(found[1], near, self._others(found[1]))}"
+
+    def _others(self, frame: int) -> str:
+        """That no other posture before is nearer than the one of that frame."""
+        begin = self.clock.frames[self._hand][0]
+        rests = [other for other in self._earlier_postures() if other not in (frame, begin)]
+        if rests:
+            return "; other places where it rested are further"
+        since = f"; it had no rest of {self._rest_s()} or more, touching nothing, since"
+        return since if frame == begin else ""
 
     def _back(self) -> str:
         """How near to where it had rested the end-effector came back."""
@@ -85,11 +94,14 @@ class RestsTold(ToldArgument):
         told = "less than 1 cm" if found[0] < LEAST_M else quantities.length(found[0])
         return f"ended {told} from {self._posture(found[1], near)}"
 
-    def _posture(self, frame: int, near_m: float) -> str:
+    def _posture(self, frame: int, near_m: float, others: str = "") -> str:
         """A place where the end-effector had been, touching nothing."""
-        how = "was" if frame == self.clock.frames[self._hand][0] else "rested"
+        begin = frame == self.clock.frames[self._hand][0]
+        how, first = ("was", ", as the recording began") if begin else ("rested", "")
         near = quantities.length(near_m)
-        return f"where it {how} at {self.clock.at(frame)} (a return is within {near})"
+        return (
+            f"where it {how} at {self.clock.at(frame)}{first} (a return is within {near}{others})"
+        )
 
     def _earlier_postures(self) -> list[int]:
         """The last frames of the rests before the segment in which it touched nothing.

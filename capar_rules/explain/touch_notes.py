@@ -12,7 +12,10 @@ from capar_rules.explain.reaches import Reach
 BEYOND = "at moments up to"
 """How a contact throughout the segment is told in which bodies were further apart for moments."""
 
-SETTLED = ", from when the hand has all but stopped coming nearer until it starts to go away"
+SETTLED = (
+    ", from when the hand has all but stopped coming nearer, or the thing moves, until it goes "
+    "away for good"
+)
 """How contact is told to last for which only an estimated distance is known."""
 
 OF_CONTACT = (Measure.DISTANCE, Measure.BORNE)
@@ -83,6 +86,9 @@ def _between(reach: Reach, clock: Clock) -> str:
     outlying = [
         f"that of the {clock.called(name)} lies {length(far)} outside of it"
         for name, far in reach.outlying
+    ]
+    outlying += [
+        f"{length(far)} from the origin of the {clock.called(name)}" for name, far in reach.offsets
     ]
     aside = f" ({listed(outlying)})" * bool(outlying)
     return reach.between.value + aside + unshaped + SETTLED * reach.settles

@@ -33,6 +33,7 @@ TOLD_OF_NO_NAME: dict[Key, str] = {
     ("", "event", 6, "tips"): "no story leans a thing over amid its motion; the scenes do",
     ("", "event", 6, "rights"): "no story leans a thing over amid its motion; the scenes do",
     ("", "met_unseen", 2, ""): "in no story a hand is lost; recordings have it",
+    ("", "closing", 4, "0"): "in no story a hand is lost; recordings have it",
     ("", "strikes_with", 2, ""): "no story has a tool; tests/kb/language/test_instruments.py has",
     ("", "pushes_with", 2, ""): "no story has a tool",
     ("", "sends_off", 2, ""): "no story strikes away what a hand does not hold; the scenes do",

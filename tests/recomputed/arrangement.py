@@ -205,12 +205,12 @@ FORMS = (
     (rf"the {NAME} was inside the {NAME} at the segment's (start|end)", was_inside),
     (rf"the {NAME} dipped into the {NAME} at the segment's (start|end)", dipped),
     (
-        rf"the {NAME} went, from start to end, ahead of the {NAME} "
+        rf"the {NAME} went, on the whole, ahead of the {NAME} "
         r"\([^)]*; 45° or less is ahead\)",
         went_ahead,
     ),
     (
-        rf"the {NAME} went, from start to end, after the {NAME} "
+        rf"the {NAME} went, on the whole, after the {NAME} "
         r"\([^)]*; 135° or more is after\)",
         went_after,
     ),

@@ -451,8 +451,10 @@ FORMS = (
     (rf"the {NAME} came to rest at {TIME}", came_to_rest),
     (rf"it ended where the {NAME} had rested before", came_back),
     (
-        rf"the {NAME} ended (\d+(?:\.\d)?) (mm|cm|m) from where it (?:was|rested) at {TIME} "
-        r"\(a return is within 10 cm\)",
+        rf"the {NAME} ended (\d+(?:\.\d)?) (mm|cm|m) from where it (?:was|rested) at {TIME}"
+        r"(?:, as the recording began)? \(a return is within 10 cm"
+        r"(?:; it had no rest of 0\.40 s or more, touching nothing, since"
+        r"|; other places where it rested are further)?\)",
         came_elsewhere,
     ),
     (

@@ -752,13 +752,15 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"ended less than {LENGTH} from where it began", ended_there),
     (rf"moved {LENGTH}", moved),
     (
-        rf"ended {LENGTH} from where it (?:was|rested) at {TIME} \(a "
-        rf"return is within {LENGTH}\)",
+        rf"ended {LENGTH} from where it (?:was|rested) at {TIME}(?:, as the recording began)? \(a "
+        rf"return is within {LENGTH}"
+        r"(?:; it had no rest of 0\.40 s or more, touching nothing, since"
+        r"|; other places where it rested are further)?\)",
         rested_near,
     ),
     (
-        rf"ended less than {LENGTH} from where it (?:was|rested) at {TIME} \(a "
-        rf"return is within {LENGTH}\)",
+        rf"ended less than {LENGTH} from where it (?:was|rested) at {TIME}"
+        rf"(?:, as the recording began)? \(a return is within {LENGTH}\)",
         rested_there,
     ),
     (rf"no rest of {TIME} or more, touching nothing, before {TIME}", never_rested),
@@ -829,7 +831,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         turned_in_all,
     ),
     (
-        rf"at {DEGREES} to the level line from the {NAME} to the middle of the {NAME}(?:; | \()"
+        rf"at {DEGREES} to the level line from the {NAME} to the middle of the {NAME} at the start"
+        r"(?:; | \()"
         r"(?:135° or more is after)?(?:, )?(?:45° or less is ahead)?",
         goes_at,
     ),
@@ -838,14 +841,14 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         pressed_at,
     ),
     (
-        rf"no rest of the {NAME} of {TIME}(?: or more)?",
+        rf"no rest of the {NAME} of {TIME} or more, touching nothing,",
         lambda known, _, __, told: rest_lasts(known, _, told),
     ),
     (rf"up to {LENGTH} apart", apart_at_most),
     (rf"was {LENGTH} from the {NAME} at the nearest", apart_at_least),
     (rf"the lean of the {NAME} (?:reaches|falls below) {DEGREES}", leant_far),
-    (rf"the {NAME} begins to tip, to {DEGREES} or more", leant_far),
-    (rf"the {NAME} has come upright again from a lean of {DEGREES} or more", leant_far),
+    (rf"the tipping of the {NAME} to {DEGREES} or more is taken to begin", leant_far),
+    (rf"the righting of the {NAME} from {DEGREES} or more is taken to end", leant_far),
     (rf"as part of a motion from {TIME} to {TIME}", part_of_motion),
     (rf"from {TIME} on, and was not tracked at the start", seen_from),
     (rf"it lasted {TIME}, and a rest lasts {TIME} or more", too_brief),
@@ -873,7 +876,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         rf"counted as at rest from {TIME} to {TIME}, (?:longer than|just) the 0\.40 s of a rest "
         rf"\(it stayed within {LENGTH} of its median place(?: and {DEGREES} of its mean "
         r"orientation)? meanwhile(?:, and a rest is within 1 cm(?: and \d+°)?|; rests within 1 cm"
-        r"(?: and \d+°)? of one place, and then of another, count as one)?\)",
+        r"(?: and \d+°)? of one place, from its first to its last slow moment, and then of "
+        r"another, count as one)?\)",
         lambda known, body, first, last, far, angle: kept_within(known, body, far, first, last)
         and turned_within(known, body, angle, first, last),
     ),
