@@ -165,6 +165,7 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
         over=_over(measurements),
         apart=apart_within(measurements),
         dropout_s=calibration.contact_dropout_s,
+        brief_s=calibration.contact_minimum_s,
         lost=_lost(observation, measurements),
         unrested=_unrested(observation),
         rate_hz=observation.rate_hz,

@@ -17,7 +17,9 @@ from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG, steepest_deg
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import LEAST_M, length, percent, upward
+from capar_rules.explain.touch_notes import BORDER
 from extractors.calibration import thresholds_of
+from extractors.contact.arrivals import SETTLES
 from extractors.motion.impacts import APPROACH_S, closing_speed
 from extractors.relations.arrangement import Pair
 
@@ -77,28 +79,38 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
         tuple(named),
         tuple(marks),
         bars=touching,
-        bars_label="counts as contact" + _bridged(known, touching, frames, apart, pair),
+        bars_label="counts as contact" + _uncounted(known, touching, frames, apart, pair),
         held=held(Touching, one, other),
-        unheld="no contact in the time shown",
+        unheld="no contact in the time shown" + _uncounted(known, (), frames, apart, pair),
         highest=highest,
         lost=known.lost(one, other),
     )
 
 
-def _bridged(
+def _uncounted(
     known: Recording,
     touching: Sequence[Span],
     frames: Int[np.ndarray, "some"],
     apart: Float[np.ndarray, "some"],
     pair: PairCalibration,
 ) -> str:
-    """How long gaps in a contact may last, where there is one in the time shown."""
-    times, far = frames / known.rate, apart > MILLI * max(pair.touch_m, pair.release_m)
-    inside = np.zeros(len(times), dtype=bool)
+    """How long gaps in a contact may last, and what is none, where the time shown has such.
+
+    What lies beside a contact is left out: its border may be a frame off.
+    """
+    if pair.found is Found.NEVER:
+        return ""
+    times, calibration = frames / known.rate, known.seen.measurements.calibration
+    aside = BORDER / known.rate
+    inside, beside = np.zeros(len(times), dtype=bool), np.zeros(len(times), dtype=bool)
     for bar in touching:
         inside |= (times > bar.start_s) & (times < bar.end_s)
-    dropout_s = known.seen.measurements.calibration.contact_dropout_s
-    return f"; gaps of less than {dropout_s:.2f} s end none" * bool((inside & far).any())
+        beside |= (times > bar.start_s - aside) & (times < bar.end_s + aside)
+    far = apart > MILLI * max(pair.touch_m, pair.release_m)
+    near = (apart <= MILLI * pair.touch_m) & ~beside & ~(pair.pivots & (pair.found in SETTLES))
+    gaps = f"; gaps of less than {calibration.contact_dropout_s:.2f} s end none"
+    brief = f"; what passes by, or lasts less than {calibration.contact_minimum_s:.2f} s, is none"
+    return gaps * bool((inside & far).any()) + brief * bool(near.any())
 
 
 def _gap(millimetres: float, limits: Sequence[Limit], highest: float) -> str:
@@ -156,7 +168,9 @@ def _bearing(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     contacts = known.seen.explainer.measured
     met = contacts.contact(hand, name, first, known.merged)
     press = contacts.presses.get((hand, name), {}).get(met[0]) if met else None
-    if press is not None and np.hypot(*press) >= constants()["steep_permille"]:
+    across = line[0] * way[told.last, 1] - line[1] * way[told.last, 0]
+    forward = abs(math.atan2(across, float(way[told.last] @ line))) < math.pi / 2.0
+    if press is not None and forward and np.hypot(*press) >= constants()["steep_permille"]:
         directions.append((np.array(press, dtype=float), "to where it is pressed"))
     curves, ends = [], []
     for direction, label in directions:

@@ -24,7 +24,15 @@ from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Quantity
-from capar_rules.explain.quantities import LEAST_M, angle_bound, degrees, extreme, length, spread
+from capar_rules.explain.quantities import (
+    LEAST_M,
+    angle_bound,
+    apart,
+    degrees,
+    extreme,
+    length,
+    spread,
+)
 from capar_rules.explain.quantities import change as change_of
 from capar_rules.explain.told_motions import COURSES
 from extractors.calibration import thresholds_of
@@ -183,7 +191,8 @@ def _height(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         _limit("height_mm", "down: {} or more", sign=-1.0),
     )
     sign = MINUS * bool(rounded < 0.0)
-    marks = [Mark(known.at(told.last), CENTI * end, sign + _length(CENTI * abs(rounded), limits))]
+    label = _beside_other(known, told, forms)[0] or _length(CENTI * abs(rounded), limits)
+    marks = [Mark(known.at(told.last), CENTI * end, sign + label)]
     inside, least = up[told.first : told.last + 1], constants()["height_mm"] / MILLI
     if forms & set(COURSES) and np.nanmax(inside) - max(end, 0.0) >= least:
         top = told.first + int(np.nanargmax(inside))
@@ -202,6 +211,18 @@ def _height(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     )
 
 
+COMPARED = {"not_up", "not_down", "not_aside"}
+"""Forms that compare a way up or down with one to the side."""
+
+
+def _beside_other(known: Recording, told: Quantity, forms: frozenset[str]) -> tuple[str, str]:
+    """The way up or down and that to the side, where they are compared and would read alike."""
+    (name,) = told.bodies
+    x, y, z = np.diff(np.rint(MILLI * known.body(name).middles[[told.first, told.last]]), axis=0)[0]
+    alike = length(abs(z) / MILLI) == length(math.hypot(x, y) / MILLI)
+    return apart(abs(z), math.hypot(x, y)) if forms & COMPARED and alike else ("", "")
+
+
 MINUS = "\u2212"
 
 
@@ -213,12 +234,13 @@ def _aside(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     away = np.linalg.norm(level - level[told.first], axis=1)
     end = float(away[told.last])
     rounded = np.diff(np.rint(MILLI * level[[told.first, told.last]]), axis=0)[0] / MILLI
+    label = _beside_other(known, told, forms)[1] or _length(CENTI * math.hypot(*rounded), limits)
     return Panel(
         f"{known.called(name)}: way to the side from where it was at {known.at(told.first):.2f} s",
         "cm",
         (known.curve(CENTI * away),),
         tuple(limits),
-        (Mark(known.at(told.last), CENTI * end, _length(CENTI * math.hypot(*rounded), limits)),),
+        (Mark(known.at(told.last), CENTI * end, label),),
     )
 
 

@@ -170,7 +170,7 @@ class Briefs:
         if not found or span is None:
             return []
         told = [
-            f"{begins} where {self._far_lean(found[side], thing, frame)}"
+            f"{begins} {self._far_lean(found[side], thing, frame)}"
             for side, begins, frame in zip(("start", "end"), ("begins", "ends"), span, strict=True)
             if side in found
         ]
@@ -183,7 +183,9 @@ class Briefs:
         lean = known.postures.get((thing, frame), (0, 0))[0] / 1000.0
         far = lean >= known.far_over_rad - LEAN_SLACK_RAD
         least = degrees(round(1000.0 * known.far_over_rad))
-        return LEANING[kind][not far].format(thing=self.clock.called(thing), least=least)
+        told = LEANING[kind][not far].format(thing=self.clock.called(thing), least=least)
+        before = lean < known.far_over_rad if kind == "tips" else lean > known.far_over_rad
+        return f"{'about ' * (far and before)}where {told}"
 
     def clear_of(self, claims: Iterable[Claim]) -> list[Claim]:
         """How far an end-effector that touches nothing is from what it may seem to touch.

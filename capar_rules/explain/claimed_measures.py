@@ -121,7 +121,7 @@ PREDICATES: Mapping[str, tuple[tuple[Measure, Bodies], ...]] = {
     "comes_to_lie": ((Measure.HEIGHT, (THING,)), _HELD),
     "from_rest": ((Measure.DISTANCE, (THING, LEFT)), _HELD),
     "free": ((Measure.DISTANCE, (THING, MET)),),
-    "on": ((Measure.BORNE, (2, 3)),),
+    "on": ((Measure.BORNE, (2, 3)), (Measure.DISTANCE, (2, 3))),
     "against": ((Measure.BORNE, (2, 3)), (Measure.DISTANCE, (2, 3))),
     "under_palm": ((Measure.BORNE, (END, THING)),),
     **dict.fromkeys(("opens", "closes", "swept"), ((Measure.OPENING, (1,)),)),

@@ -160,6 +160,9 @@ class Measured:
     dropout_s: float = 0.0
     """A shorter interruption ends no contact [s]; zero where that is not known."""
 
+    brief_s: float = 0.0
+    """What lasts less is no contact [s]; zero where that is not known."""
+
     movable: frozenset[str] = frozenset()
     """Objects that can be moved."""
 

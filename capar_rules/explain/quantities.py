@@ -232,12 +232,12 @@ def _not_steep(aside_mm: float, height_mm: float, sense: str) -> Shortfall:
         told = rise if abs(height_mm) >= 1.0 else "at the same height"
         return Shortfall(f"ended {told}, not {length(least / 1000.0)} or more {wanted}", FAR_OFF)
     if height_mm < least:
-        far, wanted = _apart(height_mm, least)
+        far, wanted = apart(height_mm, least)
         comparison = "higher" if sense == "up" else "lower"
         text = f"ended {far} {comparison}, less than the {wanted} that count"
         return Shortfall(text, height_mm / least)
-    aside, height = _apart(aside_mm, height_mm)
-    text = f"went further to the side ({aside}) than {sense} ({height})"
+    aside, height = apart(aside_mm, height_mm)
+    text = f"ended further to the side ({aside}) than {sense} ({height})"
     return Shortfall(text, height_mm / max(aside_mm, height_mm))
 
 
@@ -249,11 +249,11 @@ def not_aside(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     if _is_little(aside_mm, z_mm):
         return _little(aside_mm, z_mm, aside_mm)
     if aside_mm < least:
-        far, wanted = _apart(aside_mm, least)
+        far, wanted = apart(aside_mm, least)
         text = f"ended {far} to the side, less than the {wanted} that count"
         return Shortfall(text, aside_mm / least)
-    height, aside = _apart(abs(z_mm), aside_mm)
-    text = f"went further {'up' if z_mm > 0 else 'down'} ({height}) than to the side ({aside})"
+    height, aside = apart(abs(z_mm), aside_mm)
+    text = f"ended further {'up' if z_mm > 0 else 'down'} ({height}) than to the side ({aside})"
     return Shortfall(text, aside_mm / max(abs(z_mm), aside_mm))
 
 
@@ -269,8 +269,8 @@ def _little(aside_mm: float, z_mm: float, wanted_mm: float) -> Shortfall:
     Whoever wanted it to go that way, or to the side, came so near; the other way, not at all.
     """
     known = constants()
-    height, least = _apart(abs(z_mm), known["height_mm"])
-    aside, far = _apart(aside_mm, known["aside_mm"])
+    height, least = apart(abs(z_mm), known["height_mm"])
+    aside, far = apart(aside_mm, known["aside_mm"])
     rise = f"{height} {'higher' if z_mm > 0.0 else 'lower'}"
     parts = [rise] * (abs(z_mm) >= 1.0) + [f"{aside} to the side"] * (aside_mm >= 1.0)
     level = "at the same height and " * (abs(z_mm) < 1.0)
@@ -285,14 +285,14 @@ def _little(aside_mm: float, z_mm: float, wanted_mm: float) -> Shortfall:
 def not_near(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     """Why a displacement does not end near where it began."""
     far_mm, most = math.hypot(x_mm, y_mm, z_mm), constants()["aside_mm"]
-    far, wanted = _apart(far_mm, most)
+    far, wanted = apart(far_mm, most)
     return Shortfall(f"ended {far} from where it began, not within {wanted}", most / far_mm)
 
 
 def not_slid(x_mm: int, y_mm: int, z_mm: int) -> Shortfall:
     """Why a displacement on a support is no sliding."""
     far_mm, least = math.hypot(x_mm, y_mm, z_mm), constants()["slide_mm"]
-    far, wanted = _apart(far_mm, least)
+    far, wanted = apart(far_mm, least)
     return Shortfall(
         f"ended only {far} from where it began, less than the {wanted} of a slide", far_mm / least
     )
@@ -324,7 +324,7 @@ def _short_of(before_mrad: int, after_mrad: int) -> str:
     return told if told != least else f"{math.degrees(abs(after_mrad - before_mrad) / 1e3):.1f}°"
 
 
-def _apart(one_mm: float, other_mm: float) -> tuple[str, str]:
+def apart(one_mm: float, other_mm: float) -> tuple[str, str]:
     """Two lengths, in millimetres if they would else read as the same."""
     for digits in (None, 0, 1):
         one, other = (

@@ -82,7 +82,8 @@ class ArrangementsTold(ToldArgument):
         met = self._met_near(thing, other, frame)
         at = f", at {self.clock.at(met[0])}" if met else ""
         return (
-            f" ({angle:.0f}° off straight up as their contact began{at}; {most:.0f}° or less bears)"
+            f" ({angle:.0f}° off straight up as their contact began{at}, which counts while it "
+            f"lasts; {most:.0f}° or less bears)"
         )
 
     def _palm(self) -> str:

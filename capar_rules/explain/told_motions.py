@@ -11,6 +11,9 @@ from capar_rules.explain.told_argument import UNBOUND, ToldArgument
 DRIFT_M = 0.005
 """Of a body that stays, shorter distances are left out of sentences [m]."""
 
+LITTLE_M = 0.002
+"""Of what stays within less [m] a summary does not say within what."""
+
 COURSES: Mapping[str, Callable[[int, int, int], str]] = {
     "course": quantities.course,
     "steep_course": quantities.steep_course,
@@ -266,7 +269,7 @@ def _leant(first_mrad: int, last_mrad: int) -> str:
 def _brief(form: str, moved: Way) -> str:
     if form == "little":
         within = f" (within {quantities.spread(moved.spread_m)} of its median place in the segment)"
-        return within if moved.spread_m >= DRIFT_M else ""
+        return within if moved.spread_m >= LITTLE_M else ""
     return quantities.spread(moved.spread_m)
 
 

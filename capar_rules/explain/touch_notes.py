@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from capar_rules.explain.briefs import listed
+from capar_rules.explain.arrangements import hand_of
+from capar_rules.explain.briefs import TOUCHING_NOTHING, listed
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.quantities import length, spread
+from capar_rules.explain.quantities import gap, length, spread
 from capar_rules.explain.reaches import Reach
 
 BEYOND = "at moments up to"
@@ -17,6 +18,9 @@ SETTLED = (
     "away for good"
 )
 """How contact is told to last for which only an estimated distance is known."""
+
+BORDER = 2
+"""So many frames beside a contact are left out where bodies are sought that do not touch [1]."""
 
 OF_CONTACT = (Measure.DISTANCE, Measure.BORNE)
 """What is measured of two bodies where their contact is told."""
@@ -34,12 +38,19 @@ def touching(claims: Iterable[Claim], clock: Clock) -> str:
             between = _between(reach, clock)
             found.setdefault(between, {}).setdefault(reach.told, []).append(pair)
         bodies += [one, other]
+    if not found and any(claim.of in TOUCHING_NOTHING for claim in claims):
+        hand = hand_of(clock.own)
+        own = [reach for (one, _), reach in sorted(clock.measured.reaches.items()) if one == hand]
+        if len({(reach.told, _between(reach, clock)) for reach in own}) == 1:
+            found[_between(own[0], clock)] = {own[0].told: []}
+            bodies.append(hand)
     several = sum(map(len, found.values())) > 1
     told = [
         _counted(reaches, between, several=several) for between, reaches in found.items() if reaches
     ]
     counted = f" Contact is counted {'; '.join(told)}." if told else ""
-    return counted + _bridged(claims, clock) + _stand_ins(bodies, clock)
+    beside = _bridged(claims, clock) + _passed_by(claims, clock)
+    return counted + beside + _stand_ins(bodies, clock)
 
 
 def _bridged(claims: Iterable[Claim], clock: Clock) -> str:
@@ -54,6 +65,37 @@ def _bridged(claims: Iterable[Claim], clock: Clock) -> str:
         found.append(f"{called} were up to {spread(far)} apart")
     gaps = clock.closed_gaps
     return f" At moments within the contact {listed(found)}{gaps}." if found else ""
+
+
+def _passed_by(claims: Iterable[Claim], clock: Clock) -> str:
+    """Which bodies came within the distance of contact, and did not count as in contact."""
+    found: list[str] = []
+    for one, other in _pairs(claims):
+        near, reach = _nearest(one, other, clock), clock.measured.reaches.get((one, other))
+        if reach is None or near is None or reach.settles:
+            continue
+        if near <= min(reach.begin_m, reach.distance_m):
+            called = f"the {clock.called(one)} and the {clock.called(other)}"
+            found.append(f"{called} were only {gap(near)} apart")
+    brief = f"{clock.measured.brief_s:.2f} s"
+    rule = f"what passes by, or lasts less than {brief}, is no contact"
+    return f" At moments without contact {listed(found)}: {rule}." if found else ""
+
+
+def _nearest(one: str, other: str, clock: Clock) -> float | None:
+    """How far two bodies are apart at least in the segment, where they do not touch [m]."""
+    known, span = clock.measured, clock.span(clock.own)
+    if span is None or known.apart is None:
+        return None
+    every = sorted([*known.contacts.get((one, other), ()), *known.contacts.get((other, one), ())])
+    parts, begin = [], span[0]
+    for first, last in every:
+        if last >= span[0] and first <= span[1]:
+            parts.append((begin, first - BORDER))
+            begin = max(begin, last + BORDER)
+    parts.append((begin, span[1]))
+    found = [known.apart(one, other, *part) for part in parts if part[0] < part[1]]
+    return min((near[0] for near in found if near is not None), default=None)
 
 
 def _farthest(one: str, other: str, clock: Clock) -> float | None:

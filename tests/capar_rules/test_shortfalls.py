@@ -89,7 +89,7 @@ def test_two_lengths_that_decide_are_never_told_as_the_same(x: int, y: int, z: i
 @pytest.mark.parametrize(
     ("way", "told"),
     [
-        ((330, 0, 300), "went further to the side (33 cm) than up (30 cm)"),
+        ((330, 0, 300), "ended further to the side (33 cm) than up (30 cm)"),
         ((100, 0, 48), "ended 48 mm higher, less than the 50 mm that count"),
         (
             (30, 0, 30),

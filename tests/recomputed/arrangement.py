@@ -198,7 +198,8 @@ FORMS = (
     (rf"the {NAME} turned about the vertical", spun),
     (
         rf"the {NAME} bore the {NAME} from below at the segment's (start|end)"
-        rf"(?: \(\d+° off straight up as their contact began, at {TIME}; 45° or less bears\))?",
+        rf"(?: \(\d+° off straight up as their contact began, at {TIME}, which counts while it "
+        r"lasts; 45° or less bears\))?",
         lambda known, below, what, side, at: borne(known, what, below, side, at),
     ),
     (rf"the {NAME} was above the {NAME} at the segment's (start|end)", was_above),

@@ -696,8 +696,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
         r"(higher|lower)",
         not_steep,
     ),
-    (rf"went further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
-    (rf"went further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
+    (rf"ended further to the side \({LENGTH}\) than (up|down) \({LENGTH}\)", too_far_aside),
+    (rf"ended further (up|down) \({LENGTH}\) than to the side \({LENGTH}\)", too_steep),
     (
         rf"(?:only|less than) {LENGTH} to the side, less than the {LENGTH} from which on a "
         "direction counts",
@@ -789,7 +789,8 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"meets it within {DEGREES} of straight up", lambda _, __, told: told == "45"),
     (rf"{DEGREES} off straight up; {DEGREES} or less bears", pushed_at),
     (
-        rf"{DEGREES} off straight up as their contact began, at {TIME}; {DEGREES} or less bears",
+        rf"{DEGREES} off straight up as their contact began, at {TIME}, which counts while it "
+        rf"lasts; {DEGREES} or less bears",
         lambda known, body, angle, at, asked: pushed_at(known, body, angle, asked)
         and any(near(each.first, known.at(at)) for each in known.of(Touching)),
     ),
