@@ -99,6 +99,21 @@ def angle_between(
     return 2.0 * np.arccos(np.clip(dots, 0.0, 1.0))
 
 
+def from_middle(
+    places: Float[np.ndarray, "frames 3"], of: slice = slice(None)
+) -> Float[np.ndarray, "frames"]:
+    """How far each place is from the middle of the box around some of them [m]; NaN where lost.
+
+    Of places along a line the middle is that from which the furthest is nearest.
+
+    Args:
+        places: World positions [m], NaN where lost.
+        of: The frames of the box.
+    """
+    low, high = np.nanmin(places[of], axis=0), np.nanmax(places[of], axis=0)
+    return np.asarray(np.linalg.norm(places - 0.5 * (low + high), axis=1))
+
+
 def from_mean(
     orientations: Float[np.ndarray, "frames 4"], of: slice = slice(None)
 ) -> Float[np.ndarray, "frames"]:

@@ -233,7 +233,7 @@ def ways(measurements: Measurements) -> Ways:
     def moved(name: str, first: int, last: int) -> Way:
         track = measurements.bodies.named(name).middles[first : last + 1]
         steps = np.linalg.norm(np.diff(track, axis=0), axis=1)
-        away = np.linalg.norm(track - np.nanmedian(track, axis=0), axis=1)
+        away = geometry.from_middle(track)
         straight = float(np.linalg.norm(track[-1] - track[0]))
         return Way(straight, float(np.nansum(steps)), float(np.nanmax(away)))
 

@@ -45,14 +45,14 @@ def _distance(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel 
     some = [frames_between(int(begin), int(end)) for begin, end in spans if begin <= end]
     frames = np.unique(np.clip(np.concatenate(some), every[0], every[-1]))
     apart = MILLI * distances(known.seen.measurements, pair, frames)
-    limits = {MILLI * pair.touch_m: "contact begins within {:.0f} mm"}
-    limits[MILLI * pair.release_m] = "contact ends beyond {:.0f} mm"
+    limits = {MILLI * pair.touch_m: "contact begins within {:g} mm"}
+    limits[MILLI * pair.release_m] = "contact ends beyond {:g} mm"
     if pair.touch_m >= pair.release_m:
-        limits = {MILLI * pair.touch_m: "counts as contact within {:.0f} mm"}
+        limits = {MILLI * pair.touch_m: "counts as contact within {:g} mm"}
     if pair.found is Found.NEVER:
         limits = {}
     highest = CLOSE * max([*limits, 20.0])
-    named = [Limit(value, label.format(upward(value))) for value, label in limits.items()]
+    named = [Limit(value, label.format(upward(value, 1))) for value, label in limits.items()]
     at_borders = dict(zip(frames.tolist(), apart.tolist(), strict=True))
     marks = [
         Mark(

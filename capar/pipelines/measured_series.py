@@ -15,7 +15,7 @@ from capar.model.facts import (
     Swings,
     Touching,
 )
-from capar.model.geometry import from_mean
+from capar.model.geometry import from_mean, from_middle
 from capar.pipelines.explanation import AXES
 from capar.pipelines.measured_relations import RELATIONS, Series
 from capar.pipelines.shown_recording import CENTI, MILLI, Recording, held, told_beside
@@ -109,12 +109,11 @@ def _limit(constant: str, label: str, *, sign: float = 1.0) -> Limit:
 def _spread(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
     (name,) = told.bodies
     middles = known.body(name).middles
-    inside = middles[told.first : told.last + 1]
-    away = np.linalg.norm(middles - np.nanmedian(inside, axis=0), axis=1)
+    away = from_middle(middles, slice(told.first, told.last + 1))
     far = told.first + int(np.nanargmax(away[told.first : told.last + 1]))
     thing = known.is_object(name)
     return Panel(
-        f"{known.called(name)}: distance from its median place",
+        f"{known.called(name)}: distance from the middle of where it was",
         "cm",
         (known.curve(CENTI * away),),
         (known.floor(name),),

@@ -151,4 +151,4 @@ class Recording:
         return Limit(degrees_, self._of_rest(body).format(f"{degrees_:.0f}°"))
 
     def _of_rest(self, body: str) -> str:
-        return "counts as moved from {} on" if self.is_object(body) else "a rest is within {}"
+        return "counts as moved from {}" if self.is_object(body) else "a rest is within {}"

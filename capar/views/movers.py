@@ -182,7 +182,7 @@ def _line(
         frame: [(how, mover) for how, mover in found if mover not in touching]
         for frame, found in frames.items()
     }
-    beside = _beside(frames, touching, it) + _without_contact(apart, len(frames))
+    beside = _beside(frames, touching, it) + _without_contact(apart, frames, it)
     ways = Counter(_together(found) for found in movers.values()).most_common(1)
     (together, count) = ways[0]
     if 100.0 * count >= ALL_BUT * len(movers):
@@ -229,14 +229,20 @@ def _beside(
     )
 
 
-def _without_contact(apart: Mapping[str, Sequence[int]], count: int) -> str:
-    """Who moved a thing, and in how much of its motion, while no contact of the two counted."""
-    shares = {who: round(100.0 * len(held) / count) for who, held in apart.items()}
-    return "".join(
-        f"; {f'for {share} % of that time ' * (share < ALL_BUT)}the {spoken(who)} was near, and "
-        "moved alike, but did not count as in contact"
-        for who, share in shares.items()
-    )
+def _without_contact(
+    apart: Mapping[str, Sequence[int]], frames: Mapping[int, Collection[tuple[str, str]]], it: str
+) -> str:
+    """Who moved a thing, and in how much of that time, while no contact of the two counted."""
+    told = []
+    for who, held in apart.items():
+        own = sum((how, who) in movers for movers in frames.values() for how in BY_HAND)
+        share = round(100.0 * len(held) / own)
+        when = f"for {share} % of the time in which" if share < ALL_BUT else "while"
+        told.append(
+            f"; {when} the {spoken(who)} moved {it}, the two were near each other and moved alike, "
+            "but did not count as in contact"
+        )
+    return "".join(told)
 
 
 def _movers(found: Collection[tuple[str, str]]) -> set[str]:

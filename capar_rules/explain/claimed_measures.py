@@ -16,7 +16,7 @@ class Measure(StrEnum):
     """How far a body is from where it was at the first frame."""
 
     SPREAD = "spread"
-    """How far it is from its median place between the two frames."""
+    """How far it is from the middle of where it was between the two frames."""
 
     HEIGHT = "height"
     """How much higher its middle is than at the first frame."""

@@ -258,7 +258,7 @@ def measured_by(facts: Iterable[Fact], known: Measured) -> Measured:
             case Touching() if fact.body in acting:
                 touched = True
                 held[fact.other].append((fact.body, fact.first, fact.last))
-            case Tag(type="mobile"):
+            case Tag(type="mobile" | "fixed"):
                 touched = True
             case _:
                 pass

@@ -41,16 +41,16 @@ class Reach:
     """Whether contact lasts but from when the end-effector has arrived until it sets off."""
 
     @property
-    def told_mm(self) -> int:
-        """The distance in whole millimetres, as it is told: rounded up, so that it bounds."""
-        return round(upward(1000.0 * self.distance_m))
+    def told_mm(self) -> float:
+        """The distance in tenths of millimetres, as it is told: rounded up, so that it bounds."""
+        return upward(1000.0 * self.distance_m, 1)
 
     @property
     def told(self) -> str:
         """Within what contact is counted, and up to what it lasts where that is more."""
-        begin = round(upward(1000.0 * min(self.begin_m, self.distance_m)))
-        lasts = f" until beyond {self.told_mm} mm" * (begin < self.told_mm)
-        return f"{'from' if lasts else 'within'} {begin} mm{' on' * bool(lasts)}{lasts}"
+        begin = upward(1000.0 * min(self.begin_m, self.distance_m), 1)
+        lasts = f" until beyond {self.told_mm:g} mm" * (begin < self.told_mm)
+        return f"{'from' if lasts else 'within'} {begin:g} mm{' on' * bool(lasts)}{lasts}"
 
     @property
     def is_touch(self) -> bool:

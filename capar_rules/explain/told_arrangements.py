@@ -134,7 +134,7 @@ class ArrangementsTold(ToldArgument):
                 return told
         reach = self.clock.measured.reaches.get((thing, self.text))
         if self.clock.measured.near(thing, self.text) and reach is not None:
-            return f"within {reach.told_mm} mm of"
+            return f"within {reach.told_mm:g} mm of"
         return "in contact with"
 
     def _met(self) -> str:
@@ -156,9 +156,13 @@ class ArrangementsTold(ToldArgument):
         held = self._met_near(hand, thing, span[0]) if span else None
         moves = self.clock.measured.moving.get(thing, ())
         if span and held and any(first < span[0] and last > held[0] for first, last in moves):
-            since = self.clock.at(held[0])
-            contact = f"the contact with the {self.clock.called(hand)} that began at {since}"
-            return f" and had moved before in {contact}"
+            since, contact = (
+                self.clock.at(held[0]),
+                f"the contact with the {self.clock.called(hand)}",
+            )
+            if held[0] >= span[0]:
+                return f" and had moved before {contact} began, at {since}"
+            return f" and had moved before in {contact} that began at {since}"
         return ", so that it was lifted off none"
 
     def _unslid(self) -> str:

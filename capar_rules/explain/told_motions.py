@@ -78,7 +78,8 @@ class MotionsTold(ToldArgument):
         if form != "way":
             if form == "still":
                 return self._still(body, moved)
-            return _brief(form, moved) + self._counts_later(form, body, moved, span)
+            floor_m = self.clock.measured.floors.get(body)
+            return _brief(form, moved, floor_m) + self._counts_later(form, body, moved, span)
         late = span[1] - moving[1] > in_frames(times().merge_ms, self.clock.rate_hz)
         told = quantities.way(moved, f" until {self.clock.at(moving[1])}" * late)
         return told + self._untouched(body, moving) + self._in_course_of(body, moved, span)
@@ -107,7 +108,7 @@ class MotionsTold(ToldArgument):
         floor_m = self.clock.measured.floors.get(body)
         span = self._span_beside("still") or (0, 0)
         turned = self._turned(body, span)
-        told = f"{quantities.spread(moved.spread_m)} of its median place{turned} meanwhile"
+        told = f"{quantities.spread(moved.spread_m)} of one place{turned} meanwhile"
         turns = self.clock.measured.turned
         turn_floor = self.clock.measured.turn_floors.get(body, math.inf)
         turned_far = bool(turned) and turns is not None and turns(body, *span) > turn_floor
@@ -266,10 +267,12 @@ def _leant(first_mrad: int, last_mrad: int) -> str:
     return f"{first} at the start and {last} at the end"
 
 
-def _brief(form: str, moved: Way) -> str:
+def _brief(form: str, moved: Way, floor_m: float | None) -> str:
     if form == "little":
-        within = f" (within {quantities.spread(moved.spread_m)} of its median place in the segment)"
-        return within if moved.spread_m >= LITTLE_M else ""
+        within = f" (within {quantities.spread(moved.spread_m)} of one place in the segment"
+        counts = f"; it counts as moved from {quantities.length(floor_m)} on" if floor_m else ""
+        counts *= floor_m is not None and moved.spread_m < floor_m
+        return f"{within}{counts})" if moved.spread_m >= LITTLE_M else ""
     return quantities.spread(moved.spread_m)
 
 

@@ -14,8 +14,8 @@ BEYOND = "at moments up to"
 """How a contact throughout the segment is told in which bodies were further apart for moments."""
 
 SETTLED = (
-    ", from when the hand has all but stopped coming nearer, or the thing moves, until it goes "
-    "away for good"
+    ", from when the hand has all but stopped coming nearer, or the thing counts as moving, until "
+    "the hand goes away for good"
 )
 """How contact is told to last for which only an estimated distance is known."""
 
@@ -42,7 +42,7 @@ def touching(claims: Iterable[Claim], clock: Clock) -> str:
         hand = hand_of(clock.own)
         own = [reach for (one, _), reach in sorted(clock.measured.reaches.items()) if one == hand]
         if len({(reach.told, _between(reach, clock)) for reach in own}) == 1:
-            found[_between(own[0], clock)] = {own[0].told: []}
+            found[_between(own[0], clock).replace("their surfaces", "surfaces")] = {own[0].told: []}
             bodies.append(hand)
     several = sum(map(len, found.values())) > 1
     told = [

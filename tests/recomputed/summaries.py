@@ -341,7 +341,7 @@ def kept_within(known: Known, body: str, far: str, first: str = "", last: str = 
     begin = known.frame(first) if first else known.segment.first
     end = known.frame(last) if last else known.segment.last
     track = known.track(body, begin, end)
-    away = np.linalg.norm(track - np.median(track, axis=0), axis=1)
+    away = np.linalg.norm(track - 0.5 * (track.min(axis=0) + track.max(axis=0)), axis=1)
     return _is(float(away.max()), far)
 
 
@@ -382,7 +382,7 @@ def counts_within(known: Known, _: str, told: str) -> bool:
     assert calibration is not None
     about = {known.segment.ee, *known.segment.objects}
     return any(
-        0.0 <= int(told.removesuffix(" mm")) - 1000.0 * max(pair.touch_m, pair.release_m) < 1.0
+        0.0 <= float(told.removesuffix(" mm")) - 1000.0 * max(pair.touch_m, pair.release_m) < 0.1
         for pair in calibration.pairs
         if about & {pair.first, pair.second}
     )
@@ -679,6 +679,14 @@ def turned_back_so_often(known: Known, _: str, count: str) -> bool:
     return stroked(known, known.segment.ee.replace("_", " "), count)
 
 
+def moved_before_contact(known: Known, body: str, hand: str, at: str) -> bool:
+    """Its motion begins before their contact does then."""
+    met = any(near(each.first, known.at(at)) for each in known.touching(hand, body))
+    return met and any(
+        each.object == body and each.first < known.at(at) for each in known.of(Displaced)
+    )
+
+
 FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (
         rf"ended only {LENGTH} (higher|lower)(?: and {LENGTH} to the side)? \(up and down "
@@ -731,6 +739,10 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (
         rf"had moved before in the contact with the {NAME} that began at {TIME}",
         moved_before,
+    ),
+    (
+        rf"had moved before the contact with the {NAME} began, at {TIME}",
+        moved_before_contact,
     ),
     (rf"had come to touch the {NAME} (?:before this, )?at {TIME}", met_first),
     (
@@ -872,10 +884,11 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     ),
     (rf"leant over or was set upright by {DEGREES} \({DEGREES} or more count\)", leant_enough),
     (rf"turned by {DEGREES} about the vertical \({DEGREES} or more count\)", spun_enough),
-    (rf"stayed in place \(within {LENGTH} of its median place in the segment\)", kept_within),
+    (rf"stayed in place \(within {LENGTH} of one place in the segment(?:; it counts as "
+        rf"moved from [\d.]+ c?m on)?\)", kept_within),
     (
         rf"counted as at rest from {TIME} to {TIME}, (?:longer than|just) the 0\.40 s of a rest "
-        rf"\(it stayed within {LENGTH} of its median place(?: and {DEGREES} of its mean "
+        rf"\(it stayed within {LENGTH} of one place(?: and {DEGREES} of its mean "
         r"orientation)? meanwhile(?:, and a rest is within 1 cm(?: and \d+°)?|; rests within 1 cm"
         r"(?: and \d+°)? of one place, from its first to its last slow moment, and then of "
         r"another, count as one)?\)",
@@ -886,7 +899,7 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"(?:had no rest of|at rest for) {TIME} or more", rest_lasts),
     (rf"touched the {NAME} at {TIME}", touched_at),
     (
-        rf"stayed within {LENGTH} of its median place(?: and {DEGREES} of its mean orientation)? "
+        rf"stayed within {LENGTH} of one place(?: and {DEGREES} of its mean orientation)? "
         r"in the segment",
         kept_as_it_was,
     ),
@@ -896,6 +909,6 @@ FORMS: tuple[tuple[str, Callable[..., bool]], ...] = (
     (rf"at the start \({TIME}\)", starts),
     (rf"at the end \({TIME}\)", ends),
     (rf"until just before \({TIME}\)", precedes),
-    (r"(\d+ mm)(?= \(|\.|, | and | until beyond| on)", counts_within),
+    (r"(\d+(?:\.\d)? mm)(?= \(|\.|, | and | until beyond| on)", counts_within),
 )  # fmt: skip
 """Each form in which a summary tells numbers, and how it is recomputed; the first precede."""
