@@ -100,7 +100,7 @@ def _uncounted(
     """
     if pair.found is Found.NEVER:
         return ""
-    times, calibration = frames / known.rate, known.seen.measurements.calibration
+    times, measured = frames / known.rate, known.seen.explainer.measured
     aside = BORDER / known.rate
     inside, beside = np.zeros(len(times), dtype=bool), np.zeros(len(times), dtype=bool)
     for bar in touching:
@@ -108,8 +108,8 @@ def _uncounted(
         beside |= (times > bar.start_s - aside) & (times < bar.end_s + aside)
     far = apart > MILLI * max(pair.touch_m, pair.release_m)
     near = (apart <= MILLI * pair.touch_m) & ~beside & ~(pair.pivots & (pair.found in SETTLES))
-    gaps = f"; gaps of less than {calibration.contact_dropout_s:.2f} s end none"
-    brief = f"; what passes by, or lasts less than {calibration.contact_minimum_s:.2f} s, is none"
+    gaps = f"; gaps of {measured.gap_frames} end none"
+    brief = f"; what passes by, or lasts {measured.brief_frames}, is none"
     return gaps * bool((inside & far).any()) + brief * bool(near.any())
 
 

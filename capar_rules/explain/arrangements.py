@@ -116,6 +116,28 @@ def kept(clock: Clock, segment: str) -> tuple[str, ...]:
     return tuple(other for other in met_at(clock, segment, "start") if other in at_end)
 
 
+def keeper(clock: Clock, segment: str) -> tuple[int, str, int] | None:
+    """Who else has a segment's thing since before its end-effector touched it.
+
+    Returns:
+        The frame since which, who, and the frame at which the segment's end-effector touched it.
+    """
+    thing, span = clock.objects.get(segment, ""), clock.span(segment)
+    contacts, hand = clock.measured.held.get(thing, ()), hand_of(segment)
+    if span is None:
+        return None
+    own = [first for ee, first, last in contacts if ee == hand and first <= span[0]]
+    before = [
+        (first, clock.called(ee), ee)
+        for ee, first, last in contacts
+        if ee != hand and own and first <= max(own) and last >= span[1]
+    ]
+    if not before:
+        return None
+    since, _, other = min(before)
+    return since, other, max(own)
+
+
 def left(clock: Clock, segment: str) -> tuple[str, ...]:
     """What the segment's thing touches at its start and no longer at its end."""
     at_end = met_at(clock, segment, "end")

@@ -108,9 +108,7 @@ def claim(
                 found.append(Quantity(measure, (argument.body,), *measured, form))
         if form == "turns_back" and span is not None:
             frames += span
-        if form in ("laid", "not_laid"):
-            told_then = arrangements.laid_frames(clock, clock.own)
-            frames += [frame for frame in told_then if clock.at(frame) in text]
+        frames += [frame for frame in _told_then(clock, form) if clock.at(frame) in text]
         if form in ("when", "frame"):
             frames.append(int(text_of))
         if form == "tick":
@@ -127,6 +125,14 @@ def claim(
     held = tuple(dict.fromkeys(stretches))
     of = predicate * mood.startswith("brief")
     return Claim(text, tuple(dict.fromkeys(found)), tuple(frames), held, of)
+
+
+def _told_then(clock: Clock, form: str) -> tuple[int, ...]:
+    """The frames that a format of the explained segment may tell, beside its own borders."""
+    if form in ("laid", "not_laid"):
+        return arrangements.laid_frames(clock, clock.own)
+    kept = arrangements.keeper(clock, clock.own) if form == "keeper" else None
+    return (kept[0], kept[2]) if kept else ()
 
 
 def _since(clock: Clock, frame: int) -> list[int]:

@@ -1,5 +1,6 @@
 """When the ticks and segments of an answer are, and what was measured there, for sentences."""
 
+import math
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -60,6 +61,11 @@ Pair = tuple[str, str]
 Pressing = tuple[int, int]
 Frames = tuple[int, int]
 """First and last frame."""
+
+
+def fewer_frames(least_s: float, rate_hz: float) -> str:
+    """What is shorter than a time, in frames."""
+    return f"fewer than {math.ceil(least_s * rate_hz - 1e-9)} frames ({least_s:.2f} s)"
 
 
 @dataclass(frozen=True)
@@ -184,6 +190,16 @@ class Measured:
     def grasps(self, body: str) -> bool:
         """Whether it is a hand, a foot, or a part of one, which is where it seems to be."""
         return body in self.hands or body in self.feet
+
+    @property
+    def gap_frames(self) -> str:
+        """How long the gaps are that end no contact."""
+        return fewer_frames(self.dropout_s, self.rate_hz)
+
+    @property
+    def brief_frames(self) -> str:
+        """How long what is too brief for a contact is."""
+        return fewer_frames(self.brief_s, self.rate_hz)
 
     def stands_uncounted(self, body: str) -> bool:
         """Whether it is a foot of which no contact with anything fixed is looked for."""
@@ -381,8 +397,7 @@ class Clock:
     @property
     def closed_gaps(self) -> str:
         """Up to how long bodies may be too far apart within a contact, after how far they were."""
-        dropout_s = self.measured.dropout_s
-        return f": gaps of less than {dropout_s:.2f} s end no contact" if dropout_s else ""
+        return f": gaps of {self.measured.gap_frames} end no contact"
 
     def displacement(self, name: str, span: tuple[int, int]) -> tuple[int, int]:
         """The same from when it truly left its place until it truly reached another."""

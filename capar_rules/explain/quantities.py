@@ -47,24 +47,38 @@ def length(metres: float) -> str:
     return f"{metres:.1f} m"
 
 
-def way(moved: Way, until: str = "") -> str:
-    """How far a body moved, and until when if that is told, to stand after ``moved``."""
+def way(moved: Way, until: str = "", floor_m: float = 0.0) -> str:
+    """How far a body moved, and until when if that is told, to stand after ``moved``.
+
+    Args:
+        moved: How it moved.
+        until: Until when.
+        floor_m: From what distance on it counts as moved [m].
+    """
     if moved.winding:
-        path = f"along a path of {length(moved.path_m)}{until}"
-        return f"{path} and ended {_from_start(moved.straight_m)}"
+        path = f"along a path of {beside(moved.path_m, floor_m)}{until}"
+        return f"{path} and ended {_from_start(moved.straight_m, floor_m)}"
     if moved.path_m < TURNING_M:
         return f"by turning{until}"
-    return f"{length(moved.straight_m)}{until}"
+    return f"{beside(moved.straight_m, floor_m)}{until}"
 
 
-def place(x_mm: float, y_mm: float, z_mm: float) -> str:
+def place(x_mm: float, y_mm: float, z_mm: float, floor_m: float = 0.0) -> str:
     """Where a body ended that was displaced so, to stand after ``ended``."""
-    return _from_start(math.hypot(x_mm, y_mm, z_mm) / 1000.0)
+    return _from_start(math.hypot(x_mm, y_mm, z_mm) / 1000.0, floor_m)
 
 
-def _from_start(metres: float) -> str:
-    least = metres < LEAST_M
-    return f"{'less than ' * least}{length(LEAST_M if least else metres)} from where it began"
+def beside(metres: float, limit_m: float) -> str:
+    """A length, with a decimal where it would read as a limit that it is not."""
+    told = length(metres)
+    alike = told == length(limit_m) and abs(metres - limit_m) > 1e-6
+    return f"{100.0 * metres:.1f} cm" if alike and metres >= LEAST_M else told
+
+
+def _from_start(metres: float, floor_m: float) -> str:
+    if metres < LEAST_M:
+        return f"less than {length(LEAST_M)} from where it began"
+    return f"{beside(metres, floor_m)} from where it began"
 
 
 def gap(metres: float) -> str:

@@ -19,26 +19,18 @@ class ContactsTold(ToldArgument):
 
     def _keeper(self) -> str:
         """Which other end-effector has the segment's object since before this one touched it."""
-        thing, span = self.clock.objects.get(self.text, ""), self.clock.span(self.text)
-        contacts = self.clock.measured.held.get(thing, ())
-        if span is None:
+        found = arrangements.keeper(self.clock, self.text)
+        if found is None:
             return UNBOUND
-        own = [first for ee, first, last in contacts if ee == self._hand and first <= span[0]]
-        before = [
-            (first, self.clock.called(ee))
-            for ee, first, last in contacts
-            if ee != self._hand and own and first <= max(own) and last >= span[1]
-        ]
-        if not before:
-            return UNBOUND
-        since, keeper = min(before)
-        met = self.clock.at(max(own))
-        if since == max(own):
-            hand = self.clock.called(self._hand)
-            return f"was in contact with the {keeper} from {met} on, as with the {hand}"
-        had = f"had been in contact with the {keeper} since {self.clock.at(since)}"
-        it = self.clock.it(thing, object_=True)
-        return f"{had}, before the {self.clock.called(self._hand)} touched {it} at {met}"
+        since, keeper, met = found
+        hand, other = self.clock.called(self._hand), self.clock.called(keeper)
+        if since == met:
+            return (
+                f"was in contact with the {other} from {self.clock.at(met)} on, as with the {hand}"
+            )
+        had = f"had been in contact with the {other} since {self.clock.at(since)}"
+        it = self.clock.it(self.clock.objects.get(self.text, ""), object_=True)
+        return f"{had}, before the {hand} touched {it} at {self.clock.at(met)}"
 
     def _struck(self) -> str:
         """How fast the segment's object met this one at the end."""

@@ -81,7 +81,8 @@ class MotionsTold(ToldArgument):
             floor_m = self.clock.measured.floors.get(body)
             return _brief(form, moved, floor_m) + self._counts_later(form, body, moved, span)
         late = span[1] - moving[1] > in_frames(times().merge_ms, self.clock.rate_hz)
-        told = quantities.way(moved, f" until {self.clock.at(moving[1])}" * late)
+        floor_m = self.clock.measured.floors.get(body, 0.0)
+        told = quantities.way(moved, f" until {self.clock.at(moving[1])}" * late, floor_m)
         return told + self._untouched(body, moving) + self._in_course_of(body, moved, span)
 
     def _untouched(self, body: str, moving: tuple[int, int]) -> str:
@@ -160,7 +161,9 @@ class MotionsTold(ToldArgument):
             if start is None or end is None:
                 return "elsewhere"
             shift = [after - before for before, after in zip(start, end, strict=True)]
-            told = SHIFTS[form](*shift)
+            floor_m = known.floors.get(body, 0.0)
+            x, y, z = shift
+            told = quantities.place(x, y, z, floor_m) if form == "place" else SHIFTS[form](x, y, z)
             return told + self._extremes(body, span, shift[2]) * (form in COURSES)
         first, last = (known.postures.get((body, frame)) for frame in span)
         if first is None or last is None:

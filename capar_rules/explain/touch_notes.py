@@ -77,8 +77,7 @@ def _passed_by(claims: Iterable[Claim], clock: Clock) -> str:
         if near <= min(reach.begin_m, reach.distance_m):
             called = f"the {clock.called(one)} and the {clock.called(other)}"
             found.append(f"{called} were only {gap(near)} apart")
-    brief = f"{clock.measured.brief_s:.2f} s"
-    rule = f"what passes by, or lasts less than {brief}, is no contact"
+    rule = f"what passes by, or lasts {clock.measured.brief_frames}, is no contact"
     return f" At moments without contact {listed(found)}: {rule}." if found else ""
 
 

@@ -74,4 +74,4 @@ def test_origins_are_told_to_be_as_near_as_they_were(margin_m: float) -> None:
     first, last = (round(at * trial.rate_hz) for at in (told.start_s, told.end_s))
     far = float(np.linalg.norm(ways[first : last + 1], axis=1).max())
     assert far <= float(found[1]) / 1000.0 + 0.001
-    assert float(found[1]) == math.ceil(1000.0 * (nearest + margin_m))
+    assert float(found[1]) == math.ceil(1e4 * (nearest + margin_m)) / 10.0

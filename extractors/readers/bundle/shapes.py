@@ -192,7 +192,10 @@ def _capsules(entry: "CapsulesShape", frame: Frame) -> Described:
         points[name] = _point(entry, "capsules", frame, name)
     meshes = [_capsule_between(points[a], points[b], entry.radius_m) for a, b in pairs]
     what = "a capsule" if len(pairs) == 1 else f"{len(pairs)} capsules"
-    return *joined(meshes), f"{what} of radius {entry.radius_m:.3g} m"
+    ((one, other), *more) = pairs
+    far = float(np.linalg.norm(points[one] - points[other]))
+    long = f" and length {far + 2.0 * entry.radius_m:.2g} m" * (not more and far > 0.0)
+    return *joined(meshes), f"{what} of radius {entry.radius_m:.3g} m{long}"
 
 
 def _pairs(entry: "CapsulesShape", frame: Frame) -> list[tuple[str, str]]:
