@@ -17,7 +17,7 @@ from extractors.contact.touch_distances import touchable
 from extractors.measure import Measurements
 
 OUTLYING_M = 0.01
-"""An origin that lies so far outside of a body's box [m] is told to."""
+"""An origin that lies so far outside of a body's box, or from its middle [m], is told to."""
 
 SAMPLES = 120
 """At so many frames of a span at most distances of surfaces are measured [1]."""
@@ -99,8 +99,14 @@ def reaches(measurements: Measurements) -> dict[tuple[str, str], Reach]:
     }
 
 
-def _outlying(pair: PairCalibration, measurements: Measurements) -> tuple[tuple[str, float], ...]:
-    """The bodies of a pair whose origins are compared, and lie outside of their boxes, how far."""
+def _outlying(
+    pair: PairCalibration, measurements: Measurements
+) -> tuple[tuple[str, str, float], ...]:
+    """The bodies of a pair whose origins are compared and are not where they seem to be.
+
+    Returns:
+        For each its name, where its origin lies, in words, and how far from there [m].
+    """
     if _measured_between(pair, measurements) is not Between.ORIGINS:
         return ()
     found = []
@@ -109,7 +115,11 @@ def _outlying(pair: PairCalibration, measurements: Measurements) -> tuple[tuple[
         if shape is not None:
             low, high = shape.bounds
             far = float(np.linalg.norm(np.maximum(np.maximum(low, -high), 0.0)))
-            found += [(name, far)] * (far >= OUTLYING_M)
+            off = float(np.linalg.norm(0.5 * (low + high)))
+            if far >= OUTLYING_M:
+                found.append((name, "outside of it", far))
+            elif off >= OUTLYING_M:
+                found.append((name, "from its middle", off))
     return tuple(found)
 
 

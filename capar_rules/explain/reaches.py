@@ -31,8 +31,11 @@ class Reach:
     unshaped: tuple[str, ...] = ()
     """Which of the two have no known shape."""
 
-    outlying: tuple[tuple[str, float], ...] = ()
-    """Bodies whose origin the distance is of, and that lies outside of their shape, so far [m]."""
+    outlying: tuple[tuple[str, str, float], ...] = ()
+    """Bodies whose origin the distance is of, where that lies, and how far from there [m].
+
+    Those alone whose origin lies outside of their shape or off its middle.
+    """
 
     offsets: tuple[tuple[str, float], ...] = ()
     """Bodies of which the distance is of a point: how far that is from their origin [m]."""

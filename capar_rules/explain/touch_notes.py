@@ -125,8 +125,8 @@ def _between(reach: Reach, clock: Clock) -> str:
     has = "has no known shape" if len(called) == 1 else "have no known shapes"
     unshaped = f", as {listed(called)} {has}" * bool(called)
     outlying = [
-        f"that of the {clock.called(name)} lies {length(far)} outside of it"
-        for name, far in reach.outlying
+        f"that of the {clock.called(name)} lies {length(far)} {where}"
+        for name, where, far in reach.outlying
     ]
     outlying += [
         f"{length(far)} from the origin of the {clock.called(name)}" for name, far in reach.offsets
