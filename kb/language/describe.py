@@ -24,6 +24,7 @@ from kb.language.hands import (
     mostly_together,
     spoken_links,
     told_in_order,
+    with_the_other_hand,
 )
 from kb.language.holding import Holding
 from kb.language.lexicalisation import FREE, LEAVES, STEP, STEP_UP, TWO_STEPS, WALK, Phrasebook
@@ -166,7 +167,8 @@ def _deeds(
         ]
         found = [with_turning(deeds(rest, scene, turning), turns) for rest, turns in ways]
         seen[place] = by_fingers(seen[place], found)
-    return seen, as_one_body(links, seen, observation.objects, scene)
+    told = as_one_body(links, seen, observation.objects, scene)
+    return seen, with_the_other_hand(links, seen, told)
 
 
 def _of(observation: Observation, agent: Agent) -> Observation:

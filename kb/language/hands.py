@@ -10,6 +10,9 @@ from kb.language.lexicalisation import ABOUT, REACH, THIS_WAY, TURN
 from kb.language.thresholds import MOSTLY, REST_S, SETTLING_S
 from kb.lexicon.tables import table
 
+MOSTLY_MOVED = 0.5
+"""Who moves a thing for a larger share of another hand's deed did that too [1]."""
+
 
 def spoken_links(links: Sequence[ObservedLink]) -> tuple[ObservedLink, ...]:
     """The links that a telling names: a finger's is left out where its hand's is there."""
@@ -153,6 +156,54 @@ def _in_words_of(own: Sequence[Clause], other: Sequence[Clause], ee: str) -> lis
         ]
         out += theirs or [clause]
     return out
+
+
+def with_the_other_hand(
+    links: Sequence[ObservedLink],
+    own: Sequence[tuple[Clause, ...]],
+    told: Sequence[tuple[Clause, ...]],
+) -> list[tuple[Clause, ...]]:
+    """What each hand did, that of one of which its arm or trunk tells in the other hand's words.
+
+    Contacts of an arm come and go while hands have a thing: where the two hands move one thing for
+    most of a deed of the hand that moves it longer, both did that.
+
+    Args:
+        links: The links that are told.
+        own: What each did by itself.
+        told: What each did as part of one body.
+    """
+    out = list(told)
+    for pair in _pairs(links):
+        longer, shorter = sorted(pair, key=lambda place: -_changing_s(told[place]))
+        if told[shorter] == own[shorter]:
+            continue
+        deeds = [
+            replace(each, ees=(links[shorter].ee,))
+            for each in told[longer]
+            if each.changes and _moved_share(each, told[shorter]) > MOSTLY_MOVED
+        ]
+        rest = [
+            step
+            for step in told[shorter]
+            if not any(_about_one(step, each) and each.overlap_s(step) > 0.0 for each in deeds)
+        ]
+        out[shorter] = tuple(sorted((*rest, *deeds), key=in_time))
+    return out
+
+
+def _changing_s(steps: Sequence[Clause]) -> float:
+    return sum(step.end_s - step.start_s for step in steps if step.changes)
+
+
+def _about_one(step: Clause, other: Clause) -> bool:
+    return step.changes and other.changes and step.objects[:1] == other.objects[:1]
+
+
+def _moved_share(deed: Clause, steps: Sequence[Clause]) -> float:
+    """In what share of a deed's time steps move the same thing."""
+    moved_s = sum(max(deed.overlap_s(step), 0.0) for step in steps if _about_one(deed, step))
+    return moved_s / max(deed.end_s - deed.start_s, SETTLING_S)
 
 
 def _pairs(links: Sequence[ObservedLink]) -> list[tuple[int, int]]:
