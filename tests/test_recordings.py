@@ -153,7 +153,7 @@ def _names(observation: Observation) -> dict[str, set[str]]:
 def _labels_and_touches(recordings: Path, take: str) -> tuple[np.ndarray, np.ndarray]:
     """Per frame and body: the label (-1 ignored), and whether a contact with the object is seen."""
     text = (EXAMPLES / "omomo_intermimic" / "capture.toml").read_text()
-    (called,) = (each["names"] for each in tomllib.loads(text)["sensors_from"])
+    (called,) = (entry["names"] for entry in tomllib.loads(text)["sensors_from"])
     with np.load(recordings / "omomo_intermimic" / "npz" / f"{take}.npz") as content:
         labels = content["contact_body"]
         names = [called.get(str(name), str(name)) for name in content["body_names"]]

@@ -140,13 +140,7 @@ def _turned(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         "°",
         (known.curve(angle),),
         (known.turn_floor(name),),
-        (
-            Mark(
-                known.at(most),
-                float(angle[most]),
-                f"at most {angle_bound(math.radians(angle[most]))}",
-            ),
-        ),
+        (_angle_mark(known, most, float(angle[most]), "at most {}"),),
     )
 
 
@@ -259,25 +253,13 @@ def _lean(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel:
         limits.append(Limit(far, f"far over from {far:.0f}° on"))
     if "far_over" in forms:
         most = told.first + int(np.nanargmax(angle[told.first : told.last + 1]))
-        marks.append(
-            Mark(
-                known.at(most),
-                float(angle[most]),
-                f"{angle_bound(math.radians(angle[most]))} at most",
-            )
-        )
+        marks.append(_angle_mark(known, most, float(angle[most]), "{} at most"))
     inside = angle[told.first : told.last + 1]
     most = told.first + int(np.nanargmax(inside))
     change_deg = math.degrees(constants()["turn_mrad"] / MILLI)
     beyond = float(np.nanmax(inside)) - max(inside[0], inside[-1]) >= change_deg
     if "not_leant" in forms and beyond and "far_over" not in forms:
-        marks.append(
-            Mark(
-                known.at(most),
-                float(angle[most]),
-                f"{angle_bound(math.radians(angle[most]))} at most",
-            )
-        )
+        marks.append(_angle_mark(known, most, float(angle[most]), "{} at most"))
     if forms & {"lean", "not_leant"}:
         change = math.degrees(constants()["turn_mrad"] / 1000.0)
         start = float(angle[told.first])

@@ -235,7 +235,7 @@ def _without_contact(
     """Who moved a thing, and in how much of that time, while no contact of the two counted."""
     told = []
     for who, held in apart.items():
-        own = sum((how, who) in movers for movers in frames.values() for how in BY_HAND)
+        own = sum(any((how, who) in movers for how in BY_HAND) for movers in frames.values())
         share = round(100.0 * len(held) / own)
         when = f"for {share} % of the time in which" if share < ALL_BUT else "while"
         told.append(

@@ -68,7 +68,7 @@ def bit(top: Reason, feature: str, clock: Clock) -> list[Reason]:
         return [each for each in top.walk() if each.atom in wanted]
     if side == "force":
         met = f"met_gently({segment},", f"met_unseen({segment},"
-        return [each for each in top.walk() if each.atom.startswith(met)]
+        return [reason for reason in top.walk() if reason.atom.startswith(met)]
     pair = hand, objects.get(place, "")
     if place >= len(objects):
         pair = objects.get(0, ""), objects.get(place - len(objects) + 1, "")

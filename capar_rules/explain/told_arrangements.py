@@ -10,7 +10,7 @@ LEAST_ASIDE_M = 0.001
 
 
 class ArrangementsTold(ToldArgument):
-    """How bodies lie to each other, and whither they go."""
+    """How bodies lie to each other, and direction they go."""
 
     def _bearing(self, form: str) -> str:
         """At which level angle to the line from the end-effector to its middle the thing went."""
@@ -28,13 +28,13 @@ class ArrangementsTold(ToldArgument):
         line = f"to the level line from the {hand} to the middle of the {thing} at the start"
         ahead, after = f"{AHEAD_DEG:.0f}° or less is ahead", f"{AFTER_DEG:.0f}° or more is after"
         if form.startswith("not_"):
-            whither = f", on the whole, neither after the {hand} nor ahead of it, but"
+            direction = f", on the whole, neither after the {hand} nor ahead of it, but"
             if found.offset_deg >= AFTER_DEG:
-                whither = f", on the whole, after the {hand}, and not ahead of it,"
+                direction = f", on the whole, after the {hand}, and not ahead of it,"
             if found.offset_deg <= AHEAD_DEG:
-                whither = f", on the whole, ahead of the {hand}, and not after it,"
+                direction = f", on the whole, ahead of the {hand}, and not after it,"
             angle = f"{found.offset_deg:.0f}°"
-            return f"{whither} at {angle} {line} ({after}, {ahead})"
+            return f"{direction} at {angle} {line} ({after}, {ahead})"
         if form == "ahead" and found.by_press:
             line = f"to the direction in which the {hand} pressed it"
             return f" (at {found.press_deg:.0f}° {line}; {ahead})"

@@ -179,14 +179,14 @@ def with_the_other_hand(
         if told[shorter] == own[shorter]:
             continue
         deeds = [
-            replace(each, ees=(links[shorter].ee,))
-            for each in told[longer]
-            if each.changes and _moved_share(each, told[shorter]) > MOSTLY_MOVED
+            replace(deed, ees=(links[shorter].ee,))
+            for deed in told[longer]
+            if deed.changes and _moved_share(deed, told[shorter]) > MOSTLY_MOVED
         ]
         rest = [
             step
             for step in told[shorter]
-            if not any(_about_one(step, each) and each.overlap_s(step) > 0.0 for each in deeds)
+            if not any(_about_one(step, deed) and deed.overlap_s(step) > 0.0 for deed in deeds)
         ]
         out[shorter] = tuple(sorted((*rest, *deeds), key=in_time))
     return out

@@ -175,8 +175,8 @@ def _pressing(known: Known) -> float:
 def came_to_lie(known: Known, what: str, stilled: str | None, hand: str, at: str) -> bool:
     """It came down, and where it is then it is when the hand leaves it; its motion ends before."""
     left = known.frame(at)
-    moves = [each.last for each in known.of(Moving) if each.object == name(what)]
-    if stilled and not any(near(each, known.at(stilled)) for each in moves):
+    ends = [move.last for move in known.of(Moving) if move.object == name(what)]
+    if stilled and not any(near(end, known.at(stilled)) for end in ends):
         return False
     if not any(near(each.last, left) for each in known.touching(hand, what)):
         return False

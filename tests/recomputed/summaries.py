@@ -681,7 +681,7 @@ def turned_back_so_often(known: Known, _: str, count: str) -> bool:
 
 def moved_before_contact(known: Known, body: str, hand: str, at: str) -> bool:
     """Its motion begins before their contact does then."""
-    met = any(near(each.first, known.at(at)) for each in known.touching(hand, body))
+    met = any(near(touch.first, known.at(at)) for touch in known.touching(hand, body))
     return met and any(
         each.object == body and each.first < known.at(at) for each in known.of(Displaced)
     )

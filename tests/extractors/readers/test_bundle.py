@@ -229,16 +229,22 @@ def test_a_stretch_of_lost_frames_gets_a_notice_with_its_seconds(tmp_path: Path)
     ]
 
 
-def test_every_sensor_of_a_skeleton_is_declared_at_once(tmp_path: Path) -> None:
-    text = """unit = "cm"
+SKELETON = """unit = "cm"
 up = "z"
 [files]
 motion = "m.bvh"
 [[sensors_from]]
 file = "motion"
-bodies = "*"
+"""
+
+
+def test_every_sensor_of_a_skeleton_is_declared_at_once(tmp_path: Path) -> None:
+    text = (
+        SKELETON
+        + """bodies = "*"
 shape = { capsules = "children", radius_m = 0.02 }
 """
+    )
     capture: Capture = read_capture(bundle(tmp_path, text, "bvh"))
     assert [each.name for each in capture.sensors] == ["hand", "tip"]
     hand, tip = (each.shape for each in capture.sensors)
@@ -248,17 +254,14 @@ shape = { capsules = "children", radius_m = 0.02 }
 
 
 def test_a_body_that_bears_the_name_of_another_is_called_what_it_is(tmp_path: Path) -> None:
-    text = """unit = "cm"
-up = "z"
-[files]
-motion = "m.bvh"
-[[sensors_from]]
-file = "motion"
-names = { tip = "L_Thumb" }
+    text = (
+        SKELETON
+        + """names = { tip = "L_Thumb" }
 sides = { left = "L_" }
 """
+    )
     capture: Capture = read_capture(bundle(tmp_path, text, "bvh"))
-    assert [(each.name, each.side, each.end_effector) for each in capture.sensors] == [
+    assert [(sensor.name, sensor.side, sensor.end_effector) for sensor in capture.sensors] == [
         ("hand", "none", "hand"),
         ("l_thumb", "left", "thumb"),
     ]
