@@ -19,7 +19,15 @@ from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar_rules.authoring.catalogue import rules_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.explain.clock import Heights, Leans, Measured, Places, TurnsBack, Ways
+from capar_rules.explain.clock import (
+    Heights,
+    Leans,
+    Measured,
+    Places,
+    TurnsBack,
+    Ways,
+    fewer_frames,
+)
 from capar_rules.explain.explanation import Explainer, Explanation
 from capar_rules.explain.quantities import Over, Turns, Way
 from capar_rules.explain.why_not import Alternative
@@ -164,8 +172,8 @@ def measured_of(observation: Observation, measurements: Measurements) -> Measure
         heights=_heights(measurements),
         over=_over(measurements),
         apart=apart_within(measurements),
-        dropout_s=calibration.contact_dropout_s,
-        brief_s=calibration.contact_minimum_s,
+        gap_frames=fewer_frames(calibration.contact_dropout_s, observation.rate_hz),
+        brief_frames=fewer_frames(calibration.contact_minimum_s, observation.rate_hz),
         lost=_lost(observation, measurements),
         unrested=_unrested(observation),
         rate_hz=observation.rate_hz,

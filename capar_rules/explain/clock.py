@@ -163,11 +163,11 @@ class Measured:
     apart: Apart | None = None
     """How far bodies were apart; None where that is not known."""
 
-    dropout_s: float = 0.0
-    """A shorter interruption ends no contact [s]; zero where that is not known."""
+    gap_frames: str = ""
+    """How long the gaps are that end no contact; empty where that is not known."""
 
-    brief_s: float = 0.0
-    """What lasts less is no contact [s]; zero where that is not known."""
+    brief_frames: str = ""
+    """How long what is too brief for a contact is; empty where that is not known."""
 
     movable: frozenset[str] = frozenset()
     """Objects that can be moved."""
@@ -190,16 +190,6 @@ class Measured:
     def grasps(self, body: str) -> bool:
         """Whether it is a hand, a foot, or a part of one, which is where it seems to be."""
         return body in self.hands or body in self.feet
-
-    @property
-    def gap_frames(self) -> str:
-        """How long the gaps are that end no contact."""
-        return fewer_frames(self.dropout_s, self.rate_hz)
-
-    @property
-    def brief_frames(self) -> str:
-        """How long what is too brief for a contact is."""
-        return fewer_frames(self.brief_s, self.rate_hz)
 
     def stands_uncounted(self, body: str) -> bool:
         """Whether it is a foot of which no contact with anything fixed is looked for."""

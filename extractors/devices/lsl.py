@@ -30,6 +30,9 @@ LAST_S = 0.5
 CLOCK_S = 5.0
 """How often the difference of the clocks is measured [s]."""
 
+READS = 3
+"""How often two clocks are read to compare them; that read counts which took least."""
+
 
 def _pylsl() -> Any:
     try:
@@ -46,6 +49,13 @@ def _losses() -> tuple[type[Exception], ...]:
     from pylsl import util
 
     return util.LostError, util.TimeoutError
+
+
+def _ahead_s(lsl: Any) -> float:
+    """How far the library's clock is ahead of this computer's monotonic one [s]."""
+    reads = [(time.monotonic(), lsl.local_clock(), time.monotonic()) for _ in range(READS)]
+    before, there, after = min(reads, key=lambda read: read[2] - read[0])
+    return float(there - (before + after) / 2.0)
 
 
 class LslTracker(LiveTracker):
@@ -121,7 +131,7 @@ class LslTracker(LiveTracker):
     def _measure_offset(self) -> None:
         """From the sender's clock to this computer's monotonic one."""
         correction_s = self._inlet.time_correction(timeout=self._timeout_s)
-        self._offset_s = correction_s + time.monotonic() - self._lsl.local_clock()
+        self._offset_s = correction_s - _ahead_s(self._lsl)
         self._offset_at_s = time.monotonic()
 
     def _disconnect(self) -> None:
@@ -186,7 +196,7 @@ class LslOutlet:
     def push(self, frame: Frame) -> None:
         """Send a frame, with the time at which it arrived here."""
         values = np.hstack([frame.positions, frame.orientations]).ravel()
-        stamp_s = frame.host_s - time.monotonic() + self._lsl.local_clock()
+        stamp_s = frame.host_s + _ahead_s(self._lsl)
         self._outlet.push_sample(values.tolist(), stamp_s)
 
     def has_listeners(self) -> bool:
