@@ -137,8 +137,11 @@ class Actor:
             grips = _grips(thing, side, kind, self.human.measures)
             grips = [_facing(each, thing.round, self.heading - thing.heading) for each in grips]
             ends = self._ends(script, name)
-            efforts = [self._effort(side, each, ends) for each in grips]
-            self.grips[side, name, kind] = grips[int(np.argmin(efforts))]
+            least = np.inf
+            for grip in grips:
+                effort = self._effort(side, grip, ends, least)
+                if effort < least:
+                    least, self.grips[side, name, kind] = effort, grip
 
     def _ends(self, script: Script, name: str) -> list[tuple[RigidTransform, bool]]:
         """Where a thing stands and goes, and whether that is the mouth."""
@@ -147,9 +150,12 @@ class Actor:
         return [(self.things[name], False), *goals]
 
     def _effort(
-        self, side: str, grip: RigidTransform, ends: list[tuple[RigidTransform, bool]]
+        self, side: str, grip: RigidTransform, ends: list[tuple[RigidTransform, bool]], least: float
     ) -> float:
-        """How far the body is from ease with a grip, at worst; what it misses weighs most."""
+        """How far the body is from ease with a grip, at worst; what it misses weighs most.
+
+        What is at least as far as with another grip, which is given, is not sought further.
+        """
         worst = 0.0
         for end, drinks in ends:
             self.configuration.update(self.rest)
@@ -164,6 +170,8 @@ class Actor:
             turned = (palm.rotation.inv() * goal.rotation).magnitude() / 0.1
             bent = self.ease.compute_error(self.configuration)[6:] * self.ease.cost[6:]
             worst = max(worst, float(missed**2 + turned**2 + bent @ bent))
+            if worst >= least:
+                break
         self.configuration.update(self.rest)
         self.point, self.drinks = self._looked_at("ahead"), 0.0
         return worst

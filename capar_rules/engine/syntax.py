@@ -12,6 +12,9 @@ from capar.model.errors import RuleError
 
 _ANONYMOUS = re.compile(r"(?<!\w)_(?!\w)")
 
+ANSWERS = 8
+"""Of how many lists of files the statements are kept; those of the whole base take 3 MB."""
+
 Signature = tuple[str, int]
 """A predicate: its name and its number of arguments."""
 
@@ -85,14 +88,33 @@ class Statement:
     """What ``#show`` names."""
 
 
+_answers: dict[tuple[str, ...], tuple[dict[str, bytes], tuple[Statement, ...]]] = {}
+
+
 def parse(files: Iterable[Path]) -> tuple[Statement, ...]:
     """The statements of rule files and of the files that they include, in order.
+
+    The last few answers are kept, and hold as long as none of the files reads otherwise.
 
     Raises:
         RuleError: A file has a syntax error.
     """
-    names = [str(each) for each in files]
-    return _parsed(lambda note, log: ast.parse_files(names, note, logger=log))
+    names = tuple(map(str, files))
+    contents, statements = _answers.pop(names, ({}, ()))
+    if not contents or contents != _contents(contents):
+        contents = _contents(names)
+        statements = _parsed(lambda note, log: ast.parse_files(list(names), note, logger=log))
+        contents = _contents(each.place.file for each in statements) | contents
+    _answers[names] = contents, statements
+    while len(_answers) > ANSWERS:
+        del _answers[next(iter(_answers))]
+    return statements
+
+
+def _contents(files: Iterable[str]) -> dict[str, bytes]:
+    """What each file holds; nothing for what cannot be read."""
+    every = {each: Path(each) for each in files}
+    return {each: path.read_bytes() if path.is_file() else b"" for each, path in every.items()}
 
 
 def parse_text(text: str) -> tuple[Statement, ...]:
