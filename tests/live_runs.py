@@ -56,11 +56,11 @@ class LiveRun:
 
 
 @cache
-def live_run(name: str, *, stride_s: float = 0.45) -> LiveRun:
+def live_run(name: str) -> LiveRun:
     """A capture played to the end; a frame is destroyed as soon as the next one follows."""
     capture = CAPTURES[name]()
     known = calibrate(capture)
-    horizons = horizons_of(known, stride_s=stride_s)
+    horizons = horizons_of(known)
     observer = LiveObserver(rig_of(capture), known, horizons=horizons)
     events: list[SegmentEvent] = []
     for poses in vanishing(capture):

@@ -133,7 +133,7 @@ def test_a_purpose_that_nobody_states_is_told_when_the_next_segment_is_settled()
 
 
 def test_a_recording_longer_than_any_window_is_told_as_the_whole_is() -> None:
-    run = live_run(LONG, stride_s=0.5)
+    run = live_run(LONG)
     held_s = run.observer.horizons.whole_s
     assert run.capture.times[-1] > held_s + 1.0
     assert to_json(run.result) == to_json(run.offline)
@@ -154,7 +154,7 @@ def test_recordings_of_others_are_told_live_as_they_are_afterwards(
 
 
 def test_only_the_last_frames_are_held_and_those_before_cannot_be_read() -> None:
-    run = live_run(LONG, stride_s=0.5)
+    run = live_run(LONG)
     held = run.observer.held()
     assert held < len(run.capture.times) - 100
     assert run.result.frames == len(run.capture.times)
