@@ -9,18 +9,16 @@ readers. With a second folder, captures and observations are kept there and read
 """
 
 import argparse
-import contextlib
-import io
 import random
 from pathlib import Path
 
 from told_sentences import TAKES, observed
 
-from capar.cli.explain import _print, _print_notices, _staying
 from capar.model.capture import Capture
 from capar.model.observation import Segment
-from capar.pipelines.claimed_measures import draw_claims
 from capar.pipelines.explanation import Explained, explained
+from capar.pipelines.explanation_text import explanation_lines, notice_lines, staying
+from capar.pipelines.measured.claims import draw_claims
 from capar.views.viewer.snapshot import snapshot
 from capar.views.viewer.stage import stage
 from capar_rules.engine.profiles import profile
@@ -29,12 +27,10 @@ from capar_rules.engine.profiles import profile
 def draw(seen: Explained, capture: Capture, segment: Segment, out: Path, number: int) -> None:
     """Write the text and the pictures of one segment."""
     (told,) = seen.explainer.explain_all([segment])
-    text = io.StringIO()
-    with contextlib.redirect_stdout(text):
-        _print([told], seen, json=False, tree=True)
-        _print_notices([segment], seen, [told])
-    (out / f"{number:02d}.txt").write_text(text.getvalue(), encoding="utf-8")
-    draw_claims(seen, told, out / f"{number:02d}.png", staying=_staying(told))
+    lines = [*explanation_lines([told], seen, tree=True), *notice_lines([segment], seen, [told])]
+    text = "".join(f"{line}\n" for line in lines)
+    (out / f"{number:02d}.txt").write_text(text, encoding="utf-8")
+    draw_claims(seen, told, out / f"{number:02d}.png", staying=staying(told))
     middle_s = 0.5 * (segment.start_s + segment.end_s)
     moments = {"a_start": segment.start_s, "b_middle": middle_s, "c_end": segment.end_s}
     for when, time_s in moments.items():

@@ -45,7 +45,7 @@ def new(
     actionary: Place = None,
 ) -> None:
     """Write a rule file for NAME from a segment or a feature set, ready to be edited."""
-    from capar.cli._output import written
+    from capar.cli._output import check_writable, written
     from capar.model.errors import FileError, RuleError
     from capar.rulebook.drafts import rule_from_features, rule_from_segment
 
@@ -54,6 +54,10 @@ def new(
         raise RuleError(
             "say either --from CAPTURE/END_EFFECTOR/INDEX or --features START,END,CHANGE,FORCE"
         )
+    if out is not None and out.exists():
+        raise FileError(out, "exists already.", "Choose another file.")
+    if out is not None:
+        check_writable(out)
     place = opened(actionary)
     base = rule_base(profile, rules, place)
     if source is not None:
@@ -64,8 +68,6 @@ def new(
     if out is None:
         typer.echo(text, nl=False)
         return
-    if out.exists():
-        raise FileError(out, "exists already.", "Choose another file.")
     with written(out) as draft:
         draft.write_text(text, encoding="utf-8")
     typer.echo(f"wrote {out}; edit it, then: capar rules check {out}", err=True)

@@ -11,10 +11,9 @@ from capar.cli._output import print_json
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from capar.model.capture import Notice
     from capar.model.observation import Segment
     from capar.pipelines.explanation import Explained
-    from capar_rules.explain.explanation import Explanation, Reason
+    from capar_rules.explain.explanation import Explanation
     from capar_rules.explain.nearest_rules import NearRule
     from capar_rules.explain.why_not import Alternative
 
@@ -61,8 +60,7 @@ def explain(
     """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
     from capar.cli._output import check_writable
     from capar.pipelines.explanation import explained, segment_named
-    from capar_rules.explain.nearest_rules import nearest_rules
-    from capar_rules.explain.why_not import why_not as alternatives
+    from capar.pipelines.explanation_text import explanation_lines, notice_lines
     from extractors.readers.bundle.capture_toml import read_capture
 
     if svg:
@@ -79,124 +77,54 @@ def explain(
     if segment and alone:
         chosen = (segment_named(seen.observation, segment),)
     if why_not:
-        asked = [one for one in chosen if alone or one.name != why_not]
-        limit = 100 if every else 1
-        rows = [
-            (
-                one,
-                alternatives(seen.explainer, one, why_not, limit=limit),
-                () if why_not in one.general else nearest_rules(seen.explainer, one, why_not),
-            )
-            for one in asked
-        ]
-        if json:
-            print_json(_rows(rows, seen))
-            return
-        for one, found, rules_near in rows:
-            if not alone:
-                typer.echo(f"{_header(one)}  {one.name}")
-            _print_why_not(why_not, found, rules_near, others=alone or every)
-        _print_notices(asked, seen)
+        _why_not(why_not, chosen, seen, json=json, alone=alone, limit=100 if every else 1)
         return
     told = list(seen.explainer.explain_all(chosen))
     if svg:
         _draw(told, seen, svg)
     if plot:
         _plot(told, seen, plot)
-    _print(told, seen, json=json, tree=alone)
-    if not json:
-        _print_notices(chosen, seen, told if alone else ())
-
-
-def _notices(
-    segments: "Sequence[Segment]", seen: "Explained", told: "Sequence[Explanation]" = ()
-) -> "tuple[Notice, ...]":
-    """Reservations about the bodies of segments, and about all that explanations speak of."""
-    from capar.model.notices import KINDS
-    from capar.views.notices import named_in, reservations
-
-    about = {name for segment in segments for name in (segment.ee, *segment.objects)}
-    known = {name for notice in seen.observation.notices for name in notice.bodies}
-    names = seen.explainer.measured.names
-    for explanation in told:
-        about |= named_in(_texts(explanation, seen), known, called=names)
-    return tuple(
-        notice
-        for notice in reservations(seen.observation.notices, about=about)
-        if not KINDS[notice.code].of_pair or about >= {*notice.bodies}
-    )
-
-
-def _texts(told: "Explanation", seen: "Explained") -> "list[str]":
-    """What an explanation says of the bodies on which it rests."""
-    from capar.views.movers import mover_lines
-    from capar.views.reason_tree import reason_tree, spoken_texts
-
-    movers = mover_lines(seen.observation, told.ee, told.index, staying=_staying(told))
-    tree = reason_tree(told, seen.observation)
-    return [told.summary, *movers, *spoken_texts(tree)]
-
-
-def _print_notices(
-    segments: "Sequence[Segment]", seen: "Explained", told: "Sequence[Explanation]" = ()
-) -> None:
-    from capar.views.notices import reservation_lines
-
-    measured = seen.explainer.measured
-    unshaped = {body for reach in measured.reaches.values() for body in reach.unshaped}
-    found = _notices(segments, seen, told)
-    for line in reservation_lines(found, called=measured.names, unshaped=unshaped):
-        typer.echo(line)
-
-
-def _print(told: "list[Explanation]", seen: "Explained", *, json: bool, tree: bool) -> None:
-    from capar.views.movers import mover_lines
-    from capar.views.reason_tree import reason_tree
-
     if json:
         print_json([_plain(each, seen) for each in told])
         return
-    for each in told:
-        typer.echo(_header(each))
-        typer.echo(each.summary)
-        for line in mover_lines(seen.observation, each.ee, each.index, staying=_staying(each)):
-            typer.echo(line)
-        if tree:
-            for name, definition in _definitions(each, seen).items():
-                typer.echo(f"{name}: {definition}")
-            _branch(reason_tree(each, seen.observation), 0)
+    for line in explanation_lines(told, seen, tree=alone):
+        typer.echo(line)
+    for line in notice_lines(chosen, seen, told if alone else ()):
+        typer.echo(line)
 
 
-def _definitions(told: "Explanation", seen: "Explained") -> dict[str, str]:
-    """What the names are of which a summary speaks, as the heads of their rule files say it."""
-    return {name: seen.definitions[name] for name in told.names if name in seen.definitions}
+def _why_not(
+    name: str,
+    chosen: "Sequence[Segment]",
+    seen: "Explained",
+    *,
+    json: bool,
+    alone: bool,
+    limit: int,
+) -> None:
+    """Print of each segment what it lacks for a name, as many smallest changes as asked for."""
+    from capar.pipelines.explanation_text import header, notice_lines
+    from capar_rules.explain.nearest_rules import nearest_rules
+    from capar_rules.explain.why_not import why_not
 
-
-def _staying(told: "Explanation") -> set[str]:
-    """The objects that a segment's explanation says to stay where they are."""
-    from capar_rules.engine.syntax import split_arguments
-
-    segment = split_arguments(told.reason.atom)[0]
-    atoms = (node.atom for node in told.reason.walk() if node.atom.startswith("stays("))
-    pairs = (split_arguments(atom) for atom in atoms)
-    return {thing for thing, where in pairs if where == segment}
-
-
-def _branch(reason: "Reason", depth: int) -> None:
-    from capar.views.reason_tree import note
-
-    frames = f"  [frames {reason.frames[0]} to {reason.frames[1]}]" if reason.frames else ""
-    rule = f"  ({noted})" if (noted := note(reason)) else ""
-    typer.echo(f"{'  ' * depth}- {reason.sentence}{frames}{rule}")
-    for each in reason.because:
-        _branch(each, depth + 1)
-
-
-def _header(each: "Segment | Explanation") -> str:
-    from capar.model.segment_address import SegmentAddress
-
-    span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
-    return f"{SegmentAddress(each.ee, each.index)}  {span}"
+    asked = [one for one in chosen if alone or one.name != name]
+    rows = [
+        (
+            one,
+            why_not(seen.explainer, one, name, limit=limit),
+            () if name in one.general else nearest_rules(seen.explainer, one, name),
+        )
+        for one in asked
+    ]
+    if json:
+        print_json(_rows(rows, seen))
+        return
+    for one, found, rules_near in rows:
+        if not alone:
+            typer.echo(f"{header(one)}  {one.name}")
+        _print_why_not(name, found, rules_near, others=alone or limit > 1)
+    for line in notice_lines(asked, seen):
+        typer.echo(line)
 
 
 def _print_why_not(
@@ -224,11 +152,13 @@ def _rows(
 ) -> list[dict[str, Any]]:
     from dataclasses import asdict
 
+    from capar.pipelines.explanation_text import notices_about
+
     return [
         {"ee": each.ee, "index": each.index, "is": each.name, "sentence": told.sentence}
         | _placed(asdict(told), seen)
         | {"rules": [{**asdict(rule), "sentence": rule.sentence} for rule in near]}
-        | {"notices": [notice.document() for notice in _notices([each], seen)]}
+        | {"notices": [notice.document() for notice in notices_about([each], seen)]}
         for each, found, near in rows
         for told in found
     ]
@@ -237,11 +167,13 @@ def _rows(
 def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
     from dataclasses import asdict, replace
 
+    from capar.pipelines.explanation_text import definitions, notices_about
+
     segments = [e for e in seen.observation.segments if (e.ee, e.index) == (told.ee, told.index)]
-    notices = [note.document() for note in _notices(segments, seen, [told])]
+    notices = [note.document() for note in notices_about(segments, seen, [told])]
     whole = replace(told, reason=told.reason.expanded_once())
     placed = _placed(asdict(whole), seen)
-    return placed | {"definitions": _definitions(told, seen), "notices": notices}
+    return placed | {"definitions": definitions(told, seen), "notices": notices}
 
 
 def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
@@ -273,7 +205,8 @@ def _draw(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
 
 def _plot(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
     from capar.cli._output import written
-    from capar.pipelines.claimed_measures import draw_claims
+    from capar.pipelines.explanation_text import staying
+    from capar.pipelines.measured.claims import draw_claims
 
     if len(told) != 1:
         raise typer.BadParameter(
@@ -281,5 +214,5 @@ def _plot(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
         )
     (one,) = told
     with written(path) as draft:
-        draw_claims(seen, one, draft, staying=_staying(one))
+        draw_claims(seen, one, draft, staying=staying(one))
     typer.echo(f"drew {path}", err=True)

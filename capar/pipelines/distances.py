@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from capar.model.calibration import Found, PairCalibration
-from capar_rules.explain.clock import Apart
+from capar_rules.explain.measured import Apart
 from capar_rules.explain.reaches import Between, Reach
 from extractors.contact.arrivals import SETTLES
 from extractors.contact.contacts import points_apart

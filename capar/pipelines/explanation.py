@@ -19,7 +19,8 @@ from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar_rules.authoring.catalogue import rules_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.explain.clock import (
+from capar_rules.explain.explanation import Explainer, Explanation
+from capar_rules.explain.measured import (
     Heights,
     Leans,
     Measured,
@@ -28,7 +29,6 @@ from capar_rules.explain.clock import (
     Ways,
     fewer_frames,
 )
-from capar_rules.explain.explanation import Explainer, Explanation
 from capar_rules.explain.quantities import Over, Turns, Way
 from capar_rules.explain.why_not import Alternative
 from capar_rules.explain.why_not import why_not as alternatives

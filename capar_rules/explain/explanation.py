@@ -16,11 +16,13 @@ from capar_rules.engine.profiles import Profile
 from capar_rules.engine.syntax import Place, Statement, parse_text
 from capar_rules.explain.briefs import Briefs
 from capar_rules.explain.claims import Claim
-from capar_rules.explain.clock import Clock, Measured, measured_by
+from capar_rules.explain.clock import Clock
 from capar_rules.explain.contrasts import Contrast, Wording, contrasts
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.instants import corrected, frames_of
 from capar_rules.explain.leading import bit
+from capar_rules.explain.measured import Measured
+from capar_rules.explain.measured_facts import measured_by
 from capar_rules.explain.near_misses import more_specific, near_misses, preceding
 from capar_rules.explain.neighbours import conditions_of_neighbours, generals_of
 from capar_rules.explain.reason import Reason as Reason

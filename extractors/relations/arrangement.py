@@ -106,9 +106,12 @@ class Pair:
 def inside(pair: Pair) -> Holds:
     """At least half of the body came to lie in the other's hull, and hardly less does now.
 
-    What lies across an opening is above it: its middle is not below the other's top.
+    What lies across an opening is above it: its middle is not below the other's top. A body without
+    a shape is a point, and that of what lies on a table may be in it as far as bodies that touch
+    cut each other: it is inside where it is well inside.
     """
-    share, limits = pair.shares[0], pair.thresholds
+    within, deep = pair.shares
+    share, limits = (deep if pair.body.shape is None else within), pair.thresholds
     held = lasting(share >= limits.inside_share, share >= limits.inside_stays_share)
     with np.errstate(invalid="ignore"):
         return np.asarray(held & (pair.body.middles[:, 2] <= pair.other.boxes[1][:, 2]))

@@ -102,7 +102,12 @@ def _unknown(store: "Store", value: Text, properties: list[URIRef]) -> Iterator[
         near = known
     hint = f"; there is {' or '.join(map(repr, near))}" if near else ""
     if str(value) in known:
-        hint = "; it is there with another language tag, or with none"
+        hint = (
+            "; it is there as a number, which is written without quotes, or with another language "
+            "tag, or with none"
+        )
+    if properties and _holds(store, f"?x ({path})/<{BASE}name> {value.n3()}"):
+        hint = f"; it is the name of what {asked} leads to: {asked}/capar:name"
     yield f"nothing has {str(value)!r} as its {asked}{hint}"
 
 

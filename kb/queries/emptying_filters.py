@@ -28,7 +28,7 @@ def emptying_filters(store: "Store", asked: Question, given: Mapping[str, object
     yield from _gazeless(store, asked, given)
     needed = {p.name: given[p.name] for p in asked.parameters if p.required and p.name in given}
     filters = {name: value for name, value in given.items() if name not in needed}
-    if not filters or len(given) == 1:
+    if not filters or (len(given) == 1 and sparql.opens_tracks(asked.query)):
         return
 
     def found(chosen: Mapping[str, object]) -> "Answer":
@@ -45,7 +45,7 @@ def emptying_filters(store: "Store", asked: Question, given: Mapping[str, object
     for name, value in filters.items():
         rest = {other: stated for other, stated in filters.items() if other != name}
         answer = found(rest)
-        if answer.rows and (rest or needed):
+        if answer.rows:
             there = f"without {name}={value} there are {len(answer.rows)}"
             yield there + _values(answer, name)
 

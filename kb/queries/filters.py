@@ -130,6 +130,7 @@ FILTERS: Mapping[str, Filter] = {
         "text",
         "a kind of object that takes part, or one's name",
         {
+            "thing": "?thing (capar:name|(capar:kind/capar:isA/capar:name)) @value@ .",
             "segment": "?segment capar:object ?f_object . "
             "?f_object capar:name|(capar:kind/capar:isA/capar:name) @value@ .",
             "seen": "?seen capar:object ?f_object . "
@@ -143,6 +144,9 @@ FILTERS: Mapping[str, Filter] = {
 
 NARROWING = frozenset({"capture", "address"})
 """Filters that leave so few that the others are best tested on each of these."""
+
+OF_A_THING = frozenset({"seen", "thing"})
+"""A question that is asked of both tells of one thing in recordings: a kind is that thing's."""
 
 _MARKED = "segment|seen|link|joint|place|two|thing|contact|gaze"
 _MARK = re.compile(rf"^ *# filters \?({_MARKED})$", re.MULTILINE)
@@ -176,12 +180,14 @@ def node(value: Literal) -> NamedNode:
 def filtered(query: str, given: Mapping[str, Sequence[Literal]]) -> str:
     """A query with the filters set for which there are values; one of several is enough."""
     narrow = bool(given.keys() & NARROWING)
+    of_a_thing = {each[1] for each in _MARK.finditer(query)} >= OF_A_THING
 
     def patterns(found: "re.Match[str]") -> str:
         held = (
             _set(found[1], FILTERS[name], name, values, narrow=narrow)
             for name, values in given.items()
             if found[1] in FILTERS[name].patterns
+            and (name != "kind" or (found[1] == "thing") == of_a_thing)
         )
         return "\n".join(f"  {pattern}" for pattern in held)
 

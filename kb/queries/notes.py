@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from pyoxigraph import Literal
 
 from kb.queries.questions import Question, meant
-from kb.store import sparql
+from kb.store import literals, sparql
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
@@ -58,6 +58,8 @@ def notes(
         yield from _counted(store, named)
     if _mixes(store, asked, given, answer):
         yield "fingers, toes and other bodies count as well as hands: effector=hand for hands alone"
+    if {"capture", "time"} <= given.keys():
+        yield from _lost_then(store, str(given["capture"]), float(str(given["time"])))
     yield from (note["text"] for note in _ALWAYS.finditer(asked.query))
     for note in _NOTE.finditer(asked.query):
         held = _held(answer, note["column"])
@@ -93,6 +95,23 @@ def notes_of_sparql(store: "Store", query: str, answer: "Answer") -> Iterator[st
         if without:
             rows = "any row" if without == len(answer.rows) else f"{without} of the rows"
             yield f"?{column} has no value in {rows} ({len(answer.rows)} in all)"
+
+
+def _lost_then(store: "Store", capture: str, time_s: float) -> Iterator[str]:
+    """Bodies that a capture had lost at a time."""
+    query = f"""
+SELECT DISTINCT ?name ?track {{
+  ?seen capar:capture/capar:name {Literal(capture)} ; capar:link|capar:object ?of .
+  ?of capar:name|capar:ee ?name ; capar:track ?track
+}} ORDER BY ?name"""
+    for name, track in store.ask(sparql.complete(query)).rows:
+        if isinstance(name, Literal) and isinstance(track, Literal):
+            lost_s = literals.track_of(track.value).lost_around(time_s)
+            if lost_s is not None:
+                yield (
+                    f"{name.value!r} is lost from {lost_s[0]:.2f} to {lost_s[1]:.2f} s: what is "
+                    "told of it then is assumed to have gone on, and the rest of it is unknown"
+                )
 
 
 def _lost(store: "Store", named: Iterable[str]) -> Iterator[str]:

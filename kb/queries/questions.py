@@ -119,6 +119,7 @@ class Question:
             if name not in names:
                 raise UnknownNameError(f"parameter of the question {self.name!r}", name, names)
         values = {each.name: self._value(each, given) for each in self.parameters}
+        _check_span(self, values)
         set_filters = filters_of(self.query)
         query = filtered(self.query, {each: values[each] for each in set_filters if values[each]})
         for parameter in self.parameters:
@@ -138,6 +139,15 @@ class Question:
             return (Literal(float(text)),)
         except ValueError:
             raise QuestionError(self, parameter, text) from None
+
+
+def _check_span(asked: Question, values: Mapping[str, Sequence[Literal]]) -> None:
+    begin, end = (values.get(name, ()) for name in ("from", "until"))
+    if begin and end and float(begin[0].value) >= float(end[0].value):
+        raise CaparError(
+            f"question {asked.name!r}: from={begin[0].value} is not before until={end[0].value}; "
+            "what lies between them, or over one of them, is found"
+        )
 
 
 def meant(parameter: str, text: str) -> list[str]:

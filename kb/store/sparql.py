@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from itertools import dropwhile, pairwise
 
 from kb.errors import QueryError
-from ontology import BASE, PREFIXES, terms
+from ontology import BASE, DATA, PREFIXES, terms
 
 _TOKEN = re.compile(
     r"""
@@ -16,6 +16,7 @@ _TOKEN = re.compile(
                  | "(?:\\.|[^"\\\r\n])*" | '(?:\\.|[^'\\\r\n])*' )
     | (?P<iri>     <[^<>"{}|^`\x00-\x20]*> )
     | (?P<variable>[?$]\w+ )
+    | (?P<printed> data:[\w\-:%.~]*[/\#][\w\-:%.~/\#]*[\w\-%~] )
     | (?P<name>    [A-Za-z_][\w.\-]*:(?:[\w\-:%.\\]*[\w\-:%\\])? | :[\w\-:%.\\]* )
     | (?P<word>    [A-Za-z_]\w* )
     | (?P<other>   . )
@@ -115,7 +116,7 @@ def prepare(query: str) -> str:
 
 
 def complete(query: str) -> str:
-    """A query with known prefixes declared and our functions spelt out.
+    """A query with known prefixes declared, and our functions and what answers print spelt out.
 
     Raises:
         QueryError: A function with another number of arguments than it takes.
@@ -184,9 +185,18 @@ def _expand(pieces: list[Token]) -> str:
                 template = ELEMENT_KNOWN
             out.append(template.format(*words))
         else:
-            out.append(pieces[at].text)
+            out.append(_whole(pieces[at]))
             at += 1
     return "".join(out)
+
+
+def _whole(piece: Token) -> str:
+    """A piece of a query; an IRI of our data in full, where it stands as answers print it."""
+    if piece.kind == "printed":
+        return f"<{DATA}{piece.text.removeprefix('data:')}>"
+    if piece.kind == "iri" and piece.text.startswith("<data:"):
+        return f"<{DATA}{piece.text.removeprefix('<data:')}"
+    return piece.text
 
 
 def _called(name: str) -> tuple[str, int]:

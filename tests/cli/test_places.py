@@ -194,9 +194,11 @@ def test_a_file_keeps_its_rights_and_links_to_it_and_a_device_stays_one(tmp_path
 def test_a_command_that_cannot_write_on_names_the_file_and_leaves_the_old_one(arguments, tmp_path):
     path = tmp_path / arguments[-1]
     path.write_text("old")
+    compiles_nothing = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(
         [str(CAPAR), *map(str, arguments)], cwd=tmp_path, capture_output=True, text=True,
         check=False, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)),
+        env=compiles_nothing,
     )  # fmt: skip
     assert done.returncode == 2, done.stderr
     assert f"capar: {path.name}: " in done.stderr

@@ -66,6 +66,9 @@ def test_machines_get_whole_iris_and_people_short_ones(ask: Ask) -> None:
     assert json.loads(ask("query", text, "--json").stdout) == [dict(zip("os", pair, strict=True))]
     table = ask("query", text).stdout.splitlines()
     assert table[1].split() == [each.replace(whole, "data:observation/Strange") for each in pair]
+    for printed in (table[1].split()[1], f"<{table[1].split()[1]}>"):
+        pasted = f"SELECT ?i WHERE {{ {printed} capar:index ?i . }}"
+        assert json.loads(ask("query", pasted, "--json").stdout) == [{"i": 0}]
     lines = ask("query", text, "--format", "csv").stdout.splitlines()
     assert lines == ["o,s", ",".join(pair)]
     graph = f"SELECT (COUNT(*) AS ?n) WHERE {{ GRAPH <{lines[1].split(',')[0]}> {{ ?s ?p ?o }} }}"

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from capar.pipelines.shown_recording import told_beside
+from capar.pipelines.measured.recording import told_beside
 from capar.views import measured_picture
 from capar.views.captions import caption_lines
 from capar.views.lettering import Span

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 
 from capar.model.facts import Fact, Link, Resting, Solid, Tag
-from capar.pipelines.shown_recording import Recording
+from capar.pipelines.measured.recording import Recording
 from capar.views.lettering import Span
 from capar.views.movers import MoverStretches
 from capar.views.panels import Held, Row

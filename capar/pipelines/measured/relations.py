@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from capar.model.calibration import Found, PairCalibration
 from capar.model.facts import ClosingSpeed, Lies, Touching
 from capar.pipelines.distances import distances, frames_between
-from capar.pipelines.shown_recording import CENTI, MILLI, Recording, held, told_beside
+from capar.pipelines.measured.recording import CENTI, MILLI, Recording, held, told_beside
 from capar.views.lettering import Span
 from capar.views.panels import Curve, Limit, Mark, Panel
 from capar_rules.borders.times import constants

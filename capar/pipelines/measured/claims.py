@@ -7,9 +7,10 @@ from pathlib import Path
 
 from capar.model.segment_address import SegmentAddress
 from capar.pipelines.explanation import Explained, segment_named
-from capar.pipelines.measured_rows import claimed_rows, mover_rows
-from capar.pipelines.measured_series import BESIDE, SERIES
-from capar.pipelines.shown_recording import Recording
+from capar.pipelines.measured.recording import Recording
+from capar.pipelines.measured.rests import BESIDE
+from capar.pipelines.measured.rows import claimed_rows, mover_rows
+from capar.pipelines.measured.series import SERIES
 from capar.views.lettering import Span
 from capar.views.measured_picture import MeasuredPicture, draw_measured
 from capar.views.movers import mover_lines, mover_stretches

@@ -10,15 +10,15 @@ import pytest
 from recomputed import STORIES, told
 from recomputed.summaries import VERBS
 
-from capar.pipelines.claimed_measures import (
+from capar.pipelines.explanation import Explained
+from capar.pipelines.measured.claims import (
     draw_claims,
     measured_panels,
     measured_rows,
     shown_span,
 )
-from capar.pipelines.explanation import Explained
-from capar.pipelines.measured_rows import claimed_rows
-from capar.pipelines.shown_recording import Recording
+from capar.pipelines.measured.recording import Recording
+from capar.pipelines.measured.rows import claimed_rows
 from capar.views.movers import mover_lines
 from capar.views.panels import Mark, Panel
 from capar_rules.borders.times import constants
