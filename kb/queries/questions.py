@@ -143,10 +143,10 @@ class Question:
 
 def _check_span(asked: Question, values: Mapping[str, Sequence[Literal]]) -> None:
     begin, end = (values.get(name, ()) for name in ("from", "until"))
-    if begin and end and float(begin[0].value) >= float(end[0].value):
+    if begin and end and float(begin[0].value) > float(end[0].value):
         raise CaparError(
-            f"question {asked.name!r}: from={begin[0].value} is not before until={end[0].value}; "
-            "what lies between them, or over one of them, is found"
+            f"question {asked.name!r}: from={begin[0].value} is after until={end[0].value}; "
+            "what lies between them, or over one of them, would be found"
         )
 
 

@@ -243,6 +243,17 @@ def test_what_sticks_out_by_half_is_inside_and_what_stands_on_top_is_not() -> No
     assert not inside(Pair(body(np.array([0.0, 0.0, 0.4])), other, LIMITS)).any()
 
 
+@pytest.mark.parametrize(("under_m", "held"), [(0.001, False), (0.05, True)])
+def test_a_point_is_inside_where_it_is_deeper_than_bodies_that_touch_cut_each_other(
+    under_m: float, *, held: bool
+) -> None:
+    table = body(np.zeros(3), shape=shapes.box(0.4, 0.4, 0.4))
+    top = table.boxes[1][0, 2]
+    whisk = body(np.array([0.0, 0.0, top - under_m]), shape=None)
+    assert bool(inside(Pair(whisk, table, LIMITS)).all()) is held
+    assert bool(inside(Pair(whisk, table, LIMITS)).any()) is held
+
+
 def test_between_is_on_the_way_from_one_to_the_other() -> None:
     one, other = body(np.array([-1.0, 0.0, 0.0])), body(np.array([1.0, 0.0, 0.0]))
     held = between(body(along_x(-2.0, 2.0)), one, other)

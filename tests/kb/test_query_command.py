@@ -192,6 +192,8 @@ EMPTY = {
         "'mug' is a capar:ShapelessObject"
     ],
     '?s a capar:Segment; capar:objects ?x FILTER(?x IN ("there", "nowhere"))': ["'nowhere'"],
+    '?s a capar:Segment; capar:index "1" ; capar:start ?x': ["a number", "without quotes"],
+    '?s capar:action "Reach" ; capar:start ?x': ["capar:action/capar:name"],
 }
 
 
@@ -251,6 +253,28 @@ def test_a_named_question_without_an_answer_tries_each_filter_alone(ask: Ask) ->
     assert "without until=0.1 there are " in done.stderr
     assert "without action=MoveObj there are 2, of which action is Reach" in done.stderr
     assert "without from=0 " not in done.stderr
+
+
+def test_a_filter_that_alone_leaves_nothing_is_the_reason(ask: Ask) -> None:
+    done = ask("query", "contacts", "kind=person")
+    assert done.stdout.splitlines() == ["observation  body  other  begins  ends"]
+    assert "nothing found: without kind=person there are " in done.stderr
+
+
+@pytest.mark.parametrize("question", ["contacts", "held", "looked_before"])
+def test_a_kind_is_that_of_the_thing_which_a_question_tells_of(question: str, ask: Ask) -> None:
+    rows = json.loads(ask("query", question, "kind=mug", "--json").stdout)
+    assert rows
+    assert {row.get("object", row.get("other")) for row in rows} == {"mug"}
+
+
+def test_a_time_that_ends_before_it_begins_is_refused_and_a_moment_is_none(ask: Ask) -> None:
+    done = ask("query", "segments", "from=8", "until=5")
+    assert done.returncode == 2
+    assert "from=8 is after until=5" in done.stderr
+    rows = json.loads(ask("query", "segments", "from=2", "until=2", "--json").stdout)
+    assert rows
+    assert all(row["begins"] < 2.0 < row["ends"] for row in rows)
 
 
 def test_a_thing_without_a_shape_is_said_to_hold_nothing(ask: Ask) -> None:
