@@ -9,6 +9,7 @@ from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim, Quantity, Stretches, claim, joined_claims, resting_on
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contact_pairs import merged_contacts
+from capar_rules.explain.joining import at_both, joined_sides, listed
 from capar_rules.explain.leading import DOUBTED, nodes_below, parsed, rank
 from capar_rules.explain.quantities import degrees, gap
 from capar_rules.explain.reaches import Between
@@ -64,6 +65,9 @@ LEAN_SLACK_RAD = 0.05
 
 MOST_GAPS = 3
 """So many gaps of a track are told one by one."""
+
+_SIDED = re.compile(r"(.*) at the (?:start|end) \([^()]*\)")
+"""A clause that tells a number of one side."""
 
 
 @dataclass(frozen=True)
@@ -333,7 +337,7 @@ class Briefs:
             joined.setdefault(found[1] if found else clause, []).append(clause)
         out = []
         for begin, parts in joined.items():
-            text = _joined_sides(begin, parts)
+            text = joined_sides(begin, parts)
             if len(parts) > 1:
                 claims = [self.claims[part] for part in parts if part in self.claims]
                 self.claims[text] = joined_claims(text, claims)
@@ -354,39 +358,3 @@ class Briefs:
         return (
             bool(arguments) and arguments[0].startswith("seg(") and arguments[0] != self.clock.own
         )
-
-
-def _joined_sides(begin: str, parts: Sequence[str]) -> str:
-    """Clauses that begin alike and differ in the side, and in numbers of it, as one."""
-    brackets = {part[part.rindex(" (") :] for part in parts} if len(parts) > 1 else set[str]()
-    if len(brackets) == 1:
-        (bracket,) = brackets
-        parts = [*(part.removesuffix(bracket) for part in parts[:-1]), parts[-1]]
-    text = " and ".join([parts[0], *(part.removeprefix(begin) for part in parts[1:])])
-    return text.replace(" and  at ", " and at ")
-
-
-_SIDED = re.compile(r"(.*) at the (?:start|end) \([^()]*\)")
-"""A clause that tells a number of one side."""
-
-START, END, BOTH = " at the start", " at the end", " and at the end"
-
-
-def at_both(clauses: Sequence[str]) -> list[str]:
-    """The clauses, of which two that differ only in the side are one."""
-    ends = {each.removesuffix(END) for each in clauses if each.endswith(END)}
-    starts = {each.removesuffix(START) for each in clauses if each.endswith(START)}
-    both = ends & starts
-    return [
-        each + BOTH if each.removesuffix(START) in both else each
-        for each in clauses
-        if each.removesuffix(END) not in both
-    ]
-
-
-def listed(parts: Sequence[str], word: str = "and") -> str:
-    """Parts as a list in words."""
-    if len(parts) < 2:
-        return "".join(parts) or "the rules say so"
-    comma = "," * (len(parts) > 2 or any("," in each for each in parts))
-    return f"{', '.join(parts[:-1])}{comma} {word} {parts[-1]}"

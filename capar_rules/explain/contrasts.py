@@ -1,14 +1,20 @@
 """Which neighbouring names a segment comes nearest to, and which condition decided."""
 
 import re
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from capar_rules.engine.slicing import FITS
-from capar_rules.engine.syntax import Literal, split_arguments
+from capar_rules.engine.syntax import split_arguments
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.condition_matching import Atoms, Match, valued
+from capar_rules.explain.condition_matching import Atoms, Match
+from capar_rules.explain.deciding_clauses import (
+    Wording,
+    instead_clauses,
+    nearness_of,
+    seen_beside,
+)
 from capar_rules.explain.derivations import Derivations
 from capar_rules.explain.near_misses import more_specific
 from capar_rules.explain.neighbours import (
@@ -16,13 +22,11 @@ from capar_rules.explain.neighbours import (
     Neighbour,
     all_generals_of,
     conditions_of_neighbours,
-    feature_strings,
     names_of_strings,
     neighbours,
 )
 from capar_rules.explain.rule_base import RuleBase
-from capar_rules.explain.rule_forms import VARIABLE, Form
-from capar_rules.explain.told_argument import UNBOUND
+from capar_rules.explain.told_contrast import HALF, Contrast
 
 MOST_FAILING = 2
 """A name whose rules all lack more conditions than that is not near."""
@@ -32,15 +36,6 @@ MOST_NAMES = 4
 
 LEAST_NEARNESS = 0.25
 """A name is idle of which what decided fell short by more: it shares less than that [1]."""
-
-HALF = 0.5
-"""How near a condition that has no number is taken to come to being otherwise [1]."""
-
-BUT_FOR = 0.95
-"""How near that comes which only what was done besides keeps from a name [1]."""
-
-SEEN = ("leans_over", "spins")
-"""Predicates of how a thing was turned: one sees it of a segment also where it does not decide."""
 
 LEAST_TOLD = 0.01
 """Where no name is near, the nearest is told if it has a number, however small its share [1]."""
@@ -53,89 +48,6 @@ MOST_TOLD = 2
 
 MOST_FOUND = 6
 """So many are found at most: some of them may be told as the name's own."""
-
-
-@dataclass(frozen=True)
-class Wording:
-    """How contrasts are told."""
-
-    holding: Callable[[str], Sequence[str]]
-    """The clauses of why an atom holds; of a bit of the features, what it says:
-    ``feature(Segment,Side,Position)``."""
-
-    clause: Callable[[str, Sequence[str], str], str]
-    """The clause for a predicate with its arguments in a mood of the templates."""
-
-
-@dataclass(frozen=True)
-class Contrast:
-    """Neighbouring names of which the same condition decided."""
-
-    names: tuple[str, ...]
-    clauses: tuple[str, ...]
-    """What kept the segment from them."""
-
-    rule: str
-    """File and line of a rule of the first name that would have needed it otherwise."""
-
-    by_features: bool
-    """Whether it is the features that differ, and no condition of the name's own."""
-
-    failing: int = 1
-    """How many conditions keep the segment from the first name."""
-
-    though: tuple[str, ...] = ()
-    """What would have been seen of the names, and was so."""
-
-    below: bool = False
-    """Whether the first name specialises the segment's own."""
-
-    numbered: bool = False
-    """Whether what is told has a number."""
-
-    direct: bool = False
-    """Whether the features differ in a row of the first name's own."""
-
-    nearness: float = HALF
-    """By how much what decided missed being otherwise: a share of what was asked for."""
-
-    general: str = ""
-    """The first name, where the others are kinds of it."""
-
-    @property
-    def weak(self) -> bool:
-        """Whether it is too far off to be told where a more general name can be told instead."""
-        far = self.failing > 1 and not self.numbered and not self.below
-        return (self.by_features or far) and not self.though
-
-    def told_as(self, other: "Contrast") -> bool:
-        """Whether the same is told of the names of both."""
-        return (self.clause, self.though) == (other.clause, other.though)
-
-    @property
-    def clause(self) -> str:
-        """The clauses as one."""
-        return _joined(self.clauses)
-
-    @property
-    def sentence(self) -> str:
-        """Why the segment has none of the names."""
-        return f"{self.called}, because {self.clause}"
-
-    @property
-    def called(self) -> str:
-        """The names, and what was so though the segment has none of them."""
-        though = f", though {_joined(self.though)}" if self.though else ""
-        return f"{alternatives(self.names, self.general)}{though}"
-
-
-def alternatives(names: Sequence[str], general: str = "") -> str:
-    """Names of which a segment has none; those that are kinds of the first one are told so."""
-    if general and len(names) > 1 and names[0] == general:
-        kinds = "its kind" if len(names) == 2 else "its kinds"
-        return f"{general} or {kinds} {_joined(names[1:])}"
-    *before, last = names
-    return f"{', '.join(before)}{' or ' * bool(before)}{last}"
 
 
 @dataclass(frozen=True)
@@ -267,12 +179,12 @@ def _of_neighbour(
     for form, match in matches:
         if match is None or (as_featured and _featured(match)):
             continue  # where the features fit one rule for a name, those of another deny nothing
-        clauses = [_clauses(base, each, match, atoms, tell) for each in match.failing]
+        clauses = [instead_clauses(base, each, match, atoms, tell) for each in match.failing]
         if not all(clauses):
             continue
         place = _deciding(match, clauses)
-        near = min(_nearness(base, each, match, clock) for each in match.failing)
-        though = _though(other, form, match, tell)
+        near = min(nearness_of(base, each, match, clock) for each in match.failing)
+        though = seen_beside(other, form, match, tell)
         near = max(near, HALF) if though else near
         told = match.failing[place].atoms[0]
         featured, direct = told.signature in (FITS, FEATURE), told.signature == FEATURE
@@ -311,95 +223,3 @@ def _deciding(match: Match, clauses: Sequence[Sequence[str]]) -> int:
         return features, not re.search(r"\d", "".join(clauses[at]))
 
     return min(range(len(clauses)), key=order)
-
-
-def _though(other: Neighbour, form: Form, match: Match, tell: Wording) -> tuple[str, ...]:
-    """What a rule asks for of how a thing was turned, and the own name does not, and was so."""
-    holding = [
-        literal
-        for literal in form.body
-        if literal.kind == "atom"
-        and not literal.sign
-        and literal not in match.failing
-        and literal.atoms[0].signature[0] in SEEN
-        and (literal.atoms[0].signature, literal.sign) not in other.shared
-    ]
-    told = (
-        tell.clause(literal.atoms[0].signature[0], _known(literal, match), "brief")
-        for literal in holding
-    )
-    return tuple(clause for clause in told if clause and UNBOUND not in clause)
-
-
-def _clauses(
-    base: RuleBase, literal: Literal, match: Match, atoms: Atoms, tell: Wording
-) -> tuple[str, ...]:
-    """What holds instead of a condition; none if no sentence says all of it."""
-    if literal.kind != "atom":
-        return ()
-    arguments = split_arguments(valued(literal.atoms[0].text, match.bound))
-    if literal.sign:
-        holding = atoms.matching(literal, match.bound)
-        return _known_clauses(tell.holding(holding)) if holding else ()
-    if literal.atoms[0].signature == FEATURE:
-        return _feature(arguments, atoms, tell)
-    if literal.atoms[0].signature == FITS:
-        return _row(base, arguments, atoms, tell)
-    predicate = literal.atoms[0].signature[0]
-    return _known_clauses([tell.clause(predicate, _known(literal, match), "lacks")])
-
-
-def _known_clauses(told: Sequence[str]) -> tuple[str, ...]:
-    """Clauses; none if part of one is not known."""
-    return () if any(not each or UNBOUND in each for each in told) else tuple(told)
-
-
-def _nearness(base: RuleBase, literal: Literal, match: Match, clock: Clock) -> float:
-    """How near a condition that decided came to being otherwise; of those without numbers, half.
-
-    What would have the name but for one thing that it did besides comes nearest.
-    """
-    if literal.kind != "atom":
-        return HALF
-    if literal.sign:
-        return BUT_FOR
-    name = literal.atoms[0].signature[0]
-    return base.sentences.nearness(name, _known(literal, match), clock) or HALF
-
-
-def _known(literal: Literal, match: Match) -> list[str]:
-    """The arguments of a condition that fails, as far as they are known."""
-    atom = valued(literal.atoms[0].text, match.bound)
-    return [
-        UNBOUND if VARIABLE.fullmatch(each) else each.strip('"') for each in split_arguments(atom)
-    ]
-
-
-def _row(base: RuleBase, arguments: Sequence[str], atoms: Atoms, tell: Wording) -> tuple[str, ...]:
-    """What holds instead of the one string in which a row of another name differs."""
-    segment, name = arguments
-    own = {side: string for term, side, string in atoms.rows[FEATURE] if term == segment}
-    told = []
-    for row in feature_strings(base, name.strip('"')):
-        differing = [side for side, string in row.items() if own.get(side) != string]
-        if len(differing) == 1:
-            told.append(_feature((segment, differing[0], row[differing[0]]), atoms, tell))
-    return min(filter(None, told), key=len, default=())
-
-
-def _feature(arguments: Sequence[str], atoms: Atoms, tell: Wording) -> tuple[str, ...]:
-    """What the segment's own string for a side says where another one says something else."""
-    segment, side, other = arguments
-    for term, own_side, own in atoms.rows[FEATURE]:
-        if (term, own_side) == (segment, side) and len(own) == len(other):
-            bits = zip(own.strip('"'), other.strip('"'), strict=True)
-            places = [place for place, (ours, theirs) in enumerate(bits) if ours != theirs]
-            told = [tell.holding(f"feature({segment},{side},{place})") for place in places]
-            return tuple(clause for clauses in told for clause in clauses)
-    return ()
-
-
-def _joined(clauses: Sequence[str]) -> str:
-    if len(clauses) < 2:
-        return "".join(clauses)
-    return f"{', '.join(clauses[:-1])} and {clauses[-1]}"

@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 from capar_rules.explain.arrangements import hand_of
-from capar_rules.explain.briefs import TOUCHING_NOTHING, listed
+from capar_rules.explain.briefs import TOUCHING_NOTHING
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Claim
 from capar_rules.explain.clock import Clock
+from capar_rules.explain.joining import listed
 from capar_rules.explain.quantities import gap, length, spread
 from capar_rules.explain.reaches import Reach
 
