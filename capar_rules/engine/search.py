@@ -1,6 +1,6 @@
 """Programs with several answers: all of them, their union, and the optimal ones."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 
 import clingo
 
@@ -70,13 +70,26 @@ def _grounded(text: str, options: Sequence[str], *, part: str = "base") -> cling
     return control
 
 
-def brave(text: str, shown: Iterable[Signature]) -> frozenset[Atom]:
+def brave(text: str, shown: Iterable[Signature], *, known: Container[Atom] = ()) -> frozenset[Atom]:
     """The atoms that are shown in at least one answer of a program.
+
+    Args:
+        text: The program.
+        shown: Their predicates.
+        known: Atoms that need not be found; the program is not solved if it has no others.
 
     Raises:
         RuleError: The program has an error, or no answer.
     """
-    control = _grounded(_showing(text, shown), ["--enum-mode=brave", "--models=0"])
+    predicates = tuple(shown)
+    control = _grounded(_showing(text, predicates), ["--enum-mode=brave", "--models=0"])
+    possible = (
+        each.symbol
+        for signature in predicates
+        for each in control.symbolic_atoms.by_signature(*signature)
+    )
+    if all(_atom(each) in known for each in possible):
+        return frozenset()
     with control.solve(yield_=True) as handle:
         for _ in handle:
             pass  # each model contains the atoms of those before
@@ -92,6 +105,8 @@ def _showing(text: str, shown: Iterable[Signature]) -> str:
 
 
 def _atoms(model: clingo.Model) -> frozenset[Atom]:
-    return frozenset(
-        (each.name, tuple(map(as_term, each.arguments))) for each in model.symbols(shown=True)
-    )
+    return frozenset(map(_atom, model.symbols(shown=True)))
+
+
+def _atom(symbol: clingo.Symbol) -> Atom:
+    return symbol.name, tuple(map(as_term, symbol.arguments))

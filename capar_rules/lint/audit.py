@@ -136,7 +136,7 @@ def evaluate(
     found: set[Atom] = set()
     for at in range(0, len(texts), batch):
         facts = "\n".join(texts[at : at + batch])
-        found |= brave(f"{program}\n{facts}\n{{ force_transfer }}.", asked)
+        found |= brave(f"{program}\n{facts}\n{{ force_transfer }}.", asked, known=found)
     return frozenset(found)
 
 

@@ -82,5 +82,7 @@ def _exceeded(file: str, ended: int) -> Finding:
     }.get(ended, f"it needs more than {MEMORY_BYTES >> 20} MB, or breaks the parser")
     return Finding(
         Place(file, 1, 1), "unbounded", f"the check was ended: {why}.",
-        "Bound every number and every recursion by a measurement.",
+        "Bound every number and every recursion by a measurement. If they are, the rules that "
+        "count beside it ask too much of the worlds of the audit: check it without them, "
+        "--rules EMPTY_FOLDER.",
     )  # fmt: skip
