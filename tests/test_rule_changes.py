@@ -154,7 +154,7 @@ def test_observations_of_another_profile_are_left_alone_and_said_so(kept):
     (kept / "hoist.lp").write_text(LIFT.replace("Lift", "Hoist"))
     command = ["rules", "diff", str(kept / "hoist.lp"), "--actionary", place]
     told = CliRunner().invoke(app, command, catch_exceptions=False)
-    assert told.stdout == "0 segments change\n"
+    assert told.stdout == "0 segments change: none that was observed gets another name\n"
     assert told.stderr == "1 observation was made with another profile: left alone\n"
 
 

@@ -112,7 +112,8 @@ def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) 
             what = f"{before} vanishes" if change.after == NOTHING else f"{after} appears"
         address = SegmentAddress(change.ee, change.index, change.capture)
         typer.echo(f"{address}  {change.start_s:.2f} to {change.end_s:.2f} s: {what}")
-    typer.echo("1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change")
+    told = "1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change"
+    typer.echo(told if changes else f"{told}: none that was observed gets another name")
     for line in sorted({_settling(change) for change in changes if change.after_others}):
         typer.echo(line)
     print_others(others)
