@@ -22,20 +22,22 @@ def explanation_lines(told: Sequence[Explanation], seen: Explained, *, tree: boo
         seen: The observation that they are of.
         tree: Whether definitions of names and the tree of reasons follow each summary.
     """
-    for each in told:
-        yield header(each)
-        yield each.summary
-        yield from mover_lines(seen.observation, each.ee, each.index, staying=staying(each))
+    for explanation in told:
+        yield header(explanation)
+        yield explanation.summary
+        yield from mover_lines(
+            seen.observation, explanation.ee, explanation.index, staying=staying(explanation)
+        )
         if tree:
-            for name, definition in definitions(each, seen).items():
+            for name, definition in definitions(explanation, seen).items():
                 yield f"{name}: {definition}"
-            yield from _branch(reason_tree(each, seen.observation), 0)
+            yield from _branch(reason_tree(explanation, seen.observation), 0)
 
 
-def header(each: Segment | Explanation) -> str:
-    """Which segment it is, and from when to when."""
-    span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
-    return f"{SegmentAddress(each.ee, each.index)}  {span}"
+def header(segment: Segment | Explanation) -> str:
+    """Which segment it is, or is explained, and from when to when."""
+    span = f"{segment.start_s:.2f} to {segment.end_s:.2f} s"
+    return f"{SegmentAddress(segment.ee, segment.index)}  {span}"
 
 
 def definitions(told: Explanation, seen: Explained) -> dict[str, str]:
@@ -88,5 +90,5 @@ def _branch(reason: Reason, depth: int) -> Iterator[str]:
     frames = f"  [frames {reason.frames[0]} to {reason.frames[1]}]" if reason.frames else ""
     rule = f"  ({noted})" if (noted := note(reason)) else ""
     yield f"{'  ' * depth}- {reason.sentence}{frames}{rule}"
-    for each in reason.because:
-        yield from _branch(each, depth + 1)
+    for below in reason.because:
+        yield from _branch(below, depth + 1)

@@ -84,11 +84,11 @@ def brave(text: str, shown: Iterable[Signature], *, known: Container[Atom] = ())
     predicates = tuple(shown)
     control = _grounded(_showing(text, predicates), ["--enum-mode=brave", "--models=0"])
     possible = (
-        each.symbol
+        atom.symbol
         for signature in predicates
-        for each in control.symbolic_atoms.by_signature(*signature)
+        for atom in control.symbolic_atoms.by_signature(*signature)
     )
-    if all(_atom(each) in known for each in possible):
+    if all(_atom(symbol) in known for symbol in possible):
         return frozenset()
     with control.solve(yield_=True) as handle:
         for _ in handle:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 from clingo import MessageCode, ast
@@ -88,6 +89,7 @@ class Statement:
     """What ``#show`` names."""
 
 
+_LOCK = Lock()
 _answers: dict[tuple[str, ...], tuple[dict[str, bytes], tuple[Statement, ...]]] = {}
 
 
@@ -100,21 +102,23 @@ def parse(files: Iterable[Path]) -> tuple[Statement, ...]:
         RuleError: A file has a syntax error.
     """
     names = tuple(map(str, files))
-    contents, statements = _answers.pop(names, ({}, ()))
+    with _LOCK:
+        contents, statements = _answers.pop(names, ({}, ()))
     if not contents or contents != _contents(contents):
         contents = _contents(names)
         statements = _parsed(lambda note, log: ast.parse_files(list(names), note, logger=log))
-        contents = _contents(each.place.file for each in statements) | contents
-    _answers[names] = contents, statements
-    while len(_answers) > ANSWERS:
-        del _answers[next(iter(_answers))]
+        contents = _contents(statement.place.file for statement in statements) | contents
+    with _LOCK:
+        _answers[names] = contents, statements
+        while len(_answers) > ANSWERS:
+            del _answers[next(iter(_answers))]
     return statements
 
 
 def _contents(files: Iterable[str]) -> dict[str, bytes]:
     """What each file holds; nothing for what cannot be read."""
-    every = {each: Path(each) for each in files}
-    return {each: path.read_bytes() if path.is_file() else b"" for each, path in every.items()}
+    paths = {file: Path(file) for file in files}
+    return {file: path.read_bytes() if path.is_file() else b"" for file, path in paths.items()}
 
 
 def parse_text(text: str) -> tuple[Statement, ...]:

@@ -179,11 +179,11 @@ def _of_neighbour(
     for form, match in matches:
         if match is None or (as_featured and _featured(match)):
             continue  # where the features fit one rule for a name, those of another deny nothing
-        clauses = [instead_clauses(base, each, match, atoms, tell) for each in match.failing]
+        clauses = [instead_clauses(base, literal, match, atoms, tell) for literal in match.failing]
         if not all(clauses):
             continue
         place = _deciding(match, clauses)
-        near = min(nearness_of(base, each, match, clock) for each in match.failing)
+        near = min(nearness_of(base, literal, match, clock) for literal in match.failing)
         though = seen_beside(other, form, match, tell)
         near = max(near, HALF) if though else near
         told = match.failing[place].atoms[0]

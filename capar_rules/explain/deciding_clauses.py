@@ -70,7 +70,7 @@ def instead_clauses(
 
 def _known_clauses(told: Sequence[str]) -> tuple[str, ...]:
     """Clauses; none if part of one is not known."""
-    return () if any(not each or UNBOUND in each for each in told) else tuple(told)
+    return () if any(not clause or UNBOUND in clause for clause in told) else tuple(told)
 
 
 def nearness_of(base: RuleBase, literal: Literal, match: Match, clock: Clock) -> float:
@@ -90,7 +90,7 @@ def _known(literal: Literal, match: Match) -> list[str]:
     """The arguments of a condition that fails, as far as they are known."""
     atom = valued(literal.atoms[0].text, match.bound)
     return [
-        UNBOUND if VARIABLE.fullmatch(each) else each.strip('"') for each in split_arguments(atom)
+        UNBOUND if VARIABLE.fullmatch(term) else term.strip('"') for term in split_arguments(atom)
     ]
 
 

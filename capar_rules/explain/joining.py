@@ -17,13 +17,13 @@ def joined_sides(begin: str, parts: Sequence[str]) -> str:
 
 def at_both(clauses: Sequence[str]) -> list[str]:
     """The clauses, of which two that differ only in the side are one."""
-    ends = {each.removesuffix(END) for each in clauses if each.endswith(END)}
-    starts = {each.removesuffix(START) for each in clauses if each.endswith(START)}
+    ends = {clause.removesuffix(END) for clause in clauses if clause.endswith(END)}
+    starts = {clause.removesuffix(START) for clause in clauses if clause.endswith(START)}
     both = ends & starts
     return [
-        each + BOTH if each.removesuffix(START) in both else each
-        for each in clauses
-        if each.removesuffix(END) not in both
+        clause + BOTH if clause.removesuffix(START) in both else clause
+        for clause in clauses
+        if clause.removesuffix(END) not in both
     ]
 
 
@@ -31,5 +31,5 @@ def listed(parts: Sequence[str], word: str = "and") -> str:
     """Parts as a list in words."""
     if len(parts) < 2:
         return "".join(parts) or "the rules say so"
-    comma = "," * (len(parts) > 2 or any("," in each for each in parts))
+    comma = "," * (len(parts) > 2 or any("," in part for part in parts))
     return f"{', '.join(parts[:-1])}{comma} {word} {parts[-1]}"

@@ -28,7 +28,7 @@ class Tracks:
     """The kept places of the bodies of an observation."""
 
     def __init__(self, observation: Observation) -> None:
-        self._tracks = {each.body: each for each in observation.tracks}
+        self._tracks = {track.body: track for track in observation.tracks}
         self._feet = [link.ee for link in observation.links if link.kind == FOOT]
         self._hips = [
             link.ee

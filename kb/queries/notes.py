@@ -58,7 +58,7 @@ def notes(
         yield from _counted(store, named)
     if _mixes(store, asked, given, answer):
         yield "fingers, toes and other bodies count as well as hands: effector=hand for hands alone"
-    if {"capture", "time"} <= given.keys():
+    if {"capture", "time"} <= given.keys() and "body" not in given:
         yield from _lost_then(store, str(given["capture"]), float(str(given["time"])))
     yield from (note["text"] for note in _ALWAYS.finditer(asked.query))
     for note in _NOTE.finditer(asked.query):
