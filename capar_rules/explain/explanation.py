@@ -17,20 +17,20 @@ from capar_rules.engine.syntax import Place, Statement, parse_text
 from capar_rules.explain.briefs import Briefs
 from capar_rules.explain.claims import Claim
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.contrasts import contrasts
-from capar_rules.explain.deciding_clauses import Wording
+from capar_rules.explain.contrast.contrasts import contrasts
+from capar_rules.explain.contrast.deciding_clauses import Wording
+from capar_rules.explain.contrast.near_misses import more_specific, near_misses, preceding
+from capar_rules.explain.contrast.neighbours import conditions_of_neighbours, generals_of
+from capar_rules.explain.contrast.told_contrast import Contrast
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.instants import corrected, frames_of
 from capar_rules.explain.leading import bit
 from capar_rules.explain.measured import Measured
 from capar_rules.explain.measured_facts import measured_by
-from capar_rules.explain.near_misses import more_specific, near_misses, preceding
-from capar_rules.explain.neighbours import conditions_of_neighbours, generals_of
 from capar_rules.explain.reason import Reason as Reason
 from capar_rules.explain.rule_base import RuleBase as RuleBase
 from capar_rules.explain.rule_base import rule_base as rule_base
 from capar_rules.explain.summary import summary
-from capar_rules.explain.told_contrast import Contrast
 from capar_rules.explain.windows import Windows
 
 ALWAYS = (("segment", 3), ("also", 2))

@@ -7,12 +7,17 @@ from dataclasses import dataclass, replace
 from capar_rules.explain.briefs import COURSES, Briefs
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Claim
-from capar_rules.explain.contrasts import LEAST_NEARNESS, LEAST_SEEN, MOST_NAMES, MOST_TOLD
-from capar_rules.explain.deciding_clauses import BUT_FOR
+from capar_rules.explain.contrast.contrasts import (
+    LEAST_NEARNESS,
+    LEAST_SEEN,
+    MOST_NAMES,
+    MOST_TOLD,
+)
+from capar_rules.explain.contrast.deciding_clauses import BUT_FOR
+from capar_rules.explain.contrast.told_contrast import Contrast, alternatives
 from capar_rules.explain.joining import BOTH, listed
 from capar_rules.explain.leading import DOUBTED, OWN, leading, parsed, rank
 from capar_rules.explain.reason import Reason
-from capar_rules.explain.told_contrast import Contrast, alternatives
 from capar_rules.explain.touch_notes import touching
 
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 
 from capar_rules.engine.slicing import FITS, nodes_read
 from capar_rules.engine.syntax import Signature, Statement, split_arguments
-from capar_rules.explain.near_misses import SPECIALISES, names_in_pairs
+from capar_rules.explain.contrast.near_misses import SPECIALISES, names_in_pairs
 from capar_rules.explain.rule_base import RuleBase
 from capar_rules.explain.rule_forms import SIDES, Form, forms_of_segment, rules_of
 

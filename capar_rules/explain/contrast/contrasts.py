@@ -8,16 +8,15 @@ from pathlib import Path
 from capar_rules.engine.slicing import FITS
 from capar_rules.engine.syntax import split_arguments
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.condition_matching import Atoms, Match
-from capar_rules.explain.deciding_clauses import (
+from capar_rules.explain.contrast.condition_matching import Atoms, Match
+from capar_rules.explain.contrast.deciding_clauses import (
     Wording,
     instead_clauses,
     nearness_of,
     seen_beside,
 )
-from capar_rules.explain.derivations import Derivations
-from capar_rules.explain.near_misses import more_specific
-from capar_rules.explain.neighbours import (
+from capar_rules.explain.contrast.near_misses import more_specific
+from capar_rules.explain.contrast.neighbours import (
     FEATURE,
     Neighbour,
     all_generals_of,
@@ -25,8 +24,9 @@ from capar_rules.explain.neighbours import (
     names_of_strings,
     neighbours,
 )
+from capar_rules.explain.contrast.told_contrast import HALF, Contrast
+from capar_rules.explain.derivations import Derivations
 from capar_rules.explain.rule_base import RuleBase
-from capar_rules.explain.told_contrast import HALF, Contrast
 
 MOST_FAILING = 2
 """A name whose rules all lack more conditions than that is not near."""

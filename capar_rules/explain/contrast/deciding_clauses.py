@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from capar_rules.engine.slicing import FITS
 from capar_rules.engine.syntax import Literal, split_arguments
 from capar_rules.explain.clock import Clock
-from capar_rules.explain.condition_matching import Atoms, Match, valued
-from capar_rules.explain.neighbours import FEATURE, Neighbour, feature_strings
+from capar_rules.explain.contrast.condition_matching import Atoms, Match, valued
+from capar_rules.explain.contrast.neighbours import FEATURE, Neighbour, feature_strings
+from capar_rules.explain.contrast.told_contrast import HALF
 from capar_rules.explain.rule_base import RuleBase
 from capar_rules.explain.rule_forms import VARIABLE, Form
 from capar_rules.explain.told_argument import UNBOUND
-from capar_rules.explain.told_contrast import HALF
 
 BUT_FOR = 0.95
 """How near that comes which only what was done besides keeps from a name [1]."""

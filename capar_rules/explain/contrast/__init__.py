@@ -1,0 +1,1 @@
+"""Neighbouring names: which come near a segment, and what decided against them."""
