@@ -19,8 +19,8 @@ from tempfile import TemporaryDirectory
 LOADED = (
     "capar.cli.explain",
     "capar.cli.observe",
-    "capar.cli.perform",
-    "capar.cli.query",
+    "capar.cli.body",
+    "capar.cli.ask",
     "capar.cli.regenerate",
     "capar.pipelines.explanation",
     "capar.pipelines.observation",

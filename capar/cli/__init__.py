@@ -1,43 +1,104 @@
-"""The commands, one module each: they parse, call and print; each is imported when it is named."""
+"""The commands: thin modules that parse, call the library and print, each imported on demand."""
 
 import os
 import sys
 from importlib import import_module
-from pkgutil import iter_modules
 from typing import Any
 
 import typer
 from typer.core import TyperGroup
 
 from capar import __version__
-from capar.cli._output import error_message
+from capar.cli.output import error_message
 from capar.model.errors import CaparError, UnknownNameError
+
+GROUPS = {
+    "Look at captures": {
+        "demo": "observe.demo",
+        "inspect": "captures.inspect",
+        "view": "captures.view",
+        "facts": "captures.facts",
+        "new-capture": "captures.new_capture",
+        "devices": "trackers.devices",
+        "record": "trackers.record",
+        "simulate": "trackers.simulate",
+    },
+    "Observe": {
+        "observe": "observe.observe",
+        "explain": "explain.explain",
+        "test": "evaluate.test",
+        "evaluate": "evaluate.evaluate",
+    },
+    "Ask the Actionary": {
+        "query": "ask.query",
+        "show": "ask.show",
+        "agent": "actionary.agents",
+        "object": "actionary.objects",
+        "correct": "actionary.correct",
+        "forget": "actionary.forget",
+        "check": "ask.check",
+    },
+    "Rules": {"rules": "rules.rules"},
+    "Language": {
+        "describe": "language.describe",
+        "parse": "language.parse",
+        "verb": "language.verb",
+        "lexicon": "language.lexicon",
+        "report": "language.reports",
+    },
+    "Bodies": {
+        "fit": "body.fit",
+        "perform": "body.perform",
+        "map": "body.map_command",
+        "regenerate": "regenerate.regenerate",
+        "roundtrip": "regenerate.roundtrip",
+    },
+    "Share": {
+        "export": "share.export",
+        "import": "share.import_",
+        "backup": "share.backup",
+        "migrate": "migrate.migrate",
+        "serve": "ask.serve",
+    },
+}
+"""What each command is, by the heading under which the help lists it."""
+
+COMMANDS = {name: place for group in GROUPS.values() for name, place in group.items()}
 
 
 class Commands(TyperGroup):
-    """Every module of this package as the command of its name, loaded on demand."""
+    """The commands of the table, loaded on demand."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names of the commands, sorted."""
-        modules = [each.name for each in iter_modules(__path__) if not each.name.startswith("_")]
-        return sorted(name.removesuffix("_command").replace("_", "-") for name in modules)
+        return sorted(COMMANDS)
 
     def get_command(self, ctx: Any, name: str) -> Any:
         """The command of that name, if there is one."""
-        if name not in self.list_commands(ctx):
+        if name not in COMMANDS:
             return None
-        stem = name.replace("-", "_")
-        try:
-            module = import_module(f"{__name__}.{stem}")
-        except ModuleNotFoundError as error:
-            if error.name != f"{__name__}.{stem}":
-                raise
-            module = import_module(f"{__name__}.{stem}_command")
-        module.app._add_completion = False  # the root's is for all
-        module.app.rich_markup_mode = None
-        command = typer.main.get_command(module.app)
+        module, _, attribute = COMMANDS[name].partition(".")
+        app = getattr(import_module(f"{__name__}.{module}"), attribute)
+        if not isinstance(app, typer.Typer):
+            function, app = app, typer.Typer()
+            app.command()(function)
+        app._add_completion = False  # the root's is for all
+        app.rich_markup_mode = None
+        command = typer.main.get_command(app)
         command.name = name
         return command
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the commands under the headings of the table."""
+        width = max(map(len, COMMANDS))
+        limit = formatter.width - 6 - width
+        for heading, names in GROUPS.items():
+            rows = [
+                (f"{name:{width}}", self.get_command(ctx, name).get_short_help_str(limit))
+                for name in names
+            ]
+            with formatter.section(heading):
+                formatter.write_dl(rows)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The command that is named first.
@@ -46,9 +107,8 @@ class Commands(TyperGroup):
             UnknownNameError: There is none of that name.
         """
         name = args[0]
-        wanted = not ctx.resilient_parsing and not name.startswith("-")
-        if wanted and self.get_command(ctx, name) is None:
-            raise UnknownNameError("command", name, self.list_commands(ctx))
+        if not ctx.resilient_parsing and not name.startswith("-") and name not in COMMANDS:
+            raise UnknownNameError("command", name, sorted(COMMANDS))
         return super().resolve_command(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from capar.cli._options import Beside, Rules, Steady, rule_base
-from capar.cli._output import print_json
+from capar.cli.options import Beside, Rules, Steady, rule_base
+from capar.cli.output import print_json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,10 +17,7 @@ if TYPE_CHECKING:
     from capar_rules.explain.nearest_rules import NearRule
     from capar_rules.explain.why_not import Alternative
 
-app = typer.Typer()
 
-
-@app.command()
 def explain(
     capture: Annotated[
         str,
@@ -58,7 +55,7 @@ def explain(
     ] = None,
 ) -> None:
     """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
-    from capar.cli._output import check_writable
+    from capar.cli.output import check_writable
     from capar.pipelines.explanation import explained, segment_named
     from capar.pipelines.explanation_text import explanation_lines, notice_lines
     from extractors.readers.bundle.capture_toml import read_capture
@@ -195,7 +192,7 @@ def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
 
 
 def _draw(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
-    from capar.cli._output import written
+    from capar.cli.output import written
     from capar.views.reasons import reasons_svg
 
     with written(path) as draft:
@@ -204,7 +201,7 @@ def _draw(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
 
 
 def _plot(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
-    from capar.cli._output import written
+    from capar.cli.output import written
     from capar.pipelines.explanation_text import staying
     from capar.pipelines.measured.claims import draw_claims
 

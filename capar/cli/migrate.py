@@ -5,12 +5,9 @@ from typing import Annotated
 
 import typer
 
-from capar.cli._options import Place, Wait
-
-app = typer.Typer()
+from capar.cli.options import Place, Wait
 
 
-@app.command()
 def migrate(
     files: Annotated[
         list[Path] | None,
@@ -37,7 +34,7 @@ def migrate(
 
 
 def _migrate_file(path: Path) -> None:
-    from capar.cli._output import written
+    from capar.cli.output import written
     from capar.model.errors import FileError
     from capar.model.json_form import from_json, to_json
     from capar.model.json_migration import SCHEMA, migrated, version

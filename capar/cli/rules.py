@@ -1,25 +1,256 @@
 """The commands for rules that people write, from a first draft to their place in the rule base."""
 
+from collections.abc import Iterator, Sequence
+from itertools import groupby
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._options import Place, Rules, has_actionary, opened, require_actionary, rule_base
-from capar.cli._output import print_json
-from capar.cli._rule_writing import (
-    Base,
-    Json,
-    list_words,
-    new,
-    print_audit,
-    print_bearing,
-    print_changes,
-    print_others,
-    print_precedence,
-)
+from capar.cli.options import Place, Rules, has_actionary, opened, require_actionary, rule_base
+from capar.cli.output import print_json
 
-app = typer.Typer(no_args_is_help=True)
+if TYPE_CHECKING:
+    from capar.rulebook.changes import Renamed
+    from capar_rules.authoring.glossary import Glossary, Word
+    from capar_rules.lint.audit import Audit
+
+
+Base = Annotated[str, typer.Option("--profile", help="The rules: extended or thesis.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+def new(
+    name: Annotated[str, typer.Argument(help="What the primitive is called, such as Lift.")],
+    source: Annotated[
+        str | None,
+        typer.Option(
+            "--from",
+            help="A segment whose features it has, as CAPTURE/END_EFFECTOR/INDEX. "
+            "CAPTURE may also be the name of an observation in the Actionary.",
+        ),
+    ] = None,
+    features: Annotated[
+        str | None,
+        typer.Option(help="START,END,CHANGE,FORCE in bits, such as 100,101,10,00."),
+    ] = None,
+    definition: Annotated[str, typer.Option(help="What it is, in words.")] = "",
+    general: Annotated[str, typer.Option(help="The primitive that it specialises.")] = "",
+    verb: Annotated[str, typer.Option(help="The verb for it.")] = "",
+    out: Annotated[Path | None, typer.Option(help="The file to write; else it is printed.")] = None,
+    profile: Base = "extended",
+    rules: Rules = None,
+    actionary: Place = None,
+) -> None:
+    """Write a rule file for NAME from a segment or a feature set, ready to be edited."""
+    from capar.cli.output import check_writable, written
+    from capar.model.errors import FileError, RuleError
+    from capar.rulebook.drafts import rule_from_features, rule_from_segment
+
+    words = {"definition": definition, "general": general, "verb": verb}
+    if (source is None) == (features is None):
+        raise RuleError(
+            "say either --from CAPTURE/END_EFFECTOR/INDEX or --features START,END,CHANGE,FORCE"
+        )
+    if out is not None and out.exists():
+        raise FileError(out, "exists already.", "Choose another file.")
+    if out is not None:
+        check_writable(out)
+    place = opened(actionary)
+    base = rule_base(profile, rules, place)
+    if source is not None:
+        kept = place if has_actionary(place, named=actionary) else None
+        text = rule_from_segment(name, source, rules=base, actionary=kept, **words)
+    else:
+        text = rule_from_features(name, features or "", rules=base, **words)
+    if out is None:
+        typer.echo(text, nl=False)
+        return
+    with written(out) as draft:
+        draft.write_text(text, encoding="utf-8")
+    typer.echo(f"wrote {out}; edit it, then: capar rules check {out}", err=True)
+
+
+def list_words(
+    name: Annotated[str | None, typer.Argument(help="One word, such as carried_off.")] = None,
+    profile: Base = "extended",
+    rules: Rules = None,
+    actionary: Place = None,
+    json: Json = False,
+) -> None:
+    """Explain the words of rules: what a rule file may read or state, and with which arguments.
+
+    With NAME also where it is defined, and by which rules.
+    """
+    from capar_rules.authoring.glossary import glossary
+
+    found = glossary(rule_base(profile, rules, opened(actionary)))
+    if json:
+        print_words_json(found, name)
+    elif name:
+        print_word(found, name)
+    else:
+        print_glossary(found)
+
+
+def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) -> None:
+    """The segments that have another name now, and how many; who was left alone."""
+    from capar.model.segment_address import SegmentAddress
+    from capar.rulebook.changes import NOTHING
+
+    for change in changes:
+        before, after = (
+            f"{name} (or {', '.join(shared)})" if shared else name
+            for name, shared in (
+                (change.before, change.before_others), (change.after, change.after_others)
+            )
+        )  # fmt: skip
+        what = f"{before} -> {after}"
+        if NOTHING in (change.before, change.after):
+            what = f"{before} vanishes" if change.after == NOTHING else f"{after} appears"
+        address = SegmentAddress(change.ee, change.index, change.capture)
+        typer.echo(f"{address}  {change.start_s:.2f} to {change.end_s:.2f} s: {what}")
+    told = "1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change"
+    typer.echo(told if changes else f"{told}: none that was observed gets another name")
+    for line in sorted({_settling(change) for change in changes if change.after_others}):
+        typer.echo(line)
+    print_others(others)
+
+
+def _settling(change: "Renamed") -> str:
+    """How several names that share a segment are ordered."""
+    old = {change.before, *change.before_others}
+    new, *rest = sorted((change.after, *change.after_others), key=lambda name: (name in old, name))
+    return (
+        f"{new} and {' and '.join(rest)} share a segment. To settle it, state "
+        f'precedes("{new}", "{rest[0]}"), or add the file with --over {rest[0]}; if {new} is a '
+        f"kind of {rest[0]}, with --kind-of {rest[0]}."
+    )
+
+
+def print_precedence(file: Path, over: Sequence[str]) -> None:
+    """What the primitives of a file precede, where that was asked for."""
+    from capar_rules.authoring.catalogue import preceded
+
+    if over:
+        for name, others in preceded(file).items():
+            typer.echo(f"{name} precedes {', '.join(others) or 'nothing'}; {file} says so")
+
+
+def print_others(others: tuple[str, ...]) -> None:
+    """How many observations were left alone, as they were made with another profile."""
+    if others:
+        several = "s were" if len(others) > 1 else " was"
+        typer.echo(
+            f"{len(others)} observation{several} made with another profile: left alone", err=True
+        )
+
+
+def print_bearing(count: int, names: list[str]) -> None:
+    """How many stored segments bear a name that no rule gives any longer."""
+    if count:
+        told = "1 stored segment still bears" if count == 1 else f"{count} segments still bear"
+        typer.echo(
+            f"{told} the name {' or '.join(names)}; observing again renames them, as would "
+            "--reclassify have done",
+            err=True,
+        )
+
+
+def print_audit(found: "Audit") -> None:
+    """What an audit found, and whether the rules are clean."""
+    without = len(found.uncovered)
+    typer.echo(f"{found.possible} feature sets can be; {without} of them have no name:")
+    for line in _uncovered(found):
+        typer.echo(line)
+    for clash in found.ambiguous:
+        where = " ".join(part or "-" for part in clash.features[0])
+        typer.echo(f"ambiguous: {clash.first} and {clash.second}, first at {where}")
+    for name in found.shadowed:
+        typer.echo(f"shadowed: {name}")
+    for name in found.unreachable:
+        typer.echo(f"never fits in the worlds of the audit: {name} (`capar rules check` says why)")
+    for name in found.unchecked:
+        typer.echo(
+            f"not checked: {name}; its conditions are outside the worlds of the audit "
+            "(`capar rules check` lists them)"
+        )
+    typer.echo("the rules are clean" if found.clean else "the rules are not clean")
+
+
+def _uncovered(found: "Audit") -> Iterator[str]:
+    """Every feature set without a name, under its reason, a line for the relations at its ends.
+
+    What follows each is change of location and force.
+    """
+    reasons = dict(found.excused)
+    groups: dict[str, dict[str, list[str]]] = {}
+    for start, end, change, force in found.uncovered:
+        reason = reasons.get((start, end, change, force), "NO REASON IS GIVEN")
+        ends = f"{start or '-'} > {end or '-'}"
+        groups.setdefault(reason, {}).setdefault(ends, []).append(f"{change or '-'}/{force or '-'}")
+    for reason, cases in groups.items():
+        yield f"  {sum(map(len, cases.values()))}: {reason}"
+        for ends, rest in cases.items():
+            yield f"    {ends}  {' '.join(rest)}"
+
+
+def print_glossary(found: "Glossary") -> None:
+    """Every word, file by file, and what each file keeps to itself."""
+    within: dict[str, list[str]] = {}
+    for file, (name, arity) in found.internal:
+        within.setdefault(file, []).append(f"{name}/{arity}")
+    for file, words in groupby(found.words, key=lambda each: each.file):
+        typer.echo(file)
+        for word in words:
+            typer.echo(f"  {word}  {word.meaning}")
+        if file in within:
+            typer.echo(f"  within this file alone: {', '.join(within.pop(file))}")
+        typer.echo()
+    for file, names in within.items():
+        typer.echo(f"{file}\n  within this file alone: {', '.join(names)}\n")
+
+
+def print_word(found: "Glossary", name: str) -> None:
+    """One word: what it means, where it is explained, and the rules that define it."""
+    words = found.find(name)
+    for each in words:
+        typer.echo(f"{each}  {each.meaning}")
+        typer.echo(f"  explained in {each.file}:{each.line}" if each.line else f"  in {each.file}")
+    for signature in dict.fromkeys(word.signature for word in words):
+        if ways := found.needed(signature):
+            told = "; or ".join(", ".join(way) for way in ways)
+            typer.echo(f"  an example needs, beside frames, links and tags: {told}")
+        for place in found.rules_of(signature):
+            typer.echo(f"  defined at {place}\n{_rule(Path(place.file), place.line)}")
+
+
+def _rule(file: Path, line: int) -> str:
+    """The text of the rule that begins on that line."""
+    lines = file.read_text(encoding="utf-8").splitlines()[line - 1 :]
+    end = next((at for at, each in enumerate(lines, 1) if each.rstrip().endswith(".")), len(lines))
+    return "\n".join(f"    {each}" for each in lines[:end])
+
+
+def print_words_json(found: "Glossary", name: str | None) -> None:
+    """The same as JSON: one word, or all of them."""
+    words = found.find(name) if name else found.words
+    print_json([_row(word, found) for word in words])
+
+
+def _row(word: "Word", found: "Glossary") -> dict[str, object]:
+    return {
+        "name": word.name,
+        "arguments": list(word.arguments),
+        "meaning": word.meaning,
+        "file": word.file,
+        "line": word.line,
+        "needs": [list(way) for way in found.needed(word.signature)],
+        "defined": [str(each) for each in found.rules_of(word.signature)],
+    }
+
+
+rules = typer.Typer(no_args_is_help=True)
 
 File = Annotated[Path, typer.Argument(help="A rule file.")]
 Reclassify = Annotated[
@@ -31,7 +262,7 @@ Captures = Annotated[
 ]
 
 
-@app.callback()
+@rules.callback()
 def _root() -> None:
     """Write primitives as rules: checked before they count, their effect shown before they do."""
 
@@ -44,7 +275,7 @@ def _others(file: Path, rules: Path | None, actionary: str | None) -> tuple[Path
     return tuple(each for each in files if each.resolve() != file.resolve())
 
 
-@app.command("list")
+@rules.command("list")
 def list_rules(
     profile: Base = "extended", rules: Rules = None, actionary: Place = None, json: Json = False
 ) -> None:
@@ -67,7 +298,7 @@ def list_rules(
         typer.echo(f"{entry.origin}  {entry.name}{general}: {entry.definition}")
 
 
-@app.command()
+@rules.command()
 def show(
     name: Annotated[str, typer.Argument(help="A primitive.")],
     profile: Base = "extended",
@@ -81,7 +312,7 @@ def show(
     typer.echo(Path(info.file).read_text(encoding="utf-8"), nl=False)
 
 
-@app.command()
+@rules.command()
 def check(
     file: File,
     profile: Base = "extended",
@@ -105,7 +336,7 @@ def check(
         raise typer.Exit(2)
 
 
-@app.command()
+@rules.command()
 def test(
     file: File, profile: Base = "extended", rules: Rules = None, actionary: Place = None
 ) -> None:
@@ -126,7 +357,7 @@ def test(
     typer.echo(f"{file}: its examples hold")
 
 
-@app.command()
+@rules.command()
 def add(
     file: File,
     over: Annotated[
@@ -185,7 +416,7 @@ def add(
     print_changes(effect.changes, effect.others)
 
 
-@app.command()
+@rules.command()
 def remove(
     name: Annotated[str, typer.Argument(help="A primitive of yours.")],
     reclassify: Reclassify = False,
@@ -227,7 +458,7 @@ def remove(
     print_changes(effect.changes, effect.others)
 
 
-@app.command()
+@rules.command()
 def diff(
     file: File,
     on: Annotated[
@@ -269,7 +500,7 @@ def diff(
         print_changes(changes, others)
 
 
-@app.command()
+@rules.command()
 def audit(
     profile: Base = "extended", rules: Rules = None, actionary: Place = None, json: Json = False
 ) -> None:
@@ -287,5 +518,5 @@ def audit(
         raise typer.Exit(1)
 
 
-app.command("new")(new)
-app.command("words")(list_words)
+rules.command("new")(new)
+rules.command("words")(list_words)

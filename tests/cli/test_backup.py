@@ -19,7 +19,7 @@ SIP = '%* Sip: sip. *%\nprimitive("Sip").\n'
 def capar(*words: object, terminal: bool = False, answer: str = "") -> Result:
     with pytest.MonkeyPatch.context() as patch:
         if terminal:
-            patch.setattr("capar.cli._options.can_ask", lambda: True)
+            patch.setattr("capar.cli.options.can_ask", lambda: True)
         return RUNNER.invoke(app, [str(each) for each in words], input=answer)
 
 

@@ -7,7 +7,7 @@ import pytest
 from pympi import Eaf
 from typer.testing import CliRunner, Result
 
-from capar.cli.evaluate import app
+from capar.cli import app
 from capar.model.errors import CaparError
 from capar.pipelines.observation import observe
 
@@ -35,7 +35,7 @@ def segments() -> list[tuple[str, float, float, str]]:
 
 
 def run(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(each) for each in arguments])
+    return CliRunner().invoke(app, ["evaluate", *map(str, arguments)])
 
 
 def mapping(folder: Path) -> Path:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from capar.cli._output import REMEDIES, error_message, written
+from capar.cli.output import REMEDIES, error_message, written
 
 DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
 CAPAR = Path(sys.executable).parent / "capar"

@@ -4,7 +4,7 @@ import io
 
 import pytest
 
-from capar.cli._output import progress
+from capar.cli.output import progress
 
 
 class Terminal(io.StringIO):

@@ -9,7 +9,7 @@ import pytest
 from observations import drink_from_mug, pick_up_with_both_hands
 from typer.testing import CliRunner
 
-from capar.cli.evaluate import app
+from capar.cli import app
 from capar.evaluation.evaluations import report
 from capar.evaluation.labels import Label, Labels
 from capar.evaluation.mapping import LabelMapping, Rule
@@ -92,7 +92,7 @@ def test_the_report_is_json_without_numbers_that_json_lacks() -> None:
 
 
 def test_an_odd_number_of_arguments_says_how_to_pair_them() -> None:
-    result = CliRunner().invoke(app, ["one", "--mapping", "m.toml"])
+    result = CliRunner().invoke(app, ["evaluate", "one", "--mapping", "m.toml"])
     assert isinstance(result.exception, CaparError)
     assert "each capture is followed by its label file" in str(result.exception)
 
@@ -111,7 +111,7 @@ def test_a_real_take_is_observed_and_scored(
         'others = ["hold", "lift", "place", "pour", "retreat", "stir"]\n'
         '[[rule]]\nname = "Reach"\nlabel = "approach"\n[[rule]]\nname = "*"\nlabel = "idle"\n'
     )
-    arguments = [f"{place}:take0", str(labels), "--mapping", str(mapping), "--json"]
+    arguments = ["evaluate", f"{place}:take0", str(labels), "--mapping", str(mapping), "--json"]
     result = CliRunner().invoke(app, arguments, catch_exceptions=False)
     found = json.loads(result.stdout)
     assert set(found["links"]) == {"left_hand", "right_hand"}

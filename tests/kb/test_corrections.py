@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from observations import drink_from_mug
 
-from capar.cli.correct import correct as command
+from capar.cli.actionary import correct as command
 from capar.evaluation.label_files import read_labels
 from capar.evaluation.labels import Kind
 from capar.model.errors import UnknownNameError

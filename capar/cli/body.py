@@ -1,4 +1,4 @@
-"""The command that fits a body to a capture's sensors."""
+"""Bodies: fit one to a capture, let a virtual one perform, map a performance to another."""
 
 import json
 from pathlib import Path
@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from capar.cli.options import Assume, NewBundle
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from capar.body.fitting import Fit
 
-app = typer.Typer()
 
-
-@app.command()
 def fit(
     capture: Annotated[
         str,
@@ -61,7 +60,7 @@ def fit(
 
 def _write(made: "Fit", wanted: "Mapping[str, Path | None]") -> None:
     """Write the files that are wanted, each whole or not at all."""
-    from capar.cli._output import written
+    from capar.cli.output import written
     from capar.export.bvh import bvh_text
     from capar.export.c3d import c3d_bytes
     from capar.export.glb import glb_bytes
@@ -148,3 +147,108 @@ def _at_limit(made: "Fit") -> dict[str, float]:
 def _idle(joint: str) -> bool:
     """Whether a hinge stands at an end of its range when nothing moves it: open hands."""
     return any(part in joint for part in ("knuckle", "finger", "thumb"))
+
+
+def perform(
+    action: Annotated[
+        str,
+        typer.Argument(
+            help="drink, sip, touch, touch_from_rest, slide, carry, carry_tray, carry_two, "
+            "pick_up, turn, push, pour, door, drawer, wipe or toss; of two bodies hand_over."
+        ),
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", help="A new folder for the capture.")],
+    agent: Annotated[
+        str,
+        typer.Option(help="Who performs: man, woman or child; of two bodies such as man+woman."),
+    ] = "man",
+    rate: Annotated[float, typer.Option(help="Frames a second.", min=10.0, max=480.0)] = 60.0,
+    noisy: Annotated[
+        bool, typer.Option("--noisy", help="With the noise and the mounts of a magnetic tracker.")
+    ] = False,
+    seed: Annotated[int, typer.Option(help="The draw of the noise.", min=0)] = 3,
+) -> None:
+    """Let a virtual body perform ACTION at a table, and write what a tracker records of it.
+
+    The capture bundle has sensors on hands and head, the things that are handled, and what
+    is exactly so beside it (truth.toml): it serves to try every other command.
+    """
+    from capar.body.bundles import write_bundle
+    from capar.body.joint_actions import JOINT_ACTIONS, joint_capture, performed_together
+    from capar.body.joint_performances import truth_together
+    from capar.body.recording import truth_of
+    from capar.body.scripted_actions import action_capture, performed
+    from capar.cli.output import check_new_folder
+
+    check_new_folder(output)
+    if action in JOINT_ACTIONS:
+        pair = (*agent.split("+"), *agent.split("+"))[:2]
+        made = performed_together(action, (pair[0], pair[1]), rate_hz=rate)
+        both = joint_capture(action, (pair[0], pair[1]), rate_hz=rate, noisy=noisy, seed=seed)
+        write_bundle(both, truth_together(made), output)
+        typer.echo(
+            f"wrote {output}: {action} by a {pair[0]} and a {pair[1]}, {both.times[-1]:.1f} s at "
+            f"{rate:g} Hz",
+            err=True,
+        )
+        return
+    capture = action_capture(action, agent, rate_hz=rate, noisy=noisy, seed=seed)
+    write_bundle(capture, truth_of(performed(action, agent, rate_hz=rate)), output)
+    typer.echo(
+        f"wrote {output}: {action} by a {agent}, {capture.times[-1]:.1f} s at {rate:g} Hz, "
+        f"{len(capture.sensors)} sensors and {len(capture.objects)} objects",
+        err=True,
+    )
+
+
+def map_command(
+    capture: Annotated[
+        str,
+        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
+    ],
+    agent: Annotated[
+        str, typer.Option(help="Who performs: man, woman, child, or same for the one recorded.")
+    ] = "same",
+    output: NewBundle = None,
+    cutoff: Annotated[
+        float,
+        typer.Option(
+            help="Cutoff of the low-pass filter that takes noise from the recorded paths [Hz]; "
+            "0 follows them as they are.",
+            min=0.0,
+        ),
+    ] = 0.0,
+    assume: Assume = None,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+) -> None:
+    """Map CAPTURE directly to another body in the recorded scene: the baseline of `regenerate`.
+
+    Hands and things go where they were recorded; what met the performer's head meets the new one's.
+    Nothing is planned: no grip is fitted to the hand, and no obstacle is avoided. Every gate is
+    printed, and how far hands and things are from their recorded ways.
+    """
+    from dataclasses import replace
+
+    from capar.cli.output import check_new_folder, print_json
+    from capar.cli.regenerate import quality_answer, tell_quality
+    from capar.pipelines.round_trips import SAME, body, observed_source
+    from capar.regeneration import map_directly
+    from capar.regeneration.captures import capture_of, write_motion
+    from capar.regeneration.completing import read_completion
+    from capar.regeneration.departures import departures
+
+    if output:
+        check_new_folder(output)
+    completion = read_completion(assume) if assume else None
+    source = observed_source(capture, completion, cutoff_hz=cutoff or None)
+    motion, quality = map_directly(source, body(agent, source))
+    quality = replace(quality, told=(*quality.told, *departures(motion)))
+    if output:
+        name = agent if agent != SAME else source.capture.agent.name
+        write_motion(motion, capture_of(motion, name=source.capture.name, agent=name), output)
+    if json:
+        print_json(quality_answer(motion, quality))
+        return
+    tell_quality(motion, quality)
+    if output:
+        typer.echo(f"wrote {output}", err=True)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
+
 REMEDIES = {
     errno.EACCES: "Get permission to read or write it, or name another path.",
     errno.EPERM: "Get permission to read or write it, or name another path.",

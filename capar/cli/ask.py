@@ -1,4 +1,4 @@
-"""Ask the Actionary: a named question, or any SPARQL."""
+"""Ask the Actionary: questions, pictures of actions, checks, and an HTTP server."""
 
 import sys
 from collections.abc import Iterator
@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
-from capar.cli._options import Place
-from capar.cli._output import console
+from capar.cli.options import Place
+from capar.cli.output import console, print_json
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
     from kb.store.stores import Store
 
-app = typer.Typer()
 
 Given: TypeAlias = dict[str, str]
 """What a named question is asked of, by parameter."""
@@ -36,7 +35,6 @@ def _parameters(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
     return [each for each in found if each[0].startswith(incomplete)]
 
 
-@app.command()
 def query(
     question: Annotated[
         str | None,
@@ -205,3 +203,73 @@ def _print(answer: "Answer", chosen: str) -> None:
     from capar.views.tables import terminal_table
 
     console().print(terminal_table(header(answer), list(cells(answer))))
+
+
+def show(
+    name: Annotated[str, typer.Argument(help="The complex action, or an observation of it.")],
+    format_: Annotated[str, typer.Option("--format", help="text, svg or turtle.")] = "text",
+    actionary: Place = None,
+) -> None:
+    """Draw the complex action NAME: its steps, their shares of time, and who was seen to do it."""
+    from capar.model.errors import UnknownNameError
+    from kb import Actionary
+    from kb.reports.complex_action_drawing import FORMATS
+
+    if format_ not in FORMATS:
+        raise UnknownNameError("format", format_, FORMATS)
+    with Actionary.open(actionary, read_only=True) as opened:
+        typer.echo(FORMATS[format_](opened.store, name), nl=False)
+
+
+def serve(
+    host: Annotated[str, typer.Option(help="Where to listen; by default on this computer.")] = (
+        "127.0.0.1"
+    ),
+    port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes any free one.")] = 7879,
+    token: Annotated[
+        str,
+        typer.Option(envvar="CAPAR_TOKEN", help="Let clients that bear this token add statements."),
+    ] = "",
+    time_limit: Annotated[float, typer.Option(help="For a query, in seconds.")] = 30.0,
+    actionary: Place = None,
+) -> None:
+    """Answer SPARQL and named questions over HTTP, until Ctrl-C; / lists what can be asked."""
+    from kb import Actionary
+    from kb.serving.http_server import ActionaryServer
+    from kb.serving.service import Service
+    from kb.store.stores import place
+
+    where = place(actionary)
+    with Actionary.open(where, read_only=True) as opened:
+        count = len(opened.observations())
+    with ActionaryServer(Service(where, token, time_limit), host=host, port=port) as server:
+        if not server.loopback:
+            typer.echo(f"capar: {host} can be reached from other computers", err=True)
+        typer.echo(f"{where} ({count} observations) is at {server.url}", err=True)
+        server.serve_forever()
+
+
+def check(
+    shacl: Annotated[
+        bool,
+        typer.Option("--shacl", help="Have pySHACL judge every observation as well; minutes."),
+    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print the problems as JSON.")] = False,
+    actionary: Place = None,
+) -> None:
+    """Check that every statement can be read, and every observation: shapes, NLTs, references."""
+    from kb import Actionary
+    from kb.store_checks import check as checked
+
+    with Actionary.open(actionary, read_only=True) as opened:
+        problems = checked(opened.store, full=shacl)
+        count = len(opened.observations())
+    if json:
+        print_json(problems)
+    else:
+        for problem in problems:
+            whose = f"{problem.observation}: " if problem.observation else ""
+            typer.echo(f"{whose}{problem.thing}: {problem.message}")
+        typer.echo(f"{count} observations, {len(problems)} problems")
+    if problems:
+        raise typer.Exit(2)

@@ -1,20 +1,54 @@
-"""Write the Actionary, or the plan of an action, to a file that others can read."""
+"""Share the Actionary: import, export and backup."""
 
 import sys
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli._options import Place
+from capar.cli.options import New, Place, Wait, confirm_new, opened, require_actionary
 
 if TYPE_CHECKING:
     from capar.export.plan_sources import PlanSource
 
-app = typer.Typer()
+
+def import_(
+    file: Annotated[str, typer.Argument(help="The file, or - for standard input.")],
+    format_: Annotated[
+        str | None,
+        typer.Option("--format", help="turtle, trig, nquads or jsonld; else by the file's name."),
+    ] = None,
+    wait: Wait = 0.0,
+    new: New = False,
+    actionary: Place = None,
+) -> None:
+    """Take in Turtle, TriG, N-Quads or JSON-LD, all of it or none, checked by the shapes.
+
+    An observation in FILE replaces the one of its name.
+    """
+    from kb import Actionary
+    from kb.exchange import bring_in, format_of, read
+
+    chosen = format_of(file, format_)
+    confirm_new(actionary, new=new)
+    quads = read(_bytes(file), chosen, path=file)
+    with Actionary.open(actionary, wait_s=wait) as opened:
+        statements, observations = bring_in(opened.store, quads, source=file)
+    typer.echo(f"{statements} statements, {observations} observations")
 
 
-@app.command()
+def _bytes(file: str) -> bytes:
+    from capar.model.errors import FileError
+
+    if file == "-":
+        return sys.stdin.buffer.read()
+    try:
+        return Path(file).read_bytes()
+    except OSError as error:
+        raise FileError(file, f"cannot be read ({error.strerror})") from None
+
+
 def export(
     file: Annotated[
         Path | None,
@@ -54,7 +88,7 @@ def export(
 
     With --format pddl, bt or bml: the action of CAPTURE or OBSERVATION as a plan for others.
     """
-    from capar.cli._output import check_writable, written
+    from capar.cli.output import check_writable, written
     from capar.model.errors import CaparError, UnknownNameError
     from capar.pipelines.plan_export import PLAN_FORMATS
     from kb.exchange import FORMATS
@@ -106,7 +140,7 @@ def export(
 
 def _export_plan(name: str, format_: str, output: Path | None, actionary: str | None) -> None:
     """Write a complex action as a plan; PDDL's two files go to a folder."""
-    from capar.cli._output import check_new_folder, check_writable, written
+    from capar.cli.output import check_new_folder, check_writable, written
     from capar.model.errors import CaparError
     from capar.pipelines.plan_export import plan_files
 
@@ -131,7 +165,7 @@ def _export_plan(name: str, format_: str, output: Path | None, actionary: str | 
 
 def _plan_source(name: str, actionary: str | None) -> "PlanSource":
     """The action of a capture at a path, else of an observation in the Actionary."""
-    from capar.cli._options import has_actionary, opened
+    from capar.cli.options import has_actionary, opened
     from capar.model.errors import FileError
     from capar.pipelines.plan_export import capture_plan, stored_plan
     from kb import Actionary
@@ -146,3 +180,44 @@ def _plan_source(name: str, actionary: str | None) -> "PlanSource":
         )  # fmt: skip
     with Actionary.open(place, read_only=True) as words:
         return stored_plan(words, name)
+
+
+def backup(
+    file: Annotated[
+        Path | None,
+        typer.Argument(help="Where to, as N-Quads; else beside the Actionary, by date and time."),
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    actionary: Place = None,
+) -> None:
+    """Write all that the Actionary holds to FILE, and its rules beside it; both are read again.
+
+    `capar import FILE --actionary FOLDER` makes it again, in a folder that is not there yet.
+    """
+    from capar.cli.output import print_json
+    from capar.model.errors import FileError
+    from capar_rules.authoring.user_rules import actionary_rules
+    from kb import Actionary
+    from kb.backup import back_up, back_up_rules
+    from kb.store.stores import is_address
+
+    require_actionary(actionary, observed=True)
+    place = opened(actionary)
+    if file is None and is_address(place):
+        raise FileError(place, "is a server.", "Say where its backup goes: capar backup FILE.nq")
+    target = file or _beside(Path(place).absolute())
+    with Actionary.open(actionary, read_only=True) as book:
+        statements = back_up(book.store, target)
+    rules = back_up_rules(actionary_rules(place), target)
+    if json:
+        print_json({"file": str(target), "statements": statements, "rules": list(map(str, rules))})
+        return
+    typer.echo(f"{target}: {statements} statements")
+    for rule_file in rules:
+        typer.echo(str(rule_file))
+    typer.echo(f"To restore: capar import {target} --actionary NEW_FOLDER --new")
+
+
+def _beside(folder: Path) -> Path:
+    now = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
+    return folder.with_name(f"{folder.name}.{now}.nq")

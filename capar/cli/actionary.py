@@ -1,0 +1,291 @@
+"""Change the Actionary: agents, kinds of objects, corrections, forgotten observations."""
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from capar.cli.options import Place, Wait, require_actionary
+from capar.cli.output import check_writable, print_fields, print_json, print_names, written
+from capar.model.errors import UnknownNameError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kb.corrections import Span
+
+
+def declare_abilities(
+    actions: Sequence[str],
+    *,
+    agent: str = "",
+    kind: str = "",
+    actionary: str | None,
+    wait_s: float,
+    json: bool,
+) -> None:
+    """Declare what an agent is able to do, or what a kind of object can be used for, and say so.
+
+    Args:
+        actions: The names of the actions.
+        agent: The agent; empty where it is a kind of object.
+        kind: The kind of object; empty where it is an agent.
+        actionary: The Actionary; None for the usual one.
+        wait_s: How long to wait for another writer [s].
+        json: Whether to print JSON.
+
+    Raises:
+        UnknownNameError: There is no such agent or kind of object.
+    """
+    from kb import Actionary
+
+    require_actionary(actionary, observed=True)
+    with Actionary.open(actionary, wait_s=wait_s) as opened:
+        known = opened.agents() if agent else opened.object_kinds()
+        if (agent or kind) not in known:
+            raise UnknownNameError("agent" if agent else "kind of object", agent or kind, known)
+        for action in actions:
+            opened.add_ability(action, agent=agent, kind=kind)
+    if json:
+        print_json({"agent" if agent else "kind": agent or kind, "declared": actions})
+    else:
+        typer.echo(f"declared of {agent or f'every {kind}'}: {', '.join(actions)}")
+
+
+agents = typer.Typer(no_args_is_help=True)
+
+Name = Annotated[str, typer.Argument(help="An agent, as `capar agent list` prints it.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+@agents.callback()
+def _root() -> None:
+    """Say who performs: declared agents, those that were seen, and who is who."""
+
+
+@agents.command()
+def new(
+    name: Annotated[str, typer.Argument(help="What the agent is called.")],
+    kind: Annotated[str, typer.Option(help="Its kind: man, woman, robot ...")] = "",
+    can: Annotated[
+        list[str] | None, typer.Option(help="An action that it is able to do; may be repeated.")
+    ] = None,
+    wait: Wait = 0.0,
+    actionary: Place = None,
+    json: Json = False,
+) -> None:
+    """Declare an agent; it stays when observations are forgotten."""
+    from kb import Actionary
+
+    require_actionary(actionary, observed=True)
+    with Actionary.open(actionary, wait_s=wait) as opened:
+        opened.declare_agent(name, kind=kind, can=can or ())
+    if json:
+        print_json({"declared": name})
+    else:
+        typer.echo(f"declared {name}")
+
+
+@agents.command()
+def can(
+    name: Name,
+    actions: Annotated[list[str], typer.Argument(help="Actions that it is able to do.")],
+    wait: Wait = 0.0,
+    actionary: Place = None,
+    json: Json = False,
+) -> None:
+    """Declare what an agent that is known is able to do, beside what was observed."""
+    declare_abilities(actions, agent=name, actionary=actionary, wait_s=wait, json=json)
+
+
+@agents.command("list")
+def list_agents(actionary: Place = None, json: Json = False) -> None:
+    """List every agent; one without a name is called by the capture that it is of."""
+    from kb import Actionary
+
+    with Actionary.open(actionary, read_only=True) as opened:
+        found = opened.agents()
+    print_names(found, json=json)
+
+
+@agents.command()
+def show(name: Name, actionary: Place = None, json: Json = False) -> None:
+    """Show what is known of an agent, field by field, and of which fields nothing is recorded."""
+    from kb import Actionary
+
+    with Actionary.open(actionary, read_only=True) as opened:
+        print_fields(name, opened.agent_profile(name), json=json)
+
+
+@agents.command()
+def same(
+    name: Name,
+    other: Annotated[str, typer.Argument(help="The agent that is the same one.")],
+    wait: Wait = 0.0,
+    actionary: Place = None,
+    json: Json = False,
+) -> None:
+    """Make two agents one: what OTHER did, and will be observed to do, is NAME's."""
+    from kb import Actionary
+
+    require_actionary(actionary, observed=True)
+    with Actionary.open(actionary, wait_s=wait) as opened:
+        opened.same_agent(name, other)
+    if json:
+        print_json({"agent": name, "joined": other})
+    else:
+        typer.echo(f"{other} is {name}")
+
+
+objects = typer.Typer(no_args_is_help=True)
+
+Json_object_command = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+@objects.callback()
+def _root_object_command() -> None:
+    """Say what is known of objects, which is kept by their kinds."""
+
+
+@objects.command("list")
+def list_objects(actionary: Place = None, json: Json_object_command = False) -> None:
+    """List every kind of object that was observed or declared."""
+    from kb import Actionary
+
+    with Actionary.open(actionary, read_only=True) as opened:
+        found = opened.object_kinds()
+    print_names(found, json=json)
+
+
+@objects.command()
+def can_object_command(
+    kind: Annotated[str, typer.Argument(help="A kind of object, as `capar object list` has it.")],
+    actions: Annotated[list[str], typer.Argument(help="Actions that it lends itself to.")],
+    wait: Wait = 0.0,
+    actionary: Place = None,
+    json: Json_object_command = False,
+) -> None:
+    """Declare what a kind of object can be used for, beside what was observed."""
+    declare_abilities(actions, kind=kind, actionary=actionary, wait_s=wait, json=json)
+
+
+@objects.command()
+def show_object_command(
+    name: Annotated[str, typer.Argument(help="A kind of object, or the name of an object.")],
+    actionary: Place = None,
+    json: Json_object_command = False,
+) -> None:
+    """Show what is known of a kind of object, field by field, and which fields are empty."""
+    from kb import Actionary
+
+    with Actionary.open(actionary, read_only=True) as opened:
+        print_fields(name, opened.object_profile(name), json=json)
+
+
+COLUMNS = ("link", "start_s", "end_s", "label", "object")
+"""Of a table of labels, as `capar evaluate` reads it."""
+
+
+def correct(
+    segment: Annotated[
+        str,
+        typer.Argument(
+            metavar="SEGMENT", help="CAPTURE/END_EFFECTOR/INDEX; CAPTURE alone shows its account."
+        ),
+    ],
+    name: Annotated[str, typer.Option(help="What was done in it.")] = "",
+    start: Annotated[float | None, typer.Option(metavar="SECONDS", help="When it began.")] = None,
+    end: Annotated[float | None, typer.Option(metavar="SECONDS", help="When it ended.")] = None,
+    split: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="It is two, of which one ends here.")
+    ] = None,
+    join: Annotated[bool, typer.Option("--join", help="It is one with the next.")] = False,
+    by: Annotated[str, typer.Option(metavar="PERSON", help="Who says so.")] = "",
+    labels: Annotated[
+        Path | None, typer.Option(help="Write the account as labels, a CSV table, to this file.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    wait: Wait = 0.0,
+    actionary: Place = None,
+) -> None:
+    """Keep a person's claim about a SEGMENT, and print what was done according to all claims.
+
+    The machine's segments stay as they are, and claims stay when the capture is observed again.
+    Segments are counted as this command prints them. `capar query --corrected` asks what persons
+    say; `capar query corrections` lists their claims.
+    """
+    from capar.model.segment_address import split_capture
+    from kb import Actionary
+    from kb.corrections import Correction, account
+    from kb.corrections import correct as claim
+
+    if labels is not None:
+        check_writable(labels)
+    require_actionary(actionary, observed=True)
+    asked = (name, start, end, split, join) != ("", None, None, None, False)
+    capture, address = segment, None
+    if asked or by:
+        capture, address = split_capture(segment)
+    change = Correction(name, start, end, split, join) if address else None
+    with Actionary.open(actionary, read_only=change is None, wait_s=wait) as opened:
+        if address and change:
+            from dataclasses import replace
+
+            claim(opened.store, replace(address, capture=capture), change, by=by)
+            _note_new_name(name, actionary)
+        spans = account(opened.store, capture)
+    if labels is not None:
+        _write_labels(labels, spans)
+    _print(capture, spans, json=json)
+
+
+def _note_new_name(name: str, actionary: str | None) -> None:
+    """Say that no rule gives the name, which may be meant so, with the nearest that one gives."""
+    from difflib import get_close_matches
+
+    from capar.cli.options import rule_words
+    from capar.model.par import UNKNOWN
+
+    known = [words.name for words in rule_words(None, actionary)]
+    if name and name not in {*known, UNKNOWN}:
+        near = get_close_matches(name, known, n=1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        typer.echo(f"note: no rule gives the name {name!r}{hint}", err=True)
+
+
+def _print(capture: str, spans: "Sequence[Span]", *, json: bool) -> None:
+    if json:
+        print_json(list(spans))
+        return
+    counts: dict[str, int] = {}
+    for span in spans:
+        at = counts[span.ee] = counts.get(span.ee, -1) + 1
+        who = f"  says {span.by}" if span.by else ""
+        typer.echo(
+            f"{capture}/{span.ee}/{at}  {span.start_s:.3f} to {span.end_s:.3f} s  {span.name}{who}"
+        )
+
+
+def _write_labels(path: Path, spans: "Sequence[Span]") -> None:
+    with written(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(COLUMNS)
+        for span in spans:
+            first = span.objects.split(" ")[0]
+            table.writerow((span.ee, span.start_s, span.end_s, span.name, first))
+
+
+def forget(
+    names: Annotated[list[str], typer.Argument(help="The observations, by their captures' names.")],
+    wait: Wait = 0.0,
+    actionary: Place = None,
+) -> None:
+    """Take observations back, and everything that nothing else says."""
+    from kb import Actionary
+
+    with Actionary.open(actionary, wait_s=wait) as opened:
+        for name in names:
+            opened.forget(name)
+            typer.echo(f"forgot {name}")

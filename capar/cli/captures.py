@@ -1,0 +1,343 @@
+"""Look at captures: what a file holds, a first capture.toml, a picture, the measured facts."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from capar.cli.options import Beside, Rules, Set, Steady, rule_base
+from capar.cli.output import console, print_json
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from capar.model.capture import Capture, Notice
+
+
+STREAM_COLUMNS = (
+    "stream", "kind", "s", "Hz", "jitter ms", "lost", "longest gap s", "rest mm", "rest deg",
+    "range m",
+)  # fmt: skip
+PAIR_COLUMNS = ("nearest pairs", "", "least m", "at s", "near for s")
+
+
+def inspect(
+    place: Annotated[
+        str, typer.Argument(help="A folder with a capture.toml (and :take), or a motion file.")
+    ],
+    as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
+    calibration: Annotated[
+        bool,
+        typer.Option("--calibration", help="Say what is decided once for the whole capture."),
+    ] = False,
+    set_: Set = None,
+) -> None:
+    """Say what a capture holds: streams, rate, gaps, noise, ranges and near pairs."""
+    if calibration:
+        _calibration(place, set_ or [], as_json=as_json)
+        return
+    report = _report(place)
+    if as_json:
+        print_json(report, sort_keys=True)
+    else:
+        _show(report)
+
+
+def _calibration(place: str, settings: list[str], *, as_json: bool) -> None:
+    from capar.model.json_form import to_json
+    from capar.views.calibration import calibration_tables
+    from extractors.calibration import calibrate
+    from extractors.readers.bundle.capture_toml import read_capture
+    from extractors.set_values import set_values
+
+    known = set_values(calibrate(read_capture(place)), settings)
+    if as_json:
+        typer.echo(to_json(known), nl=False)
+        return
+    for table in calibration_tables(known):
+        console().print(table)
+
+
+def _report(place: str) -> dict[str, Any]:
+    path = Path(place)
+    bundled = path.suffix == ".toml" or not path.exists() or (path / "capture.toml").is_file()
+    if bundled:
+        return _of_capture(place)
+    return _of_file(path)
+
+
+def _of_capture(place: str) -> dict[str, Any]:
+    from capar.model.capture import recorded_at
+    from extractors.readers.bundle.capture_toml import read_capture
+    from extractors.readers.drafting.survey import as_json, near_pairs, survey
+
+    capture = read_capture(place)
+    kinds = {sensor.name: f"sensor, {sensor.role.value}" for sensor in capture.sensors}
+    kinds |= {thing.name: f"object, {thing.tag.value}" for thing in capture.objects}
+    streams = {name: body.stream for name, body in capture.bodies.items()}
+    surveys = [survey(name, kinds[name], stream) for name, stream in streams.items()]
+    head = {
+        "name": capture.name,
+        "frames": len(capture.times),
+        "rate_hz": capture.rate_hz,
+        "recorded_at": recorded_at(capture.sources),
+        "shapes": {
+            name: body.shape.description for name, body in capture.bodies.items() if body.shape
+        },
+        "notices": [found.document() for found in (*capture.notices, *_findings(capture))],
+        "sources": [{"path": s.path, "format": s.format} for s in capture.sources],
+    }
+    return head | as_json(surveys, near_pairs(streams))
+
+
+def _findings(capture: "Capture") -> "Iterator[Notice]":
+    """What measuring finds to be wrong: motion without a mover, falls, sizes and distances."""
+    from capar.model.notices import KINDS
+    from capar.pipelines.movers import unmoved_notices
+    from capar_rules.borders.deflicker import steady
+    from capar_rules.movers.movers import movers
+    from extractors.measure import measure
+
+    measured = measure(capture)
+    facts = steady(measured.facts)
+    found = unmoved_notices((*facts, *movers(facts)), capture.times)
+    yield from (told for told in (*measured.notices, *found) if KINDS[told.code].fault)
+
+
+def _of_file(path: Path) -> dict[str, Any]:
+    import numpy as np
+
+    from capar.model.capture import Stream, notice
+    from extractors.readers.drafting.survey import as_json, near_pairs, survey
+    from extractors.readers.registry import read_recording
+
+    recording = read_recording(path)
+    metres = recording.unit_m or 1.0
+    streams = {
+        name: Stream(stream.times, stream.positions * metres, stream.orientations)
+        for name, stream in recording.bodies.items()
+    }
+    kinds = dict.fromkeys(streams, "body")
+    upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(recording.marker_times), 1))
+    for name, points in recording.markers.items():
+        streams[name] = Stream(recording.marker_times, points * metres, upright)
+        kinds[name] = "marker"
+    unit = [notice("no-unit")] if recording.unit_m is None else []
+    notices = [told.document() for told in (*recording.notices, *unit)]
+    surveys = [survey(name, kinds[name], stream) for name, stream in streams.items()]
+    head = {
+        "name": path.name,
+        "format": recording.format,
+        "frames": len(recording.times),
+        "recorded_at": recording.source.recorded_at,
+        "notices": notices,
+        "sources": [{"path": recording.source.path, "format": recording.format}],
+    }
+    return head | as_json(surveys, near_pairs(streams))
+
+
+def _show(report: dict[str, Any]) -> None:
+    from capar.views.tables import terminal_table
+
+    out = console()
+    when = f"recorded {report['recorded_at']}" if report["recorded_at"] else "no date of recording"
+    out.print(f"[bold]{report['name']}[/]: {report['frames']} frames, {when}")
+    rows = [
+        (
+            stream["name"], stream["kind"], f"{stream['seconds']:.2f}", f"{stream['rate_hz']:.1f}",
+            f"{stream['jitter_ms']:.1f}", str(stream["lost"]), f"{stream['longest_gap_s']:.2f}",
+            _figure(stream["noise_mm"]), _figure(stream["noise_deg"]),
+            " x ".join(f"{length:.2f}" for length in stream["range_m"] or ()) or "-",
+        )
+        for stream in report["streams"]
+    ]  # fmt: skip
+    out.print(terminal_table(STREAM_COLUMNS, rows, names={0}))
+    if report["pairs"]:
+        pairs = [
+            (
+                pair["first"], pair["second"], f"{pair['least_m']:.3f}",
+                f"{pair['at_s']:.2f}", f"{pair['near_s']:.2f}",
+            )
+            for pair in report["pairs"]
+        ]  # fmt: skip
+        out.print(terminal_table(PAIR_COLUMNS, pairs, names={0, 1}))
+    for name, text in report.get("shapes", {}).items():
+        out.print(f"shape of {name}: {text}", highlight=False)
+    for told in report["notices"]:
+        out.print(f"[yellow]{told['code']}[/]: {told['message']}", highlight=False)
+
+
+def _figure(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"
+
+
+def new_capture(
+    files: Annotated[
+        list[Path] | None, typer.Argument(help="Motion files of one trial.", show_default=False)
+    ] = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="The capture.toml to write, or its folder.")
+    ] = Path("capture.toml"),
+    force: Annotated[bool, typer.Option("--force", help="Overwrite what is there.")] = False,
+    schema: Annotated[
+        bool, typer.Option("--schema", help="Print the JSON schema of capture.toml, for editors.")
+    ] = False,
+) -> None:
+    """Write a commented capture.toml that a person then edits; it is read back at once."""
+    if schema:
+        from extractors.readers.schema.reference import json_schema
+
+        typer.echo(json.dumps(json_schema(), indent=2))
+        return
+    from capar.model.errors import CaparError
+
+    if not files:
+        raise CaparError("no motion file is named; like capar new-capture recording.c3d")
+    _write_draft(files, output, force=force)
+
+
+def _write_draft(files: list[Path], output: Path, *, force: bool) -> None:
+    from capar.cli.output import written
+    from capar.model.errors import CaparError, FileError
+    from extractors.readers.bundle.capture_toml import read_capture
+    from extractors.readers.drafting.draft import EDIT, draft
+    from extractors.readers.registry import read_recording
+
+    folder = output.is_dir() or output.suffix != ".toml"
+    path = output / "capture.toml" if folder else output
+    if path.exists() and not force:
+        raise FileError(path, "is there already.", "Name another with -o, or say --force.")
+    recordings = [read_recording(each) for each in files]
+    text = draft(recordings, path.parent, files[0].name.split(".")[0])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with written(path) as draft_file:
+        draft_file.write_text(text, encoding="utf-8")
+    typer.echo(f"wrote {path}")
+    for number, line in enumerate(text.splitlines(), 1):
+        if EDIT in line:
+            typer.echo(f"{path}:{number}: look at: {line.strip()}")
+    try:
+        capture = read_capture(path)
+    except CaparError as error:
+        typer.echo(f"it cannot be read yet: {error}")
+    else:
+        typer.echo(
+            f"it reads as a capture of {len(capture.times)} frames at {capture.rate_hz:.4g} Hz; "
+            f"sensors: {len(capture.sensors)}, objects: {len(capture.objects)}"
+        )
+
+
+def view(
+    capture: Annotated[
+        str,
+        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
+    ],
+    html: Annotated[
+        Path | None,
+        typer.Option(help="Write one HTML file that opens in a browser without a network."),
+    ] = None,
+    png: Annotated[Path | None, typer.Option(help="Draw the moment --at to a PNG file.")] = None,
+    at: Annotated[
+        float | None, typer.Option(help="Which moment [s]; the middle if not given.")
+    ] = None,
+    profile: Annotated[
+        str, typer.Option(help="The rules that name what the timeline shows: extended or thesis.")
+    ] = "extended",
+    rules: Rules = None,
+    fit: Annotated[
+        bool,
+        typer.Option("--fit", help="Fit a human body to the recording and show it too."),
+    ] = False,
+    only_bodies: Annotated[
+        bool,
+        typer.Option("--only-bodies", help="Show what the recording holds, without observing it."),
+    ] = False,
+) -> None:
+    """Show the bodies of CAPTURE as they moved, over what was found in them.
+
+    Use it before anything else on a capture.toml of your own: wrong units, axes and mounts are
+    seen at once.
+    """
+    from capar.cli.output import written
+    from capar.model.errors import CaparError
+    from capar.views.viewer.stage import stage
+    from extractors.readers.bundle.capture_toml import read_capture
+
+    if at is not None and png is None:
+        raise CaparError("--at is the moment of a picture: give --png FILE too")
+    if html is None and png is None:
+        raise CaparError("nothing to write: give --html FILE, or --png FILE with --at SECONDS")
+    trial = read_capture(capture)
+    shown = stage(trial, at_s=at)
+    if fit:
+        from capar.body.whole_bodies import fit_body
+        from capar.views.viewer.mannequin import with_mannequin
+
+        shown = with_mannequin(shown, fit_body(capture, trial))
+    if png is not None:
+        from capar.views.viewer.snapshot import snapshot
+
+        with written(png) as draft:
+            snapshot(shown, at if at is not None else float(shown.times.mean()), draft)
+        typer.echo(f"drew {png}")
+    if html is not None:
+        from capar.pipelines.observation import observe
+        from capar.views.viewer.web_page import web_page
+
+        found = None if only_bodies else observe(trial, rules=rule_base(profile, rules))
+        page = web_page(shown, found)
+        with written(html) as draft:
+            draft.write_text(page, encoding="utf-8")
+        typer.echo(f"wrote {html}: open it in a browser")
+
+
+def facts(
+    capture: Annotated[
+        str,
+        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
+    ],
+    profile: Annotated[
+        str, typer.Option(help="For which rules to number the borders.")
+    ] = "extended",
+    ranked: Annotated[
+        bool,
+        typer.Option(help="Number the borders too, so that the rule files can read the program."),
+    ] = True,
+    derive: Annotated[
+        bool,
+        typer.Option(
+            "--derive",
+            help="Add contact(Body, Other, Frame), moved(Object, Segment) and "
+            "regrasps(Segment, Object) by the rules.",
+        ),
+    ] = False,
+    rules: Rules = None,
+    actionary: Beside = None,
+    steady: Steady = None,
+) -> None:
+    """Print the ground facts of CAPTURE as an ASP program, for clingo with the rule files."""
+    from capar.model.facts import program
+    from capar.pipelines.observation import facts_program
+    from capar_rules.engine.solver import rule_file, solve, text_of
+    from extractors.readers.bundle.capture_toml import read_capture
+
+    base = rule_base(profile, rules, actionary, steady=steady)
+    trial = read_capture(capture)
+    measurements, borders = facts_program(trial, rules=base)
+    typer.echo(f"% {trial.name}: what was measured.\n{program(measurements.facts)}", nl=False)
+    if ranked:
+        typer.echo(
+            f"% Borders, numbered for the profile {base.name}.\n{program(borders)}", nl=False
+        )
+        typer.echo(f"% Rules: {' '.join(map(str, base.files))}")
+    if derive:
+        answer = solve(
+            (*base.files, rule_file("explain/derived.lp")), (*measurements.facts, *borders)
+        )
+        lines = "".join(
+            f"{text_of((name, *arguments))}.\n"
+            for name in ("contact", "moved", "regrasps")
+            for arguments in answer.of(name)
+        )
+        typer.echo(f"% Derived.\n{lines}", nl=False)

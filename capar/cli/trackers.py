@@ -1,0 +1,214 @@
+"""Live trackers: list them, record one, simulate one."""
+
+import json
+import math
+import time
+from dataclasses import asdict
+from pathlib import Path
+from shlex import quote
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from extractors.devices.tracker import LiveTracker
+
+
+def devices(
+    address: Annotated[
+        str, typer.Argument(help="A device address; without one, drivers and ports are listed.")
+    ] = "",
+    seconds: Annotated[
+        float, typer.Option("--seconds", min=0.1, help="How long to watch it.")
+    ] = 2.0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
+) -> None:
+    """List drivers and serial ports, or open a tracker and say what comes from it."""
+    from extractors.devices.drivers import find_tracker
+
+    report = _watched(find_tracker(address), seconds) if address else _listed()
+    if as_json:
+        typer.echo(json.dumps(report, indent=2, sort_keys=True))
+    else:
+        (_show if address else _show_list)(report)
+
+
+def _listed() -> dict[str, Any]:
+    from extractors.devices.drivers import EXAMPLES
+    from extractors.devices.serial_line import find_ports
+
+    return {"drivers": EXAMPLES, "ports": find_ports()}
+
+
+def _show_list(report: dict[str, Any]) -> None:
+    typer.echo("drivers, each with an address:")
+    for name, example in report["drivers"].items():
+        typer.echo(f"  {name:<11} {example}")
+    typer.echo("serial ports:" if report["ports"] else "no serial ports")
+    for port, what in report["ports"].items():
+        typer.echo(f"  {port:<11} {what}")
+
+
+def _watched(tracker: "LiveTracker", seconds: float) -> dict[str, Any]:
+    """What a tracker says of itself, and what arrives for a while."""
+    frames = []
+    with tracker:
+        description = tracker.describe()
+        end = time.monotonic() + seconds
+        while (left_s := end - time.monotonic()) > 0.0:
+            frames += tracker.poll(min(0.1, left_s))
+    last = frames[-1] if frames else None
+    span_s = frames[-1].host_s - frames[0].host_s if frames else 0.0
+    return {
+        "kind": description.kind,
+        "model": description.model,
+        "details": dict(description.details),
+        "rate_hz": (len(frames) - 1) / span_s if span_s else 0.0,
+        "counts": asdict(tracker.counts),
+        "events": [each.message for each in tracker.events],
+        "positions_m": {
+            name: _numbers(last.positions[index]) if last else None
+            for index, name in enumerate(description.sensors)
+        },
+    }
+
+
+def _numbers(position: Any) -> list[float] | None:
+    """A position, or None where it is lost; JSON has no NaN."""
+    return [float(each) for each in position] if all(map(math.isfinite, position)) else None
+
+
+def _show(report: dict[str, Any]) -> None:
+    details = ", ".join(f"{name} {value}" for name, value in report["details"].items())
+    typer.echo(f"{report['kind']} {report['model']} {details}".rstrip())
+    counts = report["counts"]
+    typer.echo(
+        f"{counts['frames']} frames at {report['rate_hz']:.1f} Hz, {counts['lost_records']} poses "
+        f"lost, {counts['refused_records']} refused, {counts['dropped_bytes']} bytes dropped"
+    )
+    for name, position in report["positions_m"].items():
+        place = "no position" if position is None else " ".join(f"{v:7.3f}" for v in position)
+        typer.echo(f"  {name:<16} {place}")
+    for message in report["events"]:
+        typer.echo(message)
+
+
+def record(
+    source: Annotated[
+        str, typer.Argument(help="A device address, or the file of a recording that was cut off.")
+    ],
+    output: Annotated[Path, typer.Argument(help="The folder of the capture bundle to make.")],
+    seconds: Annotated[
+        float, typer.Option("--seconds", min=0.0, help="How long; 0 until it is interrupted.")
+    ] = 0.0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
+) -> None:
+    """Record a tracker into OUTPUT.live as it sends, then make a capture bundle of it.
+
+    The recording is kept: after a crash or a kill the bundle is made from it.
+    """
+    from capar.model.errors import FileError
+    from extractors.devices.bundle_writer import write_bundle
+    from extractors.devices.recording import read_live_recording
+
+    live = Path(source)
+    if output.exists():
+        raise FileError(output, "exists already.", "Bundles are never overwritten.")
+    if not live.is_file():
+        live = output.with_name(f"{output.name}.live")
+        _record(source, live, seconds)
+    recording = read_live_recording(live)
+    write_bundle(recording, output)
+    report = {
+        "recording": str(live),
+        "bundle": str(output),
+        "frames": len(recording.host_s),
+        "sensors": list(recording.description.sensors),
+        "counts": asdict(recording.counts) if recording.counts else None,
+        "events": [each.message for each in recording.events],
+    }
+    typer.echo(json.dumps(report, indent=2, sort_keys=True) if as_json else _told(report))
+
+
+def _record(address: str, path: Path, seconds: float) -> None:
+    """Record until the time is over, or the user ends it."""
+    from extractors.devices.drivers import find_tracker
+    from extractors.devices.recording import RecordingWriter
+
+    with find_tracker(address) as tracker:
+        writer = RecordingWriter(path, tracker.describe(), address)
+        end, told = time.monotonic() + seconds, 0
+        try:
+            while not seconds or time.monotonic() < end:
+                for frame in tracker.poll(0.1):
+                    writer.write(frame)
+                for event in tracker.events[told:]:
+                    typer.echo(event.message, err=True)
+                    writer.tell(event)
+                told = len(tracker.events)
+        except KeyboardInterrupt:
+            typer.echo("ended", err=True)
+    writer.close(tracker.counts)
+
+
+def _told(report: dict[str, Any]) -> str:
+    counts = report["counts"]
+    lost = f", {counts['lost_records']} poses lost" if counts else "; the recording was cut off"
+    names = ", ".join(report["sensors"])
+    return (
+        f"{report['frames']} frames of {names}{lost}\n"
+        f"wrote {report['bundle']} from {report['recording']}"
+    )
+
+
+def simulate(
+    kind: Annotated[str, typer.Argument(help="flock, motionstar, fastrak or vrpn.")],
+    capture: Annotated[
+        str, typer.Option("--capture", help="A capture to play in a loop; else a made-up motion.")
+    ] = "",
+    sensors: Annotated[
+        int, typer.Option("--sensors", min=1, max=13, help="Sensors of the made-up motion.")
+    ] = 4,
+    erc: Annotated[
+        bool, typer.Option("--erc", help="Flock: with an extended-range controller as unit 1.")
+    ] = False,
+    lost: Annotated[
+        float, typer.Option("--lost", min=0.0, max=1.0, help="Share of bytes or packets lost.")
+    ] = 0.0,
+    garbled: Annotated[
+        float, typer.Option("--garbled", min=0.0, max=1.0, help="Share of bytes garbled.")
+    ] = 0.0,
+    port: Annotated[int, typer.Option("--port", help="TCP or UDP port; 0 takes a free one.")] = 0,
+    seconds: Annotated[
+        float, typer.Option("--seconds", min=0.0, help="How long; 0 until it is interrupted.")
+    ] = 0.0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
+) -> None:
+    """Simulate a tracker on a pseudo-terminal or on loopback, and say its address."""
+    from extractors.devices.motion_source import CapturedMotion, MotionSource, SmoothMotion
+    from extractors.devices.simulators import Wanted, make_simulator
+    from extractors.readers.bundle.capture_toml import read_capture
+
+    motion: MotionSource = SmoothMotion(sensors)
+    names = ""
+    if capture:
+        motion = CapturedMotion(read_capture(capture))
+        names = f"&names={','.join(motion.sensors)}"
+    simulator, options = make_simulator(kind, Wanted(motion, erc, lost, garbled, port))
+    with simulator:
+        address = f"{kind}:{simulator.place}?{options}{names}"
+        typer.echo(json.dumps({"address": address}) if as_json else address)
+        if not as_json:
+            # The shell would take an address that is not quoted for several commands.
+            typer.echo(f"in another terminal: capar record {quote(address)} FOLDER", err=True)
+        _wait(seconds)
+
+
+def _wait(seconds: float) -> None:
+    """Until the time is over, or the user ends it."""
+    end = time.monotonic() + seconds
+    try:
+        while not seconds or time.monotonic() < end:
+            time.sleep(0.1)
+    except KeyboardInterrupt:
+        return
