@@ -21,8 +21,7 @@ from typing import Any
 import numpy as np
 import scene
 
-from capar.model.bodies import Stream
-from capar.model.capture import Capture, Sensor
+from capar.model.capture import Capture, Sensor, Stream
 from capar.pipelines.live.events import Status
 from capar.pipelines.live.frames import Poses, body_names, replayed
 from capar.pipelines.live.observer import LiveObserver

@@ -18,7 +18,7 @@ right. Times are in seconds, lengths in metres, quaternions w x y z.
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from capar.model.display import register as _register
+from capar.model.observation import register as _register
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -5,8 +5,8 @@ from itertools import groupby
 
 from pyoxigraph import Literal, NamedNode, Quad
 
+from capar.model.observation import SegmentAddress
 from capar.model.par import UNKNOWN
-from capar.model.segment_address import SegmentAddress
 from kb.corrections import BY, Span, account, corrected_captures
 from kb.lookup.stored import observations
 from kb.store import names

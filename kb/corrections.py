@@ -10,8 +10,8 @@ from datetime import UTC, datetime
 from pyoxigraph import Literal, NamedNode, Quad
 
 from capar.model.errors import UnknownNameError
+from capar.model.observation import SegmentAddress
 from capar.model.par import ACTION_NAME, UNKNOWN
-from capar.model.segment_address import SegmentAddress
 from kb.errors import CorrectionError
 from kb.lookup.stored import observations
 from kb.store import names

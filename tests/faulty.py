@@ -7,8 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
-from capar.model.capture import Capture, Sensor, Stream, TagObject
-from capar.model.conventions import Conventions
+from capar.model.capture import Capture, Conventions, Sensor, Stream, TagObject
 from capar.model.notices import KINDS, Notice
 from extractors.measure import measure
 

@@ -216,7 +216,7 @@ def correct(
     Segments are counted as this command prints them. `capar query --corrected` asks what persons
     say; `capar query corrections` lists their claims.
     """
-    from capar.model.segment_address import split_capture
+    from capar.model.observation import split_capture
     from kb import Actionary
     from kb.corrections import Correction, account
     from kb.corrections import correct as claim

@@ -36,8 +36,7 @@ def migrate(
 def _migrate_file(path: Path) -> None:
     from capar.cli.output import written
     from capar.model.errors import FileError
-    from capar.model.json_form import from_json, to_json
-    from capar.model.json_migration import SCHEMA, migrated, version
+    from capar.model.json_form import SCHEMA, from_json, migrated, to_json, version
 
     try:
         text = path.read_text("utf-8")

@@ -263,7 +263,6 @@ def write_approach(stepped: "Approach", folder: Path, agent: str) -> None:
 
 def approach_answer(stepped: "Approach | None", passed: bool) -> dict[str, Any]:
     """Steps for machines; nothing where none were needed."""
-
     if stepped is None:
         return {}
     return {
@@ -281,7 +280,6 @@ def approach_answer(stepped: "Approach | None", passed: bool) -> dict[str, Any]:
 
 def tell_approach(stepped: "Approach | None") -> None:
     """Print the steps that were needed, if any, and their gates."""
-
     if stepped is None:
         return
     typer.echo(f"plan: from the given place {stepped.why}")
@@ -707,7 +705,6 @@ def perform_jointly(
 
 def joint_answer(made: "JointMotion") -> dict[str, Any]:
     """Gates and notes of several motions, for machines."""
-
     performers = {
         name: quality_answer(motion, made.qualities[name]) for name, motion in made.motions.items()
     }
@@ -716,7 +713,6 @@ def joint_answer(made: "JointMotion") -> dict[str, Any]:
 
 def tell_joint_quality(made: "JointMotion") -> None:
     """Print the gates of every body and between them, and the notes, each once."""
-
     notes: dict[str, None] = {}
     for name, motion in made.motions.items():
         typer.echo(f"{name}:")

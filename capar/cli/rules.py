@@ -95,7 +95,7 @@ def list_words(
 
 def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) -> None:
     """The segments that have another name now, and how many; who was left alone."""
-    from capar.model.segment_address import SegmentAddress
+    from capar.model.observation import SegmentAddress
     from capar.rulebook.changes import NOTHING
 
     for change in changes:

@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable
 
-from capar.model.atoms import Fact
-from capar.model.declarations import Observed, Span
+from capar.model.fact_kinds import Fact, Observed, Span
 from capar.model.facts import ALL_FACT_KINDS
 
 Interval = tuple[int, int]

@@ -10,9 +10,6 @@ from capar.model.arrangement_facts import Between as Between
 from capar.model.arrangement_facts import Lies as Lies
 from capar.model.arrangement_facts import MovesWith as MovesWith
 from capar.model.arrangement_facts import Passage as Passage
-from capar.model.atoms import LARGEST as LARGEST
-from capar.model.atoms import Fact as Fact
-from capar.model.atoms import program as program
 from capar.model.contact_facts import ClosingSpeed as ClosingSpeed
 from capar.model.contact_facts import ContactNormal as ContactNormal
 from capar.model.contact_facts import PressDirection as PressDirection
@@ -20,9 +17,12 @@ from capar.model.contact_facts import ReleaseSpeed as ReleaseSpeed
 from capar.model.contact_facts import Rides as Rides
 from capar.model.contact_facts import Seated as Seated
 from capar.model.contact_facts import SightNormal as SightNormal
-from capar.model.declarations import Declaration, Span, kinds_of
-from capar.model.declarations import Observed as Observed
 from capar.model.errors import FactError
+from capar.model.fact_kinds import LARGEST as LARGEST
+from capar.model.fact_kinds import Declaration, Span, kinds_of
+from capar.model.fact_kinds import Fact as Fact
+from capar.model.fact_kinds import Observed as Observed
+from capar.model.fact_kinds import program as program
 from capar.model.motion_facts import Displaced as Displaced
 from capar.model.motion_facts import Distance as Distance
 from capar.model.motion_facts import Place as Place

@@ -1,8 +1,82 @@
-"""Where constraints are on objects, and where a hinge or a rail guides one (thesis Fig 4.8)."""
+"""Places on objects: normalised local transforms, constraint locations, guides, sampled tracks."""
 
+from base64 import b64decode, b64encode
+from binascii import Error as Base64Error
 from dataclasses import dataclass
+from math import isfinite
 
-from capar.model.nlt import Nlt
+import numpy as np
+from jaxtyping import Float
+
+from capar.model import geometry
+from capar.model.errors import ParError
+
+NO_EXTENT_M = 1e-6
+"""A size below this is none [m]."""
+
+ACROSS = 1
+"""The axis (y) across an object's plane that parts its left (+y) from its right."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Nlt:
+    """Normalised local transform: a place in an object's frame over its size, and a quaternion."""
+
+    position: tuple[float, float, float]
+    orientation: tuple[float, float, float, float]
+    """Unit quaternion w x y z that takes the constraint's axes to the object's."""
+
+    def mirrored(self, axis: int = ACROSS) -> "Nlt":
+        """The same place for the other side of the body (thesis 4.4.2.2).
+
+        Mirrored in the plane through the object's origin across an axis; the constraint's own axes
+        are those of the other side's end-effector, mirrored alike.
+
+        Args:
+            axis: 0, 1 or 2 for x, y or z; by default the one that points to the object's left.
+        """
+        x, y, z = (0.0 - each if i == axis else each for i, each in enumerate(self.position))
+        w, *vector = self.orientation
+        i, j, k = (each if n == axis else 0.0 - each for n, each in enumerate(vector))
+        return Nlt((x, y, z), (w, i, j, k))
+
+
+def normalised(
+    point: Float[np.ndarray, "3"],
+    orientation: Float[np.ndarray, "4"],
+    size_m: Float[np.ndarray, "3"],
+) -> Nlt:
+    """The NLT of a place [m] and an orientation in the frame of an object of a size [m]."""
+    x, y, z = map(float, point / _divisors(size_m))
+    w, i, j, k = map(float, orientation * (-1.0 if orientation[0] < 0.0 else 1.0))
+    return Nlt((x, y, z), (w, i, j, k))
+
+
+def restored(
+    nlt: Nlt, size_m: Float[np.ndarray, "3"]
+) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]:
+    """The place [m] and orientation that an NLT means in the frame of an object of a size [m]."""
+    return np.asarray(nlt.position) * _divisors(size_m), np.asarray(nlt.orientation)
+
+
+def relative_orientation(
+    base: Float[np.ndarray, "4"], other: Float[np.ndarray, "4"]
+) -> Float[np.ndarray, "4"]:
+    """An orientation in the frame of another one, both given in the world (w x y z)."""
+    return geometry.quaternions(geometry.rotations(base).inv() * geometry.rotations(other))
+
+
+def local_point(
+    position: Float[np.ndarray, "3"],
+    orientation: Float[np.ndarray, "4"],
+    point: Float[np.ndarray, "3"],
+) -> Float[np.ndarray, "3"]:
+    """A point of the world [m] in the frame of a body at a position [m] and orientation."""
+    return np.asarray(geometry.rotations(orientation).inv().apply(point - position))
+
+
+def _divisors(size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+    return np.where(np.asarray(size_m) > NO_EXTENT_M, size_m, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,3 +128,69 @@ class GuideLocation:
 
     residual_m: float
     """Root mean square of how far its poses are off the fitted line, turning included [m]."""
+
+
+UNIT_M = 1e-4
+"""Places are kept to this [m]."""
+
+LOST = np.iinfo(np.int32).min
+"""What a coordinate is while the body was lost."""
+
+
+@dataclass(frozen=True, slots=True)
+class SampledTrack:
+    """The places of a body's origin in the world, from the first frame on."""
+
+    body: str
+    step_s: float
+    """Time between two samples [s]; zero where one sample holds throughout."""
+
+    samples: str
+    """Base64 of x, y, z of each sample as little-endian 32-bit integers in units of ``UNIT_M``."""
+
+    def __post_init__(self) -> None:
+        """Check that the text can be read.
+
+        Raises:
+            ParError: It is no Base64 of samples, or the step is no time.
+        """
+        try:
+            size = len(b64decode(self.samples, validate=True))
+        except Base64Error:
+            size = 1
+        if size == 0 or size % 12:
+            raise ParError(f"the samples of {self.body!r} are no Base64 of x, y, z in 32 bits each")
+        if not isfinite(self.step_s) or self.step_s < 0.0 or (self.step_s == 0.0 and size > 12):
+            raise ParError(
+                f"the samples of {self.body!r} are {self.step_s} s apart, which is no step"
+            )
+
+    @property
+    def positions(self) -> Float[np.ndarray, "samples 3"]:
+        """World positions [m]; NaN where the body was lost."""
+        counts = np.frombuffer(b64decode(self.samples), dtype="<i4").reshape(-1, 3)
+        return np.where(counts == LOST, np.nan, counts * UNIT_M)
+
+    def lost_around(self, time_s: float) -> tuple[float, float] | None:
+        """From when to when the body was lost about a time [s]; none where it was seen.
+
+        The ends are the samples beside, in which it was seen, or those of the track.
+        """
+        lost = np.isnan(self.positions).any(axis=1)
+        at = time_s / self.step_s if self.step_s else 0.0
+        before, after = (min(int(whole(at)), len(lost) - 1) for whole in (np.floor, np.ceil))
+        if not (lost[before] or lost[after]):
+            return None
+        seen = np.flatnonzero(~lost)
+        first = int(seen[seen < after].max(initial=0))
+        last = int(seen[seen > before].min(initial=len(lost) - 1))
+        return first * self.step_s, last * self.step_s
+
+
+def sampled_track(
+    body: str, step_s: float, positions: Float[np.ndarray, "samples 3"]
+) -> SampledTrack:
+    """The track of a body, by its places [m] at equal steps of time; NaN where it was lost."""
+    lost = np.isnan(positions)
+    counts = np.where(lost, LOST, np.rint(np.where(lost, 0.0, positions) / UNIT_M))
+    return SampledTrack(body, step_s, b64encode(counts.astype("<i4").tobytes()).decode())

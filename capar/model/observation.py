@@ -1,24 +1,90 @@
 """An observation: everything that was understood of one capture, frozen."""
 
-from dataclasses import dataclass
-from typing import Any, Literal
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from importlib import import_module
+from typing import Any, Literal, Self
 
 from capar.model.calibration import Calibration
 from capar.model.capture import Agent, Notice, Source
-from capar.model.display import display
+from capar.model.errors import CaparError, UnknownNameError
 from capar.model.facts import Fact
-from capar.model.forces import ForceStyle
-from capar.model.locations import ConstraintLocation, GuideLocation
-from capar.model.naming_rule import NamingRule
-from capar.model.par import (
-    UNKNOWN,
-    ComplexPar,
-    FeatureSet,
-    Ipar,
-    Style,
-    Upar,
-)
-from capar.model.sampled_track import SampledTrack
+from capar.model.locations import ConstraintLocation, GuideLocation, SampledTrack
+from capar.model.par import UNKNOWN, ComplexPar, FeatureSet, Ipar, NamingRule, Style, Upar
+
+_PLACES: dict[str, str] = {}
+
+
+def register(form: str, place: str) -> None:
+    """Say which function shows values in some form.
+
+    Args:
+        form: ``html``, ``frame`` ...
+        place: The function, as ``MODULE:FUNCTION``.
+    """
+    _PLACES[form] = place
+
+
+def display(form: str) -> Callable[..., Any]:
+    """The function that shows values in that form.
+
+    Raises:
+        KeyError: No function was registered for it.
+    """
+    module, _, function = _PLACES[form].partition(":")
+    show: Callable[..., Any] = getattr(import_module(module), function)
+    return show
+
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class ForceStyle:
+    """How an end-effector set a thing going that then moved on alone (thesis 3.4.3, Fig 4.13)."""
+
+    object: str
+    ee: str
+    start_s: float
+    """When it was struck or let go [s]."""
+
+    end_s: float
+    """Until when its motion was followed [s]."""
+
+    struck: bool
+    """Whether it was at rest before; else it was let go in motion."""
+
+    position_m: Vector
+    """Of its box's middle at the start [m]."""
+
+    velocity_mps: Vector
+    """Of the thing, just after the start [m/s]."""
+
+    striker_mps: Vector
+    """Of the end-effector, just before [m/s]."""
+
+    follow_mps: Vector
+    """Of the end-effector, just after [m/s]."""
+
+    restitution: float | None
+    """Between end-effector and thing, along the line of impact (eq. 3.5) [1]; None of a thing that
+    was let go."""
+
+    damping_per_s: tuple[float, float] | None
+    """Deceleration over speed while it slid, along x and y [1/s]; None if it did not slide."""
+
+    thesis_damping: tuple[float, float] | None
+    """Slope of acceleration over velocity against time (eq. 3.9), the thesis's damping [1/s^2]."""
+
+    bounce: float | None
+    """Restitution between the thing and what it fell on [1]; None if it did not bounce."""
+
+    impulse_ns: Vector | None
+    """Momentum that it was given [N s]; None where its mass is not stated."""
+
+    residual_m: float
+    """Root mean square distance of its recorded places from the fitted motion [m]."""
+
 
 BOTH = {"hand": "hands", "foot": "feet"}
 """End-effectors of which a body has two, and what both are called."""
@@ -259,3 +325,93 @@ class Observation:
                 return f"both {several}"
         *some, last = (name.replace("_", " ") for name in joint.who)
         return f"{', '.join(some)} and {last}"
+
+
+FORM = "CAPTURE/END_EFFECTOR/INDEX"
+EXAMPLE = "drink_from_mug/right_hand/3"
+
+
+class AddressError(CaparError):
+    """A text that is no address of a segment."""
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentAddress:
+    """Which segment is meant: of which end-effector, counted from zero, in which capture."""
+
+    ee: str
+    index: int
+    """Its number in the link, from zero."""
+
+    capture: str = ""
+    """Name or path of the capture; empty where there is only one."""
+
+    def __post_init__(self) -> None:
+        """Check that the address can be read back from its text.
+
+        Raises:
+            AddressError: The end-effector is empty or has a slash, or the index is negative.
+        """
+        if not self.ee or "/" in self.ee or self.index < 0:
+            raise AddressError(
+                f"end-effector {self.ee!r} and index {self.index} are no address of a segment; "
+                "an end-effector has a name without '/', an index is 0 or more"
+            )
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """The address that a text states; the capture may itself contain slashes.
+
+        Raises:
+            AddressError: It is no address; the message says what one looks like.
+        """
+        *before, ee, index = ["", *text.strip().rsplit("/", 2)][-3:]
+        if not ee or not (index.isascii() and index.isdecimal()):
+            raise AddressError(
+                f"{text!r} is no address of a segment; write {FORM}, such as {EXAMPLE}, "
+                "and leave CAPTURE out where there is only one"
+            )
+        return cls(ee, int(index), "".join(before))
+
+    def __str__(self) -> str:
+        """The text from which ``parse`` reads the address back."""
+        capture = f"{self.capture}/" if self.capture else ""
+        return f"{capture}{self.ee}/{self.index}"
+
+
+def split_capture(text: str) -> tuple[str, SegmentAddress]:
+    """The capture that an address names, and the address within it.
+
+    Raises:
+        AddressError: It is no address, or names no capture.
+    """
+    address = SegmentAddress.parse(text)
+    if not address.capture:
+        raise AddressError(f"{text!r} names no capture; write {FORM}, such as {EXAMPLE}")
+    return address.capture, replace(address, capture="")
+
+
+def find_segment(
+    links: Iterable[ObservedLink], address: SegmentAddress, *, capture: str
+) -> Segment:
+    """The segment at an address.
+
+    Args:
+        links: The links of one capture.
+        address: With that capture's name, or without any.
+        capture: The capture's name.
+
+    Raises:
+        UnknownNameError: The address names another capture, or a segment that is not there.
+    """
+    if address.capture not in {"", capture}:
+        raise UnknownNameError("capture", address.capture, [capture])
+    known = {
+        str(SegmentAddress(segment.ee, segment.index)): segment
+        for link in links
+        for segment in link.segments
+    }
+    name = str(SegmentAddress(address.ee, address.index))
+    if name not in known:
+        raise UnknownNameError("segment", name, known, where=capture)
+    return known[name]

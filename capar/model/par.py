@@ -1,11 +1,11 @@
-"""Parameterized action representations: uninstantiated, instantiated and complex (thesis 4.1)."""
+"""Action representations: UPARs, IPARs, complex PARs, and the rules that named their segments."""
 
 import re
 from dataclasses import dataclass
 from enum import StrEnum
 
 from capar.model.errors import ParError
-from capar.model.nlt import Nlt as Nlt
+from capar.model.locations import Nlt as Nlt
 
 ACTION_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
 """What a primitive may be called: ``MoveObjTo``."""
@@ -261,3 +261,30 @@ class ComplexPar:
             )
             for link in self.links
         )
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Threshold:
+    """A number that rules decide by."""
+
+    name: str
+    """With its unit at its end: ``height_mm``."""
+
+    value: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class NamingRule:
+    """What defines a name of segments in the rule base that named them."""
+
+    name: str
+    file: str
+    """The rule file, by its folder and its name."""
+
+    sha256: str
+    """Of the file's text."""
+
+    text: str
+    thresholds: tuple[Threshold, ...]
+    """Those that the definition reads, and the vocabulary that it names, by name; those by which
+    segments are cut are not among them."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from capar.model.declarations import Declaration, Observed, Span
+from capar.model.fact_kinds import Declaration, Observed, Span
 
 
 @dataclass(frozen=True, slots=True, order=True)

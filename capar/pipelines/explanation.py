@@ -12,8 +12,7 @@ from capar.model import geometry
 from capar.model.body_names import body_names
 from capar.model.capture import Capture
 from capar.model.facts import Moving
-from capar.model.observation import Observation, Segment
-from capar.model.segment_address import SegmentAddress, find_segment
+from capar.model.observation import Observation, Segment, SegmentAddress, find_segment
 from capar.pipelines.distances import apart_within, reaches
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of

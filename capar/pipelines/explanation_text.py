@@ -4,8 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from capar.model.capture import Notice
 from capar.model.notices import KINDS
-from capar.model.observation import Segment
-from capar.model.segment_address import SegmentAddress
+from capar.model.observation import Segment, SegmentAddress
 from capar.pipelines.explanation import Explained
 from capar.views.movers import mover_lines
 from capar.views.notices import named_in, reservation_lines, reservations

@@ -5,8 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from capar.model.capture import Capture
-from capar.model.observation import Observation
-from capar.model.segment_address import find_segment, split_capture
+from capar.model.observation import Observation, find_segment, split_capture
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.language.describe import Detail
 from kb.language.describe import describe as told

@@ -8,7 +8,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model.geometry import rotations
-from capar.model.nlt import restored
+from capar.model.locations import restored
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import MOVES_M, Source
 

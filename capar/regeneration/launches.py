@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform
 
-from capar.model.forces import ForceStyle
+from capar.model.observation import ForceStyle
 from capar.regeneration.errors import PlanError
 from capar.regeneration.holding import Hold
 from extractors.forces.free_motion import GRAVITY_MPS2

@@ -6,9 +6,8 @@ from tempfile import TemporaryDirectory
 
 from capar.model.errors import RuleError, UnknownNameError
 from capar.model.facts import Fact
-from capar.model.observation import ObservedLink, Segment
+from capar.model.observation import ObservedLink, Segment, find_segment, split_capture
 from capar.model.par import FeatureSet
-from capar.model.segment_address import find_segment, split_capture
 from capar.pipelines.observation import facts_program
 from capar_rules.authoring.examples import Example, written
 from capar_rules.authoring.excerpts import excerpt

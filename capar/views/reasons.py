@@ -4,8 +4,7 @@ from collections.abc import Iterator, Sequence
 from html import escape
 from textwrap import wrap
 
-from capar.model.observation import Observation
-from capar.model.segment_address import SegmentAddress
+from capar.model.observation import Observation, SegmentAddress
 from capar.views.reason_tree import note, reason_tree
 from capar_rules.explain.explanation import Explanation, Reason
 

@@ -3,10 +3,8 @@
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
-from capar.model.forces import ForceStyle
-from capar.model.observation import Observation, ObservedLink, Segment
+from capar.model.observation import ForceStyle, Observation, ObservedLink, Segment, SegmentAddress
 from capar.model.par import ComplexPar, FeatureSet, Step
-from capar.model.segment_address import SegmentAddress
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import clingo
 
-from capar.model.atoms import signatures
+from capar.model.capture import NAME
 from capar.model.errors import RuleError
+from capar.model.fact_kinds import signatures
 from capar.model.facts import Fact, program
-from capar.model.names import NAME
 from capar_rules.engine.programs import RuleBase
 
 BLOCK_FACTS = 4096

@@ -8,7 +8,7 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-from capar.model.naming_rule import NamingRule, Threshold
+from capar.model.par import NamingRule, Threshold
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.solver import loaded_files
 

@@ -5,8 +5,7 @@ from enum import Enum, auto
 
 import numpy as np
 
-from capar.model.capture import Capture
-from capar.model.conventions import Conventions
+from capar.model.capture import Capture, Conventions
 from capar.model.notices import Notice, notice
 from extractors.bodies.bodies import Bodies
 from extractors.faults.free_flight import Flight, flights

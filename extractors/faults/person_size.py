@@ -6,8 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from capar.model.capture import Capture, Sensor, TagType
-from capar.model.conventions import UNITS, Conventions
+from capar.model.capture import UNITS, Capture, Conventions, Sensor, TagType
 from capar.model.notices import Notice, notice
 from extractors.thresholds import Thresholds
 

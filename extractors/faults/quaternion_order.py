@@ -14,7 +14,7 @@ from itertools import permutations
 import numpy as np
 from jaxtyping import Bool, Float
 
-from capar.model.bodies import Stream
+from capar.model.capture import Stream
 from capar.model.notices import Notice, notice
 from extractors.bodies.poses import rotation_matrices
 from extractors.signals.clock import frame_rate

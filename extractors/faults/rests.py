@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model import geometry
-from capar.model.capture import Capture, TagType
-from capar.model.conventions import Conventions
+from capar.model.capture import Capture, Conventions, TagType
 from capar.model.notices import Notice, notice
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry

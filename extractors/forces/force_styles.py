@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from capar.model.capture import Capture, TagType
 from capar.model.facts import Touching
-from capar.model.forces import ForceStyle, Vector
+from capar.model.observation import ForceStyle, Vector
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.forces.blow_velocities import (

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from capar.model.capture import UNITS as UNITS
 from capar.model.capture import Notice, Source, Stream
-from capar.model.conventions import UNITS as UNITS
 from capar.model.errors import CaptureError
 
 

@@ -5,8 +5,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
-from capar.model.locations import GuideLocation
-from capar.model.nlt import Nlt, local_point, normalised, relative_orientation
+from capar.model.locations import GuideLocation, Nlt, local_point, normalised, relative_orientation
 from extractors.bodies.body_geometry import BodyGeometry
 from extractors.motion.guide_fitting import HINGE
 from extractors.relations.guides import Guide

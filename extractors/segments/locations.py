@@ -7,8 +7,13 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.capture import Capture, TagObject
-from capar.model.locations import ConstraintLocation
-from capar.model.nlt import Nlt, local_point, normalised, relative_orientation
+from capar.model.locations import (
+    ConstraintLocation,
+    Nlt,
+    local_point,
+    normalised,
+    relative_orientation,
+)
 from capar.model.observation import Segment
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.sampled_track import SampledTrack, sampled_track
+from capar.model.locations import SampledTrack, sampled_track
 from extractors.bodies.bodies import Bodies
 
 RATE_HZ = 50.0

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import ontology
-from capar.model.declarations import Span
+from capar.model.fact_kinds import Span
 from capar.model.facts import ALL_FACT_KINDS, Touching
 
 TURTLE = "fact_kinds.ttl"

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from pyoxigraph import Literal, NamedNode
 
-from capar.model.declarations import Observed, Span
 from capar.model.fact_intervals import FactIntervals
+from capar.model.fact_kinds import Observed, Span
 from capar.model.facts import MovedBy, RateMhz
 from kb.encode.bodies import Bodies
 from kb.store import names

@@ -9,8 +9,8 @@ from kb.store.statements import LABEL, Statements
 from ontology import CAPAR
 
 if TYPE_CHECKING:
-    from capar.model.naming_rule import NamingRule, Threshold
     from capar.model.observation import Observation
+    from capar.model.par import NamingRule, Threshold
 
 
 def rule_base(out: Statements, observation: "Observation") -> NamedNode:

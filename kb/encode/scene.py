@@ -13,8 +13,7 @@ from ontology.vocabularies import PREFIXES, PROV, XSD
 
 if TYPE_CHECKING:
     from capar.model.capture import Agent
-    from capar.model.forces import ForceStyle
-    from capar.model.observation import Observation, ObservedObject
+    from capar.model.observation import ForceStyle, Observation, ObservedObject
 
 TAGS = {"self": CAPAR.Self, "fixed": CAPAR.Fixed, "mobile": CAPAR.Mobile}
 

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 from pyoxigraph import NamedNode
 
 from capar.model.errors import UnknownNameError
+from capar.model.observation import SegmentAddress
 from capar.model.par import UNKNOWN, FeatureSet
-from capar.model.segment_address import SegmentAddress
 from kb.encode.bodies import Bodies
 from kb.encode.scene import GENERATED
 from kb.store import names

@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from capar.model.locations import SampledTrack
 from capar.model.observation import ObservedLink
-from capar.model.sampled_track import SampledTrack
 from kb.language.clause import Clause, in_time
 from kb.language.lexicalisation import (
     BEGIN_UP,

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from capar.model.locations import SampledTrack
 from capar.model.observation import Observation, ObservedLink
-from capar.model.sampled_track import SampledTrack
 from kb.language.thresholds import (
     ALONG_SHARE,
     APEX_M,

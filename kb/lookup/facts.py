@@ -7,7 +7,7 @@ from typing import Any, cast
 
 from pyoxigraph import Literal, NamedNode
 
-from capar.model.declarations import Observed
+from capar.model.fact_kinds import Observed
 from capar.model.facts import ALL_FACT_KINDS, Fact, MovedBy
 from kb.encode.facts import FactForm, form
 from kb.store import names

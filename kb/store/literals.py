@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from pyoxigraph import Literal
 
 from capar.model.errors import CaparError
+from capar.model.locations import SampledTrack
 from capar.model.par import Nlt, PathPoint
-from capar.model.sampled_track import SampledTrack
 from ontology import CAPAR
 
 

@@ -8,8 +8,7 @@ import motions
 import numpy as np
 import pytest
 
-from capar.model.bodies import PivotContact, ShapeSource
-from capar.model.capture import Capture, Sensor, Stream
+from capar.model.capture import Capture, PivotContact, Sensor, ShapeSource, Stream
 from capar.pipelines.explanation import explain
 from capar_rules.explain.explanation import Explanation
 

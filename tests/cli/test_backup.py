@@ -8,7 +8,7 @@ from typer.testing import CliRunner, Result
 
 from capar.cli import app
 from capar.model.errors import FileError
-from capar.model.segment_address import SegmentAddress
+from capar.model.observation import SegmentAddress
 from kb.actionary import Actionary
 from kb.corrections import Correction, correct
 

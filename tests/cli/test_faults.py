@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from write_demo import write_tables
 
 from capar.cli import app
-from capar.model.conventions import upward
+from capar.model.capture import upward
 
 BUNDLE = """\
 name = "thrown"

@@ -14,7 +14,7 @@ from capar.cli.actionary import correct as command
 from capar.evaluation.label_files import read_labels
 from capar.evaluation.labels import Kind
 from capar.model.errors import UnknownNameError
-from capar.model.segment_address import SegmentAddress
+from capar.model.observation import SegmentAddress
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.actionary import Actionary
 from kb.corrected_links import corrected_links

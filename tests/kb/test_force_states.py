@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from observations import drink_from_mug
 
-from capar.model.forces import ForceStyle
 from capar.model.json_form import from_json, to_json
+from capar.model.observation import ForceStyle
 from kb.actionary import Actionary
 from kb.store_checks import check
 

@@ -13,7 +13,7 @@ from pyoxigraph import Store as Oxigraph
 
 from capar.model.errors import FileError, ParError
 from capar.model.json_form import document, from_json, to_json
-from capar.model.segment_address import SegmentAddress
+from capar.model.observation import SegmentAddress
 from kb.actionary import Actionary
 from kb.errors import SchemaError, ShapeError
 from kb.exchange import bring_in, export, read
@@ -179,9 +179,9 @@ def test_statements_that_break_the_model_are_refused_after_their_migration_too(
 
 
 def test_an_older_observation_as_json_is_refused_and_migrated(older_json: str) -> None:
-    from capar.model.json_migration import SCHEMA as JSON_SCHEMA
-    from capar.model.json_migration import migrated
-    from capar.model.json_migration import version as json_version
+    from capar.model.json_form import SCHEMA as JSON_SCHEMA
+    from capar.model.json_form import migrated
+    from capar.model.json_form import version as json_version
 
     with pytest.raises(ParError, match=r"a\.json: .*run: capar migrate a\.json"):
         from_json(older_json, where="a.json")
@@ -220,7 +220,7 @@ def test_facts_of_a_kind_that_is_no_longer_measured_are_left_out(
 
 
 def test_an_older_document_may_state_facts_that_are_no_longer_measured(older_json: str) -> None:
-    from capar.model.json_migration import migrated
+    from capar.model.json_form import migrated
 
     content = json.loads(older_json)
     count = len(from_json(migrated(json.dumps(content))).facts)

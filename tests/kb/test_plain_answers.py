@@ -13,8 +13,7 @@ from competency import QUERIES, World
 from jaxtyping import Bool, Float
 
 from capar.model import geometry
-from capar.model.bodies import Shape, Stream, TagObject
-from capar.model.capture import Capture
+from capar.model.capture import Capture, Shape, Stream, TagObject
 from kb.actionary import Actionary
 from kb.store.sparql import prepare
 

@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 from observations import drink_from_mug
 
 from capar.model.errors import CaparError, ParError
-from capar.model.sampled_track import UNIT_M, SampledTrack, sampled_track
+from capar.model.locations import UNIT_M, SampledTrack, sampled_track
 from kb.actionary import Actionary
 from kb.errors import QueryError
 from kb.queries.notes import notes

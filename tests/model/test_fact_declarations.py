@@ -7,9 +7,9 @@ import pytest
 
 from capar.model import arrangement_facts, contact_facts, motion_facts, phase_facts, scene_facts
 from capar.model import facts as exported
-from capar.model.declarations import Declaration, Observed, Span, kinds_of
 from capar.model.errors import FactError
 from capar.model.fact_intervals import FactIntervals
+from capar.model.fact_kinds import Declaration, Observed, Span, kinds_of
 from capar.model.facts import (
     ALL_FACT_KINDS,
     MEASURED,

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from capar.model.nlt import Nlt, local_point, normalised, relative_orientation, restored
+from capar.model.locations import Nlt, local_point, normalised, relative_orientation, restored
 
 NUMBERS = st.floats(-5.0, 5.0, allow_subnormal=False)
 PLACES = st.tuples(NUMBERS, NUMBERS, NUMBERS)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from observations import drink_from_mug
 
 from capar.model.errors import UnknownNameError
-from capar.model.segment_address import (
+from capar.model.observation import (
     AddressError,
     SegmentAddress,
     find_segment,

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.bodies import Stream
 from capar.model.calibration import Calibration
+from capar.model.capture import Stream
 from capar.pipelines.live.frames import Window
 from extractors.bodies.bodies import Bodies, bodies_of
 from extractors.bodies.body_geometry import BodyGeometry

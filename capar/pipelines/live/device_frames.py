@@ -4,8 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from capar.model.bodies import Sensor, TagObject
-from capar.model.capture import Capture
+from capar.model.capture import Capture, Sensor, TagObject
 from capar.model.errors import DeviceError
 from capar.pipelines.live.frames import Poses
 from extractors.devices.tracker import Description, Frame

@@ -6,7 +6,7 @@ from functools import cache
 from inspect import get_annotations
 from typing import Any, cast
 
-from capar.model.declarations import Span
+from capar.model.fact_kinds import Span
 from capar.model.facts import (
     DrawsBack,
     Fact,

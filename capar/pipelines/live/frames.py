@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.bodies import Sensor, Stream, TagObject
-from capar.model.capture import Capture
+from capar.model.capture import Capture, Sensor, Stream, TagObject
 from capar.model.errors import CaptureError
 
 

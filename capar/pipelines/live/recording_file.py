@@ -9,7 +9,7 @@ from typing import IO, Any
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.bodies import Stream
+from capar.model.capture import Stream
 from capar.pipelines.live.frames import Window
 from extractors.bodies.bodies import Bodies
 from extractors.bodies.body_geometry import BodyGeometry

@@ -17,8 +17,8 @@ from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Notice, notice
 from capar.model.errors import CaptureError
 from capar.model.facts import MEASURED, Fact, Frames, Observed, RateMhz, SweptAzimuth
+from capar.model.locations import SampledTrack
 from capar.model.observation import Observation, ObservedObject, Segment
-from capar.model.sampled_track import SampledTrack
 from capar.pipelines.flicker import flicker_notices
 from capar.pipelines.live.carried_poses import CarriedPoses
 from capar.pipelines.live.carried_sums import CarriedSums

@@ -5,7 +5,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from capar.model.segment_address import SegmentAddress
+from capar.model.observation import SegmentAddress
 from capar.pipelines.explanation import Explained, segment_named
 from capar.pipelines.measured.recording import Recording
 from capar.pipelines.measured.rests import BESIDE

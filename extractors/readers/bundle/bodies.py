@@ -11,8 +11,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
-from capar.model.capture import Notice, Stream, notice
-from capar.model.conventions import Conventions
+from capar.model.capture import Conventions, Notice, Stream, notice
 from capar.model.errors import CaptureError
 from extractors.readers.bundle.marker_fit import Cluster, arrangement, check_fit, fit_cluster
 from extractors.readers.bundle.shapes import Frame, transform

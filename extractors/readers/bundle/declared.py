@@ -11,6 +11,7 @@ from scipy.spatial.transform import RigidTransform
 
 from capar.model import geometry
 from capar.model.capture import (
+    Conventions,
     Notice,
     PivotContact,
     Role,
@@ -22,7 +23,6 @@ from capar.model.capture import (
     TagType,
     notice,
 )
-from capar.model.conventions import Conventions
 from extractors.readers.bundle.bodies import Body, find_body
 from extractors.readers.bundle.links import LINKS, chain_of
 from extractors.readers.bundle.many import many_objects, many_sensors, pivots

@@ -8,8 +8,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
-from capar.model.capture import Notice, Source, Stream
-from capar.model.conventions import Conventions, upward
+from capar.model.capture import Conventions, Notice, Source, Stream, upward
 from capar.model.errors import CaptureError
 from extractors.faults.quaternion_order import order_notices
 from extractors.readers.recording import UNITS, Recording

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.conventions import upward
+from capar.model.capture import upward
 from extractors.readers.body_names.body_names import BodyName, body_names, computed
 from extractors.readers.body_names.conventions import conventions
 from extractors.readers.drafting.marker_sets import keeps_distance, marker_sets

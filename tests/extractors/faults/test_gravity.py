@@ -12,7 +12,7 @@ from motions.performers import CHILD, PERFORMERS, TALL_MAN, Performer
 from motions.trials import Trial
 from scipy.spatial.transform import Rotation
 
-from capar.model.conventions import UP, Conventions, upward
+from capar.model.capture import UP, Conventions, upward
 
 Motion = Callable[..., Trial]
 PERFORMED = st.sampled_from([throw, catch])

@@ -10,8 +10,17 @@ from hypothesis import strategies as st
 from measured_bodies import ball, box, pick_and_place, stream
 from scipy.spatial.transform import Rotation
 
-from capar.model.capture import Capture, Role, Sensor, TagObject, TagType
-from capar.model.conventions import UNITS, UP, Conventions, upward
+from capar.model.capture import (
+    UNITS,
+    UP,
+    Capture,
+    Conventions,
+    Role,
+    Sensor,
+    TagObject,
+    TagType,
+    upward,
+)
 
 AHEAD = Rotation.from_euler("z", 30.0, degrees=True)
 PLACES = {

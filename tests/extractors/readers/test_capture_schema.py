@@ -12,8 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from capar.cli import app
-from capar.model.capture import Role, TagType
-from capar.model.conventions import UP
+from capar.model.capture import UP, Role, TagType
 from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.recording import UNITS

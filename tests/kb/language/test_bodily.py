@@ -9,9 +9,9 @@ import pytest
 from observations import MUG, TABLE, Piece, observation
 
 from capar.model.facts import Touching
+from capar.model.locations import sampled_track
 from capar.model.observation import Observation
 from capar.model.par import FeatureSet
-from capar.model.sampled_track import sampled_track
 from kb.language.describe import describe
 
 OWN = FeatureSet("1", "1", "1", "hand", "0")

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from observations import MUG, TABLE, Piece, observation
 
+from capar.model.locations import sampled_track
 from capar.model.observation import ObservedObject
-from capar.model.sampled_track import sampled_track
 from kb.language.describe import describe
 
 AT = {"right_hand": (0.3, -0.2, 0.9), "left_hand": (0.3, 0.2, 0.9)}

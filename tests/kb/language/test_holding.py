@@ -9,9 +9,9 @@ from observations import MUG, Piece, observation
 from tellings import steps_of
 
 from capar.model.facts import Fact, MovedBy, Moving, Touching
+from capar.model.locations import sampled_track
 from capar.model.observation import Observation
 from capar.model.par import FeatureSet
-from capar.model.sampled_track import sampled_track
 from kb.language.describe import describe
 from kb.language.holding import Holding
 

@@ -8,8 +8,8 @@ from observations import MUG, TABLE, Piece, observation
 from tellings import steps_of
 
 from capar.model.facts import Fact, Lies, Touching
+from capar.model.locations import sampled_track
 from capar.model.par import FeatureSet
-from capar.model.sampled_track import sampled_track
 from kb.language.describe import describe
 
 OWN = FeatureSet("1", "1", "1", "hand", "0")

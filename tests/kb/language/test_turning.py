@@ -11,8 +11,8 @@ from observations import MUG, Piece, observation
 from tellings import spans, steps_of
 
 from capar.model.facts import Posture, Touching, Travelled
+from capar.model.locations import sampled_track
 from capar.model.par import FeatureSet
-from capar.model.sampled_track import sampled_track
 from kb.language.describe import describe
 from kb.language.thresholds import AROUND_RAD, OVER_RAD, UPRIGHT_RAD
 
