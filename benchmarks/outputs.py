@@ -95,6 +95,10 @@ MISTAKES = (
 )
 
 
+SEGMENT = ("index", "first", "last", "start_s", "end_s", "name", "objects", "purpose", "general")
+"""What is recorded of a segment."""
+
+
 def run(*arguments: str, folder: str | Path = ROOT, timeout: float = 900) -> tuple[int, str, str]:
     """A command of the command line: its exit code, standard output and standard error."""
     done = subprocess.run(
@@ -133,9 +137,7 @@ def observe(place: str) -> Any:
     movers = ("moved_by", "moves_with", "unmoved", "moving", "touching")
     return {
         "segments": [
-            [link["ee"], *(each[key] for key in ("index", "first", "last", "start_s", "end_s"))]
-            + [each["name"], each["objects"], each["purpose"], each["general"]]
-            + ["".join(str(value) + " " for value in each["features"].values()).strip()]
+            [link["ee"], *(each[key] for key in SEGMENT), " ".join(each["features"].values())]
             for link in seen["links"]
             for each in link["segments"]
         ],
@@ -267,7 +269,8 @@ def parse(_: str) -> Any:
     found = {}
     for text in sentences():
         code, out, err = run("parse", text, "--json")
-        found[text] = json.loads(out) if out.strip().startswith(("{", "[")) else [code, first_line(err)]
+        read = out.strip().startswith(("{", "["))
+        found[text] = json.loads(out) if read else [code, first_line(err)]
     return found
 
 
@@ -310,9 +313,7 @@ def places() -> Iterator[str]:
         ):
             continue
         place = str(path.relative_to(ROOT))
-        code, out, _err = run("inspect", place, "--takes") if False else (1, "", "")
-        yield from (f"{place}:{take}" for take in _takes(path)) if _takes(path) else [place]
-        del code, out
+        yield from [f"{place}:{take}" for take in _takes(path)] or [place]
 
 
 def _takes(path: Path) -> list[str]:
@@ -323,7 +324,11 @@ def _takes(path: Path) -> list[str]:
         "print(json.dumps(takes(sys.argv[1])))"
     )
     done = subprocess.run(
-        [sys.executable, "-c", script, str(path)], cwd=ROOT, capture_output=True, text=True
+        [sys.executable, "-c", script, str(path)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     return json.loads(done.stdout) if done.returncode == 0 else []
 
@@ -337,8 +342,12 @@ def scenes() -> Iterator[str]:
         "print(json.dumps(names))"
     )
     done = subprocess.run(
-        [sys.executable, "-c", script], cwd=ROOT / "tests", capture_output=True, text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT)}, check=True,
+        [sys.executable, "-c", script],
+        cwd=ROOT / "tests",
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        check=True,
     )
     yield from json.loads(done.stdout)
 
