@@ -7,8 +7,7 @@ from typing import Any, cast
 
 from pyoxigraph import Literal, NamedNode, Quad
 
-from capar.model.fact_kinds import Observed
-from capar.model.facts import ALL_FACT_KINDS, Fact
+from capar.model.facts import ALL_FACT_KINDS, Fact, Observed
 from kb.encode.bodies import Bodies
 from kb.encode.facts import Scene, facts, rate_of
 from kb.encode.scene import UNNAMED

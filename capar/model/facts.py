@@ -1,65 +1,961 @@
-"""Ground facts: what extractors measured, in the order in which they are written."""
+"""Facts: typed values that are atoms of the rules; a kind states all that others derive from it."""
 
-from dataclasses import dataclass
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields, replace
+from enum import Enum
+from functools import cache
+from inspect import get_annotations
+from itertools import groupby
+from operator import attrgetter
+from typing import Any, ClassVar, Self, TypeVar, cast, dataclass_transform, get_type_hints
 
 import clingo
 
-from capar.model import arrangement_facts, contact_facts, motion_facts, phase_facts, scene_facts
-from capar.model.arrangement_facts import Bears as Bears
-from capar.model.arrangement_facts import Between as Between
-from capar.model.arrangement_facts import Lies as Lies
-from capar.model.arrangement_facts import MovesWith as MovesWith
-from capar.model.arrangement_facts import Passage as Passage
-from capar.model.contact_facts import ClosingSpeed as ClosingSpeed
-from capar.model.contact_facts import ContactNormal as ContactNormal
-from capar.model.contact_facts import PressDirection as PressDirection
-from capar.model.contact_facts import ReleaseSpeed as ReleaseSpeed
-from capar.model.contact_facts import Rides as Rides
-from capar.model.contact_facts import Seated as Seated
-from capar.model.contact_facts import SightNormal as SightNormal
+from capar.model.capture import NAME
 from capar.model.errors import FactError
-from capar.model.fact_kinds import LARGEST as LARGEST
-from capar.model.fact_kinds import Declaration, Span, kinds_of
-from capar.model.fact_kinds import Fact as Fact
-from capar.model.fact_kinds import Observed as Observed
-from capar.model.fact_kinds import program as program
-from capar.model.motion_facts import Displaced as Displaced
-from capar.model.motion_facts import Distance as Distance
-from capar.model.motion_facts import Place as Place
-from capar.model.motion_facts import Posture as Posture
-from capar.model.motion_facts import Resting as Resting
-from capar.model.motion_facts import SweptAzimuth as SweptAzimuth
-from capar.model.motion_facts import Travelled as Travelled
-from capar.model.motion_facts import TrunkPlace as TrunkPlace
-from capar.model.phase_facts import DrawsBack as DrawsBack
-from capar.model.phase_facts import Flies as Flies
-from capar.model.phase_facts import Guided as Guided
-from capar.model.phase_facts import Leans as Leans
-from capar.model.phase_facts import Lengthwise as Lengthwise
-from capar.model.phase_facts import Opening as Opening
-from capar.model.phase_facts import Phase as Phase
-from capar.model.phase_facts import Reverses as Reverses
-from capar.model.phase_facts import Rolls as Rolls
-from capar.model.phase_facts import Swings as Swings
-from capar.model.phase_facts import Travels as Travels
-from capar.model.scene_facts import ForceTransfer as ForceTransfer
-from capar.model.scene_facts import Frames as Frames
-from capar.model.scene_facts import Gap as Gap
-from capar.model.scene_facts import Intended as Intended
-from capar.model.scene_facts import Link as Link
-from capar.model.scene_facts import LookingAt as LookingAt
-from capar.model.scene_facts import Moving as Moving
-from capar.model.scene_facts import OfAgent as OfAgent
-from capar.model.scene_facts import Pause as Pause
-from capar.model.scene_facts import RateMhz as RateMhz
-from capar.model.scene_facts import Shapeless as Shapeless
-from capar.model.scene_facts import Solid as Solid
-from capar.model.scene_facts import Tag as Tag
-from capar.model.scene_facts import Touching as Touching
-from capar.model.scene_facts import ZeroCrossing as ZeroCrossing
+
+LARGEST = 2**31 - 1
+"""The largest integer of the solver, which wraps silently beyond."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
+class Fact:
+    """A relation with arguments; the predicate is a class's, the arguments are an instance's.
+
+    Frames are numbered from zero; intervals are closed, [first, last].
+    """
+
+    predicate: ClassVar[str]
+
+    def symbol(self) -> clingo.Symbol:
+        """The fact as the solver's own value.
+
+        Raises:
+            FactError: An integer that the solver cannot hold.
+        """
+        values = (getattr(self, name) for name in arguments(cast(Any, type(self))))
+        return clingo.Function(self.predicate, [_symbol(each) for each in values])
+
+    @classmethod
+    def from_symbol(cls, symbol: clingo.Symbol) -> Self:
+        """The fact that a solver's value states.
+
+        Raises:
+            FactError: Another predicate, another number of arguments, or another type.
+        """
+        kinds: tuple[type, ...] = _kinds(cast(Any, cls))
+        if symbol.name != cls.predicate or len(symbol.arguments) != len(kinds):
+            raise FactError(f"{symbol} is no {cls.predicate}/{len(kinds)}")
+        return cls(
+            *(_value(each, kind) for each, kind in zip(symbol.arguments, kinds, strict=True))
+        )
+
+    def __str__(self) -> str:
+        """The fact as a line of a logic program, without its full stop.
+
+        Raises:
+            FactError: An integer that the solver cannot hold.
+        """
+        values = [getattr(self, name) for name in arguments(cast(Any, type(self)))]
+        return f"{self.predicate}({','.join(map(_text, values))})" if values else self.predicate
+
+
+def _symbol(value: Any) -> clingo.Symbol:
+    if isinstance(value, int):
+        return clingo.Number(_checked_int32(value))
+    return clingo.Function(value) if NAME.fullmatch(value) else clingo.String(value)
+
+
+def _text(value: int | str) -> str:
+    """The argument as the solver writes it, some ten times faster than by way of its symbol."""
+    return str(_checked_int32(value)) if isinstance(value, int) else _word(value)
+
+
+@cache
+def _word(value: str) -> str:
+    return str(_symbol(value))
+
+
+def _checked_int32(value: int) -> int:
+    if abs(value) > LARGEST:
+        raise FactError(f"{value} does not fit the solver's 32 bits")
+    return value
+
+
+def _value(symbol: clingo.Symbol, kind: type) -> Any:
+    if symbol.type is clingo.SymbolType.Number and kind is int:
+        return symbol.number
+    if symbol.type is clingo.SymbolType.String and kind is str:
+        return symbol.string
+    if symbol.type is clingo.SymbolType.Function and kind is str and not symbol.arguments:
+        return symbol.name
+    raise FactError(f"{symbol} is no {kind.__name__}")
+
+
+@cache
+def arguments(cls: Any) -> tuple[str, ...]:
+    """The names of the arguments of a kind of fact, in their order."""
+    return tuple(each.name for each in fields(cls))
+
+
+@cache
+def _kinds(cls: Any) -> tuple[type, ...]:
+    hints = get_type_hints(cls)
+    return tuple(hints[each.name] for each in fields(cls))
+
+
+def signatures(facts: Iterable[Fact]) -> frozenset[tuple[str, int]]:
+    """The predicates of the facts, each with its number of arguments."""
+    kinds: set[Any] = {type(fact) for fact in facts}
+    return frozenset((kind.predicate, len(arguments(kind))) for kind in kinds)
+
+
+def program(facts: "tuple[Fact, ...]") -> str:
+    """The facts as a logic program, one a line, in their order.
+
+    Raises:
+        FactError: An integer that the solver cannot hold.
+    """
+    groups = (_lines(kind, tuple(group)) for kind, group in groupby(facts, type))
+    return "".join(line for lines in groups for line in lines)
+
+
+def _lines(kind: Any, facts: "tuple[Fact, ...]") -> Iterator[str]:
+    """Facts of one kind as lines: by columns, in a third of the time of one after another."""
+    columns = [
+        _column([getattr(fact, name) for fact in facts], argument)
+        for name, argument in zip(arguments(kind), _kinds(kind), strict=True)
+    ]
+    if not columns:
+        return iter([f"{kind.predicate}.\n"] * len(facts))
+    line = f"{kind.predicate}({','.join(['%s'] * len(columns))}).\n"
+    return map(line.__mod__, zip(*columns, strict=True))
+
+
+def _column(values: list[Any], kind: type) -> Iterable[int | str]:
+    """The values of one argument as the solver writes them."""
+    if kind is not int:
+        return map(_word, values)
+    _checked_int32(max(values, key=abs))
+    return values
+
+
+class Span(Enum):
+    """When the facts of a kind hold."""
+
+    ALWAYS = ()
+    INSTANT = ("frame",)
+    INTERVAL = ("first", "last")
+
+
+ALWAYS, INSTANT, INTERVAL = Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Declaration:
+    """What a kind of fact states about itself."""
+
+    about: str | None = None
+    """The field that names the body that the fact is about; None where it is about no body."""
+
+    span: "Span | type[Observed]"
+    """When it holds. A kind of fact: during that kind's interval of the same bodies and the same
+    first frame."""
+
+    border: bool | frozenset[str] = False
+    """Whether segments of the body that it is about, and of end-effectors that touch this body
+    meanwhile, may begin or end where the fact begins or ends, so that places are measured there;
+    a set: only those of these names in ``stretch``."""
+
+    stretch: str = ""
+    """The name under which rules find the ticks in it (``spans/6``, ``encloses/6``), with fields
+    in braces. Empty: rules do not join it by ticks."""
+
+    others: tuple[str, ...] = ()
+    """The fields that name the other bodies of such a join; none: the body itself."""
+
+    negated: str = ""
+    """What an interval is taken for that is contradicted as flicker, such as ``apart``; empty
+    where flicker is not resolved."""
+
+    terms: str
+    """The class in the ontology and the property of each argument. Of a sampled kind: of each
+    argument that is a name, and one for the rows of numbers, each led by its frame."""
+
+    powers: Mapping[str, int] = field(default_factory=dict)
+    """The power of ten by which an argument becomes SI units in RDF, by its field."""
+
+    @property
+    def rdf(self) -> tuple[str, ...]:
+        """The class in the ontology, then the properties."""
+        return tuple(self.terms.split())
+
+    @property
+    def sampled(self) -> bool:
+        """Whether its facts are samples of a quantity at frames, which RDF keeps as one row."""
+        return self.span is Span.INSTANT and not self.border
+
+
+class Observed(Fact):
+    """A fact that an observation rests on; its class is made by ``fact_kind``."""
+
+    __slots__ = ()
+
+    declaration: ClassVar[Declaration]
+
+    def subject(self) -> str:
+        """The body that the fact is about; empty where it is about none."""
+        about = self.declaration.about
+        return "" if about is None else str(getattr(self, about))
+
+    def ends(self) -> tuple[int, ...]:
+        """The frames that the fact itself states: an instant, or the first and the last frame."""
+        return _ends_of(cast(Any, type(self)))(self)
+
+    def other_bodies(self) -> tuple[str, ...]:
+        """The other body of each stretch that the fact states; at least the body itself."""
+        others = self.declaration.others
+        return tuple(str(getattr(self, each)) for each in others) or (self.subject(),)
+
+    def stretch(self) -> str:
+        """The name under which rules find the ticks in it; empty where they do not."""
+        pattern = self.declaration.stretch
+        return _BRACES.sub(lambda found: str(getattr(self, found[1])), pattern)
+
+    def is_border(self) -> bool:
+        """Whether a segment may begin or end where it does."""
+        border = self.declaration.border
+        return border if isinstance(border, bool) else self.stretch() in border
+
+    def name(self, kind: "type[Observed]") -> tuple[object, ...]:
+        """The name of an interval of a kind: of this one, or of the one that its span is."""
+        return kind, *(getattr(self, each) for each in _naming_fields(cast(Any, kind)))
+
+    def between(self, first: int, last: int) -> Self:
+        """The same fact of another interval."""
+        return replace(cast(Any, self), first=first, last=last)
+
+
+@cache
+def _ends_of(kind: type[Observed]) -> Callable[[Observed], tuple[int, ...]]:
+    """What reads the frames that facts of a kind state; they are read very often."""
+    span = kind.declaration.span
+    names = span.value if isinstance(span, Span) else ("first",)
+    if len(names) > 1:
+        return attrgetter(*names)
+    return lambda fact: tuple(getattr(fact, name) for name in names)
+
+
+_BRACES = re.compile(r"\{(\w+)\}")
+
+
+@cache
+def _naming_fields(kind: Any) -> tuple[str, ...]:
+    """The fields by which other facts name an interval of a kind."""
+    return tuple(each for each in get_annotations(kind) if each != "last")
+
+
+def _check(name: str, declared: Declaration, fields: dict[str, type]) -> None:
+    span = declared.span
+    braces = _BRACES.findall(declared.stretch)
+    frames = span.value if isinstance(span, Span) else _naming_fields(cast(Any, span))
+    about = () if declared.about is None else (declared.about,)
+    needed = (*about, *frames, *declared.others, *braces)
+    missing = [each for each in needed if each not in fields]
+    if missing:
+        raise FactError(f"{name} declares the fields {missing}, but has {list(fields)}")
+    if declared.negated and span is not Span.INTERVAL:
+        raise FactError(f"{name} cannot flicker: it is no interval")
+    named = [each for each, of in fields.items() if of is str]
+    terms = len(named) + 1 if declared.sampled else len(fields)
+    if len(declared.rdf) != terms + 1:
+        raise FactError(f"{name} declares {declared.rdf}: expected a class and {terms} properties")
+    if strange := [each for each in declared.powers if fields.get(each) is not int]:
+        raise FactError(f"{name} declares powers of {strange}, which are no whole numbers of it")
+
+
+_Kind = TypeVar("_Kind", bound=Observed)
+_defined: list[type[Observed]] = []
+
+
+@dataclass_transform(frozen_default=True, order_default=True)
+def fact_kind(predicate: str, **declared: Any) -> Callable[[type[_Kind]], type[_Kind]]:
+    """Make a class a kind of fact: a frozen dataclass with a predicate and a declaration.
+
+    Args:
+        predicate: Its name in the rules.
+        **declared: The fields of its ``Declaration``.
+
+    Raises:
+        FactError: The declaration does not fit the fields.
+    """
+
+    def define(cls: type[_Kind]) -> type[_Kind]:
+        cls.predicate, cls.declaration = predicate, Declaration(**declared)
+        _check(cls.__name__, cls.declaration, get_annotations(cls))
+        _defined.append(made := dataclass(frozen=True, slots=True, order=True)(cls))
+        return made
+
+    return define
+
+
+@fact_kind("frames", span=ALWAYS, terms="FramesFact firstFrame lastFrame")
+class Frames(Observed):
+    """The capture's first and last frame."""
+
+    first: int
+    last: int
+
+
+@fact_kind("rate_mhz", span=ALWAYS, terms="RateFact rateMhz")
+class RateMhz(Observed):
+    """Frames in a thousand seconds."""
+
+    rate: int
+
+
+@fact_kind("link", about="ee", span=ALWAYS, terms="LinkFact body effectorType side")
+class Link(Observed):
+    """An end-effector that acts, its general type and its side."""
+
+    ee: str
+    kind: str
+    side: str
+
+
+@fact_kind("tag", about="object", span=ALWAYS, terms="TagFact body tagName")
+class Tag(Observed):
+    """An object or body part watched for contact: self, fixed or mobile."""
+
+    object: str
+    type: str
+
+
+@fact_kind("of_agent", about="body", span=ALWAYS, terms="Belonging body agent")
+class OfAgent(Observed):
+    """Whose an end-effector or a body part is; stated where several agents perform."""
+
+    body: str
+    agent: str
+
+
+@fact_kind("zero_crossing", about="ee", span=INSTANT, terms="ZeroCrossings body samples")
+class ZeroCrossing(Observed):
+    """The end-effector's acceleration crosses zero at this frame (thesis 3.2.1)."""
+
+    ee: str
+    frame: int
+
+
+@fact_kind("pause", about="ee", span=INSTANT, border=True, terms="Pause body frame")
+class Pause(Observed):
+    """A zero crossing at which the end-effector is slow: it starts, stops or turns."""
+
+    ee: str
+    frame: int
+
+
+@fact_kind(
+    "touching",
+    about="body",
+    span=INTERVAL,
+    border=True,
+    others=("other",),
+    negated="apart",
+    terms="Touching body other firstFrame lastFrame",
+)
+class Touching(Observed):
+    """Two bodies touch from the first to the last frame; an end-effector stands first."""
+
+    body: str
+    other: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "gap",
+    about="body",
+    span=Touching,
+    terms="Gap body other firstFrame gap",
+    powers={"micrometres": -6},
+)
+class Gap(Observed):
+    """How far two bodies are apart when they begin to touch [micrometres]; zero where they cut."""
+
+    body: str
+    other: str
+    first: int
+    micrometres: int
+
+
+@fact_kind(
+    "moving",
+    about="object",
+    span=INTERVAL,
+    border=True,
+    negated="still",
+    terms="Moving body firstFrame lastFrame",
+)
+class Moving(Observed):
+    """An object is away from each place where it rests, from the first to the last frame."""
+
+    object: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "looking_at",
+    about="sensor",
+    span=INTERVAL,
+    border=True,
+    stretch="looks",
+    others=("object",),
+    terms="LookingAt body seen firstFrame lastFrame",
+)
+class LookingAt(Observed):
+    """The line of sight of a sensor that attends, or of a head that acts, meets it first."""
+
+    sensor: str
+    object: str
+    first: int
+    last: int
+
+
+@fact_kind("force_transfer", span=ALWAYS, terms="ForceTransfer")
+class ForceTransfer(Observed):
+    """The user says that force passes to objects in this trial (thesis 4.4.1)."""
+
+
+@fact_kind("intended", span=ALWAYS, terms="Intended rank actionName objectName goalName purpose")
+class Intended(Observed):
+    """The user's purpose for steps of an action with an object and a goal; "any" fits all."""
+
+    rank: int
+    action: str
+    object: str
+    goal: str
+    purpose: str
+
+
+@fact_kind("solid", about="object", span=ALWAYS, terms="SolidObject body")
+class Solid(Observed):
+    """Neither an object's surface nor its kind leaves a hollow in it: nothing can be in it.
+
+    It is measured of what moves to and fro, of what that touches, and of what is tipped.
+    """
+
+    object: str
+
+
+@fact_kind("shapeless", about="object", span=ALWAYS, terms="ShapelessObject body")
+class Shapeless(Observed):
+    """An object's shape is not known, so what is in it, or what it is in, is not known either.
+
+    It is measured of what moves to and fro, of what that touches, and of what is tipped.
+    """
+
+    object: str
+
+
+@fact_kind(
+    "displaced",
+    about="object",
+    span=INTERVAL,
+    border=True,
+    terms="Displacement body firstFrame lastFrame",
+)
+class Displaced(Observed):
+    """An object moves, from when it truly set off until it truly stopped.
+
+    That is where it was last within 1 mm and half a degree of a place of rest, or what noise makes,
+    and the little before that by which a motion from rest grows so far.
+    """
+
+    object: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "resting",
+    about="ee",
+    span=INTERVAL,
+    border=True,
+    stretch="resting",
+    negated="going",
+    terms="Resting body firstFrame lastFrame",
+)
+class Resting(Observed):
+    """An end-effector is at a place where it rests, from the first to the last frame."""
+
+    ee: str
+    first: int
+    last: int
+
+
+@fact_kind("place", about="body", span=INSTANT, terms="Places body samples")
+class Place(Observed):
+    """Where the middle of a body is at a frame [millimetres]."""
+
+    body: str
+    frame: int
+    x: int
+    y: int
+    z: int
+
+
+@fact_kind("from_trunk", about="body", span=INSTANT, terms="TrunkPlaces body samples")
+class TrunkPlace(Observed):
+    """Where the middle of an end-effector is at a frame, from its agent's trunk [millimetres].
+
+    The axes turn with the trunk about the vertical, and do not lean.
+    """
+
+    body: str
+    frame: int
+    x: int
+    y: int
+    z: int
+
+
+@fact_kind("travelled", about="body", span=INSTANT, terms="Ways body samples")
+class Travelled(Observed):
+    """How far a body has gone along its path, and turned, since the capture began.
+
+    The way in millimetres, and the turn about any axis in milliradians.
+    """
+
+    body: str
+    frame: int
+    way: int
+    turn: int
+
+
+@fact_kind("posture", about="body", span=INSTANT, terms="Postures body samples")
+class Posture(Observed):
+    """How a body stands at a frame [milliradians].
+
+    How far its upright axis is from the vertical, and the angle by which it has turned about the
+    vertical since the capture began.
+    """
+
+    body: str
+    frame: int
+    lean: int
+    spin: int
+
+
+@fact_kind("apart", about="body", span=INSTANT, terms="Distances body other samples")
+class Distance(Observed):
+    """How far the middles of two bodies are apart at a frame [millimetres]."""
+
+    body: str
+    other: str
+    frame: int
+    millimetres: int
+
+
+@fact_kind("wound", about="body", span=INSTANT, terms="SweptAzimuths body other samples")
+class SweptAzimuth(Observed):
+    """The angle by which a body has gone about another, seen from above [milliradians]."""
+
+    body: str
+    other: str
+    frame: int
+    milliradians: int
+
+
+@fact_kind(
+    "phase",
+    about="object",
+    span=INTERVAL,
+    border=frozenset({"goes_level"}),
+    stretch="goes_{kind}",
+    terms="Phase body phaseKind firstFrame lastFrame",
+)
+class Phase(Observed):
+    """A part of an object's motion: rising, level or sinking, by its path; turning, or still."""
+
+    object: str
+    kind: str
+    first: int
+    last: int
+
+
+@fact_kind("guided", about="object", span=ALWAYS, terms="GuidedObject body guideKind other")
+class Guided(Observed):
+    """An object moves on one hinge or one rail of a fixed one, throughout the recording.
+
+    The kind is ``hinge`` or ``rail``; the base is the fixed object, by which it can be closed.
+    """
+
+    object: str
+    kind: str
+    base: str
+
+
+@fact_kind("opening", about="object", span=INSTANT, terms="Openings body samples")
+class Opening(Observed):
+    """How far an object on a guide is from its closed place at a frame.
+
+    In millimetres on a rail, in milliradians on a hinge.
+    """
+
+    object: str
+    frame: int
+    amount: int
+
+
+@fact_kind(
+    "reverses",
+    about="object",
+    span=INSTANT,
+    border=True,
+    stretch="reverses",
+    terms="Reversal body frame",
+)
+class Reverses(Observed):
+    """A moving object that rose begins to sink, or one that sank after that to rise again.
+
+    Both are real ways and steep; the frame lies in the middle between the two. What is on a hinge
+    or a rail turns back on that instead.
+    """
+
+    object: str
+    frame: int
+
+
+@fact_kind(
+    "draws_back",
+    about="object",
+    span=INSTANT,
+    border=True,
+    stretch="draws_back",
+    terms="DrawingBack body frame",
+)
+class DrawsBack(Observed):
+    """A moving object turns back on a level path, after a real way and before another one."""
+
+    object: str
+    frame: int
+
+
+@fact_kind(
+    "swings",
+    about="body",
+    span=INTERVAL,
+    border=True,
+    stretch="swings",
+    terms="Swinging body firstFrame lastFrame",
+)
+class Swings(Observed):
+    """A body moves to and fro, again and again, from the first to the last frame."""
+
+    body: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "lengthwise",
+    about="body",
+    span=INTERVAL,
+    border=True,
+    stretch="lengthwise",
+    terms="LengthwiseSwinging body firstFrame lastFrame",
+)
+class Lengthwise(Observed):
+    """A long, thin body moves to and fro along its own length, from the first to the last frame."""
+
+    body: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "leans",
+    about="object",
+    span=INTERVAL,
+    border=True,
+    stretch="leans",
+    terms="Leaning body firstFrame lastFrame",
+)
+class Leans(Observed):
+    """An object's upright axis is far from the vertical, from the first to the last frame."""
+
+    object: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "flies",
+    about="object",
+    span=INTERVAL,
+    border=True,
+    stretch="flies",
+    terms="Flying body firstFrame lastFrame",
+)
+class Flies(Observed):
+    """An object falls freely, from the first to the last frame."""
+
+    object: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "rolls",
+    about="object",
+    span=INTERVAL,
+    stretch="rolls",
+    terms="Rolling body firstFrame lastFrame",
+)
+class Rolls(Observed):
+    """An object goes and turns about a level axis without slipping below its middle."""
+
+    object: str
+    first: int
+    last: int
+
+
+@fact_kind("travels", about="object", span=INTERVAL, terms="Travelling body firstFrame lastFrame")
+class Travels(Observed):
+    """An object covers more way than a floor of motion in a moment, throughout."""
+
+    object: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "upward",
+    about="body",
+    span=Touching,
+    terms="ContactNormal body other firstFrame upward",
+    powers={"permille": -3},
+)
+class ContactNormal(Observed):
+    """How far the normal of a contact points up, from the other to the body [1/1000].
+
+    Stated at the contact's first frame; 1000 where the body lies on the other.
+    """
+
+    body: str
+    other: str
+    first: int
+    permille: int
+
+
+@fact_kind(
+    "presses",
+    about="body",
+    span=Touching,
+    terms="PressDirection body other firstFrame pressX pressY",
+    powers={"x": -3, "y": -3},
+)
+class PressDirection(Observed):
+    """Which way an end-effector presses aside on an object: x and y of the unit vector [1/1000].
+
+    That is the normal of the contact, from the end-effector to the object, in the world.
+    """
+
+    body: str
+    other: str
+    first: int
+    x: int
+    y: int
+
+
+@fact_kind(
+    "sighted",
+    about="body",
+    span=Touching,
+    terms="SightNormal body other firstFrame sightward",
+    powers={"permille": -3},
+)
+class SightNormal(Observed):
+    """How far the normal of a contact with a head points where the head looks [1/1000].
+
+    1000 where the face is touched from before it, 0 at the temples, -1000 at the back.
+    """
+
+    body: str
+    other: str
+    first: int
+    permille: int
+
+
+@fact_kind("rides", about="body", span=Touching, terms="Riding body other firstFrame")
+class Rides(Observed):
+    """A body is borne by another one, in or on it, and goes along when that one moves.
+
+    Stated of the contact that begins at the first frame.
+    """
+
+    body: str
+    other: str
+    first: int
+
+
+@fact_kind(
+    "closing",
+    about="body",
+    span=Touching,
+    terms="ClosingSpeed body other firstFrame contactSpeed",
+    powers={"speed": -3},
+)
+class ClosingSpeed(Observed):
+    """How fast two bodies approached each other when they began to touch [mm/s]."""
+
+    body: str
+    other: str
+    first: int
+    speed: int
+
+
+@fact_kind(
+    "released",
+    about="body",
+    span=Touching,
+    terms="ReleaseSpeed body other firstFrame contactSpeed",
+    powers={"speed": -3},
+)
+class ReleaseSpeed(Observed):
+    """How fast an object goes when an end-effector's contact with it ends [mm/s].
+
+    Stated of the contact that begins at the first frame.
+    """
+
+    body: str
+    other: str
+    first: int
+    speed: int
+
+
+@fact_kind(
+    "seated", about="body", span=INTERVAL, border=True, terms="Seat body other firstFrame lastFrame"
+)
+class Seated(Observed):
+    """A body is down on another one that bears it: in a contact, less its coming and going."""
+
+    body: str
+    other: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "bears",
+    about="foot",
+    span=INTERVAL,
+    border=frozenset({"bears_whole", "bears_none"}),
+    stretch="bears_{share}",
+    terms="WeightBearing body weightShare firstFrame lastFrame",
+)
+class Bears(Observed):
+    """A foot that is down bears the whole weight of the body, part of it, or none."""
+
+    foot: str
+    share: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "lies",
+    about="body",
+    span=INTERVAL,
+    stretch="{how}",
+    others=("other",),
+    terms="Arrangement body arrangement other firstFrame lastFrame",
+)
+class Lies(Observed):
+    """How a body lies to another.
+
+    It is inside it, or dips into it with one end; it is above, below, beside or along it, or
+    merely near. An end-effector that touches it ``shifts`` from one place on it to another.
+    """
+
+    body: str
+    how: str
+    other: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "between",
+    about="body",
+    span=INTERVAL,
+    stretch="between",
+    others=("one", "other"),
+    terms="PlaceBetween body one other firstFrame lastFrame",
+)
+class Between(Observed):
+    """A body's middle is between two others, from the first to the last frame."""
+
+    body: str
+    one: str
+    other: str
+    first: int
+    last: int
+
+
+@fact_kind(
+    "passage",
+    about="body",
+    span=Lies,
+    stretch="{how}_{sides}",
+    others=("other",),
+    terms="Passage body arrangement other firstFrame sides",
+)
+class Passage(Observed):
+    """A stretch of being inside or above another ends at another side than it began.
+
+    The first frame names the stretch; the sides are opposite or merely other ones.
+    """
+
+    body: str
+    how: str
+    other: str
+    first: int
+    sides: str
+
+
+@fact_kind(
+    "moves_with",
+    about="object",
+    span=INTERVAL,
+    terms="CoMotion body other firstFrame lastFrame gap",
+    powers={"gap": -3},
+)
+class MovesWith(Observed):
+    """A travelling object is steady in another body's frame, so far from touching it [mm].
+
+    Of a hand or thing that is far away, at least so far.
+    """
+
+    object: str
+    body: str
+    first: int
+    last: int
+    gap: int
+
+
+MEASURED: tuple[type[Observed], ...] = tuple(_defined)
+"""Every kind of fact that extractors state, in the order in which they are written."""
+
+
+@fact_kind(
+    "doubted",
+    about="body",
+    span=INTERVAL,
+    terms="FlickerCorrection body other firstFrame lastFrame takenFor",
+)
 class FlickerCorrection(Observed):
     """A stretch that the rules do not take as it was measured: it is a flicker.
 
@@ -68,14 +964,6 @@ class FlickerCorrection(Observed):
     rest, ``resting``, or for none, ``going``.
     """
 
-    predicate = "doubted"
-    declaration = Declaration(
-        about="body",
-        span=Span.INTERVAL,
-        border=False,
-        has_sentence=True,
-        rdf=("FlickerCorrection", "body", "other", "firstFrame", "lastFrame", "takenFor"),
-    )
     body: str
     other: str
     first: int
@@ -83,7 +971,9 @@ class FlickerCorrection(Observed):
     taken: str
 
 
-@dataclass(frozen=True, slots=True, order=True)
+@fact_kind(
+    "moved_by", about="object", span=INTERVAL, terms="MovedBy body mover how firstFrame lastFrame"
+)
 class MovedBy(Observed):
     """What moves an object through a part of its motion, as the rules of movers tell.
 
@@ -91,14 +981,6 @@ class MovedBy(Observed):
     ``body``; or ``unknown``, with ``beyond_reach``, ``left_behind`` or ``nobody`` for the mover.
     """
 
-    predicate = "moved_by"
-    declaration = Declaration(
-        about="object",
-        span=Span.INTERVAL,
-        border=False,
-        has_sentence=False,
-        rdf=("MovedBy", "body", "mover", "how", "firstFrame", "lastFrame"),
-    )
     object: str
     mover: str
     how: str
@@ -106,16 +988,7 @@ class MovedBy(Observed):
     last: int
 
 
-MEASURED: tuple[type[Observed], ...] = (
-    *kinds_of(scene_facts),
-    *kinds_of(motion_facts),
-    *kinds_of(phase_facts),
-    *kinds_of(contact_facts),
-    *kinds_of(arrangement_facts),
-)
-"""Every kind of fact that extractors state, in the order in which they are written."""
-
-ALL_FACT_KINDS: tuple[type[Observed], ...] = (*MEASURED, FlickerCorrection, MovedBy)
+ALL_FACT_KINDS: tuple[type[Observed], ...] = tuple(_defined)
 """Every kind of fact that an observation rests on: measured, corrected, and what moves what."""
 
 
@@ -135,3 +1008,36 @@ def read_fact(text: str) -> Observed:
                 return kind.from_symbol(symbol)
     known = ", ".join(each.predicate for each in ALL_FACT_KINDS)
     raise FactError(f"{text!r} is no measured fact; their predicates are {known}")
+
+
+Interval = tuple[int, int]
+"""First and last frame."""
+
+_NAMED = frozenset(
+    kind.declaration.span for kind in ALL_FACT_KINDS if not isinstance(kind.declaration.span, Span)
+)
+"""The kinds of intervals that other facts name by their first frames."""
+
+
+class FactIntervals:
+    """The intervals of the facts of one capture."""
+
+    def __init__(self, facts: Iterable[Fact]) -> None:
+        """Index the intervals that other facts name."""
+        self._named: dict[tuple[object, ...], Interval] = {
+            fact.name(type(fact)): _closed(fact.ends())
+            for fact in facts
+            if isinstance(fact, Observed) and type(fact) in _NAMED
+        }
+
+    def of(self, fact: Fact) -> Interval | None:
+        """When a fact holds; None: always, or throughout an interval that no fact states."""
+        if not isinstance(fact, Observed) or fact.declaration.span is Span.ALWAYS:
+            return None
+        if isinstance(fact.declaration.span, Span):
+            return _closed(fact.ends())
+        return self._named.get(fact.name(fact.declaration.span))
+
+
+def _closed(frames: tuple[int, ...]) -> Interval:
+    return frames[0], frames[-1]

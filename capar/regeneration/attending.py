@@ -7,7 +7,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform
 
 from capar.model.capture import TagType
-from capar.model.scene_facts import LookingAt
+from capar.model.facts import LookingAt
 from capar.regeneration.sources import Hold, Meeting, Source
 
 FAR_M = 3.0

@@ -6,8 +6,16 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import cast
 
-from capar.model.fact_intervals import FactIntervals, Interval
-from capar.model.facts import Fact, Link, LookingAt, Observed, OfAgent, Touching
+from capar.model.facts import (
+    Fact,
+    FactIntervals,
+    Interval,
+    Link,
+    LookingAt,
+    Observed,
+    OfAgent,
+    Touching,
+)
 
 Stretch = tuple[str, str, str, int, int]
 """What it is, the body, the other body (or the same), first and last frame."""

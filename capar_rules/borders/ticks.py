@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from capar.model.fact_kinds import Fact
+from capar.model.facts import Fact
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -12,8 +12,7 @@ import clingo
 
 from capar.model.capture import NAME
 from capar.model.errors import RuleError
-from capar.model.fact_kinds import signatures
-from capar.model.facts import Fact, program
+from capar.model.facts import Fact, program, signatures
 from capar_rules.engine.programs import RuleBase
 
 BLOCK_FACTS = 4096

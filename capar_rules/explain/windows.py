@@ -5,8 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from capar.model.fact_intervals import FactIntervals
-from capar.model.facts import Fact, Observed, RateMhz
+from capar.model.facts import Fact, FactIntervals, Observed, RateMhz
 from capar_rules.borders.border_numbers import LastTick, MovesDuring, Shares, Tick, Within
 from capar_rules.borders.times import in_frames, times
 

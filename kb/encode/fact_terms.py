@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import ontology
-from capar.model.fact_kinds import Span
-from capar.model.facts import ALL_FACT_KINDS, Touching
+from capar.model.facts import ALL_FACT_KINDS, Span, Touching
 
 TURTLE = "fact_kinds.ttl"
 NAMES = "fact_kinds.py"

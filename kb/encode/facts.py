@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from pyoxigraph import Literal, NamedNode
 
-from capar.model.fact_intervals import FactIntervals
-from capar.model.fact_kinds import Observed, Span
-from capar.model.facts import MovedBy, RateMhz
+from capar.model.facts import FactIntervals, MovedBy, Observed, RateMhz, Span
 from kb.encode.bodies import Bodies
 from kb.store import names
 from kb.store.statements import PropertyValues, Statements, Value

@@ -7,8 +7,7 @@ from typing import Any, cast
 
 from pyoxigraph import Literal, NamedNode
 
-from capar.model.fact_kinds import Observed
-from capar.model.facts import ALL_FACT_KINDS, Fact, MovedBy
+from capar.model.facts import ALL_FACT_KINDS, Fact, MovedBy, Observed
 from kb.encode.facts import FactForm, form
 from kb.store import names
 from kb.store.sparql import fill

@@ -5,47 +5,33 @@ from dataclasses import fields
 
 import pytest
 
-from capar.model import arrangement_facts, contact_facts, motion_facts, phase_facts, scene_facts
-from capar.model import facts as exported
 from capar.model.errors import FactError
-from capar.model.fact_intervals import FactIntervals
-from capar.model.fact_kinds import Declaration, Observed, Span, kinds_of
 from capar.model.facts import (
     ALL_FACT_KINDS,
-    MEASURED,
     Bears,
     ContactNormal,
-    FlickerCorrection,
+    FactIntervals,
     Frames,
     Lies,
-    MovedBy,
+    Observed,
     Passage,
+    Span,
     Touching,
+    fact_kind,
 )
 from capar_rules.engine.solver import rule_file
 from ontology import terms
 
-SENTENCES = rule_file("explain/sentences.lp").read_text()
 INPUTS = rule_file("inputs.lp").read_text()
 KINDS = pytest.mark.parametrize("kind", ALL_FACT_KINDS, ids=lambda kind: kind.__name__)
 
 
-def test_a_kind_without_a_declaration_is_refused_where_it_is_defined() -> None:
-    with pytest.raises(FactError, match="Silent lacks a declaration"):
-
-        class Silent(Observed):
-            predicate = "silent"
-            body: str
-
-
 def declare(**changes: object) -> None:
-    given: dict[str, object] = {"about": "body", "span": Span.INTERVAL, "border": False}
-    given["rdf"] = ("Touching", "body", "firstFrame", "lastFrame")
-    declared = Declaration(**{**given, "has_sentence": False, **changes})  # type: ignore[arg-type]
+    given: dict[str, object] = {"about": "body", "span": Span.INTERVAL}
+    given["terms"] = "Touching body firstFrame lastFrame"
 
+    @fact_kind("wrong", **{**given, **changes})
     class Wrong(Observed):
-        predicate = "wrong"
-        declaration = declared
         body: str
         first: int
         last: int
@@ -59,7 +45,7 @@ def declare(**changes: object) -> None:
         {"span": Lies},
         {"others": ("other",)},
         {"stretch": "bears_{share}"},
-        {"rdf": ("Touching", "body")},
+        {"terms": "Touching body"},
         {"powers": {"body": -3}},
         {"powers": {"speed": -3}},
         {"span": Span.ALWAYS, "negated": "apart"},
@@ -72,22 +58,11 @@ def test_a_declaration_that_does_not_fit_the_fields_is_refused(changes: dict[str
         declare(**changes)
 
 
-@KINDS
-def test_a_kind_is_exported_where_everybody_looks_for_it(kind: type[Observed]) -> None:
-    assert getattr(exported, kind.__name__) is kind
-
-
 def test_the_kinds_are_the_inputs_of_the_rules() -> None:
     measured = INPUTS.split("% Borders.")[0] + INPUTS.split("% What was doubted")[1]
     stated = {(kind.predicate, len(fields(kind))) for kind in ALL_FACT_KINDS}
     found = re.findall(r"^#defined (\w+)/(\d+)\.", measured, re.MULTILINE)
     assert {(name, int(arity)) for name, arity in found} == stated
-
-
-@KINDS
-def test_explanations_have_a_sentence_for_exactly_what_declares_one(kind: type[Observed]) -> None:
-    pattern = rf"^%!!? {kind.predicate}/{len(fields(kind))}( \w+)?:"
-    assert bool(re.search(pattern, SENTENCES, re.MULTILINE)) == kind.declaration.has_sentence
 
 
 @KINDS
@@ -98,21 +73,6 @@ def test_the_ontology_has_the_declared_class_and_properties(kind: type[Observed]
 def test_no_two_kinds_share_a_class_of_their_own() -> None:
     own = [kind.declaration.rdf[0] for kind in ALL_FACT_KINDS]
     assert len(set(own)) == len(own)
-
-
-def test_explanations_have_a_sentence_for_each_way_to_doubt() -> None:
-    flickering = [kind for kind in ALL_FACT_KINDS if kind.declaration.negated]
-    assert {"touching", "moving", "resting"} == {kind.predicate for kind in flickering}
-    for kind in flickering:
-        assert f"%!! doubted/5 {kind.predicate}:" in SENTENCES
-        assert f"%!! doubted/5 {kind.declaration.negated}:" in SENTENCES
-
-
-def test_facts_are_written_in_the_order_of_their_definitions() -> None:
-    modules = (scene_facts, motion_facts, phase_facts, contact_facts, arrangement_facts)
-    assert tuple(kind for module in modules for kind in kinds_of(module)) == MEASURED
-    assert (*MEASURED, FlickerCorrection, MovedBy) == ALL_FACT_KINDS
-    assert MEASURED[0] is Frames
 
 
 def test_a_foot_draws_borders_only_where_it_bears_all_or_nothing() -> None:

@@ -15,8 +15,7 @@ from enum import Enum
 from case_batches import solve_batch
 
 from capar.model.errors import RuleError
-from capar.model.fact_intervals import FactIntervals
-from capar.model.facts import MEASURED, Fact, Frames, Link, RateMhz
+from capar.model.facts import MEASURED, Fact, FactIntervals, Frames, Link, RateMhz
 from capar.model.observation import Segment
 from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.engine.profiles import Profile

@@ -6,7 +6,6 @@ from functools import cache
 from inspect import get_annotations
 from typing import Any, cast
 
-from capar.model.fact_kinds import Span
 from capar.model.facts import (
     DrawsBack,
     Fact,
@@ -16,6 +15,7 @@ from capar.model.facts import (
     ReleaseSpeed,
     Reverses,
     Rides,
+    Span,
 )
 
 Key = tuple[object, ...]
