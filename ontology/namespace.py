@@ -168,6 +168,11 @@ class CAPAR(FactKinds):
     share: NamedNode
     begin: NamedNode
     standsFor: NamedNode
+    sameAction: NamedNode
+    resumes: NamedNode
+    fragmentOf: NamedNode
+    rights: NamedNode
+    steadies: NamedNode
     nextStep: NamedNode
     objectNumbers: NamedNode
     # constraints.ttl

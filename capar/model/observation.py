@@ -208,6 +208,23 @@ class JointAction:
         return tuple(dict.fromkeys(self.ees))
 
 
+@dataclass(frozen=True, slots=True, order=True)
+class SegmentRelation:
+    """What a segment means beside another one, as the rules derive it.
+
+    Kinds are those of `SEGMENT_RELATIONS`; a segment is its end-effector and its index.
+    """
+
+    kind: str
+    segment: tuple[str, int]
+    other: tuple[str, int]
+
+
+SEGMENT_RELATIONS = ("same_action", "resumes", "fragment_of", "rights", "steadies")
+"""It goes on with the other; it does so after a pause; it is a short part of it; it turns upright
+what was poured from in it; it holds what the other works in."""
+
+
 @dataclass(frozen=True, slots=True)
 class ObservedObject:
     """What the scene says of a tag object."""
@@ -259,6 +276,9 @@ class Observation:
     notices: tuple[Notice, ...]
     joint: tuple[JointAction, ...] = ()
     """What several end-effectors did with one object as one action, in order of time."""
+
+    relations: tuple[SegmentRelation, ...] = ()
+    """Which segments are one action, or serve another one; sorted."""
 
     others: tuple[Agent, ...] = ()
     """Who else performed, where several agents did."""

@@ -126,6 +126,7 @@ def observe_measured(
             *_violations(inference),
         ),
         joint=inference.joint,
+        relations=inference.relations,
         others=capture.others,
         calibration=measurements.calibration,
         guides=() if base.crossings_only else tuple(_guides(measurements)),

@@ -6,7 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from capar.model.facts import Fact, Frames, Link, OfAgent, RateMhz
-from capar.model.observation import Border, JointAction, ObservedLink, Segment
+from capar.model.observation import (
+    SEGMENT_RELATIONS,
+    Border,
+    JointAction,
+    ObservedLink,
+    Segment,
+    SegmentRelation,
+)
 from capar.model.par import UNKNOWN, FeatureSet
 from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.engine.profiles import Profile
@@ -52,6 +59,9 @@ class Inference:
     violations: tuple[str, ...]
     joint: tuple[JointAction, ...] = ()
     """What several end-effectors do as one action, in order of time."""
+
+    relations: tuple[SegmentRelation, ...] = ()
+    """Which segments are one action, or serve another one; sorted."""
 
 
 def infer(facts: Sequence[Fact], *, profile: Profile) -> Inference:
@@ -122,7 +132,22 @@ class _Reading:
             frozenset(no_steps),
             violations,
             joint_actions(self.answer, self._numbered(links), rate_hz=self.rate),
+            self._relations(),
         )
+
+    def _relations(self) -> tuple[SegmentRelation, ...]:
+        """How segments stand to each other, by their numbers in their links."""
+        index = {
+            ("seg", ee, first): (ee, number)
+            for ee, spans in self.spans.items()
+            for number, (first, _) in enumerate(spans)
+        }
+        found = (
+            SegmentRelation(kind, index[one], index[other])
+            for kind in SEGMENT_RELATIONS
+            for one, other in self._rows(kind)
+        )
+        return tuple(sorted(found))
 
     def _numbered(self, links: Iterable[ObservedLink]) -> dict[Key, Segment]:
         """Segments by end-effector and the tick at which they begin."""

@@ -93,12 +93,24 @@ def segments(
     bodies: Bodies,
     rules: dict[str, NamedNode],
 ) -> list[NamedNode]:
-    """Every segment, links in order."""
+    """Every segment, links in order, with how it stands to others."""
+    for each in observation.relations:
+        node, other = (segment_node(out.about, *key) for key in (each.segment, each.other))
+        out.add(node, (), {_RELATIONS[each.kind]: other})
     return [
         _segment(out, link, each, links[link.ee], objects, bodies, rules)
         for link in observation.links
         for each in link.segments
     ]
+
+
+_RELATIONS = {
+    "same_action": CAPAR.sameAction,
+    "resumes": CAPAR.resumes,
+    "fragment_of": CAPAR.fragmentOf,
+    "rights": CAPAR.rights,
+    "steadies": CAPAR.steadies,
+}
 
 
 def _segment(

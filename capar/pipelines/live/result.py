@@ -214,6 +214,7 @@ class LiveResult:
                 *(notice("rule-violation", violation=each) for each in inference.violations),
             ),
             joint=inference.joint,
+            relations=inference.relations,
             others=self._rig.others,
             calibration=self._calibration,
             forces=force_styles(self._rig, bodies, steadied, self._last.guides, times=times),
